@@ -1,0 +1,186 @@
+//! The arrays. `#[repr(C)]` types are read by the GPU as they stand; `shaders/common/scene.wgsl` is
+//! their twin, and a test compares the layouts.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DAffine3, DVec3};
+
+use crate::geometry::{Aabb, Camera};
+use crate::scene::{Environment, Light, MaterialId, NodeId};
+
+/// Entry of the subtree-extent array: a group, or a leaf (one shape).
+///
+/// Pre-order: a group is followed by its operands, and `index + extent` is the next sibling. The entry
+/// also says how its value joins what precedes it in its group, so that an evaluator needs no look back.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct FlatNode {
+    /// Bits 0–15: shape code, or [`FlatNode::GROUP`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
+    pub code: u32,
+    /// Entries of this node and everything below it; 1 for a leaf.
+    pub extent: u32,
+    /// Where its numbers start in [`FlatScene::numbers`].
+    pub numbers: u32,
+    /// Index into [`FlatScene::materials`]; leaves only.
+    pub material: u32,
+}
+
+impl FlatNode {
+    /// The shape code that marks a group.
+    pub const GROUP: u32 = 0xffff;
+
+    /// Whether it is a group.
+    pub fn is_group(&self) -> bool {
+        self.code & 0xffff == Self::GROUP
+    }
+
+    /// How it joins what precedes it.
+    pub fn join(&self) -> u32 {
+        (self.code >> 16) & 0xff
+    }
+
+    /// The kernel of its joint, as a number of [`crate::scene::BlendKernel::ALL`].
+    pub fn kernel(&self) -> u32 {
+        self.code >> 24
+    }
+}
+
+/// How an operand joins what precedes it in its group; the number stands in [`FlatNode::code`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum Join {
+    /// The first operand: it is the start.
+    First,
+    /// Union.
+    Union,
+    /// Intersection.
+    Intersection,
+    /// Cut away.
+    Difference,
+}
+
+/// Numbers of an entry, four at a time. Both kinds begin with the joint.
+///
+/// Leaf: `[support, distance_scale, 0, 0]`, three rows of local-from-component (a point `p` maps to
+/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows).
+///
+/// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
+/// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
+/// slope 0 and finite dummies.
+pub type Row = [f32; 4];
+
+/// Rows of a leaf before its parameters.
+pub const LEAF_ROWS: usize = 4;
+/// Rows of a group.
+pub const GROUP_ROWS: usize = 3;
+
+/// A material as the GPU reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FlatMaterial {
+    /// Linear diffuse reflectance.
+    pub albedo: [f32; 3],
+    /// Strength of the highlight.
+    pub specular: f32,
+    /// Linear emitted colour.
+    pub emission: [f32; 3],
+    /// Blinn-Phong exponent.
+    pub shininess: f32,
+}
+
+/// A light with its place in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatLight {
+    /// Which node.
+    pub id: NodeId,
+    /// World position.
+    pub position: DVec3,
+    /// Unit world direction in which it shines.
+    pub direction: DVec3,
+    /// The light.
+    pub light: Light,
+}
+
+/// A mesh with its place in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatMesh {
+    /// Which node.
+    pub id: NodeId,
+    /// The file, as the scene names it.
+    pub path: String,
+    /// World from the file's space.
+    pub world_from_local: DAffine3,
+    /// Index into [`FlatScene::materials`] instead of the file's own materials.
+    pub material: Option<u32>,
+}
+
+/// A camera with its place in the world.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatCamera {
+    /// Which node.
+    pub id: NodeId,
+    /// Its name.
+    pub name: String,
+    /// The camera.
+    pub camera: Camera,
+}
+
+/// A subtree that meets the others only through hard union, and is therefore traced alone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Component {
+    /// Its entries in [`FlatScene::nodes`].
+    pub first: u32,
+    /// How many.
+    pub count: u32,
+    /// World position of its own origin; all its numbers are relative to this.
+    pub origin: DVec3,
+    /// Around its surface, relative to `origin`; may be unbounded.
+    pub bounds: Aabb,
+    /// Accumulators that an evaluator must be able to put aside.
+    pub stack: u32,
+}
+
+/// Something that the artist should know; the scene is still rendered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Warning {
+    /// The node concerned.
+    pub node: NodeId,
+    /// Its name.
+    pub name: String,
+    /// What is the matter.
+    pub reason: String,
+}
+
+/// The scene at one moment, as arrays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlatScene {
+    /// The subtree-extent arrays of all components, one after the other.
+    pub nodes: Vec<FlatNode>,
+    /// Numbers of the nodes.
+    pub numbers: Vec<Row>,
+    /// Which node each entry of `nodes` came from; stays on the CPU.
+    pub ids: Vec<NodeId>,
+    /// Materials in use, then those of the scene that nothing wears are left out.
+    pub materials: Vec<FlatMaterial>,
+    /// Where each of `materials` came from.
+    pub material_ids: Vec<MaterialId>,
+    /// What is traced.
+    pub components: Vec<Component>,
+    /// Visible lights.
+    pub lights: Vec<FlatLight>,
+    /// Visible meshes.
+    pub meshes: Vec<FlatMesh>,
+    /// All cameras.
+    pub cameras: Vec<FlatCamera>,
+    /// Surroundings.
+    pub environment: Environment,
+    /// What the artist should know.
+    pub warnings: Vec<Warning>,
+}
+
+/// Largest stack for which an evaluator exists, see [`Component::stack`].
+pub const MAX_STACK: u32 = 32;
+/// Most entries in one component: an invocation evaluates them five times for a normal and a material,
+/// and lavapipe ends every loop after 65 535 iterations.
+pub const MAX_COMPONENT_NODES: usize = 12_000;
+/// Most entries in all components together.
+pub const MAX_FLAT_NODES: usize = 1 << 20;

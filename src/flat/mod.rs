@@ -1,0 +1,18 @@
+//! The scene at one moment as arrays, exactly as the GPU reads them, and the CPU twin that evaluates
+//! the same arrays in f64.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `flatten` | scene → [`FlatScene`] |
+//! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
+//! | `trace` | rays against the twin, with certainty instead of a step limit |
+//! | `pick` | which node a ray hits |
+
+mod arrays;
+mod flatten;
+pub mod pick;
+pub mod trace;
+pub mod twin;
+
+pub use arrays::*;
+pub use flatten::flatten;

@@ -1,0 +1,11 @@
+//! Isolith: building, animating and rendering scenes of signed distance functions.
+//!
+//! The architecture is described in `src/README.md`.
+
+pub mod document;
+pub mod editor;
+pub mod flat;
+pub mod geometry;
+pub mod mesh;
+pub mod render;
+pub mod scene;

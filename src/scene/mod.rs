@@ -1,0 +1,20 @@
+//! What the artist made, as plain data: a flat table of nodes, a table of materials, an environment.
+//!
+//! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
+
+mod light;
+pub mod limits;
+mod material;
+mod node;
+mod operator;
+mod shape;
+mod table;
+
+pub use light::{Attenuation, Environment, Light, LightKind};
+pub use limits::Limits;
+pub use material::{Material, MaterialId};
+pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
+pub use operator::{Blend, BlendKernel, Operator};
+pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+pub(crate) use shape::for_each_shape;
+pub use table::{Scene, SceneError};
