@@ -2,9 +2,12 @@
 //!
 //! The architecture is described in `src/README.md`.
 
+pub mod app;
+pub mod cli;
 pub mod document;
 pub mod editor;
 pub mod flat;
+pub mod gallery;
 pub mod geometry;
 pub mod mesh;
 pub mod render;

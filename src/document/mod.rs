@@ -1,1 +1,1 @@
-//! x
+//! The scene over time.

@@ -9,10 +9,11 @@
 //! | `pick` | which node a ray hits |
 
 mod arrays;
+mod buffers;
 mod flatten;
 pub mod pick;
 pub mod trace;
 pub mod twin;
 
 pub use arrays::*;
-pub use flatten::flatten;
+pub use buffers::*;

@@ -146,7 +146,10 @@ mod tests {
 
     #[test]
     fn an_unbounded_box_survives_a_rotation_about_its_own_axis() {
-        let slab = Aabb::new(DVec3::new(f64::NEG_INFINITY, -1.0, f64::NEG_INFINITY), DVec3::new(f64::INFINITY, 0.0, f64::INFINITY));
+        let slab = Aabb::new(
+            DVec3::new(f64::NEG_INFINITY, -1.0, f64::NEG_INFINITY),
+            DVec3::new(f64::INFINITY, 0.0, f64::INFINITY),
+        );
         let moved = slab.transformed(&DAffine3::from_translation(DVec3::new(3.0, 5.0, 0.0)));
         assert_eq!(moved.max.y, 5.0);
         assert_eq!(moved.min.y, 4.0);

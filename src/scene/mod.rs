@@ -2,6 +2,7 @@
 //!
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
+pub mod file;
 mod light;
 pub mod limits;
 mod material;
@@ -15,6 +16,6 @@ pub use limits::Limits;
 pub use material::{Material, MaterialId};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, Operator};
-pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
 pub(crate) use shape::for_each_shape;
+pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
 pub use table::{Scene, SceneError};

@@ -1,0 +1,1 @@
+//! Joins editor and renderer in one window.

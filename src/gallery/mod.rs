@@ -1,0 +1,1 @@
+//! The example scenes, made by code.
