@@ -62,7 +62,7 @@ library() { grep -qF "$1" <<<"$libraries" || missing+=("$2"); }
 driver() {
     [ -z "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || return 0
     local root
-    for root in /etc /usr/share /usr/local/etc /usr/local/share "${XDG_DATA_HOME:-${HOME:-/root}/.local/share}"; do
+    for root in /etc /usr/share /usr/local/etc /usr/local/share "${XDG_DATA_HOME:-$HOME/.local/share}"; do
         ! compgen -G "$root/vulkan/icd.d/*.json" >/dev/null || return 0
     done
     missing+=(mesa-vulkan-drivers)
