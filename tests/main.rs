@@ -8,6 +8,7 @@ mod documents;
 mod editor;
 mod files;
 mod golden;
+mod gpu;
 mod meshes;
 mod shaders;
 mod tidy;
