@@ -6,15 +6,20 @@
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
+//! | `shade` | light on surfaces, twin of `shaders/light` |
+//! | `truth` | the whole picture by `twin`, `trace` and `shade` |
 //! | `pick` | which node a ray hits |
 
 mod arrays;
 mod buffers;
 mod emit;
 mod flatten;
+pub mod mesh_rays;
 mod operands;
 pub mod pick;
+pub mod shade;
 pub mod trace;
+pub mod truth;
 pub mod twin;
 
 pub use arrays::*;
