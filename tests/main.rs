@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod agreement;
+mod broken_files;
 mod cli;
 mod contract;
 mod documents;
@@ -9,5 +10,7 @@ mod editor;
 mod files;
 mod golden;
 mod meshes;
+mod random_scene;
+mod saving;
 mod shaders;
 mod tidy;
