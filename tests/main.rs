@@ -9,6 +9,7 @@ mod documents;
 mod editor;
 mod files;
 mod golden;
+mod gpu;
 mod meshes;
 mod random_scene;
 mod saving;
