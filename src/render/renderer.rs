@@ -258,8 +258,8 @@ impl Renderer {
 
     /// The picture in a slot: complete once its frame is done, and another texture after a
     /// [`Renderer::begin`] of another size.
-    pub fn picture(&self, slot: Slot) -> Option<&wgpu::TextureView> {
-        self.slots[slot as usize].as_ref().map(|s| &s.targets.color.view)
+    pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
+        self.slots[slot as usize].as_ref().map(|s| (&s.targets.color.view, s.targets.size))
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.
