@@ -9,19 +9,28 @@
 //! | `shade` | light on surfaces, twin of `shaders/light` |
 //! | `truth` | the whole picture by `twin`, `trace` and `shade` |
 //! | `pick` | which node a ray hits |
+//! | `meshes` | the meshes that a scene names, loaded |
+//! | `mesh_rays` | rays against them |
+//! | `view` | the view of a scene when nobody chose one |
+//! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
 mod buffers;
+pub mod compare;
 mod emit;
 mod flatten;
 pub mod mesh_rays;
+mod meshes;
 mod operands;
 pub mod pick;
 pub mod shade;
 pub mod trace;
 pub mod truth;
 pub mod twin;
+mod view;
 
 pub use arrays::*;
 pub use buffers::*;
+pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten};
+pub use shade::{GpuLight, gpu_lights};

@@ -122,12 +122,8 @@ fn plan_trace(flat: &FlatScene, index: usize, rect: Rect, most: f64, pieces: &mu
         let expected = if round == 0 { f64::from(steps.min(24)) } else { 0.3 };
         let per_pixel = f64::from(component.count) * expected;
         rect.cut(per_pixel, most, |rect| {
-            let work = Work {
-                max_steps: steps,
-                round,
-                last_round: u32::from(round + 1 == rounds),
-                ..rect.work(index as u32)
-            };
+            let work =
+                Work { max_steps: steps, round, last_round: u32::from(round + 1 == rounds), ..rect.work(index as u32) };
             pieces.push(Piece { stage: Stage::Trace, work, effort: rect.pixels() * per_pixel });
         });
     }

@@ -36,14 +36,8 @@ impl SurfacePass {
 
     /// The pass's own bind group.
     pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let views = [
-            &targets.depth,
-            &targets.owner,
-            &targets.normal,
-            &targets.diffuse,
-            &targets.emission,
-            &targets.leaf,
-        ];
+        let views =
+            [&targets.depth, &targets.owner, &targets.normal, &targets.diffuse, &targets.emission, &targets.leaf];
         let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
         bind(device, "surface targets", &self.targets, &resources)
     }
