@@ -4,8 +4,8 @@
 
 mod operators;
 mod rules;
-mod samples;
+pub mod samples;
 mod shapes;
 mod surfaces;
 mod tracing;
-mod trees;
+pub mod trees;

@@ -15,13 +15,13 @@ const TREES: u64 = 60;
 
 /// What random trees are made of.
 #[derive(Clone, Copy)]
-struct Recipe {
-    blends: bool,
-    stretching: bool,
+pub struct Recipe {
+    pub blends: bool,
+    pub stretching: bool,
 }
 
 /// A tree of a few levels, with negative nodes, hidden ones and every operator.
-fn tree(seed: u64, recipe: Recipe) -> Scene {
+pub fn tree(seed: u64, recipe: Recipe) -> Scene {
     let mut random = Random::new(seed);
     let mut scene = Scene::new();
     for (id, albedo) in [(2, [1.0, 0.0, 0.0]), (3, [0.0, 1.0, 0.0]), (4, [0.0, 0.0, 1.0])] {
