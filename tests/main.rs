@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod agreement;
+mod broken_files;
 mod cli;
 mod contract;
 mod documents;
@@ -10,5 +11,7 @@ mod files;
 mod golden;
 mod gpu;
 mod meshes;
+mod random_scene;
+mod saving;
 mod shaders;
 mod tidy;

@@ -4,15 +4,10 @@ use std::sync::Arc;
 
 use super::FlatScene;
 use crate::geometry::Ray;
-use crate::mesh::{MeshHit, MeshLibrary, TriangleMesh};
+use crate::mesh::{MeshHit, TriangleMesh};
 
 /// The meshes of a scene, parallel to [`FlatScene::meshes`]; `None` where a file could not be read.
 pub type Meshes = [Option<Arc<TriangleMesh>>];
-
-/// Takes the meshes of the scene from the library.
-pub fn meshes_of(flat: &FlatScene, library: &mut MeshLibrary) -> Vec<Option<Arc<TriangleMesh>>> {
-    flat.meshes.iter().map(|mesh| library.get(&mesh.path).ok()).collect()
-}
 
 /// The first triangle on the ray between `near` and `far`: the mesh's index, and the hit with `t`
 /// along the ray in metres and everything else in the mesh's own space.

@@ -11,6 +11,7 @@
 //! | `pick` | which node a ray hits |
 //! | `mesh_rays` | rays against the meshes |
 //! | `meshes` | the meshes that a scene names, loaded |
+//! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
 //! | `compare` | how wrong a picture is, against the truth |
 

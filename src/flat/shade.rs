@@ -83,7 +83,7 @@ pub fn gpu_lights(flat: &FlatScene, camera: &Camera) -> Vec<GpuLight> {
     if flat.lights.is_empty() {
         let world = |direction: DVec3| camera.rotation * direction;
         return vec![
-            GpuLight::directional(world(DVec3::new(0.55, -0.75, -0.9)), DVec3::new(1.35, 1.30, 1.22)),
+            GpuLight::directional(world(DVec3::new(0.55, -0.75, -0.9)), DVec3::new(1.12, 1.08, 1.02)),
             GpuLight::directional(world(DVec3::new(-0.9, -0.1, -0.5)), DVec3::new(0.16, 0.20, 0.28)),
         ];
     }
