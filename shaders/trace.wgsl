@@ -22,7 +22,7 @@ const CREEP_LONGEST: f32 = 0.03;
 const SPACING: f32 = 2.4e-7;
 
 // Where the ray is within the component's bounds: entry and exit.
-fn bounds_interval(component: Component, direction: vec3f) -> vec2f {
+fn trace_interval(component: Component, direction: vec3f) -> vec2f {
     // A component of the direction that is zero would give 0 times infinity.
     let d = select(direction, vec3f(1e-9), abs(direction) < vec3f(1e-9));
     let a = (component.low - component.eye) / d;
@@ -50,7 +50,7 @@ fn trace(@builtin(global_invocation_id) id: vec3u) {
     }
     let component = components[work.component];
     let direction = view_direction(pixel);
-    let interval = bounds_interval(component, direction);
+    let interval = trace_interval(component, direction);
     let depth = textureLoad(depth_target, pixel).x;
     let exit = min(min(interval.y, view.far), depth);
     var t = max(interval.x, view.near);
