@@ -31,7 +31,7 @@ fn surface(p: vec3f) -> Surface {
         let node = nodes[at];
         let joint = numbers[node.numbers];
         if (node.code & 0xffffu) == GROUP {
-            if !group_is_out_of_reach(node, joint, so_far.distance, p) {
+            if !field_group_is_out_of_reach(node, joint, so_far.distance, p) {
                 surface_stack[depth] = so_far;
                 surface_group[depth] = at;
                 depth += 1u;

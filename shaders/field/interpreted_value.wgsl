@@ -31,7 +31,7 @@ fn field(p: vec3f) -> f32 {
         let node = nodes[at];
         let joint = numbers[node.numbers];
         if (node.code & 0xffffu) == GROUP {
-            if !group_is_out_of_reach(node, joint, so_far, p) {
+            if !field_group_is_out_of_reach(node, joint, so_far, p) {
                 value_stack[depth] = so_far;
                 value_group[depth] = at;
                 depth += 1u;
