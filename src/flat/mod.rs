@@ -10,10 +10,13 @@
 
 mod arrays;
 mod buffers;
+mod emit;
 mod flatten;
+mod operands;
 pub mod pick;
 pub mod trace;
 pub mod twin;
 
 pub use arrays::*;
 pub use buffers::*;
+pub use flatten::{FlattenError, flatten};

@@ -24,11 +24,14 @@ pub enum ParamValue {
 
 /// A Rust type that a parameter can have.
 trait ParamField: Copy {
+    /// How many numbers it takes.
+    const FLOATS: usize;
     fn to_value(self) -> ParamValue;
     fn from_value(value: ParamValue) -> Option<Self>;
 }
 
 impl ParamField for f64 {
+    const FLOATS: usize = 1;
     fn to_value(self) -> ParamValue {
         ParamValue::Scalar(self)
     }
@@ -38,6 +41,7 @@ impl ParamField for f64 {
 }
 
 impl ParamField for [f64; 3] {
+    const FLOATS: usize = 3;
     fn to_value(self) -> ParamValue {
         ParamValue::Vector(self.into())
     }
@@ -99,6 +103,11 @@ macro_rules! shapes {
                     help: concat!($( $help, )+).trim_ascii(),
                     limits: $limits,
                 }, )*] }, )+ }
+            }
+
+            /// How many rows of four numbers its parameters take, see [`Shape::packed`].
+            pub fn rows(self) -> usize {
+                match self { $( Self::$name => const { (0_usize $( + <$type as ParamField>::FLOATS )*).div_ceil(4) }, )+ }
             }
 
             /// The shape with its default parameters.

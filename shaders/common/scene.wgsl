@@ -1,0 +1,40 @@
+// The flat scene. `src/flat/arrays.rs` is this file's twin and says what the fields mean; a test
+// compares the layouts.
+
+struct FlatNode {
+    code: u32,
+    extent: u32,
+    numbers: u32,
+    material: u32,
+}
+
+struct FlatMaterial {
+    albedo: vec3f,
+    specular: f32,
+    emission: vec3f,
+    shininess: f32,
+}
+
+// A component, as it stands to the eye.
+struct Component {
+    // The eye, relative to the component's origin.
+    eye: vec3f,
+    first: u32,
+    // Bounds, relative to the component's origin.
+    low: vec3f,
+    end: u32,
+    high: vec3f,
+    padding: u32,
+}
+
+const GROUP: u32 = 0xffffu;
+const JOIN_FIRST: u32 = 0u;
+const JOIN_UNION: u32 = 1u;
+const JOIN_INTERSECTION: u32 = 2u;
+const JOIN_DIFFERENCE: u32 = 3u;
+const LEAF_ROWS: u32 = 4u;
+
+@group(1) @binding(0) var<storage, read> nodes: array<FlatNode>;
+@group(1) @binding(1) var<storage, read> numbers: array<vec4f>;
+@group(1) @binding(2) var<storage, read> components: array<Component>;
+@group(1) @binding(3) var<storage, read> materials: array<FlatMaterial>;

@@ -1,0 +1,34 @@
+// Who looks, from where. Positions in every pass are relative to the eye or to a component's origin:
+// the world's own coordinates never reach the GPU.
+
+struct View {
+    // Half the picture's width at distance 1, to the right.
+    right: vec3f,
+    near: f32,
+    // Half the picture's height at distance 1, upwards.
+    up: vec3f,
+    far: f32,
+    // Unit direction of view.
+    forward: vec3f,
+    // Width of a pixel at distance 1.
+    footprint: f32,
+    sky: vec3f,
+    light_count: u32,
+    horizon: vec3f,
+    width: u32,
+    ambient: vec3f,
+    height: u32,
+}
+
+@group(0) @binding(0) var<uniform> view: View;
+
+// Unit direction of the ray through the centre of a pixel.
+fn view_direction(pixel: vec2u) -> vec3f {
+    let size = vec2f(f32(view.width), f32(view.height));
+    let at = (vec2f(pixel) + 0.5) / size * 2.0 - 1.0;
+    return normalize(view.right * at.x - view.up * at.y + view.forward);
+}
+
+fn view_contains(pixel: vec2u) -> bool {
+    return pixel.x < view.width && pixel.y < view.height;
+}

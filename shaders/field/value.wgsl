@@ -1,0 +1,52 @@
+// The field of a component: the fold over its range of the subtree-extent array.
+// Twin of `flat::twin::field`.
+
+#include "field/leaf.wgsl"
+#include "sdf/op.wgsl"
+
+var<private> value_stack: array<f32, STACK_SIZE>;
+var<private> value_group: array<u32, STACK_SIZE>;
+
+fn join_value(node: FlatNode, support: f32, so_far: f32, value: f32) -> f32 {
+    let kernel = node.code >> 24u;
+    switch (node.code >> 16u) & 0xffu {
+        case JOIN_UNION: { return op_union(so_far, value, support, kernel).x; }
+        case JOIN_INTERSECTION: { return op_intersection(so_far, value, support, kernel).x; }
+        case JOIN_DIFFERENCE: { return op_difference(so_far, value, support, kernel).x; }
+        default: { return value; }
+    }
+}
+
+// `p` relative to the component's origin; `first` and `end` delimit its entries.
+fn field(first: u32, end: u32, p: vec3f) -> f32 {
+    var so_far = 0.0;
+    var depth = 0u;
+    var at = first;
+    while at < end {
+        let node = nodes[at];
+        let joint = numbers[node.numbers];
+        if (node.code & 0xffffu) == GROUP {
+            if !group_is_out_of_reach(node, joint, so_far, p) {
+                value_stack[depth] = so_far;
+                value_group[depth] = at;
+                depth += 1u;
+                at += 1u;
+                continue;
+            }
+            at += node.extent;
+        } else {
+            so_far = join_value(node, joint.x, so_far, leaf_distance(node, joint, p));
+            at += 1u;
+        }
+        // Every group that ends here joins what stood before it.
+        while depth > 0u {
+            let group = nodes[value_group[depth - 1u]];
+            if value_group[depth - 1u] + group.extent != at {
+                break;
+            }
+            depth -= 1u;
+            so_far = join_value(group, numbers[group.numbers].x, value_stack[depth], so_far);
+        }
+    }
+    return so_far;
+}

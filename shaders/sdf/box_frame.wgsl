@@ -1,0 +1,21 @@
+// The twelve edges of a cuboid: size a.xyz, width of the bars a.w.
+//
+// By symmetry in the octant of positive coordinates. `inner` is how deep the point lies within the
+// bars' width along each axis; where the bars reach the middle they have no inner side at all. A
+// point is in the solid where it is deep along two axes.
+
+fn sdf_box_frame(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let outer = abs(p) - 0.5 * a.xyz;
+    let inner = select(outer + a.w, vec3f(1e18), 0.5 * a.xyz <= vec3f(a.w));
+    // Distance, along each axis, to the width of a bar; 0 within it.
+    let side = max(max(outer, -inner), vec3f(0.0));
+    let along = max(outer, vec3f(0.0));
+    let outside = min(length(vec3f(along.x, side.yz)), min(length(vec3f(side.x, along.y, side.z)), length(vec3f(side.xy, along.z))));
+    if outside > 0.0 {
+        return outside;
+    }
+    // The way out leads through an outer face, or along the two shallowest axes into the hollow.
+    let least = min(inner.x, min(inner.y, inner.z));
+    let middle = max(min(inner.x, inner.y), min(max(inner.x, inner.y), inner.z));
+    return max(max(outer.x, max(outer.y, outer.z)), -length(max(vec2f(least, middle), vec2f(0.0))));
+}

@@ -1,0 +1,22 @@
+// A regular octahedron: centre to corner a.x.
+//
+// In the positive octant: on the face where the plane's foot lies within it, else on the nearest edge
+// (idea: Quilez, "octahedron distance").
+
+fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let q = abs(p);
+    let excess = q.x + q.y + q.z - a.x;
+    let least = min(q.x, min(q.y, q.z));
+    if 3.0 * least >= excess {
+        return excess * 0.57735027;
+    }
+    // The foot on the plane falls behind the least coordinate: the edge spanned by the two others.
+    var edge = q.yz;
+    if q.y == least {
+        edge = q.xz;
+    } else if q.z == least {
+        edge = q.xy;
+    }
+    let t = clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x);
+    return length(vec3f(least, edge.x - a.x + t, edge.y - t));
+}

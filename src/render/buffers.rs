@@ -1,0 +1,113 @@
+//! Buffers that hold what the CPU says and upload only what has changed.
+
+/// A GPU buffer with a copy of what it holds.
+#[derive(Debug)]
+pub struct Mirror {
+    label: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: wgpu::Buffer,
+    held: Vec<u8>,
+    uploaded: u64,
+}
+
+impl Mirror {
+    /// An empty storage buffer.
+    pub fn storage(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// An empty uniform buffer.
+    pub fn uniform(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::UNIFORM)
+    }
+
+    fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        Self { label, usage, buffer: create(device, label, usage, Self::LEAST), held: Vec::new(), uploaded: 0 }
+    }
+
+    /// Smallest buffer: no binding may be empty.
+    const LEAST: usize = 256;
+
+    /// Makes the buffer hold `bytes` (a multiple of 4). Uploads the range between the first and the
+    /// last difference. Returns whether the buffer is another one, so that bind groups must be remade.
+    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        let grown = bytes.len() as u64 > self.buffer.size();
+        if grown {
+            let size = bytes.len().next_power_of_two();
+            self.buffer = create(device, self.label, self.usage, size);
+            self.held.clear();
+        }
+        let common = self.held.len().min(bytes.len());
+        let same = common_prefix(&self.held[..common], &bytes[..common]);
+        if same == bytes.len() {
+            self.held.truncate(bytes.len());
+            return grown;
+        }
+        let tail = if self.held.len() == bytes.len() { common_suffix(&self.held[same..], &bytes[same..]) } else { 0 };
+        let (from, to) = (same & !3, (bytes.len() - tail).next_multiple_of(4));
+        queue.write_buffer(&self.buffer, from as u64, &bytes[from..to]);
+        self.uploaded += (to - from) as u64;
+        self.held.resize(bytes.len(), 0);
+        self.held[from..].copy_from_slice(&bytes[from..]);
+        grown
+    }
+
+    /// The buffer, whole.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        self.buffer.as_entire_binding()
+    }
+
+    /// The buffer.
+    pub fn buffer(&self) -> &wgpu::Buffer {
+        &self.buffer
+    }
+
+    /// Bytes uploaded so far.
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+}
+
+fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size.max(Mirror::LEAST) as u64,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+/// Length of the common beginning. Compares blocks, which is as fast as memory.
+fn common_prefix(a: &[u8], b: &[u8]) -> usize {
+    const BLOCK: usize = 4096;
+    let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).take_while(|(x, y)| x == y).count();
+    let start = (blocks * BLOCK).min(a.len());
+    start + a[start..].iter().zip(&b[start..]).take_while(|(x, y)| x == y).count()
+}
+
+/// Length of the common end.
+fn common_suffix(a: &[u8], b: &[u8]) -> usize {
+    const BLOCK: usize = 4096;
+    let blocks = a.rchunks(BLOCK).zip(b.rchunks(BLOCK)).take_while(|(x, y)| x == y).count();
+    let end = (blocks * BLOCK).min(a.len());
+    let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
+    end + a.iter().rev().zip(b.iter().rev()).take_while(|(x, y)| x == y).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn common_parts_are_found_across_blocks() {
+        let a: Vec<u8> = (0..20_000_u32).map(|i| (i % 251) as u8).collect();
+        let mut b = a.clone();
+        b[9_000] ^= 1;
+        assert_eq!(common_prefix(&a, &b), 9_000);
+        assert_eq!(common_suffix(&a, &b), 20_000 - 9_001);
+        assert_eq!(common_prefix(&a, &a), 20_000);
+        assert_eq!(common_suffix(&a, &a), 20_000);
+        assert_eq!(common_prefix(&[], &[]), 0);
+    }
+}

@@ -1,0 +1,138 @@
+//! The device: found, opened, watched.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+
+use thiserror::Error;
+
+/// Why there is no device, or no more.
+#[derive(Clone, Debug, Error)]
+pub enum GpuError {
+    /// No driver answers.
+    #[error(
+        "no graphics driver answers ({0}). On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` installs one \
+         that needs no graphics card"
+    )]
+    NoAdapter(String),
+    /// The driver refuses a device.
+    #[error("the graphics driver {adapter} gives no device: {reason}")]
+    NoDevice {
+        /// The driver.
+        adapter: String,
+        /// Its reason.
+        reason: String,
+    },
+    /// The device is gone.
+    #[error("the graphics device was lost: {0}")]
+    Lost(String),
+}
+
+/// A device and its queue, and what became of them.
+#[derive(Clone, Debug)]
+pub struct Gpu {
+    /// The device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Which driver and card.
+    pub info: wgpu::AdapterInfo,
+    health: Arc<Health>,
+}
+
+#[derive(Debug, Default)]
+struct Health {
+    lost: AtomicBool,
+    messages: Mutex<Vec<String>>,
+}
+
+impl Gpu {
+    /// A device without a window. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several.
+    pub fn headless() -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(instance_descriptor());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..Default::default()
+        };
+        let adapter = match wgpu::util::initialize_adapter_from_env(&instance, None) {
+            found if std::env::var_os("WGPU_ADAPTER_NAME").is_some() => pollster::block_on(found),
+            _ => pollster::block_on(instance.request_adapter(&options)),
+        }
+        .map_err(|e| GpuError::NoAdapter(e.to_string()))?;
+        let info = adapter.get_info();
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
+            .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+        Ok(Self::watch(device, queue, info))
+    }
+
+    /// Takes over a device opened elsewhere, and installs the handlers for loss and for errors that
+    /// nobody catches: without them either would end the program.
+    pub fn watch(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
+        let health = Arc::new(Health::default());
+        let of_loss = health.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            of_loss.say(format!("{reason:?}: {message}"));
+            of_loss.lost.store(true, Ordering::Release);
+        });
+        let of_error = health.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| of_error.say(error.to_string())));
+        Self { device, queue, info, health }
+    }
+
+    /// Whether the device is gone; a new one must be opened.
+    pub fn is_lost(&self) -> bool {
+        self.health.lost.load(Ordering::Acquire)
+    }
+
+    /// Takes what the device complained about since the last call.
+    pub fn take_messages(&self) -> Vec<String> {
+        self.health.messages.lock().map(|mut m| std::mem::take(&mut *m)).unwrap_or_default()
+    }
+
+    /// An error if the device is gone or has complained since the last call.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let messages = self.take_messages();
+        if self.is_lost() || !messages.is_empty() { Err(GpuError::Lost(messages.join("; "))) } else { Ok(()) }
+    }
+
+    /// Waits until everything submitted so far is done.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| GpuError::Lost(e.to_string()))?;
+        self.check()
+    }
+
+    /// Whether the driver computes on the processor: lavapipe, SwiftShader and their like.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+}
+
+impl Health {
+    fn say(&self, message: String) {
+        if let Ok(mut messages) = self.messages.lock() {
+            // A broken device may complain without end.
+            if messages.len() < 64 {
+                messages.push(message);
+            }
+        }
+    }
+}
+
+/// How an instance is made, with or without a window.
+pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // Validation layers are the developer's to ask for, through the environment.
+    descriptor.flags = wgpu::InstanceFlags::empty().with_env();
+    descriptor
+}
+
+/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let offered = adapter.limits();
+    let required_limits = wgpu::Limits {
+        max_texture_dimension_2d: offered.max_texture_dimension_2d,
+        max_buffer_size: offered.max_buffer_size,
+        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
+        ..wgpu::Limits::default()
+    };
+    wgpu::DeviceDescriptor { label: Some("isolith"), required_limits, ..Default::default() }
+}

@@ -1,0 +1,134 @@
+//! Bind group layouts. Group 0 is the view, 1 the scene, 2 the pass's own targets, 3 the piece of work.
+
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
+use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
+
+/// Layouts that several passes share.
+#[derive(Debug)]
+pub struct Layouts {
+    /// Group 0: `View`.
+    pub view: BindGroupLayout,
+    /// Group 1 of the field passes: nodes, numbers, components, materials.
+    pub scene: BindGroupLayout,
+    /// Group 3: `Work`, at a dynamic offset.
+    pub work: BindGroupLayout,
+}
+
+impl Layouts {
+    /// Makes them.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let everywhere = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
+        Self {
+            view: layout(device, "view", &[entry(0, everywhere, uniform(false))]),
+            scene: layout(device, "scene", &[0, 1, 2, 3].map(|b| entry(b, ShaderStages::COMPUTE, read_storage()))),
+            work: layout(device, "work", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
+        }
+    }
+}
+
+/// A layout with the given entries.
+pub fn layout(device: &wgpu::Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+/// An entry of a layout.
+pub fn entry(binding: u32, visibility: ShaderStages, ty: BindingType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+/// A uniform buffer.
+pub fn uniform(has_dynamic_offset: bool) -> BindingType {
+    BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None }
+}
+
+/// A storage buffer that is only read.
+pub fn read_storage() -> BindingType {
+    BindingType::Buffer {
+        ty: BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+/// A storage buffer that is written.
+pub fn write_storage() -> BindingType {
+    BindingType::Buffer {
+        ty: BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+/// A texture that is written.
+pub fn write_texture(format: Format) -> BindingType {
+    storage_texture(format, Access::WriteOnly)
+}
+
+/// A texture that is read and written.
+pub fn read_write_texture(format: Format) -> BindingType {
+    storage_texture(format, Access::ReadWrite)
+}
+
+fn storage_texture(format: Format, access: Access) -> BindingType {
+    BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
+}
+
+/// A texture that is read texel by texel.
+pub fn read_texture(unsigned: bool) -> BindingType {
+    BindingType::Texture {
+        sample_type: if unsigned {
+            wgpu::TextureSampleType::Uint
+        } else {
+            wgpu::TextureSampleType::Float { filterable: false }
+        },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    }
+}
+
+/// A bind group of views and buffers in the order of their bindings.
+pub fn bind(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .enumerate()
+        .map(|(i, resource)| wgpu::BindGroupEntry { binding: i as u32, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A compute pipeline for `entry_point` of `source`.
+pub fn compute_pipeline(
+    device: &wgpu::Device,
+    label: &str,
+    source: String,
+    entry_point: &str,
+    layouts: &[&BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&pipeline_layout(device, label, layouts)),
+        module: &module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+/// The layout of a pipeline's groups.
+pub fn pipeline_layout(device: &wgpu::Device, label: &str, layouts: &[&BindGroupLayout]) -> wgpu::PipelineLayout {
+    let groups: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &groups,
+        immediate_size: 0,
+    })
+}

@@ -1,0 +1,98 @@
+//! The textures that the passes share, all of the picture's size.
+//!
+//! | target | format | written by | holds |
+//! |---|---|---|---|
+//! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] where nothing is |
+//! | owner | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
+//! | march | R32Float | trace | where a march goes on in the next round |
+//! | normal | Rgba32Float | mesh, surface | unit normal in the world |
+//! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
+//! | emission | Rgba16Float | surface | emission, shininess |
+//! | leaf | R32Uint | surface | entry of the subtree-extent array, or as owner |
+//! | color | Rgba8Unorm | shade, overlay | the picture, sRGB encoded |
+//! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
+//!
+//! `shaders/common/depth.wgsl` is the twin of the conventions.
+
+use wgpu::{TextureFormat, TextureUsages};
+
+/// Depth where nothing was hit.
+pub const BACKGROUND: f32 = 1e30;
+
+/// See the module.
+#[derive(Debug)]
+pub struct Targets {
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// See the module's table.
+    pub depth: Target,
+    /// See the module's table.
+    pub owner: Target,
+    /// See the module's table.
+    pub march: Target,
+    /// See the module's table.
+    pub normal: Target,
+    /// See the module's table.
+    pub diffuse: Target,
+    /// See the module's table.
+    pub emission: Target,
+    /// See the module's table.
+    pub leaf: Target,
+    /// See the module's table.
+    pub color: Target,
+    /// See the module's table.
+    pub hardware_depth: Target,
+}
+
+/// A texture and its view.
+#[derive(Debug)]
+pub struct Target {
+    /// The texture.
+    pub texture: wgpu::Texture,
+    /// All of it.
+    pub view: wgpu::TextureView,
+}
+
+impl Targets {
+    /// New targets of `size` pixels, both at least 1.
+    pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let compute = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+        let both = compute | TextureUsages::RENDER_ATTACHMENT;
+        let target = |label, format, usage| Target::new(device, label, size, format, usage);
+        Self {
+            size,
+            depth: target("depth", TextureFormat::R32Float, both),
+            owner: target("owner", TextureFormat::R32Uint, both),
+            march: target("march", TextureFormat::R32Float, compute),
+            normal: target("normal", TextureFormat::Rgba32Float, both),
+            diffuse: target("diffuse", TextureFormat::Rgba16Float, both),
+            emission: target("emission", TextureFormat::Rgba16Float, compute),
+            leaf: target("leaf", TextureFormat::R32Uint, compute),
+            color: target("color", TextureFormat::Rgba8Unorm, both),
+            hardware_depth: target("hardware depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT),
+        }
+    }
+}
+
+impl Target {
+    fn new(
+        device: &wgpu::Device,
+        label: &str,
+        size: [u32; 2],
+        format: TextureFormat,
+        usage: TextureUsages,
+    ) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        Self { texture, view }
+    }
+}
