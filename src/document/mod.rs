@@ -1,1 +1,214 @@
-//! The scene over time.
+//! The scene over time: edits, undo, saving.
+//!
+//! [`Document::apply`] is the only gate through which a scene changes. Undo is by snapshot: a scene
+//! shares its nodes, so keeping the one from before an edit copies pointers and no contents.
+
+mod edit;
+mod history;
+mod placement;
+mod recent;
+mod structure;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+pub use edit::Edit;
+use history::{History, State};
+pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
+pub use recent::{MAX_RECENT, RecentFiles};
+
+use crate::scene::file::{self, FileError};
+use crate::scene::{NodeId, Scene, SceneError};
+
+/// A scene with its selection, its past and its file.
+#[derive(Debug)]
+pub struct Document {
+    state: State,
+    revision: u64,
+    history: History,
+    gesture: Option<Gesture>,
+    path: Option<PathBuf>,
+    saved: u64,
+}
+
+/// Edits that become one step.
+#[derive(Debug)]
+struct Gesture {
+    start: State,
+    label: Option<String>,
+    depth: u32,
+}
+
+impl Document {
+    /// A document without a file. It counts as unchanged until the first edit.
+    pub fn new(scene: Scene) -> Self {
+        let state = State { scene: Arc::new(scene), selection: Vec::new(), mark: 0 };
+        Self { state, revision: 0, history: History::default(), gesture: None, path: None, saved: 0 }
+    }
+
+    /// Reads a file, and clears away what crashed savers of it have left behind.
+    pub fn open(path: &Path) -> Result<Self, FileError> {
+        let scene = file::load(path)?;
+        file::remove_leftovers(path);
+        Ok(Self { path: Some(path.to_path_buf()), ..Self::new(scene) })
+    }
+
+    /// The scene as it is now.
+    pub fn scene(&self) -> &Scene {
+        &self.state.scene
+    }
+
+    /// The scene as it is now, to keep: for work on another thread. Later edits do not touch it.
+    pub fn snapshot(&self) -> Arc<Scene> {
+        Arc::clone(&self.state.scene)
+    }
+
+    /// A number that grows whenever the scene changes, by undo and redo as well.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// The selected nodes, in the order of selecting.
+    pub fn selection(&self) -> &[NodeId] {
+        &self.state.selection
+    }
+
+    /// Selects these nodes and no others. Unknown and repeated ids are dropped. Not a step of its own,
+    /// but undo and redo bring the selection back that belonged to the scene.
+    pub fn select(&mut self, ids: Vec<NodeId>) {
+        self.state.selection = ids;
+        self.state.drop_unknown();
+    }
+
+    /// Changes the scene, or changes nothing and says why. Returns the ids of the nodes added: for
+    /// [`Edit::Duplicate`] the top nodes of the copies, for [`Edit::Group`] the group.
+    ///
+    /// One step of undo, unless a gesture is open, which makes one of all its edits. What changes
+    /// nothing makes no step. Nodes that are gone leave the selection; it stays otherwise.
+    pub fn apply(&mut self, edit: Edit) -> Result<Vec<NodeId>, SceneError> {
+        let alone = self.gesture.is_none();
+        if alone {
+            self.begin_gesture();
+        }
+        let label = edit.label(&self.state.scene);
+        let result = edit.perform(&mut self.state.scene);
+        if let Ok(change) = &result {
+            if change.changed {
+                self.revision += 1;
+                self.state.mark = self.revision;
+                self.state.drop_unknown();
+                if let Some(gesture) = &mut self.gesture {
+                    gesture.label.get_or_insert(label);
+                }
+            }
+        }
+        if alone {
+            self.end_gesture();
+        }
+        result.map(|change| change.added)
+    }
+
+    /// Starts a gesture, such as a drag: all edits until the matching [`Document::end_gesture`] are one
+    /// step. Gestures nest; the outermost counts.
+    pub fn begin_gesture(&mut self) {
+        match &mut self.gesture {
+            Some(gesture) => gesture.depth += 1,
+            None => self.gesture = Some(Gesture { start: self.state.clone(), label: None, depth: 1 }),
+        }
+    }
+
+    /// Ends a gesture. One that leaves the scene as it was makes no step. Without a gesture nothing
+    /// happens.
+    pub fn end_gesture(&mut self) {
+        let Some(mut gesture) = self.gesture.take() else { return };
+        gesture.depth -= 1;
+        if gesture.depth > 0 {
+            self.gesture = Some(gesture);
+            return;
+        }
+        let Some(label) = gesture.label else { return };
+        if gesture.start.scene == self.state.scene {
+            self.state.mark = gesture.start.mark;
+        } else {
+            self.history.push(label, gesture.start);
+        }
+    }
+
+    /// Goes one step back, with the selection of then; false where there is none. An open gesture
+    /// ends first and is the step that is undone.
+    pub fn undo(&mut self) -> bool {
+        self.close_gesture();
+        let gone = self.history.undo(&mut self.state);
+        self.revision += u64::from(gone);
+        gone
+    }
+
+    /// Goes one step forward again, with the selection of then; false where there is none.
+    pub fn redo(&mut self) -> bool {
+        self.close_gesture();
+        let gone = self.history.redo(&mut self.state);
+        self.revision += u64::from(gone);
+        gone
+    }
+
+    /// What [`Document::undo`] would undo.
+    pub fn undo_label(&self) -> Option<&str> {
+        let open = self.gesture.as_ref().and_then(|g| g.label.as_deref());
+        open.or_else(|| self.undo_labels().next())
+    }
+
+    /// What [`Document::redo`] would do again.
+    pub fn redo_label(&self) -> Option<&str> {
+        self.redo_labels().next()
+    }
+
+    /// Every step that can be undone, the latest first: for a list of the history.
+    pub fn undo_labels(&self) -> impl Iterator<Item = &str> {
+        self.history.undo_labels()
+    }
+
+    /// Every step that can be done again, the next first.
+    pub fn redo_labels(&self) -> impl Iterator<Item = &str> {
+        self.history.redo_labels()
+    }
+
+    /// Whether the scene differs from the file. Undoing back to what was saved counts as unchanged.
+    pub fn is_changed(&self) -> bool {
+        self.state.mark != self.saved
+    }
+
+    /// The document's file.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
+    /// The file's name, with a `*` behind it where there are changes to save.
+    pub fn title(&self) -> String {
+        let name = self.path.as_deref().and_then(Path::file_name);
+        let name = name.map_or_else(|| "Untitled".into(), |n| n.to_string_lossy());
+        if self.is_changed() { format!("{name} *") } else { name.into_owned() }
+    }
+
+    /// Saves to the document's file. On failure the file is what it was and the document stays changed.
+    pub fn save(&mut self) -> Result<(), FileError> {
+        match self.path.clone() {
+            Some(path) => self.save_as(&path),
+            None => Err(FileError::new(Path::new("Untitled"), "has no file yet; choose one to save to")),
+        }
+    }
+
+    /// Saves to a file, which is the document's from then on. On failure nothing changes.
+    pub fn save_as(&mut self, path: &Path) -> Result<(), FileError> {
+        file::save(&self.state.scene, path)?;
+        self.path = Some(path.to_path_buf());
+        self.saved = self.state.mark;
+        Ok(())
+    }
+
+    fn close_gesture(&mut self) {
+        if let Some(gesture) = &mut self.gesture {
+            gesture.depth = 1;
+        }
+        self.end_gesture();
+    }
+}

@@ -24,6 +24,10 @@ pub const MAX_NODES: usize = 100_000;
 pub const MAX_DEPTH: usize = 1_024;
 /// Most materials in a scene.
 pub const MAX_MATERIALS: usize = 10_000;
+/// Greatest id of a node or material: every reader of JSON keeps integers up to here exactly.
+pub const MAX_ID: u64 = (1 << 53) - 1;
+/// Longest path of a mesh file, in characters.
+pub const MAX_PATH: usize = 1_024;
 /// Longest name, in characters.
 pub const MAX_NAME: usize = 256;
 /// Largest scene file in bytes.

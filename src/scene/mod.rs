@@ -2,6 +2,7 @@
 //!
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
+pub mod check;
 pub mod file;
 mod light;
 pub mod limits;

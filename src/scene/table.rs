@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glam::DAffine3;
 use thiserror::Error;
 
-use super::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
+use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
 use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind};
 
 /// Why a change to a scene was refused. The scene is as it was before.
@@ -42,23 +42,52 @@ pub enum SceneError {
     /// The id stands in the table already.
     #[error("material {0} is in the scene already")]
     DuplicateMaterial(MaterialId),
+    /// An edit of nodes that names none.
+    #[error("no node is chosen")]
+    Nothing,
+    /// A table is not in depth-first pre-order.
+    #[error("node {0} does not stand next to the other nodes of its group")]
+    OutOfOrder(NodeId),
+    /// A value is not what it must be, see [`super::check`].
+    #[error("{subject}: {field}: {reason}")]
+    Invalid {
+        /// The node or material, by name and id, or the environment.
+        subject: String,
+        /// Which value, as a path below the subject, such as `object.shape.radius`.
+        field: String,
+        /// What it must be.
+        reason: String,
+    },
 }
 
 /// A scene.
 ///
 /// Invariants, held by every method: the node table is in depth-first pre-order, so a subtree is a
 /// contiguous range and siblings stand in the artist's order; every parent is a group; ids are unique
-/// and below `next_id`; every object's material exists. Nodes are shared (`Arc`), so that cloning a
-/// scene for undo copies pointers only.
-#[derive(Clone, Debug, PartialEq)]
+/// and below `next_id`; every object's material exists. Nodes, depths and index are shared (`Arc`), so
+/// that cloning a scene for undo copies pointers to nodes only, and a changed value leaves the rest shared.
+#[derive(Clone, Debug)]
 pub struct Scene {
     nodes: Vec<Arc<Node>>,
-    depths: Vec<u32>,
-    index: HashMap<NodeId, u32>,
+    depths: Arc<Vec<u32>>,
+    index: Arc<HashMap<NodeId, u32>>,
     materials: Vec<Arc<Material>>,
     next_id: u64,
     /// What surrounds the nodes.
     pub environment: Environment,
+}
+
+impl PartialEq for Scene {
+    /// Depths and index follow from the nodes; shared entries are equal without a look at them.
+    fn eq(&self, other: &Self) -> bool {
+        fn same<T: PartialEq>(a: &[Arc<T>], b: &[Arc<T>]) -> bool {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b) || a == b)
+        }
+        self.next_id == other.next_id
+            && self.environment == other.environment
+            && same(&self.materials, &other.materials)
+            && same(&self.nodes, &other.nodes)
+    }
 }
 
 impl Default for Scene {
@@ -72,8 +101,8 @@ impl Scene {
     pub fn new() -> Self {
         Self {
             nodes: Vec::new(),
-            depths: Vec::new(),
-            index: HashMap::new(),
+            depths: Arc::default(),
+            index: Arc::default(),
             materials: vec![Arc::new(Material::new(MaterialId(1), "Clay", [0.62, 0.56, 0.50]))],
             next_id: 1,
             environment: Environment::default(),
@@ -88,34 +117,35 @@ impl Scene {
         environment: Environment,
         next_id: u64,
     ) -> Result<Self, SceneError> {
+        check_limit("the number of materials", materials.len(), MAX_MATERIALS)?;
         let mut scene = Self { materials: Vec::new(), environment, next_id: next_id.max(1), ..Self::new() };
+        let mut seen = HashSet::new();
         for material in materials {
-            scene.insert_material(material)?;
-        }
-        let mut path: Vec<NodeId> = Vec::new();
-        for node in nodes {
-            match node.parent {
-                None => path.clear(),
-                Some(parent) => {
-                    let Some(depth) = path.iter().position(|id| *id == parent) else {
-                        return Err(SceneError::NoNode(parent));
-                    };
-                    path.truncate(depth + 1);
-                }
+            if !seen.insert(material.id) {
+                return Err(SceneError::DuplicateMaterial(material.id));
             }
-            path.push(node.id);
-            scene.check_node(&node)?;
-            if scene.index.contains_key(&node.id) {
-                return Err(SceneError::DuplicateNode(node.id));
-            }
-            check_limit("the nesting of nodes", path.len(), MAX_DEPTH)?;
-            check_limit("the number of nodes", scene.nodes.len() + 1, MAX_NODES)?;
-            scene.next_id = scene.next_id.max(node.id.0.saturating_add(1));
-            scene.index.insert(node.id, scene.nodes.len() as u32);
-            scene.depths.push(path.len() as u32 - 1);
-            scene.nodes.push(Arc::new(node));
+            scene.materials.push(Arc::new(material));
         }
+        scene.set_nodes(nodes.into_iter().map(Arc::new).collect())?;
         Ok(scene)
+    }
+
+    /// Takes a whole new table of nodes, in depth-first pre-order with final ids and parents, in one
+    /// step: what moves or copies many nodes builds the table that it wants. `next_id` only grows.
+    pub fn set_nodes(&mut self, nodes: Vec<Arc<Node>>) -> Result<(), SceneError> {
+        check_limit("the number of nodes", nodes.len(), MAX_NODES)?;
+        let depths = nest(nodes.iter().map(|n| &**n), None, 0)?;
+        let materials: HashSet<MaterialId> = self.materials.iter().map(|m| m.id).collect();
+        for node in &nodes {
+            if let Some(id) = worn_by(node).filter(|id| !materials.contains(id)) {
+                return Err(SceneError::NoMaterial(id));
+            }
+            self.next_id = self.next_id.max(node.id.0 + 1);
+        }
+        self.index = Arc::new(nodes.iter().enumerate().map(|(i, n)| (n.id, i as u32)).collect());
+        self.depths = Arc::new(depths);
+        self.nodes = nodes;
+        Ok(())
     }
 
     /// All nodes in depth-first pre-order.
@@ -197,35 +227,26 @@ impl Scene {
         position: usize,
         mut subtree: Vec<Node>,
     ) -> Result<(), SceneError> {
-        let parent_depth = match parent {
-            None => None,
-            Some(id) => Some(self.group_index(id)?),
-        }
-        .map(|i| self.depths[i]);
-        let top = parent_depth.map_or(0, |d| d + 1);
+        let top = match parent {
+            None => 0,
+            Some(id) => self.depths[self.group_index(id)?] as usize + 1,
+        };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
-        let mut depth_of: HashMap<NodeId, u32> = HashMap::new();
-        for (i, node) in subtree.iter().enumerate() {
+        let depths = nest(&subtree, parent, top)?;
+        for node in &subtree {
             self.check_material(node)?;
-            if self.index.contains_key(&node.id) || depth_of.contains_key(&node.id) {
+            if self.index.contains_key(&node.id) {
                 return Err(SceneError::DuplicateNode(node.id));
             }
-            let depth = match (i, node.parent) {
-                (0, _) => top,
-                (_, Some(p)) => *depth_of.get(&p).ok_or(SceneError::NoNode(p))? + 1,
-                (_, None) => return Err(SceneError::NoNode(node.id)),
-            };
-            check_limit("the nesting of nodes", depth as usize + 1, MAX_DEPTH)?;
-            depth_of.insert(node.id, depth);
         }
         let at = self.insertion_index(parent, position);
         for node in &subtree {
-            self.next_id = self.next_id.max(node.id.0.saturating_add(1));
+            self.next_id = self.next_id.max(node.id.0 + 1);
         }
-        self.depths.splice(at..at, subtree.iter().map(|n| depth_of[&n.id]));
+        Arc::make_mut(&mut self.depths).splice(at..at, depths);
         self.nodes.splice(at..at, subtree.into_iter().map(Arc::new));
         self.reindex(at);
         Ok(())
@@ -235,10 +256,11 @@ impl Scene {
     pub fn remove(&mut self, id: NodeId) -> Result<Vec<Arc<Node>>, SceneError> {
         let range = self.subtree(self.index_of(id).ok_or(SceneError::NoNode(id))?);
         let start = range.start;
-        self.depths.drain(range.clone());
+        Arc::make_mut(&mut self.depths).drain(range.clone());
         let removed: Vec<_> = self.nodes.drain(range).collect();
+        let index = Arc::make_mut(&mut self.index);
         for node in &removed {
-            self.index.remove(&node.id);
+            index.remove(&node.id);
         }
         self.reindex(start);
         Ok(removed)
@@ -259,19 +281,15 @@ impl Scene {
         }
         let deepest = self.depths[range].iter().max().copied().unwrap_or(0) - self.depths[index] + top;
         check_limit("the nesting of nodes", deepest as usize + 1, MAX_DEPTH)?;
+        let mut depths = self.depths[self.subtree(index)].to_vec();
+        let old_top = depths[0];
+        for depth in &mut depths {
+            *depth = *depth - old_top + top;
+        }
         let mut subtree = self.remove(id)?;
         Arc::make_mut(&mut subtree[0]).parent = parent;
         let at = self.insertion_index(parent, position);
-        let mut depth_of: HashMap<NodeId, u32> = HashMap::new();
-        let depths: Vec<u32> = subtree
-            .iter()
-            .map(|n| {
-                let depth = n.parent.and_then(|p| depth_of.get(&p)).map_or(top, |d| d + 1);
-                depth_of.insert(n.id, depth);
-                depth
-            })
-            .collect();
-        self.depths.splice(at..at, depths);
+        Arc::make_mut(&mut self.depths).splice(at..at, depths);
         self.nodes.splice(at..at, subtree);
         self.reindex(at);
         Ok(())
@@ -368,8 +386,9 @@ impl Scene {
     }
 
     fn reindex(&mut self, from: usize) {
+        let index = Arc::make_mut(&mut self.index);
         for (i, node) in self.nodes.iter().enumerate().skip(from) {
-            self.index.insert(node.id, i as u32);
+            index.insert(node.id, i as u32);
         }
     }
 
@@ -391,6 +410,40 @@ impl Scene {
             path.push(node.id);
         }
     }
+}
+
+/// The depth of each node of a forest in pre-order whose roots stand below `parent` at depth `top`.
+fn nest<'a>(
+    nodes: impl IntoIterator<Item = &'a Node>,
+    parent: Option<NodeId>,
+    top: usize,
+) -> Result<Vec<u32>, SceneError> {
+    let mut depths = Vec::new();
+    let mut seen = HashSet::new();
+    let mut open: Vec<&Node> = Vec::new();
+    for node in nodes {
+        while open.last().is_some_and(|n| Some(n.id) != node.parent) {
+            open.pop();
+        }
+        match (open.last(), node.parent) {
+            (None, p) if p == parent => {}
+            (Some(last), _) if matches!(last.kind, NodeKind::Group(_)) => {}
+            (Some(last), _) => return Err(SceneError::NotAGroup(last.id)),
+            (None, Some(p)) if !seen.contains(&p) => return Err(SceneError::NoNode(p)),
+            (None, _) => return Err(SceneError::OutOfOrder(node.id)),
+        }
+        if !seen.insert(node.id) {
+            return Err(SceneError::DuplicateNode(node.id));
+        }
+        let depth = top + open.len();
+        check_limit("the nesting of nodes", depth + 1, MAX_DEPTH)?;
+        if node.id.0 > MAX_ID {
+            return Err(SceneError::Limit { what: "the id of a node", limit: MAX_ID as usize });
+        }
+        depths.push(depth as u32);
+        open.push(node);
+    }
+    Ok(depths)
 }
 
 /// The material that a node refers to.

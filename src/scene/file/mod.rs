@@ -1,1 +1,25 @@
-//! Scene files.
+//! Scene files: versioned JSON with a flat table of nodes.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `format` | the types of version 1, as serde and the schema see them |
+//! | `read` | bytes → checked scene; every message names file, node and field |
+//! | `place` | finds name and id of the node at which reading failed |
+//! | `write` | scene → bytes, always the same, one value per line |
+//! | `atomic` | bytes → file, so that a crash leaves the old file or the new one |
+//!
+//! The version is read first and alone. A later version gets its own `format`, its own reader, and a
+//! conversion from the one before; readers are never removed.
+
+mod atomic;
+mod error;
+mod format;
+mod place;
+mod read;
+mod write;
+
+pub use atomic::{load, remove_leftovers, save};
+pub use error::FileError;
+pub use format::{VERSION, schema};
+pub use read::parse;
+pub use write::to_json;

@@ -1,0 +1,191 @@
+//! Every change that a scene can undergo.
+
+use std::sync::Arc;
+
+use super::structure;
+use crate::scene::{Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError, check};
+
+/// A change to a scene. Values are checked against [`crate::scene::limits`].
+///
+/// Where an edit names several nodes, those that stand below another one of them go along with it, and
+/// all keep the order that they have in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// Puts a node in the place of the one with the same id; its parent stays.
+    Replace(Node),
+    /// Adds a node, which gets a new id, as the `position`-th child of `parent` (at the end where there
+    /// are fewer).
+    Insert {
+        /// A group, or the top.
+        parent: Option<NodeId>,
+        /// Counted from 0.
+        position: usize,
+        /// Its id and parent are ignored.
+        node: Node,
+    },
+    /// Takes out nodes and all below them.
+    Remove(Vec<NodeId>),
+    /// Makes nodes children of `parent`, the first of them the `position`-th, counted without the moved
+    /// ones. They stay where they are in the world wherever a translation, rotation and scale can express
+    /// it; below a group that would shear them they keep their own transform.
+    Move {
+        /// What moves.
+        ids: Vec<NodeId>,
+        /// A group, or the top.
+        parent: Option<NodeId>,
+        /// Counted from 0.
+        position: usize,
+    },
+    /// Puts a copy, with new ids and a numbered name, behind each node.
+    Duplicate(Vec<NodeId>),
+    /// Puts nodes into a new group, at the place of the first of them. They stay where they are in the
+    /// world as with [`Edit::Move`].
+    Group {
+        /// What goes into the group; not empty.
+        ids: Vec<NodeId>,
+        /// How they are joined.
+        group: Group,
+    },
+    /// Puts a material in the place of the one with the same id.
+    ReplaceMaterial(Material),
+    /// Adds a material under the id that it brings, see [`Scene::next_material_id`].
+    InsertMaterial(Material),
+    /// Takes out a material that nothing wears.
+    RemoveMaterial(MaterialId),
+    /// Changes what surrounds the scene.
+    SetEnvironment(Environment),
+}
+
+/// What an edit did.
+pub(super) struct Change {
+    /// Whether the scene is another one now.
+    pub changed: bool,
+    /// Nodes that are new.
+    pub added: Vec<NodeId>,
+}
+
+impl Change {
+    const NONE: Self = Self { changed: false, added: Vec::new() };
+    const VALUE: Self = Self { changed: true, added: Vec::new() };
+}
+
+impl Edit {
+    /// Does it. On failure the scene is what it was.
+    pub(super) fn perform(self, scene: &mut Arc<Scene>) -> Result<Change, SceneError> {
+        match self {
+            Self::Replace(node) => {
+                let node = check::settled(node);
+                let old = scene.node(node.id).ok_or(SceneError::NoNode(node.id))?;
+                let node = Node { parent: old.parent, ..node };
+                if **old == node {
+                    return Ok(Change::NONE);
+                }
+                check_node(&node)?;
+                Arc::make_mut(scene).replace(node)?;
+                Ok(Change::VALUE)
+            }
+            Self::Insert { parent, position, node } => {
+                let node = check::settled(node);
+                check_node(&node)?;
+                let id = Arc::make_mut(scene).insert(parent, position, node)?;
+                Ok(Change { changed: true, added: vec![id] })
+            }
+            Self::Remove(ids) => structure::remove(scene, &ids).map(|()| Change::VALUE),
+            Self::Move { ids, parent, position } => {
+                structure::move_to(scene, &ids, parent, position).map(|()| Change::VALUE)
+            }
+            Self::Duplicate(ids) => {
+                structure::duplicate(scene, &ids).map(|added| Change { changed: !added.is_empty(), added })
+            }
+            Self::Group { ids, group } => {
+                let node = Node::new("Group", NodeKind::Group(group));
+                check_node(&node)?;
+                let id = structure::group(scene, &ids, node)?;
+                Ok(Change { changed: true, added: vec![id] })
+            }
+            Self::ReplaceMaterial(material) => {
+                if scene.material(material.id).is_some_and(|old| **old == material) {
+                    return Ok(Change::NONE);
+                }
+                check_material(&material)?;
+                Arc::make_mut(scene).replace_material(material)?;
+                Ok(Change::VALUE)
+            }
+            Self::InsertMaterial(material) => {
+                check_material(&material)?;
+                Arc::make_mut(scene).insert_material(material)?;
+                Ok(Change::VALUE)
+            }
+            Self::RemoveMaterial(id) => {
+                Arc::make_mut(scene).remove_material(id)?;
+                Ok(Change::VALUE)
+            }
+            Self::SetEnvironment(environment) => {
+                if scene.environment == environment {
+                    return Ok(Change::NONE);
+                }
+                check::environment(&environment).map_err(|f| f.into_error("environment"))?;
+                Arc::make_mut(scene).environment = environment;
+                Ok(Change::VALUE)
+            }
+        }
+    }
+
+    /// What it does, for a history list.
+    pub(super) fn label(&self, scene: &Scene) -> String {
+        match self {
+            Self::Replace(new) => scene.node(new.id).map_or_else(|| "Change".into(), |old| replace_label(old, new)),
+            Self::Insert { node, .. } => format!("Add {}", node.name),
+            Self::Remove(ids) => format!("Delete {}", names(scene, ids)),
+            Self::Move { ids, .. } => format!("Reorder {}", names(scene, ids)),
+            Self::Duplicate(ids) => format!("Duplicate {}", names(scene, ids)),
+            Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
+            Self::ReplaceMaterial(material) => format!("Change material {}", material.name),
+            Self::InsertMaterial(material) => format!("Add material {}", material.name),
+            Self::RemoveMaterial(id) => {
+                let name = scene.material(*id).map(|m| m.name.clone());
+                format!("Delete material {}", name.unwrap_or_else(|| id.to_string()))
+            }
+            Self::SetEnvironment(_) => "Change environment".into(),
+        }
+    }
+}
+
+fn replace_label(old: &Node, new: &Node) -> String {
+    let name = &old.name;
+    if old.name != new.name {
+        format!("Rename {name}")
+    } else if old.visible != new.visible {
+        format!("{} {name}", if new.visible { "Show" } else { "Hide" })
+    } else if old.locked != new.locked {
+        format!("{} {name}", if new.locked { "Lock" } else { "Unlock" })
+    } else if old.transform != new.transform {
+        format!("Place {name}")
+    } else {
+        format!("Change {name}")
+    }
+}
+
+fn names(scene: &Scene, ids: &[NodeId]) -> String {
+    match ids {
+        [id] => scene.node(*id).map_or_else(|| id.to_string(), |n| n.name.clone()),
+        _ => format!("{} nodes", ids.len()),
+    }
+}
+
+fn check_node(node: &Node) -> Result<(), SceneError> {
+    check::node(node).map_err(|f| f.into_error(format!("{} {}", node.name, node.id)))
+}
+
+fn check_material(material: &Material) -> Result<(), SceneError> {
+    check_material_id(material.id)?;
+    check::material(material).map_err(|f| f.into_error(format!("material {} {}", material.name, material.id)))
+}
+
+fn check_material_id(id: MaterialId) -> Result<(), SceneError> {
+    use crate::scene::limits::MAX_ID;
+    if id.0 > MAX_ID {
+        return Err(SceneError::Limit { what: "the id of a material", limit: MAX_ID as usize });
+    }
+    Ok(())
+}

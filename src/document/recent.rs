@@ -1,0 +1,85 @@
+//! The files opened lately, kept between runs. A convenience: nothing that goes wrong here is an error.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use etcetera::BaseStrategy;
+
+/// Most files remembered.
+pub const MAX_RECENT: usize = 12;
+/// A longer list than this is not ours.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// The files opened or saved lately, the latest first.
+#[derive(Clone, Debug, Default)]
+pub struct RecentFiles {
+    paths: Vec<PathBuf>,
+    /// Where the list is kept; `None` keeps it in memory only.
+    store: Option<PathBuf>,
+}
+
+impl RecentFiles {
+    /// The list of this user, from the system's folder for such things.
+    pub fn load() -> Self {
+        match etcetera::choose_base_strategy() {
+            Ok(base) => {
+                let folder = base.state_dir().unwrap_or_else(|| base.data_dir());
+                Self::load_from(&folder.join("isolith").join("recent.json"))
+            }
+            Err(_) => Self::default(),
+        }
+    }
+
+    /// The list in this file; empty where there is none or it cannot be understood.
+    pub fn load_from(store: &Path) -> Self {
+        let paths = read(store).unwrap_or_default();
+        Self { paths, store: Some(store.to_path_buf()) }
+    }
+
+    /// The files, the latest first. Some may be gone by now.
+    pub fn paths(&self) -> &[PathBuf] {
+        &self.paths
+    }
+
+    /// Puts a file first, and writes the list.
+    pub fn add(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        self.paths.retain(|p| *p != path);
+        self.paths.insert(0, path);
+        self.paths.truncate(MAX_RECENT);
+        self.write();
+    }
+
+    /// Takes a file out, such as one that has gone, and writes the list.
+    pub fn remove(&mut self, path: &Path) {
+        self.paths.retain(|p| p != path);
+        self.write();
+    }
+
+    /// Forgets all, and writes the list.
+    pub fn clear(&mut self) {
+        self.paths.clear();
+        self.write();
+    }
+
+    fn write(&self) {
+        let Some(store) = &self.store else { return };
+        // Paths that are not Unicode cannot stand in JSON; they are remembered for this run only.
+        let texts: Vec<&str> = self.paths.iter().filter_map(|p| p.to_str()).collect();
+        let Ok(json) = serde_json::to_string_pretty(&texts) else { return };
+        if let Some(folder) = store.parent() {
+            let _ = fs::create_dir_all(folder);
+        }
+        let _ = fs::write(store, json + "\n");
+    }
+}
+
+fn read(store: &Path) -> Option<Vec<PathBuf>> {
+    if fs::metadata(store).ok()?.len() > MAX_BYTES {
+        return None;
+    }
+    let mut paths: Vec<PathBuf> = serde_json::from_slice(&fs::read(store).ok()?).ok()?;
+    paths.retain(|p| p.is_absolute());
+    paths.truncate(MAX_RECENT);
+    Some(paths)
+}

@@ -1,0 +1,60 @@
+//! What is wrong with a file, and where.
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Serialize;
+
+use crate::scene::check::Fault;
+
+/// Why a file could not be read or written: which file, where in it, and the reason.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct FileError {
+    /// Path of the file.
+    pub file: String,
+    /// Name and id of the node, where it is about one.
+    pub node: Option<String>,
+    /// Path of the value, such as `nodes[3].object.shape.radius`, where it is about one.
+    pub field: Option<String>,
+    /// What is wrong, in plain words.
+    pub reason: String,
+}
+
+impl FileError {
+    /// About the file as a whole.
+    pub fn new(file: &Path, reason: impl Into<String>) -> Self {
+        Self { file: file.display().to_string(), node: None, field: None, reason: reason.into() }
+    }
+
+    /// The same about a node.
+    pub(super) fn of_node(mut self, name: &str, id: impl fmt::Display) -> Self {
+        self.node = Some(format!("{name} {id}").trim_start().to_owned());
+        self
+    }
+
+    /// The same about a value.
+    pub(super) fn at(mut self, field: impl Into<String>) -> Self {
+        self.field = Some(field.into());
+        self
+    }
+
+    /// About a value that did not pass, somewhere below `outer`.
+    pub(super) fn from_fault(file: &Path, outer: &str, fault: Fault) -> Self {
+        Self::new(file, fault.reason).at(format!("{outer}.{}", fault.field))
+    }
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.file)?;
+        if let Some(node) = &self.node {
+            write!(f, "{node}: ")?;
+        }
+        if let Some(field) = &self.field {
+            write!(f, "{field}: ")?;
+        }
+        f.write_str(&self.reason)
+    }
+}
+
+impl std::error::Error for FileError {}

@@ -1,0 +1,253 @@
+//! Version 1 of the file format, as types: what serde reads and writes, and what the schema describes.
+//!
+//! Values that a node shares with most others are left out, so that a file says what is special.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use glam::{DQuat, DVec3};
+use schemars::JsonSchema;
+use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
+use serde::{Deserialize, Serialize};
+
+use crate::geometry::Transform;
+use crate::scene::limits::{MAX_MATERIALS, MAX_NODES};
+use crate::scene::{
+    CameraNode, Environment, Group, Light, Material, MaterialId, MeshNode, Node, NodeId, NodeKind, Object,
+};
+
+/// The version that is written; every version up to it is read.
+pub const VERSION: u64 = 1;
+
+/// A scene of Isolith. Lengths are metres, angles degrees, colours linear; +Y is up.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SceneV1 {
+    /// Version of the format.
+    pub isolith: u64,
+    /// What surrounds the scene.
+    #[serde(default)]
+    pub environment: Environment,
+    /// Materials, in the artist's order.
+    #[serde(default, deserialize_with = "at_most::<_, _, MAX_MATERIALS>")]
+    pub materials: Vec<Material>,
+    /// The id that the next new node gets; ids are not used twice.
+    #[serde(default)]
+    pub next_id: u64,
+    /// All nodes: each group is followed by its children, in the artist's order.
+    #[serde(deserialize_with = "at_most::<_, _, MAX_NODES>")]
+    pub nodes: Vec<NodeV1>,
+}
+
+/// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` says what it is.
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct NodeV1 {
+    /// Identity; never changes.
+    pub id: NodeId,
+    /// Id of the group that holds it; none at the top.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parent: Option<NodeId>,
+    /// Name for people.
+    #[serde(default)]
+    pub name: String,
+    /// Hidden, with all below it, when false.
+    #[serde(default = "yes", skip_serializing_if = "is_true")]
+    pub visible: bool,
+    /// Protected from selection and change in the viewport.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub locked: bool,
+    /// Cut away from what precedes it in its group.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub negative: bool,
+    /// Its place in its group.
+    #[serde(default, skip_serializing_if = "TransformV1::is_identity")]
+    pub transform: TransformV1,
+    /// Joins its children.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<Group>,
+    /// A shape with a material.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<Object>,
+    /// Triangles from a glTF file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<MeshNode>,
+    /// A light.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light: Option<Light>,
+    /// A viewpoint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<CameraNode>,
+}
+
+/// Scale first, then rotation, then translation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TransformV1 {
+    /// Where the origin goes.
+    #[serde(default, skip_serializing_if = "is_origin")]
+    pub translation: [f64; 3],
+    /// Unit quaternion x, y, z, w.
+    #[serde(default = "no_rotation", skip_serializing_if = "is_no_rotation")]
+    pub rotation: [f64; 4],
+    /// Factor per axis; not zero.
+    #[serde(default = "no_scale", skip_serializing_if = "is_no_scale")]
+    pub scale: [f64; 3],
+}
+
+impl TransformV1 {
+    fn is_identity(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl Default for TransformV1 {
+    fn default() -> Self {
+        Transform::IDENTITY.into()
+    }
+}
+
+impl From<Transform> for TransformV1 {
+    fn from(t: Transform) -> Self {
+        Self { translation: t.translation.to_array(), rotation: t.rotation.to_array(), scale: t.scale.to_array() }
+    }
+}
+
+impl From<TransformV1> for Transform {
+    fn from(t: TransformV1) -> Self {
+        Self {
+            translation: DVec3::from_array(t.translation),
+            rotation: DQuat::from_array(t.rotation),
+            scale: DVec3::from_array(t.scale),
+        }
+    }
+}
+
+impl From<&Node> for NodeV1 {
+    fn from(node: &Node) -> Self {
+        let mut out = Self {
+            id: node.id,
+            parent: node.parent,
+            name: node.name.clone(),
+            visible: node.visible,
+            locked: node.locked,
+            negative: node.negative,
+            transform: node.transform.into(),
+            group: None,
+            object: None,
+            mesh: None,
+            light: None,
+            camera: None,
+        };
+        match &node.kind {
+            NodeKind::Group(v) => out.group = Some(*v),
+            NodeKind::Object(v) => out.object = Some(*v),
+            NodeKind::Mesh(v) => out.mesh = Some(v.clone()),
+            NodeKind::Light(v) => out.light = Some(*v),
+            NodeKind::Camera(v) => out.camera = Some(*v),
+        }
+        out
+    }
+}
+
+impl NodeV1 {
+    /// The node, or `None` where it is not of exactly one kind.
+    pub fn into_node(self) -> Option<Node> {
+        let kinds = [
+            self.group.map(NodeKind::Group),
+            self.object.map(NodeKind::Object),
+            self.mesh.map(NodeKind::Mesh),
+            self.light.map(NodeKind::Light),
+            self.camera.map(NodeKind::Camera),
+        ];
+        let mut kinds = kinds.into_iter().flatten();
+        let (kind, None) = (kinds.next()?, kinds.next()) else { return None };
+        Some(Node {
+            id: self.id,
+            parent: self.parent,
+            name: self.name,
+            visible: self.visible,
+            locked: self.locked,
+            negative: self.negative,
+            transform: self.transform.into(),
+            kind,
+        })
+    }
+
+    /// The material that it refers to, with the place of the reference.
+    pub fn material(&self) -> Option<(MaterialId, &'static str)> {
+        let of_mesh = self.mesh.as_ref().and_then(|m| m.material).map(|id| (id, "mesh.material"));
+        self.object.as_ref().map(|o| (o.material, "object.material")).or(of_mesh)
+    }
+}
+
+/// The JSON Schema of the format, made from the types that read it. The limits of numbers are not in it;
+/// loading checks them.
+pub fn schema() -> serde_json::Value {
+    let mut schema = schemars::schema_for!(SceneV1).to_value();
+    schema["title"] = "Isolith scene".into();
+    schema["properties"]["isolith"]["const"] = VERSION.into();
+    schema
+}
+
+/// A list that ends with an error, before it has grown, where it is longer than `MOST`.
+fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: Deserialize<'de>,
+{
+    struct List<T, const MOST: usize>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            write!(f, "a list of at most {MOST} entries")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<T>, A::Error> {
+            let mut list = Vec::new();
+            while let Some(entry) = seq.next_element()? {
+                if list.len() == MOST {
+                    return Err(A::Error::custom(format!("holds more than {MOST} entries")));
+                }
+                list.push(entry);
+            }
+            Ok(list)
+        }
+    }
+
+    deserializer.deserialize_seq(List::<T, MOST>(PhantomData))
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn is_true(value: &bool) -> bool {
+    *value
+}
+
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+fn is_origin(value: &[f64; 3]) -> bool {
+    *value == DVec3::ZERO.to_array()
+}
+
+fn no_rotation() -> [f64; 4] {
+    DQuat::IDENTITY.to_array()
+}
+
+fn is_no_rotation(value: &[f64; 4]) -> bool {
+    *value == no_rotation()
+}
+
+fn no_scale() -> [f64; 3] {
+    DVec3::ONE.to_array()
+}
+
+fn is_no_scale(value: &[f64; 3]) -> bool {
+    *value == no_scale()
+}

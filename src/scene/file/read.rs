@@ -1,0 +1,195 @@
+//! From bytes to a scene, with every check at the border.
+//!
+//! The text is read without ever building a tree of values: first for the version alone, then into that
+//! version's types. No step recurses over what a file nests, and lists are bounded while they grow.
+
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::FileError;
+use super::format::{NodeV1, SceneV1, VERSION};
+use super::place;
+use crate::scene::limits::{MAX_DEPTH, MAX_FILE_BYTES, MAX_ID};
+use crate::scene::{Material, Node, NodeId, Scene, check};
+
+/// Reads a scene from the contents of a file; `file` is for messages only.
+pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(FileError::new(file, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)));
+    }
+    // Some editors put a byte order mark in front.
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let text = std::str::from_utf8(bytes).map_err(|e| {
+        let (line, column) = place::line_and_column(&bytes[..e.valid_up_to()]);
+        FileError::new(file, format!("line {line}, column {column}: is not text in UTF-8"))
+    })?;
+    match version(text, file)? {
+        1 => scene_from_v1(typed(text, file)?, file),
+        0 => Err(FileError::new(file, "there is no version 0 of the format").at("isolith")),
+        newer => {
+            let reason = format!("version {newer} is newer than this program, which reads up to {VERSION}");
+            Err(FileError::new(file, reason).at("isolith"))
+        }
+    }
+}
+
+/// The version, whatever the rest is.
+fn version(text: &str, file: &Path) -> Result<u64, FileError> {
+    #[derive(Deserialize)]
+    struct Header {
+        isolith: Option<Value>,
+    }
+    let header: Header = serde_json::from_str(text).map_err(|e| place::json_error(text, file, None, &e))?;
+    let Some(version) = header.isolith else {
+        return Err(FileError::new(file, "is missing: this is not a scene of Isolith").at("isolith"));
+    };
+    let shown = || version.to_string().chars().take(40).collect::<String>();
+    version
+        .as_u64()
+        .ok_or_else(|| FileError::new(file, format!("must be the number of a version, not {}", shown())).at("isolith"))
+}
+
+/// The text as one version's types.
+fn typed<'a, T: Deserialize<'a>>(text: &'a str, file: &Path) -> Result<T, FileError> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let value = serde_path_to_error::deserialize(&mut reader).map_err(|e| {
+        let path = e.path().clone();
+        place::json_error(text, file, Some(&path), e.inner())
+    })?;
+    reader.end().map_err(|e| place::json_error(text, file, None, &e))?;
+    Ok(value)
+}
+
+fn scene_from_v1(scene: SceneV1, file: &Path) -> Result<Scene, FileError> {
+    check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
+    check_materials(&scene.materials, file)?;
+    if scene.next_id > MAX_ID + 1 {
+        return Err(FileError::new(file, format!("must be at most {}", MAX_ID + 1)).at("next_id"));
+    }
+    check_references(&scene, file)?;
+    let order = pre_order(&scene.nodes, file)?;
+    let mut nodes = Vec::with_capacity(scene.nodes.len());
+    for (i, node) in scene.nodes.into_iter().enumerate() {
+        nodes.push(Some(checked(node, i, file)?));
+    }
+    let nodes = order.into_iter().filter_map(|i| nodes[i].take()).collect();
+    let tables = Scene::from_tables(nodes, scene.materials, scene.environment, scene.next_id);
+    tables.map_err(|e| FileError::new(file, e.to_string()))
+}
+
+/// A node with its own values checked.
+fn checked(node: NodeV1, i: usize, file: &Path) -> Result<Node, FileError> {
+    let (name, id) = (shown(&node.name), node.id);
+    let kinds = "must hold exactly one of group, object, mesh, light, camera";
+    let node = node
+        .into_node()
+        .map(check::settled)
+        .ok_or_else(|| FileError::new(file, kinds).of_node(&name, id).at(format!("nodes[{i}]")))?;
+    match check::node(&node) {
+        Ok(()) => Ok(node),
+        Err(fault) => Err(FileError::from_fault(file, &format!("nodes[{i}]"), fault).of_node(&name, id)),
+    }
+}
+
+fn check_materials(materials: &[Material], file: &Path) -> Result<(), FileError> {
+    let mut seen = HashSet::new();
+    for (i, material) in materials.iter().enumerate() {
+        let field = format!("materials[{i}]");
+        if material.id.0 > MAX_ID {
+            return Err(FileError::new(file, format!("must be at most {MAX_ID}")).at(field + ".id"));
+        }
+        if !seen.insert(material.id) {
+            let reason = format!("another material has the id {}", material.id);
+            return Err(FileError::new(file, reason).at(field + ".id"));
+        }
+        check::material(material).map_err(|f| FileError::from_fault(file, &field, f))?;
+    }
+    Ok(())
+}
+
+/// Ids are unique; parents and materials exist, and parents are groups.
+fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
+    let materials: HashSet<_> = scene.materials.iter().map(|m| m.id).collect();
+    let mut holds: HashMap<NodeId, bool> = HashMap::with_capacity(scene.nodes.len());
+    let fail = |i: usize, field: &str, reason: String| {
+        let node = &scene.nodes[i];
+        Err(FileError::new(file, reason).of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].{field}")))
+    };
+    for (i, node) in scene.nodes.iter().enumerate() {
+        if node.id.0 > MAX_ID {
+            return fail(i, "id", format!("must be at most {MAX_ID}"));
+        }
+        if holds.insert(node.id, node.group.is_some()).is_some() {
+            return fail(i, "id", format!("another node has the id {}", node.id));
+        }
+    }
+    for (i, node) in scene.nodes.iter().enumerate() {
+        if let Some(parent) = node.parent {
+            match holds.get(&parent) {
+                Some(true) => {}
+                Some(false) => return fail(i, "parent", format!("node {parent} is not a group and holds no others")),
+                None => return fail(i, "parent", format!("there is no node {parent}")),
+            }
+        }
+        if let Some((material, field)) = node.material().filter(|(id, _)| !materials.contains(id)) {
+            return fail(i, field, format!("there is no material {material}"));
+        }
+    }
+    Ok(())
+}
+
+/// The indices of the nodes in depth-first pre-order. Siblings keep the order of the file, so a file that
+/// is in pre-order stays as it is. Parents exist.
+fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
+    let mut children: HashMap<Option<NodeId>, Vec<usize>> = HashMap::new();
+    for (i, node) in nodes.iter().enumerate().rev() {
+        children.entry(node.parent).or_default().push(i);
+    }
+    let mut order = Vec::with_capacity(nodes.len());
+    let mut reached = vec![false; nodes.len()];
+    // Nodes still to visit with their depth; the last is next. An entry is taken out when it is used, so
+    // each node is visited once.
+    let mut open: Vec<(usize, usize)> =
+        children.remove(&None).unwrap_or_default().into_iter().map(|i| (i, 1)).collect();
+    while let Some((i, depth)) = open.pop() {
+        let node = &nodes[i];
+        if depth > MAX_DEPTH {
+            let error = FileError::new(file, format!("stands deeper than {MAX_DEPTH} groups"));
+            return Err(error.of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].parent")));
+        }
+        reached[i] = true;
+        order.push(i);
+        open.extend(children.remove(&Some(node.id)).unwrap_or_default().into_iter().map(|c| (c, depth + 1)));
+    }
+    match reached.iter().position(|r| !r) {
+        None => Ok(order),
+        Some(i) => {
+            let i = on_cycle(nodes, i);
+            let node = &nodes[i];
+            let error = FileError::new(file, "the parents lead in a circle");
+            Err(error.of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].parent")))
+        }
+    }
+}
+
+/// The first node of the circle into which the parents of `start` lead.
+fn on_cycle(nodes: &[NodeV1], start: usize) -> usize {
+    let index: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(i, n)| (n.id, i)).collect();
+    let mut seen = HashSet::new();
+    let mut at = start;
+    while seen.insert(at) {
+        match nodes[at].parent.and_then(|p| index.get(&p)) {
+            Some(parent) => at = *parent,
+            None => break,
+        }
+    }
+    at
+}
+
+/// A name for messages: never longer than a name may be.
+fn shown(name: &str) -> String {
+    name.chars().take(60).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}

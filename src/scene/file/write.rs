@@ -1,0 +1,121 @@
+//! From a scene to text, always the same for the same scene, one value per line.
+
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::ser::Formatter;
+
+use super::FileError;
+use super::format::{NodeV1, SceneV1, VERSION};
+use crate::scene::{Material, Scene, check};
+
+/// The text of a scene. Floating-point numbers are the shortest that read back as the same number, so
+/// reading and writing again gives the same bytes.
+///
+/// Fails where a value is not finite or out of its limits: what is written can be read.
+pub fn to_json(scene: &Scene) -> Result<String, FileError> {
+    let file = Path::new("scene");
+    check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
+    for (i, material) in scene.materials().iter().enumerate() {
+        check::material(material).map_err(|f| FileError::from_fault(file, &format!("materials[{i}]"), f))?;
+    }
+    for (i, node) in scene.nodes().iter().enumerate() {
+        check::node(node)
+            .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
+    }
+    let table = SceneV1 {
+        isolith: VERSION,
+        environment: scene.environment,
+        materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),
+        next_id: scene.next_id(),
+        nodes: scene.nodes().iter().map(|n| NodeV1::from(&check::settled((**n).clone()))).collect(),
+    };
+    let mut out = Vec::new();
+    let written = table.serialize(&mut serde_json::Serializer::with_formatter(&mut out, OneValuePerLine::default()));
+    written.map_err(|e| FileError::new(file, e.to_string()))?;
+    out.push(b'\n');
+    String::from_utf8(out).map_err(|e| FileError::new(file, e.to_string()))
+}
+
+/// Every value of an object stands on a line of its own, and so does every object in a list. A list of
+/// numbers stays on one line: a point or a colour is one value.
+#[derive(Default)]
+struct OneValuePerLine {
+    indent: usize,
+    /// Whether what closes next holds lines of its own.
+    has_lines: bool,
+    /// Whether what comes next is an entry of a list.
+    is_entry: bool,
+}
+
+impl OneValuePerLine {
+    fn new_line<W: ?Sized + io::Write>(&self, writer: &mut W) -> io::Result<()> {
+        writer.write_all(b"\n")?;
+        (0..self.indent).try_for_each(|_| writer.write_all(b"  "))
+    }
+
+    fn open<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
+        self.indent += 1;
+        self.has_lines = false;
+        self.is_entry = false;
+        writer.write_all(bracket)
+    }
+
+    fn close<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
+        self.indent -= 1;
+        if self.has_lines {
+            self.new_line(writer)?;
+        }
+        writer.write_all(bracket)
+    }
+}
+
+impl Formatter for OneValuePerLine {
+    fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.open(writer, b"[")
+    }
+
+    fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.close(writer, b"]")
+    }
+
+    fn begin_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.is_entry = true;
+        match (first, self.has_lines) {
+            (true, _) => Ok(()),
+            (false, true) => writer.write_all(b","),
+            (false, false) => writer.write_all(b", "),
+        }
+    }
+
+    fn begin_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        if self.is_entry {
+            self.new_line(writer)?;
+        }
+        self.open(writer, b"{")
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.close(writer, b"}")?;
+        self.has_lines = true;
+        Ok(())
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        if !first {
+            writer.write_all(b",")?;
+        }
+        self.new_line(writer)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.is_entry = false;
+        writer.write_all(b": ")
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, _: &mut W) -> io::Result<()> {
+        self.has_lines = true;
+        Ok(())
+    }
+}
