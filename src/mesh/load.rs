@@ -1,0 +1,87 @@
+//! From a file to one mesh: the steps in order.
+
+use std::borrow::Cow;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use gltf::json::Root;
+
+use super::accessor::Source;
+use super::document::{Document, read_document};
+use super::error::Refusal;
+use super::forest::placed_meshes;
+use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES};
+use super::primitive::Writer;
+use super::resolve::{read_file, read_uri};
+use super::{MeshError, TriangleMesh};
+
+/// Reads a .gltf or .glb file, with the buffers and images it names in its own folder.
+///
+/// # Errors
+/// File, place and reason, for everything that is missing, broken, unsafe or too large.
+pub fn load(path: &Path) -> Result<TriangleMesh, MeshError> {
+    let bytes = read_file(path).map_err(|reason| Refusal::at("", reason).of(path))?;
+    parse(&bytes, path, Some(path.parent().unwrap_or(Path::new("."))))
+}
+
+/// The same from memory; `file` only names it in errors, other files are looked for in `folder`.
+///
+/// # Errors
+/// As [`load`].
+pub fn parse(bytes: &[u8], file: &Path, folder: Option<&Path>) -> Result<TriangleMesh, MeshError> {
+    let read = || {
+        if bytes.len() as u64 > MAX_FILE_BYTES {
+            return Err(Refusal::at("", format!("has more than {MAX_FILE_BYTES} bytes")));
+        }
+        let document = read_document(bytes)?;
+        let buffers = read_buffers(&document, folder)?;
+        write_out(&Source { root: &document.root, buffers: &buffers, entries_read: Cell::new(0) }, folder)
+    };
+    // No way into a panic is known, but image decoders and this code meet files that nobody has seen.
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(Refusal::at("", "is broken in a way that cannot be named")))
+        .map_err(|refusal| refusal.of(file))
+}
+
+fn read_buffers<'a>(document: &Document<'a>, folder: Option<&Path>) -> Result<Vec<Cow<'a, [u8]>>, Refusal> {
+    let mut total = 0;
+    let mut buffers = Vec::with_capacity(document.root.buffers.len());
+    for (i, buffer) in document.root.buffers.iter().enumerate() {
+        let place = format!("buffers[{i}]");
+        let bytes = match (&buffer.uri, document.binary_chunk) {
+            (Some(uri), _) => read_uri(uri, folder).map(Cow::Owned),
+            (None, Some(chunk)) if i == 0 => Ok(Cow::Borrowed(chunk)),
+            (None, _) => Err("has no data".to_owned()),
+        };
+        let mut bytes = bytes.map_err(|reason| Refusal::at(format!("{place}.uri"), reason))?;
+        if (bytes.len() as u64) < buffer.byte_length.0 {
+            let reason = format!("says {} bytes, but has {}", buffer.byte_length.0, bytes.len());
+            return Err(Refusal::at(format!("{place}.byteLength"), reason));
+        }
+        // What lies behind the stated length is padding, and not to be read.
+        match &mut bytes {
+            Cow::Owned(bytes) => bytes.truncate(buffer.byte_length.0 as usize),
+            Cow::Borrowed(bytes) => *bytes = &bytes[..buffer.byte_length.0 as usize],
+        }
+        total += bytes.len() as u64;
+        if total > MAX_BUFFER_BYTES {
+            return Err(Refusal::at(place, format!("makes the buffers larger than {MAX_BUFFER_BYTES} bytes")));
+        }
+        buffers.push(bytes);
+    }
+    Ok(buffers)
+}
+
+fn write_out(source: &Source<'_>, folder: Option<&Path>) -> Result<TriangleMesh, Refusal> {
+    let root: &Root = source.root;
+    let mut writer = Writer::new(source, folder);
+    for placed in placed_meshes(root)? {
+        for (p, primitive) in root.meshes[placed.mesh].primitives.iter().enumerate() {
+            let place = format!("meshes[{}].primitives[{p}]", placed.mesh);
+            writer.add(primitive, &placed.world_from_local, &place)?;
+        }
+    }
+    let mesh = writer.finish();
+    if mesh.indices.is_empty() { Err(Refusal::at("", "shows no triangles")) } else { Ok(mesh) }
+}
