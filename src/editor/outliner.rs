@@ -3,8 +3,8 @@
 use std::cell::RefCell;
 use std::collections::HashSet;
 
-use egui::{Align, Color32, Key, Layout, RichText, ScrollArea, TextEdit, Ui, vec2};
-use egui_ltreeview::{Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, TreeView, TreeViewState};
+use egui::{Color32, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui_ltreeview::{Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
@@ -69,6 +69,7 @@ impl Outliner {
             let (tree, rename) = (&mut self.tree, &mut self.rename);
             let view = TreeView::new(ui.make_persistent_id("outliner"))
                 .indent_hint_style(IndentHintStyle::Line)
+                .row_layout(RowLayout::AlignedIcons)
                 .fallback_context_menu(|ui, ids| context_menu(ui, ids, bench.document.selection(), &requests))
                 .default_node_height(Some(theme::ROW_HEIGHT));
             let rows = Rows { scene: &scene, shown: shown.as_ref(), reveal: &reveal, requests: &requests };
@@ -166,21 +167,14 @@ impl Outliner {
                     }
                 }
                 Request::EndRename => self.rename = None,
-                Request::Visible(widget, id) => {
-                    bench.change(widget, &affected(bench, id), |n| n.visible = !n.visible);
-                }
-                Request::Locked(widget, id) => bench.change(widget, &affected(bench, id), |n| n.locked = !n.locked),
+                Request::Visible(widget, id) => bench.change(widget, &[id], |n| n.visible = !n.visible),
+                Request::Locked(widget, id) => bench.change(widget, &[id], |n| n.locked = !n.locked),
                 Request::Select(ids) => bench.document.select(ids),
                 Request::Run(command) => run.push(command),
             }
         }
         run
     }
-}
-
-/// The nodes that a click on a row's icon is for: only this one.
-fn affected(_: &Workbench, id: NodeId) -> [NodeId; 1] {
-    [id]
 }
 
 fn empty(ui: &mut Ui) {
@@ -330,29 +324,28 @@ impl Rows<'_> {
         }
     }
 
-    /// The eye and the lock at the right end of the row.
+    /// The eye and the lock at the right end of the row; the lock appears when it is of use.
     fn switches(&self, ui: &mut Ui, node: &Node) {
-        let hovered = ui.rect_contains_pointer(ui.max_rect().expand2(vec2(400.0, 0.0)));
-        let rest = if hovered { theme::WEAK } else { Color32::from_rgb(62, 66, 75) };
+        let row = ui.clip_rect().with_min_y(ui.max_rect().top()).with_max_y(ui.max_rect().bottom());
+        let hovered = ui.rect_contains_pointer(row);
+        let rest = if hovered { theme::WEAK } else { theme::RESTING };
         ui.spacing_mut().item_spacing.x = 0.0;
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let (icon, name, color) = match node.visible {
-                true => (ICON_VISIBILITY, "Hide", rest),
-                false => (ICON_VISIBILITY_OFF, "Show", theme::WARNING),
-            };
-            let eye = switch(ui, icon, &format!("{name} {}", node.name), color);
-            if eye.clicked() {
-                self.requests.borrow_mut().push(Request::Visible(eye.id, node.id));
-            }
-            let (icon, name, color) = match node.locked {
-                false => (ICON_LOCK_OPEN, "Lock", if hovered { rest } else { Color32::TRANSPARENT }),
-                true => (ICON_LOCK, "Unlock", theme::WARNING),
-            };
-            let lock = switch(ui, icon, &format!("{name} {}", node.name), color);
-            if lock.clicked() {
-                self.requests.borrow_mut().push(Request::Locked(lock.id, node.id));
-            }
-        });
+        let (icon, verb, color) = match node.visible {
+            true => (ICON_VISIBILITY, "Hide", rest),
+            false => (ICON_VISIBILITY_OFF, "Show", theme::WARNING),
+        };
+        let eye = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        if eye.clicked() {
+            self.requests.borrow_mut().push(Request::Visible(eye.id, node.id));
+        }
+        let (icon, verb, color) = match node.locked {
+            false => (ICON_LOCK_OPEN, "Lock", if hovered { rest } else { Color32::TRANSPARENT }),
+            true => (ICON_LOCK, "Unlock", theme::WARNING),
+        };
+        let lock = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        if lock.clicked() {
+            self.requests.borrow_mut().push(Request::Locked(lock.id, node.id));
+        }
     }
 }
 

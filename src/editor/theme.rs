@@ -23,6 +23,8 @@ pub const TEXT: Color32 = Color32::from_rgb(212, 216, 223);
 pub const WEAK: Color32 = Color32::from_rgb(146, 152, 164);
 /// Barely there: controls at rest.
 pub const FAINT: Color32 = Color32::from_rgb(86, 92, 103);
+/// Switches of rows that the pointer is not over.
+pub const RESTING: Color32 = Color32::from_rgb(64, 68, 78);
 /// Something failed.
 pub const ERROR: Color32 = Color32::from_rgb(240, 112, 104);
 /// Something needs a look.
