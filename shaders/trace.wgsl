@@ -29,7 +29,17 @@ fn bounds_interval(component: Component, direction: vec3f) -> vec2f {
     let b = (component.high - component.eye) / d;
     let near = min(a, b);
     let far = max(a, b);
-    return vec2f(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+    var interval = vec2f(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+    let plane = component.half_space;
+    let height = dot(plane.xyz, component.eye) + plane.w;
+    let climb = dot(plane.xyz, direction);
+    if height > 0.0 {
+        // The eye is outside: in at the crossing, or never. A little early, so that the march sees
+        // the sign change.
+        let crossing = -height / min(climb, -1e-30) * (1.0 - 4.0 * SPACING);
+        interval.x = select(3e38, max(interval.x, crossing), climb < 0.0);
+    }
+    return interval;
 }
 
 @compute @workgroup_size(8, 8)

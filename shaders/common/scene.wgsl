@@ -25,13 +25,11 @@ struct Component {
     end: u32,
     high: vec3f,
     padding: u32,
+    // Inside where dot(xyz, p) + w <= 0; all zero where there is none.
+    half_space: vec4f,
 }
 
 const GROUP: u32 = 0xffffu;
-const JOIN_FIRST: u32 = 0u;
-const JOIN_UNION: u32 = 1u;
-const JOIN_INTERSECTION: u32 = 2u;
-const JOIN_DIFFERENCE: u32 = 3u;
 const LEAF_ROWS: u32 = 4u;
 
 @group(1) @binding(0) var<storage, read> nodes: array<FlatNode>;

@@ -2,6 +2,7 @@
 // that the scene uses.
 
 #include "common/scene.wgsl"
+#include "sdf/op.wgsl"
 #include "generated/shapes.wgsl"
 
 // Distance from `p` (relative to the component's origin) to the leaf, safe to step by.

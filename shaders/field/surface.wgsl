@@ -2,7 +2,6 @@
 // materials mixed by the joints' weights, and the leaf that weighs most. Twin of `flat::twin::surface`.
 
 #include "field/leaf.wgsl"
-#include "sdf/op.wgsl"
 
 struct Surface {
     distance: f32,
@@ -17,14 +16,11 @@ var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_group: array<u32, STACK_SIZE>;
 
 fn join_surface(node: FlatNode, support: f32, so_far: Surface, operand: Surface) -> Surface {
-    let kernel = node.code >> 24u;
-    var joined = vec2f(operand.distance, 1.0);
-    switch (node.code >> 16u) & 0xffu {
-        case JOIN_UNION: { joined = op_union(so_far.distance, operand.distance, support, kernel); }
-        case JOIN_INTERSECTION: { joined = op_intersection(so_far.distance, operand.distance, support, kernel); }
-        case JOIN_DIFFERENCE: { joined = op_difference(so_far.distance, operand.distance, support, kernel); }
-        default: { return operand; }
+    let join = (node.code >> 16u) & 0xffu;
+    if join == JOIN_FIRST {
+        return operand;
     }
+    let joined = op_join(join, so_far.distance, operand.distance, support, node.code >> 24u);
     let w = joined.y;
     return Surface(
         joined.x,

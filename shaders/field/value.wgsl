@@ -2,19 +2,16 @@
 // Twin of `flat::twin::field`.
 
 #include "field/leaf.wgsl"
-#include "sdf/op.wgsl"
 
 var<private> value_stack: array<f32, STACK_SIZE>;
 var<private> value_group: array<u32, STACK_SIZE>;
 
 fn join_value(node: FlatNode, support: f32, so_far: f32, value: f32) -> f32 {
-    let kernel = node.code >> 24u;
-    switch (node.code >> 16u) & 0xffu {
-        case JOIN_UNION: { return op_union(so_far, value, support, kernel).x; }
-        case JOIN_INTERSECTION: { return op_intersection(so_far, value, support, kernel).x; }
-        case JOIN_DIFFERENCE: { return op_difference(so_far, value, support, kernel).x; }
-        default: { return value; }
+    let join = (node.code >> 16u) & 0xffu;
+    if join == JOIN_FIRST {
+        return value;
     }
+    return op_join(join, so_far, value, support, node.code >> 24u).x;
 }
 
 // `p` relative to the component's origin; `first` and `end` delimit its entries.

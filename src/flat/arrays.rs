@@ -135,6 +135,10 @@ pub struct Component {
     pub origin: DVec3,
     /// Around its surface, relative to `origin`; may be unbounded.
     pub bounds: Aabb,
+    /// A half space that holds all of it, relative to `origin`: the points p with n·p + d ≤ 0 for
+    /// `[n.x, n.y, n.z, d]`, n of unit length. Known where a plane is cut into shape: a floor is then
+    /// met at once instead of being approached in ever shorter steps.
+    pub half_space: Option<[f64; 4]>,
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
 }
@@ -179,8 +183,8 @@ pub struct FlatScene {
 
 /// Largest stack for which an evaluator exists, see [`Component::stack`].
 pub const MAX_STACK: u32 = 32;
-/// Most entries in one component: an invocation evaluates them five times for a normal and a material,
+/// Most entries in one component: an invocation visits them five times, twice each, for a normal and a material,
 /// and lavapipe ends every loop after 65 535 iterations.
-pub const MAX_COMPONENT_NODES: usize = 12_000;
+pub const MAX_COMPONENT_NODES: usize = 6_000;
 /// Most entries in all components together.
 pub const MAX_FLAT_NODES: usize = 1 << 20;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::arrays::*;
 use super::operands::{Operand, Value, fold_bounds};
 use crate::geometry::Aabb;
-use crate::scene::{BlendKernel, MaterialId};
+use crate::scene::{BlendKernel, MaterialId, Shape};
 
 /// Appends the component's entries and returns its description.
 pub(super) fn emit(
@@ -25,6 +25,7 @@ pub(super) fn emit(
         count: (flat.nodes.len() - first) as u32,
         origin,
         bounds: bounds.translated(-origin),
+        half_space: half_space(operands, origin),
         stack,
     }
 }
@@ -42,6 +43,19 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
         Value::Leaf { local_from_world, .. } => local_from_world.inverse().translation,
         Value::Fold(inner) => origin_of(bounds, inner),
     }
+}
+
+/// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
+fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
+    let Value::Leaf { local_from_world, shape: Shape::Plane {}, .. } = &operands[0].value else { return None };
+    if operands.iter().any(|o| o.join == Join::Union) {
+        return None;
+    }
+    // The plane's inside is local y < 0.
+    let row = local_from_world.matrix3.row(1);
+    let length = row.length();
+    let normal = row / length;
+    Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
 }
 
 /// Returns how many accumulators have to be put aside within the operand.

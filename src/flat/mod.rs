@@ -7,16 +7,23 @@
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
 //! | `pick` | which node a ray hits |
+//! | `view` | the view of a scene when nobody chose one |
+//! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
 mod buffers;
+pub mod compare;
 mod emit;
 mod flatten;
+mod lights;
 mod operands;
 pub mod pick;
 pub mod trace;
 pub mod twin;
+mod view;
 
 pub use arrays::*;
 pub use buffers::*;
+pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten};
+pub use lights::{GpuLight, gpu_lights};

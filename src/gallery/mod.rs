@@ -1,1 +1,55 @@
-//! The example scenes, made by code.
+//! The example scenes, made by code: the same on every machine and every run.
+//!
+//! They are shipped as files in `scenes/`; a test holds the files to what stands here. Each is an
+//! example for artists, a golden test and a bench at once.
+
+mod blend_kernels;
+mod boolean_operations;
+mod chess_pawn;
+mod deep_tree;
+mod ellipsoid_and_plane;
+mod mesh_and_fields;
+mod random_groups;
+mod showcase;
+mod stage;
+
+use std::path::{Path, PathBuf};
+
+use crate::scene::{Scene, file};
+
+pub use random_groups::random;
+
+/// The scene that opens first.
+pub const SHOWCASE: &str = "showcase";
+/// The seed of the shipped random scenes.
+pub const RANDOM_SEED: u64 = 2;
+
+/// Every shipped scene with its file's name, without `.json`.
+pub fn all() -> Vec<(&'static str, Scene)> {
+    vec![
+        (SHOWCASE, showcase::scene()),
+        ("pawn", chess_pawn::scene()),
+        ("boolean-operations", boolean_operations::scene()),
+        ("blend-kernels", blend_kernels::scene()),
+        ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
+        ("deep-tree", deep_tree::scene()),
+        ("mesh-and-fields", mesh_and_fields::scene()),
+        ("random-37", random(32, RANDOM_SEED)),
+        ("random-145", random(128, RANDOM_SEED)),
+        ("random-577", random(512, RANDOM_SEED)),
+    ]
+}
+
+/// Writes every scene as `NAME.json` into `folder`, which must exist, and returns the files.
+///
+/// # Errors
+/// The first file that cannot be written.
+pub fn write_all(folder: &Path) -> Result<Vec<PathBuf>, file::FileError> {
+    all()
+        .into_iter()
+        .map(|(name, scene)| {
+            let path = folder.join(format!("{name}.json"));
+            file::save(&scene, &path).map(|()| path)
+        })
+        .collect()
+}

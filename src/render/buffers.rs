@@ -21,6 +21,17 @@ impl Mirror {
         Self::new(device, label, wgpu::BufferUsages::UNIFORM)
     }
 
+    /// An empty storage buffer that the device writes and the CPU reads back.
+    pub fn read_back(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC)
+    }
+
+    /// Makes the buffer hold `size` zero bytes, whatever the device has written since.
+    pub fn clear(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, size: usize) -> bool {
+        self.held.clear();
+        self.set(device, queue, &vec![0; size])
+    }
+
     fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
         let usage = usage | wgpu::BufferUsages::COPY_DST;
         Self { label, usage, buffer: create(device, label, usage, Self::LEAST), held: Vec::new(), uploaded: 0 }

@@ -1,1 +1,21 @@
-//! CPU twin.
+//! The CPU twin: the field of the flat scene in f64, from the same numbers and by the same formulas as
+//! the GPU. It visits every node and skips nothing, so it is the truth that the renderer is held to.
+//!
+//! | file | what it holds | its twin on the GPU |
+//! |---|---|---|
+//! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
+//! | `sdf`, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `op` | the operators | `shaders/sdf/op.wgsl` |
+//! | `eval` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
+
+mod ellipsoid;
+mod eval;
+mod op;
+mod real;
+mod sdf;
+
+pub use ellipsoid::sdf_ellipsoid;
+pub use eval::{SurfaceMaterial, SurfacePoint, field, gradient, surface};
+pub use op::{Joined, op_difference, op_intersection, op_join, op_union};
+pub use real::{Dual, Real};
+pub use sdf::*;

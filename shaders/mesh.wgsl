@@ -1,0 +1,80 @@
+// Pass `mesh`: triangles into the shared targets. They meet each other in the hardware's depth buffer
+// (reversed, without far plane) and everything else in the depth target.
+
+#include "common/view.wgsl"
+#include "common/depth.wgsl"
+
+struct Instance {
+    // Rows of eye-relative world space from the mesh's space.
+    x: vec4f,
+    y: vec4f,
+    z: vec4f,
+    // Rows of the matrix for normals.
+    normal_x: vec4f,
+    normal_y: vec4f,
+    normal_z: vec4f,
+    albedo: vec3f,
+    specular: f32,
+    owner: u32,
+    // 1: `albedo` stands for the mesh's own colours.
+    overridden: u32,
+    padding: vec2u,
+}
+
+@group(1) @binding(0) var<uniform> instance: Instance;
+@group(2) @binding(0) var base_color: texture_2d<f32>;
+@group(2) @binding(1) var base_sampler: sampler;
+
+struct Vertex {
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) color: vec3f,
+    @location(3) uv: vec2f,
+}
+
+struct Varying {
+    @builtin(position) clip: vec4f,
+    // Relative to the eye.
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) color: vec3f,
+    @location(3) uv: vec2f,
+}
+
+struct Written {
+    @location(0) depth: f32,
+    @location(1) owner: u32,
+    @location(2) normal: vec4f,
+    @location(3) diffuse: vec4f,
+}
+
+@vertex
+fn mesh_vertex(vertex: Vertex) -> Varying {
+    let p = vec4f(vertex.position, 1.0);
+    let position = vec3f(dot(instance.x, p), dot(instance.y, p), dot(instance.z, p));
+    let n = vertex.normal;
+    let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
+    // `right` and `up` are half the picture at distance 1, so their squares undo their lengths.
+    let clip = vec4f(
+        dot(position, view.right) / dot(view.right, view.right),
+        dot(position, view.up) / dot(view.up, view.up),
+        view.near * 0.5,
+        dot(position, view.forward),
+    );
+    return Varying(clip, position, normal, vertex.color, vertex.uv);
+}
+
+@fragment
+fn mesh_fragment(in: Varying) -> Written {
+    let texel = textureSample(base_color, base_sampler, in.uv).rgb;
+    let t = length(in.position);
+    if t < view.near || t > view.far {
+        discard;
+    }
+    let length_of_normal = length(in.normal);
+    var normal = select(-in.position / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
+    // Both sides are shown, each facing the eye.
+    normal = select(normal, -normal, dot(normal, in.position) > 0.0);
+    let albedo = select(in.color * texel, instance.albedo, instance.overridden == 1u);
+    return Written(t, instance.owner, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
+}

@@ -1,0 +1,110 @@
+// Pass `overlay`, editor only: a grid on the ground and the outline of the selection, blended over the
+// finished picture.
+
+#include "common/view.wgsl"
+#include "common/depth.wgsl"
+
+struct Overlay {
+    // The eye in the world, reduced to one coarse cell of the grid; y is its true height.
+    eye: vec3f,
+    // Side of a fine cell; ten of them make a coarse one.
+    cell: f32,
+    grid: u32,
+    outline: u32,
+    // Red and blue: the lines of X and Z run through these places of the reduced grid, if at all near.
+    axis_x: f32,
+    axis_z: f32,
+    // Bits of `selected` before those of the meshes.
+    leaf_count: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+@group(1) @binding(0) var<uniform> overlay: Overlay;
+// One bit for each entry of the subtree-extent array, then one for each mesh.
+@group(1) @binding(1) var<storage, read> selected: array<u32>;
+@group(2) @binding(0) var depth_target: texture_2d<f32>;
+@group(2) @binding(1) var leaf_target: texture_2d<u32>;
+
+@vertex
+fn overlay_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    // One triangle over the whole picture.
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn overlay_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(at.xy);
+    if overlay.outline == 1u && overlay_is_edge(pixel) {
+        return vec4f(1.0, 0.62, 0.2, 1.0);
+    }
+    if overlay.grid == 1u {
+        return overlay_grid(pixel);
+    }
+    return vec4f(0.0);
+}
+
+// Whether the pixel lies outside the selection with a selected one within two pixels.
+fn overlay_is_edge(pixel: vec2u) -> bool {
+    if overlay_is_selected(vec2i(pixel)) {
+        return false;
+    }
+    var near = false;
+    for (var i = 0; i < 12; i += 1) {
+        // A ring of radius 2 without its corners.
+        let offset = vec2i(i32(round(2.0 * cos(f32(i) * 0.5235988))), i32(round(2.0 * sin(f32(i) * 0.5235988))));
+        near = near || overlay_is_selected(vec2i(pixel) + offset);
+    }
+    return near;
+}
+
+fn overlay_is_selected(pixel: vec2i) -> bool {
+    if any(pixel < vec2i(0)) || pixel.x >= i32(view.width) || pixel.y >= i32(view.height) {
+        return false;
+    }
+    let leaf = textureLoad(leaf_target, pixel, 0).x;
+    if leaf == NO_OWNER {
+        return false;
+    }
+    let index = select(leaf, (leaf & ~MESH_BIT) + overlay.leaf_count, (leaf & MESH_BIT) != 0u);
+    return ((selected[index >> 5u] >> (index & 31u)) & 1u) == 1u;
+}
+
+// Lines of one pixel on the plane y = 0, hidden by what stands before them, fading into the distance.
+fn overlay_grid(pixel: vec2u) -> vec4f {
+    let direction = view_direction(pixel);
+    if direction.y * overlay.eye.y >= 0.0 {
+        return vec4f(0.0);
+    }
+    let t = -overlay.eye.y / direction.y;
+    if t > textureLoad(depth_target, pixel, 0).x * (1.0 - 1e-4) {
+        return vec4f(0.0);
+    }
+    let at = overlay.eye.xz + direction.xz * t;
+    // Width of a pixel on the plane, along each axis.
+    let slant = vec2f(1.0) / max(abs(direction.y), 1e-4);
+    let width = view.footprint * t * slant;
+    let fine = overlay_lines(at, overlay.cell, width) * 0.22;
+    let coarse = overlay_lines(at, overlay.cell * 10.0, width) * 0.45;
+    var color = vec3f(0.75);
+    var strength = max(fine, coarse);
+    let on_axis = vec2f(abs(at.y - overlay.axis_x), abs(at.x - overlay.axis_z)) < width * 1.5;
+    if on_axis.x {
+        color = vec3f(0.9, 0.3, 0.33);
+        strength = 0.8;
+    } else if on_axis.y {
+        color = vec3f(0.3, 0.5, 0.95);
+        strength = 0.8;
+    }
+    let fade = exp2(-t / (overlay.cell * 60.0));
+    return vec4f(color, strength * fade);
+}
+
+fn overlay_lines(at: vec2f, cell: f32, width: vec2f) -> f32 {
+    let from_line = abs(fract(at / cell + 0.5) - 0.5) * cell;
+    let line = clamp(1.5 - from_line / width, vec2f(0.0), vec2f(1.0));
+    // Where cells are smaller than a few pixels the lines would only flicker.
+    let sparse = clamp(cell / (8.0 * width) - 0.25, vec2f(0.0), vec2f(1.0));
+    return max(line.x * sparse.x, line.y * sparse.y);
+}

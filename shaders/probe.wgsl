@@ -1,0 +1,22 @@
+// Not a pass: the field at given points, for the tests that compare it with the CPU twin.
+
+#include "field/value.wgsl"
+
+struct Probe {
+    first: u32,
+    end: u32,
+    count: u32,
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> probe: Probe;
+// xyz: a point relative to the component's origin.
+@group(2) @binding(0) var<storage, read> points: array<vec4f>;
+@group(2) @binding(1) var<storage, read_write> values: array<f32>;
+
+@compute @workgroup_size(64)
+fn probe_field(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < probe.count {
+        values[id.x] = field(probe.first, probe.end, points[id.x].xyz);
+    }
+}

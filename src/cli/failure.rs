@@ -1,0 +1,60 @@
+//! What can go wrong, as a person reads it and as a script does.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::flat::FlattenError;
+use crate::scene::file::FileError;
+
+/// Why a command failed.
+#[derive(Debug, Error)]
+pub enum Failure {
+    /// The arguments make no sense for this scene.
+    #[error("{0}")]
+    Usage(String),
+    /// The scene file is missing, broken or beyond a limit.
+    #[error("{0}")]
+    Scene(FileError),
+    /// Nothing answers that can draw.
+    #[error("{0}")]
+    Graphics(String),
+    /// An output cannot be written.
+    #[error("{}: cannot be written: {reason}", path.display())]
+    Write {
+        /// Which output.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// The person said stop.
+    #[error("cancelled")]
+    Cancelled,
+    /// Anything else.
+    #[error("{0}")]
+    Other(String),
+}
+
+impl Failure {
+    /// What a scene that cannot be flattened is reported as: a fault of its file, at a node.
+    pub fn beyond_limit(scene: &Path, error: &FlattenError) -> Self {
+        Self::Scene(FileError {
+            file: scene.display().to_string(),
+            node: Some(format!("{} {}", error.name, error.node)),
+            field: None,
+            reason: format!("{} is {}, and the limit is {}", error.what, error.value, error.limit),
+        })
+    }
+
+    /// The program's exit code; `--help` and the README list them.
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            Self::Other(_) => 1,
+            Self::Usage(_) => 2,
+            Self::Scene(_) => 3,
+            Self::Graphics(_) => 4,
+            Self::Write { .. } => 5,
+            Self::Cancelled => 130,
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! The command line: the only place that prints, and the only one that ends the program.
+//!
+//! | module | what it does |
+//! |---|---|
+//! | `render` | `isolith render`: a picture without a window |
+//! | `outputs` | buffers → files |
+//! | `check` | `isolith check`: what a scene holds, what is wrong with it |
+//! | `progress` | the bar, and Ctrl-C |
+//! | `failure` | what can go wrong, with its exit code |
+
+mod check;
+mod failure;
+mod outputs;
+mod progress;
+mod render;
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use failure::Failure;
+
+/// What `--help` says about exit codes; the README has the same table.
+const EXIT_CODES: &str = "Exit codes:
+  0    done
+  1    something else went wrong while rendering
+  2    the command was not understood
+  3    the scene file is missing, broken or beyond a limit
+  4    no graphics: no Vulkan, Metal or DirectX driver answers, or no display
+  5    an output cannot be written
+  130  cancelled with Ctrl-C";
+
+/// Build, animate and render scenes of signed distance functions.
+#[derive(Debug, Parser)]
+#[command(version, after_help = EXIT_CODES, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    /// Scene to open in the editor; without a display it is rendered to NAME.png in this folder
+    scene: Option<PathBuf>,
+    #[command(subcommand)]
+    command: Option<Command>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render a scene to a picture, without a window
+    #[command(after_help = EXIT_CODES)]
+    Render(render::RenderArguments),
+    /// Say what a scene file holds and what is wrong with it
+    #[command(after_help = EXIT_CODES)]
+    Check(check::CheckArguments),
+    /// Print the JSON schema of scene files
+    Schema,
+    /// Write the example scenes into a folder
+    #[command(hide = true)]
+    Gallery {
+        /// The folder
+        folder: PathBuf,
+    },
+    /// Say which graphics driver answers
+    #[command(hide = true)]
+    Probe,
+}
+
+/// Runs the program with the arguments that it was started with.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            complain(&format!("error: {failure}"));
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<(), Failure> {
+    match arguments.command {
+        None => open(arguments.scene.as_deref()),
+        Some(Command::Render(arguments)) => render::render(&arguments),
+        Some(Command::Check(arguments)) => check::check(&arguments),
+        Some(Command::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
+        Some(Command::Gallery { folder }) => write_gallery(&folder),
+        Some(Command::Probe) => probe(),
+    }
+}
+
+/// Opens the editor; where no window can be shown, renders the scene to a file instead.
+fn open(scene: Option<&Path>) -> Result<(), Failure> {
+    if has_display(|name| std::env::var_os(name)) {
+        return Err(Failure::Graphics("not yet".into()));
+    }
+    let Some(scene) = scene else {
+        return Err(Failure::Graphics("no display is set; give a scene and it is rendered to a picture".into()));
+    };
+    let stem = scene.file_stem().unwrap_or(scene.as_os_str());
+    let output = PathBuf::from(stem).with_extension("png");
+    say(&format!("There is no display: rendering {} to {}.", scene.display(), output.display()))?;
+    render::render(&render::RenderArguments::still(scene, &output))
+}
+
+/// Whether a window can be shown. Only X11 and Wayland say it through the environment; elsewhere there is
+/// always a display.
+fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
+    let set = |name: &str| variable(name).is_some_and(|value| !value.is_empty());
+    !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+fn write_gallery(folder: &Path) -> Result<(), Failure> {
+    Err(Failure::Other(format!("not yet: {}", folder.display())))
+}
+
+fn probe() -> Result<(), Failure> {
+    Err(Failure::Other("not yet".into()))
+}
+
+/// One line on standard output. A reader that went away is no failure.
+fn say(line: &str) -> Result<(), Failure> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::Write { path: "standard output".into(), reason: error.to_string() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// One line on standard error.
+fn complain(line: &str) {
+    // Nothing is left to do if even this cannot be written.
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn a_display_is_one_that_is_named() {
+        let with = |name: &'static str, value: &'static str| move |n: &str| (n == name).then(|| OsString::from(value));
+        assert!(has_display(with("DISPLAY", ":0")));
+        assert!(has_display(with("WAYLAND_DISPLAY", "wayland-0")));
+        assert!(!has_display(with("DISPLAY", "")));
+        assert!(!has_display(|_| None));
+    }
+}

@@ -1,0 +1,72 @@
+//! The progress bar, and Ctrl-C.
+
+use std::io::IsTerminal;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Where standard error is no terminal, a line is written this often instead of a bar.
+const LINE_EVERY: Duration = Duration::from_secs(10);
+
+/// Shows how far a long task is, on standard error, and tells it when to stop.
+pub struct Progress {
+    task: &'static str,
+    shown: Option<ProgressBar>,
+    last_line: Instant,
+    quiet: bool,
+}
+
+impl Progress {
+    /// Nothing done yet. From now on Ctrl-C asks the task to stop instead of ending the program; a second
+    /// one ends it.
+    pub fn start(task: &'static str, quiet: bool) -> Self {
+        catch_interrupts();
+        let shown = (!quiet && std::io::stderr().is_terminal()).then(|| {
+            let bar = ProgressBar::new(1000);
+            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {eta} left");
+            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            bar.set_message(task);
+            bar
+        });
+        Self { task, shown, last_line: Instant::now(), quiet }
+    }
+
+    /// `share` of the task, 0 to 1, is done. False: stop.
+    pub fn update(&mut self, share: f64) -> bool {
+        if let Some(bar) = &self.shown {
+            bar.set_position((share.clamp(0.0, 1.0) * 1000.0) as u64);
+        } else if !self.quiet && self.last_line.elapsed() > LINE_EVERY {
+            self.last_line = Instant::now();
+            super::complain(&format!("{}: {:.0} %", self.task, share * 100.0));
+        }
+        !is_cancelled()
+    }
+
+    /// Takes the bar away.
+    pub fn finish(self) {
+        if let Some(bar) = self.shown {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Whether Ctrl-C was pressed.
+pub fn is_cancelled() -> bool {
+    CANCELLED.load(Ordering::Relaxed)
+}
+
+static CANCELLED: AtomicBool = AtomicBool::new(false);
+
+fn catch_interrupts() {
+    static ONCE: OnceLock<()> = OnceLock::new();
+    ONCE.get_or_init(|| {
+        // Without a handler Ctrl-C still ends the program, only less gently.
+        let _ = ctrlc::set_handler(|| {
+            if CANCELLED.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+        });
+    });
+}

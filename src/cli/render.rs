@@ -1,0 +1,196 @@
+//! `isolith render`: a picture, and more outputs beside it, without a window.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::failure::Failure;
+use super::outputs::{self, Quantity};
+use super::progress::Progress;
+use super::{complain, say};
+use crate::flat::{Buffers, FlatScene, flatten};
+use crate::geometry::Camera;
+use crate::mesh::MeshLibrary;
+use crate::scene::file;
+
+/// Longest side of a picture, in pixels.
+const MAX_SIDE: u32 = 16_384;
+/// Most pixels in a picture; 24 bytes each are kept while it is made.
+const MAX_PIXELS: u64 = 1 << 27;
+
+/// Arguments of `isolith render`.
+#[derive(Clone, Debug, clap::Args)]
+pub struct RenderArguments {
+    /// Scene file
+    scene: PathBuf,
+    /// Picture to write, a .png
+    #[arg(short, long, value_name = "FILE", value_parser = png_path)]
+    output: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    size: [u32; 2],
+    /// Moment to render, in seconds
+    #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_time)]
+    time: f64,
+    /// Camera of the scene by name, instead of its first one; a scene without cameras is seen whole
+    #[arg(long, value_name = "NAME")]
+    camera: Option<String>,
+    /// Also write the distance along the ray: .exr holds metres (background is infinite), .png a picture
+    /// of them
+    #[arg(long, value_name = "FILE", value_parser = output_path)]
+    depth: Option<PathBuf>,
+    /// Also write the surface's normal in the world: .exr holds X, Y and Z, .png maps -1…1 to 0…255
+    #[arg(long, value_name = "FILE", value_parser = output_path)]
+    normal: Option<PathBuf>,
+    /// Also write which node is seen: .exr holds its id (background is 0), .png a colour for each
+    #[arg(long, value_name = "FILE", value_parser = output_path)]
+    node_id: Option<PathBuf>,
+    /// Render the truth: on the processor, in double precision, every ray to certainty. Slow
+    #[arg(long)]
+    truth: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    quiet: bool,
+}
+
+impl RenderArguments {
+    /// One picture of a scene with everything else as by default.
+    pub fn still(scene: &Path, output: &Path) -> Self {
+        Self {
+            scene: scene.to_path_buf(),
+            output: output.to_path_buf(),
+            size: [1280, 720],
+            time: 0.0,
+            camera: None,
+            depth: None,
+            normal: None,
+            node_id: None,
+            truth: false,
+            quiet: false,
+        }
+    }
+
+    /// Every output with what it holds.
+    fn outputs(&self) -> Vec<(Quantity, &Path)> {
+        let all = [
+            (Quantity::Color, Some(&self.output)),
+            (Quantity::Depth, self.depth.as_ref()),
+            (Quantity::Normal, self.normal.as_ref()),
+            (Quantity::NodeId, self.node_id.as_ref()),
+        ];
+        all.into_iter().filter_map(|(quantity, path)| Some((quantity, path?.as_path()))).collect()
+    }
+}
+
+/// Renders and writes every output. Nothing is written unless the whole picture is there.
+pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
+    let started = Instant::now();
+    for (_, path) in arguments.outputs() {
+        outputs::check_writable(path)?;
+    }
+    let scene = file::load(&arguments.scene).map_err(Failure::Scene)?;
+    let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?;
+    let mut meshes = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));
+    if !arguments.quiet {
+        for warning in &flat.warnings {
+            complain(&format!(
+                "warning: {}: {} {}: {}",
+                arguments.scene.display(),
+                warning.name,
+                warning.node,
+                warning.reason
+            ));
+        }
+    }
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let camera = choose_camera(&flat, &mut meshes, arguments.camera.as_deref(), aspect)?;
+    let buffers = picture(arguments, &flat, &mut meshes, &camera)?;
+    for (quantity, path) in arguments.outputs() {
+        let note = outputs::write(quantity, path, &buffers, &flat)?;
+        if !arguments.quiet {
+            say(&format!("wrote {}{note}", path.display()))?;
+        }
+    }
+    if !arguments.quiet {
+        let [width, height] = arguments.size;
+        let seconds = started.elapsed().as_secs_f64();
+        say(&format!("{width}x{height} pixels, {} components, {seconds:.1} s", flat.components.len()))?;
+    }
+    Ok(())
+}
+
+/// The scene's camera of this name, or the view that the scene has by itself.
+fn choose_camera(
+    flat: &FlatScene,
+    meshes: &mut MeshLibrary,
+    name: Option<&str>,
+    aspect: f64,
+) -> Result<Camera, Failure> {
+    let Some(name) = name else { return Ok(flat.default_camera(meshes, aspect)) };
+    if let Some(found) = flat.cameras.iter().find(|camera| camera.name == name) {
+        return Ok(found.camera);
+    }
+    let names: Vec<_> = flat.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
+    let has = if names.is_empty() { "none".to_string() } else { names.join(", ") };
+    Err(Failure::Usage(format!("there is no camera \"{name}\"; the scene has {has}")))
+}
+
+fn picture(
+    arguments: &RenderArguments,
+    flat: &FlatScene,
+    meshes: &mut MeshLibrary,
+    camera: &Camera,
+) -> Result<Buffers, Failure> {
+    let _ = (flat, meshes, camera, Progress::start("rendering", arguments.quiet));
+    Err(Failure::Other("not yet".into()))
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let number = |part: &str| part.parse::<u32>().ok().filter(|n| (1..=MAX_SIDE).contains(n));
+    let size = text.split_once('x').and_then(|(w, h)| Some([number(w)?, number(h)?]));
+    let size = size.ok_or(format!("give width and height in pixels, 1 to {MAX_SIDE} each, like 1280x720"))?;
+    if u64::from(size[0]) * u64::from(size[1]) > MAX_PIXELS {
+        return Err(format!("{text} is more than {MAX_PIXELS} pixels"));
+    }
+    Ok(size)
+}
+
+fn parse_time(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|time: &f64| time.is_finite()).ok_or("give a finite number of seconds".to_string())
+}
+
+fn png_path(text: &str) -> Result<PathBuf, String> {
+    match outputs::ending(Path::new(text)).as_str() {
+        "png" => Ok(text.into()),
+        _ => Err("the picture's name must end in .png".into()),
+    }
+}
+
+fn output_path(text: &str) -> Result<PathBuf, String> {
+    match outputs::ending(Path::new(text)).as_str() {
+        "png" | "exr" => Ok(text.into()),
+        _ => Err("the name must end in .exr or .png".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_or_refused() {
+        assert_eq!(parse_size("640x360"), Ok([640, 360]));
+        for bad in
+            ["", "640", "640x", "x360", "0x10", "10x0", "-1x5", "1.5x2", "640x360x2", "16385x1", "16384x16384", "a"]
+        {
+            assert!(parse_size(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn times_are_finite() {
+        assert_eq!(parse_time("-1.5"), Ok(-1.5));
+        for bad in ["inf", "nan", "1e999", "", "soon"] {
+            assert!(parse_time(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! The numbers that a field can be computed with.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use glam::DVec3;
+
+/// A number: a plain f64, or one that carries its derivatives. Comparisons look at the value only.
+pub trait Real:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// The value without derivatives.
+    fn value(self) -> f64;
+    /// A constant.
+    fn constant(v: f64) -> Self;
+    /// The dot product with `row`, plus `shift`: one coordinate of an affine map of `p`, the point
+    /// that derivatives are taken for.
+    fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self;
+    /// The square root; its derivative at 0 is taken to be 0.
+    fn sqrt(self) -> Self;
+
+    /// The absolute value.
+    fn abs(self) -> Self {
+        if self.value() < 0.0 { -self } else { self }
+    }
+
+    /// The lesser; `self` where they are equal.
+    fn min(self, other: Self) -> Self {
+        if other.value() < self.value() { other } else { self }
+    }
+
+    /// The greater; `self` where they are equal.
+    fn max(self, other: Self) -> Self {
+        if other.value() > self.value() { other } else { self }
+    }
+
+    /// Itself, or 0 where it is negative.
+    fn positive(self) -> Self {
+        if self.value() > 0.0 { self } else { Self::constant(0.0) }
+    }
+
+    /// Its square.
+    fn squared(self) -> Self {
+        self * self
+    }
+}
+
+impl Real for f64 {
+    fn value(self) -> f64 {
+        self
+    }
+    fn constant(v: f64) -> Self {
+        v
+    }
+    fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self {
+        row.dot(p) + shift
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+}
+
+/// A value with its gradient (forward differentiation).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual {
+    /// The value.
+    pub v: f64,
+    /// Its partial derivatives.
+    pub d: DVec3,
+}
+
+impl Real for Dual {
+    fn value(self) -> f64 {
+        self.v
+    }
+    fn constant(v: f64) -> Self {
+        Self { v, d: DVec3::ZERO }
+    }
+    fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self {
+        Self { v: row.dot(p) + shift, d: row }
+    }
+    fn sqrt(self) -> Self {
+        let root = self.v.sqrt();
+        Self { v: root, d: if root > 0.0 { self.d / (2.0 * root) } else { DVec3::ZERO } }
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self { v: self.v + o.v, d: self.d + o.d }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Self { v: self.v - o.v, d: self.d - o.d }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        Self { v: self.v * o.v, d: self.d * o.v + o.d * self.v }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+    fn div(self, o: Self) -> Self {
+        let v = self.v / o.v;
+        Self { v, d: (self.d - o.d * v) / o.v }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self { v: -self.v, d: -self.d }
+    }
+}
+
+impl Add<f64> for Dual {
+    type Output = Self;
+    fn add(self, o: f64) -> Self {
+        Self { v: self.v + o, d: self.d }
+    }
+}
+
+impl Sub<f64> for Dual {
+    type Output = Self;
+    fn sub(self, o: f64) -> Self {
+        Self { v: self.v - o, d: self.d }
+    }
+}
+
+impl Mul<f64> for Dual {
+    type Output = Self;
+    fn mul(self, o: f64) -> Self {
+        Self { v: self.v * o, d: self.d * o }
+    }
+}

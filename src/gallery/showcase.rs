@@ -1,0 +1,182 @@
+//! A rocket that leaves a small planet: what opens first. Every shape and operator earns its place.
+
+use glam::DVec3;
+
+use super::stage::{
+    Stage, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus, turn_x,
+    turn_y, turn_z, v,
+};
+use crate::scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene, Shape};
+
+/// The planet's centre and radius.
+const PLANET: (DVec3, f64) = (DVec3::new(0.0, -3.3, 0.0), 2.6);
+
+pub(super) fn scene() -> Scene {
+    let mut stage = Stage::new([0.008, 0.012, 0.05], [0.115, 0.045, 0.155], [0.20, 0.20, 0.30]);
+    planet(&mut stage);
+    crystals(&mut stage);
+    smoke(&mut stage);
+    rocket(&mut stage);
+    sky(&mut stage);
+
+    stage.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 1.05);
+    stage.sun("Planet light", [0.9, 0.15, 0.15], [0.45, 0.50, 1.0], 0.45);
+    stage.sun("Back light", [0.35, 0.35, -1.0], [0.75, 0.60, 1.0], 0.8);
+    let falloff = Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.1, range: 6.0 };
+    stage.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.42, 0.10], 2.2, falloff);
+    stage.camera([-0.55, 1.75, 7.4], [0.0, 0.98, 0.0], 37.0);
+    stage.finish()
+}
+
+/// A point on the planet's ground: `tilt` degrees from the top, towards `heading` degrees around it.
+fn on_planet(tilt: f64, heading: f64, height: f64) -> DVec3 {
+    let (radians, around) = (tilt.to_radians(), heading.to_radians());
+    let out = v(radians.sin() * around.sin(), radians.cos(), radians.sin() * around.cos());
+    PLANET.0 + out * (PLANET.1 + height)
+}
+
+fn planet(stage: &mut Stage) {
+    let soil = stage.matt("Soil", [0.30, 0.17, 0.42]);
+    let crater = stage.matt("Crater", [0.155, 0.085, 0.29]);
+    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.16));
+    stage.add(planet, object("Ball", sphere(PLANET.1), soil).at(PLANET.0));
+    for (tilt, heading, radius) in
+        [(26.0, 200.0, 0.42), (31.0, -38.0, 0.34), (14.0, 78.0, 0.17), (43.0, -75.0, 0.30), (40.0, 150.0, 0.3)]
+    {
+        stage.add(planet, object("Hill", sphere(radius), soil).at(on_planet(tilt, heading, -radius * 0.45)));
+    }
+    for (tilt, heading, radius) in
+        [(33.0, 22.0, 0.36), (22.0, -78.0, 0.25), (36.0, 68.0, 0.28), (45.0, -20.0, 0.30), (49.0, 47.0, 0.22)]
+    {
+        let hole = object("Crater", sphere(radius), crater).negative();
+        stage.add(planet, hole.at(on_planet(tilt, heading, radius * 0.45)));
+    }
+}
+
+fn crystals(stage: &mut Stage) {
+    let crystal = stage.glass("Crystal", [0.04, 0.50, 0.52], [0.9, 80.0], [0.0, 0.10, 0.11]);
+    let cluster = stage.add(None, group("Crystals", Operator::Union));
+    for (tilt, heading, size, lean) in [
+        (24.0, 52.0, 0.30, -14.0),
+        (27.5, 61.0, 0.19, 12.0),
+        (24.5, 66.0, 0.13, 30.0),
+        (28.0, -60.0, 0.24, 10.0),
+        (31.0, -68.0, 0.15, -12.0),
+    ] {
+        let place = on_planet(tilt, heading, size * 0.42);
+        let octahedron = object("Crystal", Shape::Octahedron { radius: size }, crystal);
+        stage.add(cluster, octahedron.at(place).rotated(turn_z(lean) * turn_y(heading)).scaled(v(0.5, 1.15, 0.5)));
+    }
+}
+
+fn smoke(stage: &mut Stage) {
+    let smoke = stage.matt("Smoke", [0.74, 0.66, 0.67]);
+    let cloud = stage.add(None, blended("Smoke", Operator::Union, BlendKernel::Quadratic, 0.22));
+    stage.add(cloud, object("Column", round_cone(0.30, 0.13, 0.75), smoke).at(v(-0.02, -0.30, 0.0)));
+    let puffs = [
+        [-0.42, -0.56, 0.22, 0.34],
+        [0.40, -0.58, 0.26, 0.31],
+        [0.02, -0.60, 0.48, 0.33],
+        [-0.80, -0.70, 0.12, 0.27],
+        [0.82, -0.74, 0.10, 0.25],
+        [-0.36, -0.62, -0.42, 0.34],
+        [0.42, -0.62, -0.42, 0.34],
+        [-1.10, -0.88, 0.10, 0.17],
+        [1.10, -0.92, 0.02, 0.15],
+        [-0.58, -0.74, 0.60, 0.20],
+        [0.55, -0.74, 0.64, 0.18],
+        [0.16, -0.24, 0.20, 0.20],
+        [-0.18, -0.12, 0.10, 0.17],
+    ];
+    for [x, y, z, radius] in puffs {
+        stage.add(cloud, object("Puff", sphere(radius), smoke).at(v(x, y, z)));
+    }
+}
+
+fn rocket(stage: &mut Stage) {
+    let white = stage.glossy("Enamel", [0.80, 0.78, 0.74], 0.5, 70.0);
+    let red = stage.glossy("Red", [0.74, 0.055, 0.045], 0.5, 70.0);
+    let steel = stage.glossy("Steel", [0.12, 0.125, 0.15], 0.7, 50.0);
+    let brass = stage.glossy("Brass", [0.72, 0.45, 0.13], 0.8, 60.0);
+    let glass = stage.glass("Glass", [0.02, 0.15, 0.26], [1.0, 120.0], [0.02, 0.09, 0.13]);
+
+    let rocket =
+        stage.add(None, group("Rocket", Operator::Union).at(v(0.12, 1.62, 0.0)).rotated(turn_z(-9.0) * turn_y(-14.0)));
+    let body = stage.add(rocket, blended("Body and fins", Operator::Union, BlendKernel::Circular, 0.10));
+    let hull = stage.add(body, blended("Hull", Operator::Intersection, BlendKernel::Circular, 0.04));
+    stage.add(hull, object("Shape", ellipsoid(0.50, 1.32, 0.50), white));
+    stage.add(hull, object("Cut", cuboid(2.0, 2.4, 2.0, 0.0), white).at(v(0.0, 0.26, 0.0)));
+    for heading in [0.0, 120.0, 240.0] {
+        fin(stage, body, heading + 60.0, red);
+    }
+    let nose = stage.add(rocket, group("Nose", Operator::Intersection));
+    stage.add(nose, object("Shape", ellipsoid(0.512, 1.335, 0.512), red));
+    stage.add(nose, object("Cut", cuboid(2.0, 1.0, 2.0, 0.0), red).at(v(0.0, 1.22, 0.0)));
+    stage.add(rocket, object("Needle", capsule([0.0, 1.25, 0.0], [0.0, 1.56, 0.0], 0.018), steel));
+    stage.add(rocket, object("Knob", sphere(0.05), brass).at(v(0.0, 1.58, 0.0)));
+    let band = stage.add(rocket, group("Band", Operator::Intersection));
+    stage.add(band, object("Shape", ellipsoid(0.515, 1.335, 0.515), brass));
+    stage.add(band, object("Slab", cylinder(0.7, 0.045, 0.0), brass).at(v(0.0, 0.72, 0.0)));
+
+    window(stage, rocket, v(0.0, 0.30, 0.475), 0.19, [brass, glass]);
+    window(stage, rocket, v(0.0, -0.23, 0.49), 0.11, [brass, glass]);
+
+    let nozzle =
+        stage.add(rocket, blended("Nozzle", Operator::Union, BlendKernel::Circular, 0.02).at(v(0.0, -1.05, 0.0)));
+    stage.add(nozzle, object("Bell", cone(0.27, 0.19, 0.24), steel));
+    stage.add(nozzle, object("Inside", cone(0.235, 0.14, 0.24), steel).at(v(0.0, -0.03, 0.0)).negative());
+    flame(stage, rocket);
+}
+
+/// A fin that sweeps out and down, as seen from `heading` degrees around the hull.
+fn fin(stage: &mut Stage, body: NodeId, heading: f64, red: MaterialId) {
+    let fin =
+        stage.add(body, blended("Fin", Operator::Difference, BlendKernel::Circular, 0.03).rotated(turn_y(heading)));
+    let blade = object("Blade", ellipsoid(0.085, 0.62, 0.46), red);
+    stage.add(fin, blade.at(v(0.0, -0.83, 0.45)).rotated(turn_x(-24.0)));
+    stage.add(fin, object("Cut", ellipsoid(0.5, 0.52, 0.42), red).at(v(0.0, -1.42, 0.26)));
+}
+
+fn window(stage: &mut Stage, rocket: NodeId, at: DVec3, radius: f64, [brass, glass]: [MaterialId; 2]) {
+    let window = stage.add(rocket, group("Window", Operator::Union).at(at).rotated(turn_x(90.0)));
+    stage.add(window, object("Ring", torus(radius, radius * 0.2), brass));
+    stage.add(window, object("Pane", ellipsoid(radius, radius * 0.32, radius), glass));
+}
+
+fn flame(stage: &mut Stage, rocket: NodeId) {
+    let outer = stage.glowing("Flame", [0.5, 0.12, 0.02], [0.85, 0.22, 0.025]);
+    let inner = stage.glowing("Flame core", [0.6, 0.4, 0.1], [1.0, 0.72, 0.22]);
+    let flame = stage.add(rocket, blended("Flame", Operator::Union, BlendKernel::Cubic, 0.05).at(v(0.0, -1.42, 0.0)));
+    stage.add(flame, object("Mantle", round_cone(0.05, 0.17, 0.42), outer));
+    stage.add(flame, object("Core", round_cone(0.03, 0.13, 0.2), inner).at(v(0.0, 0.16, 0.04)));
+}
+
+/// A ringed moon and stars.
+fn sky(stage: &mut Stage) {
+    let moon = stage.glossy("Moon", [0.83, 0.50, 0.24], 0.15, 20.0);
+    let ring = stage.glossy("Ring", [0.66, 0.56, 0.62], 0.2, 20.0);
+    let star = stage.glowing("Star", [0.4, 0.4, 0.4], [0.80, 0.76, 0.62]);
+    let saturn = stage
+        .add(None, group("Ringed moon", Operator::Union).at(v(3.1, 3.35, -4.2)).rotated(turn_z(-22.0) * turn_x(20.0)));
+    stage.add(saturn, object("Ball", sphere(0.62), moon));
+    stage.add(saturn, object("Ring", torus(1.0, 0.14), ring).scaled(v(1.0, 0.16, 1.0)));
+    let stars = stage.add(None, group("Stars", Operator::Union));
+    let places = [
+        [-4.2, 4.1, -5.0, 0.050],
+        [-3.0, 2.6, -6.0, 0.036],
+        [-2.1, 4.6, -6.0, 0.060],
+        [-1.2, 3.3, -5.0, 0.034],
+        [1.4, 4.7, -6.0, 0.046],
+        [1.7, 2.5, -5.0, 0.032],
+        [4.6, 1.5, -6.0, 0.048],
+        [5.2, 4.9, -6.0, 0.040],
+        [-4.9, 1.3, -6.0, 0.046],
+        [-2.7, 0.9, -5.0, 0.034],
+        [2.7, 0.9, -5.0, 0.036],
+        [-5.3, 3.0, -6.0, 0.034],
+        [0.2, 5.2, -6.0, 0.036],
+    ];
+    for [x, y, z, radius] in places {
+        stage.add(stars, object("Star", Shape::Octahedron { radius }, star).at(v(x, y, z)).rotated(turn_y(15.0)));
+    }
+}

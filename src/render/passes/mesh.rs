@@ -1,0 +1,306 @@
+//! Pass `mesh`: clears the targets that fields and meshes share, and draws the meshes into them.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Weak};
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DAffine3, DVec3};
+use wgpu::util::DeviceExt as _;
+use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
+
+use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use crate::mesh::{Texture, TriangleMesh};
+use crate::render::buffers::Mirror;
+use crate::render::layouts::*;
+use crate::render::shader::{Features, ShaderError, source};
+use crate::render::targets::{BACKGROUND, Targets};
+
+/// The pass, and the meshes that are on the device.
+#[derive(Debug)]
+pub struct MeshPass {
+    pipeline: wgpu::RenderPipeline,
+    instance_layout: BindGroupLayout,
+    texture_layout: BindGroupLayout,
+    sampler: wgpu::Sampler,
+    instances: Mirror,
+    instance_group: Option<BindGroup>,
+    /// By the address of the mesh on the CPU; dropped with it.
+    uploaded: HashMap<usize, Uploaded>,
+    /// What to draw, with the dynamic offset of its instance.
+    draws: Vec<(usize, u32)>,
+}
+
+/// One placed mesh, as the shader reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Instance {
+    /// Rows of eye-relative world space from the mesh's space.
+    pub eye_from_local: [[f32; 4]; 3],
+    /// Rows of the matrix for normals.
+    pub normal: [[f32; 4]; 3],
+    /// See `overridden`.
+    pub albedo: [f32; 3],
+    /// Strength of the highlight.
+    pub specular: f32,
+    /// Goes to the owner target.
+    pub owner: u32,
+    /// 1: `albedo` stands for the mesh's own colours.
+    pub overridden: u32,
+    /// Unused.
+    pub padding: [u32; 2],
+}
+
+/// Highlight of a mesh that keeps its own colours.
+const OWN_SPECULAR: f32 = 0.2;
+/// Dynamic offsets are multiples of this.
+const STRIDE: usize = 256;
+
+#[derive(Debug)]
+struct Uploaded {
+    mesh: Weak<TriangleMesh>,
+    positions: wgpu::Buffer,
+    normals: wgpu::Buffer,
+    colors: wgpu::Buffer,
+    uvs: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    parts: Vec<(std::ops::Range<u32>, BindGroup)>,
+}
+
+impl MeshPass {
+    /// Builds the pipeline.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let instance_layout = layout(device, "mesh instance", &[entry(0, both, uniform(true))]);
+        let filtered = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        };
+        let sampling = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let texture_layout = layout(
+            device,
+            "mesh texture",
+            &[entry(0, ShaderStages::FRAGMENT, filtered), entry(1, ShaderStages::FRAGMENT, sampling)],
+        );
+        let pipeline = build_pipeline(device, &[&layouts.view, &instance_layout, &texture_layout])?;
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("mesh"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            address_mode_v: wgpu::AddressMode::Repeat,
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Ok(Self {
+            pipeline,
+            instance_layout,
+            texture_layout,
+            sampler,
+            instances: Mirror::uniform(device, "mesh instances"),
+            instance_group: None,
+            uploaded: HashMap::new(),
+            draws: Vec::new(),
+        })
+    }
+
+    /// Puts on the device what is to be drawn: `meshes` stands beside `flat.meshes`, with `None` where a
+    /// file could not be read.
+    pub fn prepare(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        eye: DVec3,
+    ) {
+        self.uploaded.retain(|_, u| u.mesh.strong_count() > 0);
+        self.draws.clear();
+        let mut bytes = Vec::new();
+        for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
+            let Some(mesh) = mesh else { continue };
+            let key = Arc::as_ptr(mesh) as usize;
+            if !self.uploaded.contains_key(&key) {
+                let uploaded = self.upload(device, queue, mesh);
+                self.uploaded.insert(key, uploaded);
+            }
+            self.draws.push((key, bytes.len() as u32));
+            bytes.extend_from_slice(bytemuck::bytes_of(&instance(flat, placed, index, eye)));
+            bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
+        }
+        if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
+            let binding = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: self.instances.buffer(),
+                offset: 0,
+                size: std::num::NonZeroU64::new(size_of::<Instance>() as u64),
+            });
+            self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
+        }
+    }
+
+    /// Clears the shared targets and draws.
+    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("mesh"),
+            color_attachments: &[
+                cleared(&targets.depth.view, f64::from(BACKGROUND)),
+                cleared(&targets.owner.view, f64::from(NO_LEAF)),
+                cleared(&targets.normal.view, 0.0),
+                cleared(&targets.diffuse.view, 0.0),
+            ],
+            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
+                view: &targets.hardware_depth.view,
+                depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        let Some(instances) = &self.instance_group else { return };
+        if self.draws.is_empty() {
+            return;
+        }
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, view, &[]);
+        for (key, offset) in &self.draws {
+            let mesh = &self.uploaded[key];
+            pass.set_bind_group(1, instances, &[*offset]);
+            for (slot, buffer) in [&mesh.positions, &mesh.normals, &mesh.colors, &mesh.uvs].into_iter().enumerate() {
+                pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+            }
+            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+            for (range, texture) in &mesh.parts {
+                pass.set_bind_group(2, texture, &[]);
+                pass.draw_indexed(range.clone(), 0, 0..1);
+            }
+        }
+    }
+
+    fn upload(&self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &Arc<TriangleMesh>) -> Uploaded {
+        let buffer = |label, contents: &[u8], usage| {
+            device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
+        };
+        let white = Texture { width: 1, height: 1, rgba: vec![255; 4] };
+        let group = |texture: &Texture| self.upload_texture(device, queue, texture);
+        let parts = mesh
+            .parts
+            .iter()
+            .map(|p| (p.indices.clone(), group(p.base_color_texture.map_or(&white, |i| &mesh.textures[i]))))
+            .collect();
+        Uploaded {
+            mesh: Arc::downgrade(mesh),
+            positions: buffer("positions", bytemuck::cast_slice(&mesh.positions), BufferUsages::VERTEX),
+            normals: buffer("normals", bytemuck::cast_slice(&mesh.normals), BufferUsages::VERTEX),
+            colors: buffer("colors", bytemuck::cast_slice(&mesh.colors), BufferUsages::VERTEX),
+            uvs: buffer("uvs", bytemuck::cast_slice(&mesh.uvs), BufferUsages::VERTEX),
+            indices: buffer("indices", bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
+            parts,
+        }
+    }
+
+    fn upload_texture(&self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> BindGroup {
+        let descriptor = wgpu::TextureDescriptor {
+            label: Some("base colour"),
+            size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TextureFormat::Rgba8UnormSrgb,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        };
+        let order = wgpu::util::TextureDataOrder::LayerMajor;
+        let view = device
+            .create_texture_with_data(queue, &descriptor, order, &texture.rgba)
+            .create_view(&wgpu::TextureViewDescriptor::default());
+        let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&self.sampler)];
+        bind(device, "mesh texture", &self.texture_layout, &resources)
+    }
+}
+
+/// An attachment that begins as `value` everywhere.
+fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    let load = wgpu::LoadOp::Clear(wgpu::Color { r: value, g: 0.0, b: 0.0, a: 0.0 });
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+}
+
+fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> Instance {
+    let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
+    let row = |i: usize| {
+        let r = m.matrix3.row(i);
+        [r.x as f32, r.y as f32, r.z as f32, m.translation[i] as f32]
+    };
+    // Normals go by the inverse transpose; only its direction counts.
+    let n = m.matrix3.inverse().transpose();
+    let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
+    let normal_row = |i: usize| {
+        let r = n.row(i);
+        [r.x as f32, r.y as f32, r.z as f32, 0.0]
+    };
+    let material = placed.material.map(|i| flat.materials[i as usize]);
+    Instance {
+        eye_from_local: [row(0), row(1), row(2)],
+        normal: [normal_row(0), normal_row(1), normal_row(2)],
+        albedo: material.map_or([1.0; 3], |m| m.albedo),
+        specular: material.map_or(OWN_SPECULAR, |m| m.specular),
+        owner: MESH_BIT | index as u32,
+        overridden: u32::from(material.is_some()),
+        padding: [0; 2],
+    }
+}
+
+fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
+    let no_shapes = Features { shapes: [].into(), stack: 1 };
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some("mesh"),
+        source: wgpu::ShaderSource::Wgsl(source("mesh.wgsl", &no_shapes)?.into()),
+    });
+    use wgpu::VertexFormat::{Float32x2, Float32x3};
+    // Position, normal, colour, texture coordinate.
+    let formats = [Float32x3, Float32x3, Float32x3, Float32x2];
+    let attributes: Vec<_> = formats
+        .iter()
+        .enumerate()
+        .map(|(i, format)| [wgpu::VertexAttribute { format: *format, offset: 0, shader_location: i as u32 }])
+        .collect();
+    let vertex_buffers: Vec<_> = attributes
+        .iter()
+        .map(|attribute| {
+            Some(wgpu::VertexBufferLayout {
+                array_stride: attribute[0].format.size(),
+                step_mode: wgpu::VertexStepMode::Vertex,
+                attributes: attribute,
+            })
+        })
+        .collect();
+    let targets =
+        [TextureFormat::R32Float, TextureFormat::R32Uint, TextureFormat::Rgba32Float, TextureFormat::Rgba16Float];
+    Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("mesh"),
+        layout: Some(&pipeline_layout(device, "mesh", groups)),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("mesh_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &vertex_buffers,
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: TextureFormat::Depth32Float,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("mesh_fragment"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &targets.map(|format| Some(format.into())),
+        }),
+        multiview_mask: None,
+        cache: None,
+    }))
+}

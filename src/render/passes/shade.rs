@@ -1,0 +1,55 @@
+//! Pass `shade`: light on what the passes before have found, and the background.
+
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+
+use crate::render::layouts::*;
+use crate::render::shader::{Features, ShaderError, source};
+use crate::render::targets::Targets;
+
+/// The pass.
+#[derive(Debug)]
+pub struct ShadePass {
+    pipeline: ComputePipeline,
+    lights: BindGroupLayout,
+    targets: BindGroupLayout,
+}
+
+impl ShadePass {
+    /// Builds the kernel.
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
+        let stage = ShaderStages::COMPUTE;
+        let lights = layout(device, "lights", &[entry(0, stage, read_storage())]);
+        let targets = layout(
+            device,
+            "shade targets",
+            &[
+                entry(0, stage, read_texture(false)),
+                entry(1, stage, read_texture(false)),
+                entry(2, stage, read_texture(false)),
+                entry(3, stage, read_texture(false)),
+                entry(4, stage, write_texture(TextureFormat::Rgba8Unorm)),
+            ],
+        );
+        let groups = [&layouts.view, &lights, &targets, &layouts.work];
+        let no_shapes = Features { shapes: [].into(), stack: 1 };
+        let pipeline = compute_pipeline(device, "shade", source("shade.wgsl", &no_shapes)?, "shade", &groups);
+        Ok(Self { pipeline, lights, targets })
+    }
+
+    /// The pass's own bind group.
+    pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
+        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.color];
+        let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
+        bind(device, "shade targets", &self.targets, &resources)
+    }
+
+    /// The bind group of the lights.
+    pub fn bind_lights(&self, device: &wgpu::Device, lights: wgpu::BindingResource<'_>) -> BindGroup {
+        bind(device, "lights", &self.lights, &[lights])
+    }
+
+    /// The kernel.
+    pub fn pipeline(&self) -> &ComputePipeline {
+        &self.pipeline
+    }
+}

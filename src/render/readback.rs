@@ -1,0 +1,82 @@
+//! Targets and buffers back to the CPU.
+
+use super::gpu::{Gpu, GpuError};
+use super::targets::{BACKGROUND, Target, Targets};
+use crate::flat::{BACKGROUND_DEPTH, Buffers};
+
+/// The picture with depth, leaf and normal of every pixel.
+pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<Buffers, GpuError> {
+    let [width, height] = targets.size;
+    let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.depth, 4)?);
+    let leaf: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.leaf, 4)?);
+    let normal: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.normal, 16)?);
+    let color: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.color, 4)?);
+    Ok(Buffers {
+        width,
+        height,
+        depth: depth.iter().map(|d| if *d >= BACKGROUND { BACKGROUND_DEPTH } else { *d }).collect(),
+        leaf,
+        normal: normal.iter().map(|n| [n[0], n[1], n[2]]).collect(),
+        color,
+    })
+}
+
+/// The texels of a target, row by row without gaps.
+fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<u8>, GpuError> {
+    let size = target.texture.size();
+    let row = (size.width * bytes_per_texel) as usize;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let buffer = landing(gpu, (padded * size.height as usize) as u64);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(padded as u32),
+        rows_per_image: Some(size.height),
+    };
+    encoder.copy_texture_to_buffer(
+        target.texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_mapped(gpu, &buffer)?;
+    Ok(bytes.chunks_exact(padded).flat_map(|r| &r[..row]).copied().collect())
+}
+
+/// The first `count` words of a buffer.
+pub fn read_words(gpu: &Gpu, source: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, GpuError> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let size = count as u64 * 4;
+    let buffer = landing(gpu, size);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    Ok(bytemuck::pod_collect_to_vec(&read_mapped(gpu, &buffer)?))
+}
+
+fn landing(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let slice = buffer.slice(..);
+    let (sender, receiver) = std::sync::mpsc::channel();
+    slice.map_async(wgpu::MapMode::Read, move |result| {
+        // The receiver waits below; if it has given up there is nobody to tell.
+        let _ = sender.send(result);
+    });
+    gpu.wait()?;
+    match receiver.try_recv() {
+        Ok(Ok(())) => {}
+        _ => return Err(GpuError::Lost("a buffer could not be read back".into())),
+    }
+    let mapped = slice.get_mapped_range().map_err(|e| GpuError::Lost(e.to_string()))?;
+    Ok(mapped.to_vec())
+}

@@ -1,0 +1,121 @@
+//! What the passes read besides the flat scene. Each struct has a twin of the same name in `shaders/common/`.
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+
+use crate::flat::{Component, FlatScene};
+use crate::geometry::Camera;
+
+/// Who looks, from where. One a frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct View {
+    /// Half the picture's width at distance 1, to the right.
+    pub right: [f32; 3],
+    /// Nothing nearer is seen.
+    pub near: f32,
+    /// Half the picture's height at distance 1, upwards.
+    pub up: [f32; 3],
+    /// Nothing farther is seen.
+    pub far: f32,
+    /// Unit direction of view.
+    pub forward: [f32; 3],
+    /// Width of a pixel at distance 1.
+    pub footprint: f32,
+    /// Background above.
+    pub sky: [f32; 3],
+    /// Lights in the buffer.
+    pub light_count: u32,
+    /// Background at the horizon and below.
+    pub horizon: [f32; 3],
+    /// Of the picture, in pixels.
+    pub width: u32,
+    /// Light from everywhere.
+    pub ambient: [f32; 3],
+    /// Of the picture, in pixels.
+    pub height: u32,
+}
+
+impl View {
+    /// The view of `camera` on a picture of `size` pixels.
+    pub fn new(camera: &Camera, size: [u32; 2], flat: &FlatScene, light_count: u32) -> Self {
+        let (width, height) = (f64::from(size[0]), f64::from(size[1]));
+        let tan = camera.tan_half_fov();
+        let f32s = |v: DVec3| v.as_vec3().to_array();
+        let color = |c: [f64; 3]| c.map(|v| v as f32);
+        Self {
+            right: f32s(camera.rotation * DVec3::X * (tan * width / height)),
+            near: camera.near as f32,
+            up: f32s(camera.rotation * DVec3::Y * tan),
+            far: camera.far as f32,
+            forward: f32s(camera.rotation * DVec3::NEG_Z),
+            footprint: camera.footprint(height) as f32,
+            sky: color(flat.environment.sky),
+            light_count,
+            horizon: color(flat.environment.horizon),
+            width: size[0],
+            ambient: color(flat.environment.ambient),
+            height: size[1],
+        }
+    }
+}
+
+/// A component as it stands to the eye.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct GpuComponent {
+    /// The eye, relative to the component's origin.
+    pub eye: [f32; 3],
+    /// First entry.
+    pub first: u32,
+    /// Lower corner of the bounds, relative to the origin.
+    pub low: [f32; 3],
+    /// Entry after the last.
+    pub end: u32,
+    /// Upper corner of the bounds, relative to the origin.
+    pub high: [f32; 3],
+    /// Unused.
+    pub padding: u32,
+    /// See [`Component::half_space`]; all zero for none.
+    pub half_space: [f32; 4],
+}
+
+/// Where bounds without end are said to end: far beyond any camera, near enough for f32 arithmetic.
+const UNBOUNDED: f32 = 1e18;
+
+impl GpuComponent {
+    /// As seen from `eye`, in the world.
+    pub fn new(component: &Component, eye: DVec3) -> Self {
+        // Rounding must never cut the surface off, and a ray should begin outside.
+        let slack = (component.bounds.max - component.bounds.min).max_element().min(1e6) * 1e-5 + 1e-9;
+        let bounds = component.bounds.expanded(slack);
+        let clamp = |v: Vec3| v.clamp(Vec3::splat(-UNBOUNDED), Vec3::splat(UNBOUNDED)).to_array();
+        Self {
+            eye: (eye - component.origin).as_vec3().to_array(),
+            first: component.first,
+            low: clamp(bounds.min.as_vec3()),
+            end: component.first + component.count,
+            high: clamp(bounds.max.as_vec3()),
+            padding: 0,
+            half_space: component.half_space.unwrap_or_default().map(|v| v as f32),
+        }
+    }
+}
+
+/// One dispatch: which component, which part of the picture, how far.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+pub struct Work {
+    /// Upper left pixel.
+    pub origin: [u32; 2],
+    /// First pixel outside.
+    pub end: [u32; 2],
+    /// Index of the component.
+    pub component: u32,
+    /// Steps that an invocation may take.
+    pub max_steps: u32,
+    /// 0 begins a march, later rounds continue it.
+    pub round: u32,
+    /// 1 in the last round.
+    pub last_round: u32,
+}

@@ -1,0 +1,253 @@
+//! The rules of the house, as one function over a file's path and text.
+
+use super::source::{Token, closing, tokens};
+
+/// What each module may use, besides itself. Nothing else is allowed: not by name, not through `super`.
+pub const MODULES: &[(&str, &[&str])] = &[
+    ("geometry", &[]),
+    ("scene", &["geometry"]),
+    ("mesh", &["geometry"]),
+    ("document", &["scene", "geometry"]),
+    ("gallery", &["scene", "geometry"]),
+    ("flat", &["scene", "mesh", "geometry"]),
+    ("render", &["flat", "mesh", "geometry"]),
+    ("editor", &["document", "scene", "flat", "mesh", "geometry"]),
+    ("app", &["editor", "render", "document", "scene", "flat", "mesh", "geometry"]),
+    ("cli", &["app", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
+];
+
+/// Crates that only some modules may name. A crate also stands for those whose name it starts.
+const CRATES: &[(&str, &[&str])] = &[
+    ("wgpu", &["render", "app"]),
+    ("eframe", &["editor", "app"]),
+    ("egui", &["editor", "app"]),
+    ("rfd", &["editor", "app"]),
+    ("gltf", &["mesh"]),
+    ("clap", &["cli"]),
+    ("indicatif", &["cli"]),
+    ("ctrlc", &["cli"]),
+];
+
+/// Starts of the paths of the files that own files; nothing else touches the file system.
+const FILE_OWNERS: &[&str] =
+    &["src/scene/file", "src/mesh/", "src/document/recent", "src/document/store", "src/cli/", "src/gallery/write"];
+
+/// What the functions of a shader file begin with, by the start of the file's path. Passes are known by
+/// their own names.
+pub const SHADER_PREFIXES: &[(&str, &[&str])] = &[];
+
+/// Most lines of a Rust file, of a shader, and of a Rust function.
+pub const MAX_LINES: [usize; 3] = [500, 250, 70];
+
+/// Everything that is wrong with a file, as `path:line: what`. `path` is relative to the repository.
+pub fn problems(path: &str, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (i, line) in text.lines().enumerate() {
+        for bad in machine_paths().iter().filter(|bad| line.contains(*bad)) {
+            found.push(format!("{path}:{}: a path of one machine: {bad}", i + 1));
+        }
+    }
+    let stem = path.rsplit('/').next().unwrap_or(path);
+    if is_vague(stem.split('.').next().unwrap_or(stem)) {
+        found.push(format!("{path}:1: a name that says nothing"));
+    }
+    if path.ends_with(".rs") {
+        rust(path, text, &mut found);
+    } else if path.ends_with(".wgsl") {
+        wgsl(path, text, &mut found);
+    }
+    found
+}
+
+/// Put together, so that this file does not hold them itself.
+fn machine_paths() -> [String; 4] {
+    [["/ho", "me/"], ["/wo", "rk/"], ["/ro", "ot/"], ["/tmp", "/"]].map(|parts| parts.concat())
+}
+
+fn is_vague(name: &str) -> bool {
+    let name = name.to_lowercase();
+    ["util", "helper", "manager", "misc"].iter().any(|bad| name.contains(bad))
+}
+
+fn rust(path: &str, text: &str, found: &mut Vec<String>) {
+    let words = tokens(text);
+    let mut report = |line: usize, what: String| found.push(format!("{path}:{line}: {what}"));
+    let lines = text.lines().count();
+    if lines > MAX_LINES[0] {
+        report(1, format!("{lines} lines are more than {}", MAX_LINES[0]));
+    }
+    if !text.starts_with("//!") {
+        report(1, "the file does not say what it is for (`//!`)".into());
+    }
+    for (line, length) in functions(&words) {
+        if length > MAX_LINES[2] {
+            report(line, format!("a function of {length} lines is longer than {}", MAX_LINES[2]));
+        }
+    }
+    let module = module_of(path);
+    let tests = test_ranges(&words);
+    for (i, word) in words.iter().enumerate() {
+        let next = words.get(i + 1).map_or("", |w| w.text);
+        let in_path = next == ":" && words.get(i + 2).is_some_and(|w| w.text == ":");
+        let tested = module.is_none() || tests.iter().any(|range| range.contains(&i));
+        match word.text {
+            "unsafe" => report(word.line, "unsafe".into()),
+            "todo" | "unimplemented" | "dbg" if next == "!" => report(word.line, format!("{}!", word.text)),
+            "print" | "println" | "eprint" | "eprintln" if next == "!" && !tested => {
+                report(word.line, "only the command line prints, through its own two functions".into());
+            }
+            "unwrap" if next == "(" && !tested => {
+                report(word.line, "unwrap outside of tests; say why with expect".into())
+            }
+            "fs" | "File" | "OpenOptions" if (in_path || word.text == "fs") && !tested => {
+                if !FILE_OWNERS.iter().any(|owner| path.starts_with(owner)) {
+                    report(word.line, "only files that own files touch the file system".into());
+                }
+            }
+            name if is_vague(name) => report(word.line, format!("`{name}` is a name that says nothing")),
+            name if in_path || words.get(i.wrapping_sub(1)).is_some_and(|w| w.text == "use") => {
+                for (owned, owners) in CRATES.iter().filter(|(owned, _)| of_crate(name, owned)) {
+                    if module.is_some_and(|m| !owners.contains(&m)) {
+                        report(word.line, format!("only {} may use {owned}", owners.join(" and ")));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    if let Some(module) = module {
+        for (line, used) in edges(path, &words) {
+            let allowed = MODULES.iter().find(|(name, _)| *name == module).map(|(_, uses)| *uses);
+            match allowed {
+                None => report(line, format!("the module {module} stands in no table")),
+                Some(uses) if used != module && !uses.contains(&used) => {
+                    report(line, format!("{module} may not use {used}"));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Whether `name` is the crate, or one whose name it starts (`egui_ltreeview` for `egui`).
+fn of_crate(name: &str, owned: &str) -> bool {
+    name.strip_prefix(owned).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
+}
+
+/// The top-level module that the file belongs to; none for the roots and for files outside `src`.
+pub fn module_of(path: &str) -> Option<&str> {
+    let name = path.strip_prefix("src/")?.split('/').next()?;
+    let name = name.strip_suffix(".rs").unwrap_or(name);
+    (name != "lib" && name != "main").then_some(name)
+}
+
+/// Line and length of every function.
+fn functions(words: &[Token<'_>]) -> Vec<(usize, usize)> {
+    let starts = words.iter().enumerate().filter(|(_, w)| w.text == "fn");
+    starts
+        .filter_map(|(i, word)| {
+            let body = words[i..].iter().position(|w| w.text == "{" || w.text == ";")? + i;
+            let end = closing(words, body);
+            (words[body].text == "{").then(|| (word.line, words[end - 1].line - word.line + 1))
+        })
+        .collect()
+}
+
+/// The parts of the file that are tests: the bodies of modules behind `cfg(test)`.
+fn test_ranges(words: &[Token<'_>]) -> Vec<std::ops::Range<usize>> {
+    let is = |i: usize, text: &str| words.get(i).is_some_and(|w| w.text == text);
+    (0..words.len())
+        .filter(|i| is(*i, "cfg") && is(i + 1, "(") && is(i + 2, "test") && is(i + 3, ")"))
+        .filter_map(|i| {
+            let open = words[i..].iter().position(|w| w.text == "{")? + i;
+            Some(open..closing(words, open))
+        })
+        .collect()
+}
+
+/// Every top-level module that the file names through `crate` or by climbing with `super`, with its line.
+pub fn edges<'a>(path: &str, words: &[Token<'a>]) -> Vec<(usize, &'a str)> {
+    let segments = path.trim_start_matches("src/").trim_end_matches(".rs").trim_end_matches("/mod").split('/').count();
+    let (mut out, mut brace_depth, mut inline) = (Vec::new(), 0_usize, Vec::new());
+    let mut i = 0;
+    while i < words.len() {
+        match words[i].text {
+            "{" => {
+                if i >= 2 && words[i - 2].text == "mod" {
+                    inline.push(brace_depth);
+                }
+                brace_depth += 1;
+            }
+            "}" => {
+                brace_depth = brace_depth.saturating_sub(1);
+                if inline.last() == Some(&brace_depth) {
+                    inline.pop();
+                }
+            }
+            "crate" => out.extend(named(words, i + 1)),
+            "super" => {
+                let mut climbed = 1;
+                while words.get(i + 3).is_some_and(|w| w.text == "super") {
+                    (i, climbed) = (i + 3, climbed + 1);
+                }
+                if climbed >= segments + inline.len() {
+                    out.extend(named(words, i + 1));
+                }
+            }
+            _ => {}
+        }
+        i += 1;
+    }
+    out
+}
+
+/// The names that follow the `::` at `at`: one, or all at the top of a brace.
+fn named<'a>(words: &[Token<'a>], at: usize) -> Vec<(usize, &'a str)> {
+    if words.get(at).is_none_or(|w| w.text != ":") {
+        return Vec::new();
+    }
+    match words.get(at + 2) {
+        Some(open) if open.text == "{" => {
+            let inside = &words[at + 3..closing(words, at + 2) - 1];
+            let (mut depth, mut fresh, mut out) = (0_usize, true, Vec::new());
+            for word in inside {
+                match word.text {
+                    "{" => depth += 1,
+                    "}" => depth -= 1,
+                    "," if depth == 0 => fresh = true,
+                    name if fresh && depth == 0 => {
+                        out.push((word.line, name));
+                        fresh = false;
+                    }
+                    _ => {}
+                }
+            }
+            out
+        }
+        Some(name) => vec![(name.line, name.text)],
+        None => Vec::new(),
+    }
+}
+
+fn wgsl(path: &str, text: &str, found: &mut Vec<String>) {
+    let lines = text.lines().count();
+    if lines > MAX_LINES[1] {
+        found.push(format!("{path}:1: {lines} lines are more than {}", MAX_LINES[1]));
+    }
+    if !text.starts_with("//") {
+        found.push(format!("{path}:1: the file does not say what it is for"));
+    }
+    let stem = path.rsplit('/').next().unwrap_or(path).trim_end_matches(".wgsl");
+    let own = [format!("{stem}_")];
+    let listed = SHADER_PREFIXES.iter().find(|(start, _)| path.starts_with(start)).map(|(_, p)| *p);
+    let words = tokens(text);
+    for pair in words.windows(2).filter(|pair| pair[0].text == "fn") {
+        let name = pair[1].text;
+        let fits = name == stem
+            || own.iter().any(|p| name.starts_with(p))
+            || listed.is_some_and(|prefixes| prefixes.iter().any(|p| name.starts_with(p)));
+        if !fits {
+            found.push(format!("{path}:{}: `{name}` does not carry the name of its file", pair[1].line));
+        }
+    }
+}
