@@ -205,9 +205,9 @@ impl Editor {
             (Purpose::Save(_), Some(path)) => path.display().to_string(),
             (Purpose::Save(_), None) => std::path::absolute(suggested_name(None))
                 .map_or_else(|_| suggested_name(None), |p| p.display().to_string()),
-            (_, Some(path)) => {
-                path.parent().map_or_else(String::new, |folder| format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR))
-            }
+            (_, Some(path)) => path
+                .parent()
+                .map_or_else(String::new, |folder| format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR)),
             (_, None) => String::new(),
         };
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
@@ -268,7 +268,7 @@ impl Editor {
         let name = self.bench.document.title();
         let name = name.trim_end_matches(" *").to_owned();
         let mut answer = None;
-        let response = Modal::new(Id::new("unsaved changes")).show(ctx, |ui| {
+        let response = Modal::new(Id::unique("unsaved changes")).show(ctx, |ui| {
             ui.set_width(380.0);
             ui.add_space(4.0);
             ui.label(RichText::new(format!("Save the changes to “{name}”?")).heading().color(egui::Color32::WHITE));
@@ -309,7 +309,7 @@ impl Editor {
     fn show_path_field(&mut self, ctx: &Context) {
         let Some(field) = &mut self.dialogs.path_field else { return };
         let mut done = None;
-        let response = Modal::new(Id::new("path")).show(ctx, |ui| {
+        let response = Modal::new(Id::unique("path")).show(ctx, |ui| {
             ui.set_width(460.0);
             ui.label(RichText::new(field.purpose.title()).heading().color(egui::Color32::WHITE));
             ui.add_space(6.0);

@@ -120,9 +120,8 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
             sheet.number(ui, &field, get, |n, v| set(n, ParamValue::Scalar(v)));
         }
         ParamValue::Vector(default) => {
-            let get = |n: &Node| -> Option<DVec3> {
-                if let Some(ParamValue::Vector(v)) = value(n) { Some(v) } else { None }
-            };
+            let get =
+                |n: &Node| -> Option<DVec3> { if let Some(ParamValue::Vector(v)) = value(n) { Some(v) } else { None } };
             // One reset value for three fields only where the default is the same along every axis.
             let same = default.x == default.y && default.y == default.z;
             let field = field(&label, param.help, param.limits, same.then_some(default.x));
@@ -244,7 +243,15 @@ fn reach(ui: &mut Ui, sheet: &mut Sheet<'_>) {
     let default = Attenuation::default();
     let rows: [(Field<'_>, Part); 4] = [
         (field("Range", "Nothing is lit beyond this distance", RANGE, Some(default.range)), |a| &mut a.range),
-        (field("Constant", "Weakening by 1 / (constant + linear d + quadratic d²)", ATTENUATION, Some(default.constant)), |a| &mut a.constant),
+        (
+            field(
+                "Constant",
+                "Weakening by 1 / (constant + linear d + quadratic d²)",
+                ATTENUATION,
+                Some(default.constant),
+            ),
+            |a| &mut a.constant,
+        ),
         (field("Linear", "Weakening per metre", ATTENUATION, Some(default.linear)), |a| &mut a.linear),
         (field("Quadratic", "Weakening per square metre", ATTENUATION, Some(default.quadratic)), |a| &mut a.quadratic),
     ];

@@ -99,7 +99,9 @@ fn editor(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
         sheet.bench().change_material(response.id, Material { name, ..material.clone() });
     }
     color(ui, sheet, ("Colour", "Diffuse reflectance"), material, |m| &mut m.albedo);
-    number(ui, sheet, ("Highlight", "Strength of the highlight; 0 is matt"), (UNIT, 0.25), material, |m| &mut m.specular);
+    number(ui, sheet, ("Highlight", "Strength of the highlight; 0 is matt"), (UNIT, 0.25), material, |m| {
+        &mut m.specular
+    });
     let help = "Larger is a smaller, sharper highlight";
     number(ui, sheet, ("Sharpness", help), (SHININESS, 48.0), material, |m| &mut m.shininess);
     color(ui, sheet, ("Glow", "Light that it emits"), material, |m| &mut m.emission);

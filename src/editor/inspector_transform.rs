@@ -39,12 +39,7 @@ impl EulerMemory {
     /// The card.
     pub fn show(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
         fields::card(ui, "Transform", |ui| {
-            sheet.vector(
-                ui,
-                &POSITION_FIELD,
-                |n| Some(n.transform.translation),
-                |n, v| n.transform.translation = v,
-            );
+            sheet.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
             self.rotation_row(ui, sheet);
             let scalable = |n: &Node| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_));
             sheet.vector(

@@ -137,7 +137,7 @@ impl Messages {
                 continue;
             }
             ctx.request_repaint_after_secs((until - now) as f32);
-            let response = Area::new(Id::new("toast").with(index))
+            let response = Area::new(Id::unique("toast").with(index))
                 .order(Order::Foreground)
                 .pivot(Align2::RIGHT_BOTTOM)
                 .fixed_pos(area.right_bottom() - vec2(12.0, offset))

@@ -28,6 +28,7 @@ mod navigation;
 mod outliner;
 mod overlay;
 mod palette;
+mod picking;
 mod selection;
 mod shape_change;
 mod sheet;
@@ -109,11 +110,17 @@ pub struct Editor {
 }
 
 /// The flat scene of a revision of the document.
-#[derive(Default)]
 struct Flattened {
     scene: Arc<FlatScene>,
     revision: Option<u64>,
     problem: Option<String>,
+}
+
+impl Flattened {
+    fn empty() -> Self {
+        let flat = flatten(&Scene::new(), 0.0).expect("an empty scene is within every limit");
+        Self { scene: Arc::new(flat), revision: None, problem: None }
+    }
 }
 
 impl Editor {
@@ -121,7 +128,7 @@ impl Editor {
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
             bench: Workbench::new(Document::new(Scene::new())),
-            flat: Flattened::default(),
+            flat: Flattened::empty(),
             meshes: MeshLibrary::new(None),
             navigation: Navigation::default(),
             viewport: viewport::Viewport::default(),
@@ -285,7 +292,7 @@ impl Editor {
     }
 
     fn open_dropped(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.iter().find_map(|file| file.path.clone()));
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         if let Some(path) = dropped {
             self.intend(dialogs::Intent::Open(path), ctx);
         }

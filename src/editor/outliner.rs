@@ -4,7 +4,9 @@ use std::cell::RefCell;
 use std::collections::HashSet;
 
 use egui::{Color32, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
-use egui_ltreeview::{Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState};
+use egui_ltreeview::{
+    Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState,
+};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
@@ -181,7 +183,9 @@ fn empty(ui: &mut Ui) {
     ui.add_space(24.0);
     ui.vertical_centered(|ui| {
         ui.label(RichText::new("Nothing here yet").color(theme::TEXT));
-        ui.label(RichText::new("Add a shape with the buttons above,\nor open a scene: File ▸ Examples.").color(theme::WEAK));
+        ui.label(
+            RichText::new("Add a shape with the buttons above,\nor open a scene: File ▸ Examples.").color(theme::WEAK),
+        );
     });
 }
 
@@ -318,8 +322,7 @@ impl Rows<'_> {
             state.store(ui.ctx(), response.id);
         } else if response.lost_focus() {
             let cancelled = ui.input(|i| i.key_pressed(Key::Escape));
-            let request =
-                if cancelled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
+            let request = if cancelled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
             self.requests.borrow_mut().push(request);
         }
     }

@@ -41,7 +41,7 @@ pub fn show(editor: &mut Editor, ctx: &Context) {
     palette.chosen = (palette.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
     let mut run = found.get(palette.chosen).copied().filter(|_| enter);
     let moved = up || down;
-    let response = Area::new(Id::new("palette"))
+    let response = Area::new(Id::unique("palette"))
         .order(Order::Foreground)
         .anchor(Align2::CENTER_TOP, vec2(0.0, 120.0))
         .show(ctx, |ui| {

@@ -46,7 +46,10 @@ pub fn join(bench: &mut Workbench, operator: Operator, new: bool) {
     let ids = roots(bench);
     let single = ids.first().filter(|_| ids.len() == 1).and_then(|id| bench.document.scene().node(*id).cloned());
     if let (false, Some(NodeKind::Group(group))) = (new, single.as_ref().map(|n| &n.kind)) {
-        let node = Node { kind: NodeKind::Group(Group { operator, ..*group }), ..Node::clone(single.as_ref().expect("matched above")) };
+        let node = Node {
+            kind: NodeKind::Group(Group { operator, ..*group }),
+            ..Node::clone(single.as_ref().expect("matched above"))
+        };
         bench.apply(Edit::Replace(node));
         return;
     }

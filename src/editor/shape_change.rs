@@ -18,9 +18,7 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
         ShapeKind::Sphere => Shape::Sphere { radius: mean },
         ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half.to_array() },
         ShapeKind::Box => Shape::Box { size: (half * 2.0).to_array(), rounding: 0.0 },
-        ShapeKind::BoxFrame => {
-            Shape::BoxFrame { size: (half * 2.0).to_array(), thickness: 0.2 * half.min_element() }
-        }
+        ShapeKind::BoxFrame => Shape::BoxFrame { size: (half * 2.0).to_array(), thickness: 0.2 * half.min_element() },
         ShapeKind::Torus => {
             let minor_radius = half.y.min(side * 0.4);
             Shape::Torus { major_radius: side - minor_radius, minor_radius }

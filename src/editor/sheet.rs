@@ -78,8 +78,7 @@ impl<'a> Sheet<'a> {
     ) {
         let Some(value) = get(self.active()) else { return };
         let mixed = std::array::from_fn(|axis| self.common(|n| get(n).map(|v| v[axis])).is_none());
-        let changed =
-            fields::row(ui, field.label, field.help, |ui| fields::vector(ui, field, value.to_array(), mixed));
+        let changed = fields::row(ui, field.label, field.help, |ui| fields::vector(ui, field, value.to_array(), mixed));
         if let Some((axis, fields::Answer { widget, value: Some(new) })) = changed {
             self.change(widget, |node| {
                 if let Some(mut value) = get(node) {

@@ -1,5 +1,7 @@
 //! Commands that add nodes.
 
+use egui::Context;
+use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_FLASHLIGHT_ON, ICON_FOLDER, ICON_LIGHTBULB, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
@@ -10,11 +12,10 @@ use crate::editor::{Editor, insertion};
 use crate::scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, ShapeKind};
 
 pub(super) fn commands() -> Vec<Command> {
-    let shapes = ShapeKind::ALL.iter().map(|&kind| {
-        Command::new(Menu::Add, None, kind.label(), kind.help(), move |e, _| insertion::shape(e, kind))
-    });
+    let shapes = ShapeKind::ALL
+        .iter()
+        .map(|&kind| Command::new(Menu::Add, None, kind.label(), kind.help(), move |e, _| insertion::shape(e, kind)));
     let mut all: Vec<_> = shapes.collect();
-    let new = |icon, name: &str, help: &str, run| Command::new(Menu::Add, icon, name, help, run);
     all.extend([
         new(ICON_FOLDER, "Empty group", "A group without children; drag nodes into it", |e, _| {
             insertion::node(e, Node::new("Group", NodeKind::Group(Group::UNION)));
@@ -33,6 +34,10 @@ pub(super) fn commands() -> Vec<Command> {
             .group(),
     ]);
     all
+}
+
+fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
+    Command::new(Menu::Add, icon, name, help, run)
 }
 
 fn add_sun(editor: &mut Editor) {

@@ -1,6 +1,7 @@
 //! Commands on the selection.
 
-use egui::{Key, Modifiers};
+use egui::{Context, Key, Modifiers};
+use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF,
     ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LOCK, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL,
@@ -26,6 +27,10 @@ pub(super) fn commands() -> Vec<Command> {
     all
 }
 
+fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
+    Command::new(Menu::Edit, icon, name, help, run).when(any)
+}
+
 fn history() -> Vec<Command> {
     let shift_ctrl = CTRL.plus(Modifiers::SHIFT);
     vec![
@@ -44,9 +49,10 @@ fn history() -> Vec<Command> {
 }
 
 fn structure() -> Vec<Command> {
-    let new = |icon, name: &str, help: &str, run| Command::new(Menu::Edit, icon, name, help, run).when(any);
     vec![
-        new(ICON_EDIT, "Rename", "Changes the name in the tree", |e, _| e.rename_active()).key(Modifiers::NONE, Key::F2).group(),
+        new(ICON_EDIT, "Rename", "Changes the name in the tree", |e, _| e.rename_active())
+            .key(Modifiers::NONE, Key::F2)
+            .group(),
         new(ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it", |e, _| {
             selection::duplicate(&mut e.bench);
         })
@@ -76,7 +82,6 @@ fn structure() -> Vec<Command> {
 }
 
 fn roles() -> Vec<Command> {
-    let new = |icon, name: &str, help: &str, run| Command::new(Menu::Edit, icon, name, help, run).when(any);
     vec![
         new(ICON_JOIN_FULL, "Unite", "Joins the selection: what is in any of it", |e, _| {
             selection::join(&mut e.bench, Operator::Union, false);
@@ -105,14 +110,26 @@ fn showing() -> Vec<Command> {
         })
         .key(CTRL, Key::A)
         .group(),
-        Command::new(Menu::Edit, None, "Select nothing", "Clears the selection and shows the scene's settings", |e, _| {
-            e.bench.document.select(Vec::new());
-        })
+        Command::new(
+            Menu::Edit,
+            None,
+            "Select nothing",
+            "Clears the selection and shows the scene's settings",
+            |e, _| {
+                e.bench.document.select(Vec::new());
+            },
+        )
         .key(Modifiers::NONE, Key::Escape)
         .when(any),
-        Command::new(Menu::Edit, ICON_VISIBILITY_OFF, "Toggle visible", "Hides the selection, or shows it again", |e, _| {
-            selection::toggle_visible(&mut e.bench);
-        })
+        Command::new(
+            Menu::Edit,
+            ICON_VISIBILITY_OFF,
+            "Toggle visible",
+            "Hides the selection, or shows it again",
+            |e, _| {
+                selection::toggle_visible(&mut e.bench);
+            },
+        )
         .key(Modifiers::NONE, Key::H)
         .when(any),
         Command::new(Menu::Edit, ICON_VISIBILITY, "Show all", "Shows everything that is hidden", |e, _| {

@@ -50,18 +50,10 @@ pub struct Command {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CommandId(usize);
 
-static TABLE: LazyLock<Vec<Command>> =
-    LazyLock::new(|| [file::commands(), edit::commands(), add::commands(), view::commands()].concat_vecs());
-
-trait ConcatVecs<T> {
-    fn concat_vecs(self) -> Vec<T>;
-}
-
-impl<T, const N: usize> ConcatVecs<T> for [Vec<T>; N] {
-    fn concat_vecs(self) -> Vec<T> {
-        self.into_iter().flatten().collect()
-    }
-}
+static TABLE: LazyLock<Vec<Command>> = LazyLock::new(|| {
+    let menus = [file::commands(), edit::commands(), add::commands(), view::commands()];
+    menus.into_iter().flatten().collect()
+});
 
 impl Command {
     fn new(

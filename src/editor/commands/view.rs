@@ -1,16 +1,21 @@
 //! Commands on what the picture shows.
 
-use egui::{Key, Modifiers};
+use egui::{Context, Key, Modifiers};
+use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_CENTER_FOCUS_STRONG, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA, ICON_SEARCH, ICON_SELECT,
 };
 
 use super::{Command, Menu};
+use crate::editor::Editor;
 use crate::editor::navigation::Side;
+
+fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
+    Command::new(Menu::View, icon, name, help, run)
+}
 
 pub(super) fn commands() -> Vec<Command> {
     const NONE: Modifiers = Modifiers::NONE;
-    let new = |icon, name: &str, help: &str, run| Command::new(Menu::View, icon, name, help, run);
     let mut all = vec![
         new(ICON_CENTER_FOCUS_STRONG, "Frame selected", "Shows all of the selection", |e, _| e.frame_selected())
             .key(NONE, Key::F)
@@ -19,9 +24,14 @@ pub(super) fn commands() -> Vec<Command> {
         new(ICON_FIT_SCREEN, "Frame all", "Shows the whole scene", |e, _| e.frame_all())
             .key(NONE, Key::Home)
             .key(NONE, Key::A),
-        new(ICON_PHOTO_CAMERA, "Look through camera", "Takes over the view of the scene's camera, or of the next one", |e, _| {
-            e.look_through_camera();
-        })
+        new(
+            ICON_PHOTO_CAMERA,
+            "Look through camera",
+            "Takes over the view of the scene's camera, or of the next one",
+            |e, _| {
+                e.look_through_camera();
+            },
+        )
         .key(NONE, Key::Num0)
         .when(|e| !e.flat().cameras.is_empty()),
     ];
