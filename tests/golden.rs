@@ -1,1 +1,168 @@
-//! Filled in later.
+//! Every scene's picture is the one that was accepted; `make golden` accepts those of now.
+
+use std::path::{Path, PathBuf};
+
+use image::{Rgba, RgbaImage};
+use isolith::flat::Buffers;
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+
+use crate::gpu::{Subject, scenes, shared};
+
+/// Width and height of the pictures, in pixels.
+const SIDE: u32 = 256;
+
+/// How equal two pictures must be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Gate {
+    /// To the last bit. Lavapipe gives the same bits on every machine and in every version.
+    Exact,
+    /// As near as another driver's rounding allows, see [`CHANNEL_TOLERANCE`] and [`PIXEL_TOLERANCE`].
+    Close,
+}
+
+/// On other drivers: how far each channel may be off.
+const CHANNEL_TOLERANCE: u8 = 2;
+/// On other drivers: share of the pixels that may be farther off, because edges fall on either side.
+const PIXEL_TOLERANCE: f64 = 5e-4;
+
+impl Gate {
+    /// What is different, in words.
+    fn check(self, actual: &RgbaImage, accepted: &RgbaImage) -> Result<(), String> {
+        if actual.dimensions() != accepted.dimensions() {
+            return Err(format!("the size is {:?}, not {:?}", actual.dimensions(), accepted.dimensions()));
+        }
+        let (tolerance, share) = match self {
+            Self::Exact => (0, 0.0),
+            Self::Close => (CHANNEL_TOLERANCE, PIXEL_TOLERANCE),
+        };
+        let off = actual.pixels().zip(accepted.pixels()).map(|(a, b)| distance(a, b));
+        let (count, worst) = off.filter(|d| *d > tolerance).fold((0, 0), |(n, worst), d| (n + 1, worst.max(d)));
+        if f64::from(count) > share * f64::from(actual.width() * actual.height()) {
+            return Err(format!("{count} pixels differ, by at most {worst} of 255"));
+        }
+        Ok(())
+    }
+}
+
+/// The greatest difference of a channel.
+fn distance(a: &Rgba<u8>, b: &Rgba<u8>) -> u8 {
+    a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+}
+
+#[test]
+fn every_scene_looks_as_accepted() {
+    let (is_lavapipe, driver) = {
+        let info = shared().gpu.info.clone();
+        (info.driver == "llvmpipe", format!("{} {} {}", info.name, info.driver, info.driver_info))
+    };
+    let gate = if is_lavapipe { Gate::Exact } else { Gate::Close };
+    let accept = std::env::var_os("ISOLITH_ACCEPT_GOLDEN").is_some_and(|value| value == "1");
+    assert!(!accept || gate == Gate::Exact, "pictures are accepted on lavapipe only, and this is {driver}");
+    let mut faults = Vec::new();
+    for scene in scenes() {
+        let actual = image(&scene.render(SIDE));
+        let path = golden_folder().join(format!("{}.png", scene.name));
+        if accept {
+            actual.save(&path).expect("the accepted picture can be written");
+            continue;
+        }
+        let Ok(accepted) = image::open(&path) else {
+            faults.push(format!("{}: no picture was accepted yet; look at it and run `make golden`", scene.name));
+            continue;
+        };
+        let accepted = accepted.to_rgba8();
+        if let Err(fault) = gate.check(&actual, &accepted) {
+            let place = keep(&scene.name, &actual, &accepted);
+            faults.push(format!("{}: {fault}; see {}", scene.name, place.display()));
+        }
+    }
+    assert!(faults.is_empty(), "on {driver} ({gate:?}):\n{}", faults.join("\n"));
+}
+
+#[test]
+fn every_accepted_picture_has_its_scene() {
+    let names: Vec<_> = scenes().map(|scene| format!("{}.png", scene.name)).collect();
+    for entry in std::fs::read_dir(golden_folder()).expect("the folder can be read") {
+        let name = entry.expect("an entry can be read").file_name().to_string_lossy().into_owned();
+        assert!(names.contains(&name), "tests/golden/{name} belongs to no scene");
+    }
+}
+
+#[test]
+fn both_gates_refuse_a_shift_by_one_pixel() {
+    let picture = picture_of(&sample(0.5, true));
+    let shifted = RgbaImage::from_fn(SIDE, SIDE, |x, y| *picture.get_pixel(x.saturating_sub(1), y));
+    refused_by_both(&shifted, &picture);
+}
+
+#[test]
+fn both_gates_refuse_a_radius_two_percent_off() {
+    let picture = picture_of(&sample(0.5, true));
+    refused_by_both(&picture_of(&sample(0.51, true)), &picture);
+    refused_by_both(&picture_of(&sample(0.49, true)), &picture);
+}
+
+#[test]
+fn both_gates_refuse_a_picture_without_a_small_object() {
+    refused_by_both(&picture_of(&sample(0.5, false)), &picture_of(&sample(0.5, true)));
+}
+
+#[test]
+fn a_picture_made_twice_is_the_same() {
+    assert_eq!(Gate::Exact.check(&picture_of(&sample(0.5, true)), &picture_of(&sample(0.5, true))), Ok(()));
+}
+
+fn refused_by_both(wrong: &RgbaImage, right: &RgbaImage) {
+    for gate in [Gate::Exact, Gate::Close] {
+        assert!(gate.check(wrong, right).is_err(), "{gate:?} let it through");
+    }
+}
+
+/// A ball, a floor, and a small ball a hundredth of the picture wide.
+fn sample(radius: f64, with_small: bool) -> Scene {
+    let mut scene = Scene::new();
+    let mut add = |name: &str, shape: Shape, at: [f64; 3]| {
+        let object = Object { shape, material: MaterialId(1) };
+        let node = Node::new(name, NodeKind::Object(object)).at(at.into());
+        scene.insert(None, usize::MAX, node).expect("the scene has room");
+    };
+    add("floor", Shape::Plane {}, [0.0, -0.5, 0.0]);
+    add("ball", Shape::Sphere { radius }, [0.0; 3]);
+    if with_small {
+        add("small ball", Shape::Sphere { radius: 0.03 }, [0.6, 0.3, 0.3]);
+    }
+    scene
+}
+
+/// The scene from a camera that does not depend on what is in it.
+fn picture_of(scene: &Scene) -> RgbaImage {
+    let mut subject = Subject::new("sample", scene, None);
+    let eye = glam::DVec3::new(0.5, 0.7, 2.5);
+    subject.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
+    image(&subject.render(SIDE))
+}
+
+fn image(buffers: &Buffers) -> RgbaImage {
+    let bytes = buffers.color.iter().flatten().copied().collect();
+    RgbaImage::from_raw(buffers.width, buffers.height, bytes).expect("one colour for each pixel")
+}
+
+fn golden_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+}
+
+/// Writes the picture and its difference from the accepted one; returns the folder.
+fn keep(name: &str, actual: &RgbaImage, accepted: &RgbaImage) -> PathBuf {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/golden-failures");
+    std::fs::create_dir_all(&folder).expect("the folder for failures can be made");
+    let difference = RgbaImage::from_fn(actual.width(), actual.height(), |x, y| {
+        let other = accepted.get_pixel_checked(x, y).unwrap_or(&Rgba([0; 4]));
+        // Everything that differs is at least a quarter bright, so that it can be seen.
+        let d = distance(actual.get_pixel(x, y), other);
+        Rgba([if d == 0 { 0 } else { d.max(64) }, 0, 0, 255])
+    });
+    for (kind, image) in [("actual", actual), ("difference", &difference)] {
+        image.save(folder.join(format!("{name}-{kind}.png"))).expect("the failure can be written");
+    }
+    folder
+}

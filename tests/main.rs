@@ -2,12 +2,16 @@
 
 mod accuracy;
 mod agreement;
+mod broken_files;
 mod cli;
 mod contract;
 mod documents;
 mod editor;
 mod files;
 mod golden;
+mod gpu;
 mod meshes;
+mod random_scene;
+mod saving;
 mod shaders;
 mod tidy;

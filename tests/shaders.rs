@@ -1,1 +1,141 @@
-//! Filled in later.
+//! Every shader is valid, is used, and agrees with Rust about how its structs lie in memory.
+
+use std::mem::{offset_of, size_of};
+
+use isolith::flat::{FlatMaterial, FlatNode, GpuLight};
+use isolith::render::shader::{FILES, Features, source};
+use isolith::render::uniforms::{GpuComponent, View, Work};
+use isolith::scene::ShapeKind;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+
+/// The passes: the files that stand in no folder.
+fn passes() -> impl Iterator<Item = &'static str> {
+    FILES.iter().map(|(name, _)| *name).filter(|name| !name.contains('/'))
+}
+
+/// The module that a source makes, or what is wrong with it.
+fn validate(source: &str) -> Result<naga::Module, String> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
+    Ok(module)
+}
+
+#[test]
+fn every_pass_is_valid_with_all_shapes_and_with_each_alone() {
+    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
+    let choices: Vec<_> = alone.chain([Features::all()]).collect();
+    let mut count = 0;
+    for pass in passes() {
+        for features in &choices {
+            let text = source(pass, features).unwrap_or_else(|error| panic!("{error}"));
+            if let Err(fault) = validate(&text) {
+                panic!("{pass} with {features:?}:\n{fault}");
+            }
+            count += 1;
+        }
+    }
+    assert!(count > ShapeKind::ALL.len(), "no pass was looked at");
+}
+
+#[test]
+fn no_pass_grows_a_recursion_or_lacks_an_entry_point() {
+    for pass in passes() {
+        let module = validate(&source(pass, &Features::all()).expect("checked above")).expect("checked above");
+        assert!(!module.entry_points.is_empty(), "{pass} has no entry point");
+    }
+}
+
+#[test]
+fn every_file_is_part_of_some_pass() {
+    let all = passes().map(|pass| source(pass, &Features::all()).expect("checked above")).collect::<String>();
+    for (name, text) in FILES {
+        let first = text.lines().find(|line| line.starts_with("fn ") || line.starts_with("const "));
+        assert!(first.is_none_or(|line| all.contains(line)), "{name} is included by nothing");
+    }
+}
+
+#[test]
+fn a_broken_shader_is_refused() {
+    assert!(validate("fn f() -> f32 { return 1u; }").is_err());
+    assert!(validate("fn f() -> f32 { return g(); }").is_err());
+    assert!(validate("fn f() -> f32 { return 1.0; }").is_ok());
+}
+
+/// How a Rust struct lies in memory.
+struct Layout {
+    name: &'static str,
+    size: usize,
+    members: Vec<(&'static str, usize)>,
+}
+
+macro_rules! layout {
+    ($name:literal = $type:ty { $($member:ident),* $(,)? }) => {
+        Layout {
+            name: $name,
+            size: size_of::<$type>(),
+            members: vec![$((stringify!($member), offset_of!($type, $member))),*],
+        }
+    };
+}
+
+impl Layout {
+    /// Where the WGSL struct of the same name lies differently; an empty text where it does not.
+    fn differences(&self, module: &naga::Module) -> String {
+        let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(self.name));
+        let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {
+            return format!("{} is not in the shader", self.name);
+        };
+        let theirs: Vec<_> = members.iter().map(|m| (m.name.as_deref().unwrap_or(""), m.offset as usize)).collect();
+        if theirs != self.members || *span as usize != self.size {
+            return format!("{}: Rust {:?} of {}, WGSL {theirs:?} of {span}", self.name, self.members, self.size);
+        }
+        String::new()
+    }
+}
+
+fn flat_node() -> Layout {
+    layout!("FlatNode" = FlatNode { code, extent, numbers, material })
+}
+
+#[test]
+fn rust_and_wgsl_agree_about_every_struct() {
+    let layouts = [
+        flat_node(),
+        layout!("FlatMaterial" = FlatMaterial { albedo, specular, emission, shininess }),
+        layout!("Component" = GpuComponent { eye, first, low, end, high, padding, half_space }),
+        layout!(
+            "View" =
+                View { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
+        ),
+        layout!("Work" = Work { origin, end, component, max_steps, round, last_round }),
+        layout!(
+            "Light" =
+                GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }
+        ),
+    ];
+    let modules: Vec<_> = passes()
+        .map(|pass| validate(&source(pass, &Features::all()).expect("checked above")).expect("checked above"))
+        .collect();
+    for layout in &layouts {
+        let holds = |m: &&naga::Module| m.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(layout.name));
+        let holding: Vec<_> = modules.iter().filter(holds).collect();
+        assert!(!holding.is_empty(), "{} is in no shader", layout.name);
+        for module in holding {
+            assert_eq!(layout.differences(module), "");
+        }
+    }
+}
+
+#[test]
+fn a_struct_that_lies_differently_is_caught() {
+    let differs = |members: &str| {
+        let text = format!("struct FlatNode {{ {members} }}\n@group(0) @binding(0) var<storage> n: FlatNode;");
+        !flat_node().differences(&validate(&text).expect("a valid sample")).is_empty()
+    };
+    assert!(!differs("code: u32, extent: u32, numbers: u32, material: u32"));
+    assert!(differs("extent: u32, code: u32, numbers: u32, material: u32"));
+    assert!(differs("code: u32, extent: u32, numbers: u32"));
+    assert!(differs("code: u32, extent: u32, numbers: vec2u"));
+    assert!(differs("code: u32, extent: u32, numbers: u32, material: u32, more: u32"));
+}

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::say;
-use crate::flat::{FlatScene, MAX_COMPONENT_NODES, MAX_FLAT_NODES, MAX_STACK, flatten};
+use crate::flat::{self, FlatScene, MAX_COMPONENT_NODES, MAX_FLAT_NODES, MAX_STACK, flatten};
 use crate::mesh::MeshLibrary;
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{Scene, file};
@@ -53,25 +53,25 @@ struct Warning {
     reason: String,
 }
 
+impl From<flat::Warning> for Warning {
+    fn from(warning: flat::Warning) -> Self {
+        Self { node: format!("{} {}", warning.name, warning.node), reason: warning.reason }
+    }
+}
+
 fn read(path: &Path) -> Result<Report, Failure> {
     let scene = file::load(path).map_err(Failure::Scene)?;
     let flat = flatten(&scene, 0.0).map_err(|error| Failure::beyond_limit(path, &error))?;
     let mut report = Report::new(&scene, &flat);
-    let mut meshes = MeshLibrary::new(path.parent().map(Path::to_path_buf));
-    for mesh in &flat.meshes {
-        if let Err(error) = meshes.get(&mesh.path) {
-            let name = scene.node(mesh.id).map_or("", |node| node.name.as_str());
-            let reason = format!("the mesh cannot be drawn: {error}");
-            report.warnings.push(Warning { node: format!("{name} {}", mesh.id), reason });
-        }
-    }
+    let mut library = MeshLibrary::new(path.parent().map(Path::to_path_buf));
+    let (_, missing) = flat.load_meshes(&mut library);
+    report.warnings.extend(missing.into_iter().map(Warning::from));
     Ok(report)
 }
 
 impl Report {
     fn new(scene: &Scene, flat: &FlatScene) -> Self {
         let counts = flat.components.iter().map(|component| component.count as usize);
-        let warnings = flat.warnings.iter();
         Self {
             nodes: scene.nodes().len(),
             tree_depth: scene.depths().iter().max().map_or(0, |depth| *depth as usize + 1),
@@ -80,9 +80,7 @@ impl Report {
             entries: flat.nodes.len(),
             largest_component: counts.max().unwrap_or(0),
             stack: flat.components.iter().map(|component| component.stack).max().unwrap_or(0),
-            warnings: warnings
-                .map(|w| Warning { node: format!("{} {}", w.name, w.node), reason: w.reason.clone() })
-                .collect(),
+            warnings: flat.warnings.iter().cloned().map(Warning::from).collect(),
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::flat::FlattenError;
+use crate::render::{GpuError, RenderError};
 use crate::scene::file::FileError;
 
 /// Why a command failed.
@@ -55,6 +56,26 @@ impl Failure {
             Self::Graphics(_) => 4,
             Self::Write { .. } => 5,
             Self::Cancelled => 130,
+        }
+    }
+}
+
+impl From<GpuError> for Failure {
+    fn from(error: GpuError) -> Self {
+        match error {
+            GpuError::NoAdapter(_) | GpuError::NoDevice { .. } => Self::Graphics(error.to_string()),
+            GpuError::Lost(_) => Self::Other(error.to_string()),
+        }
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Cancelled => Self::Cancelled,
+            RenderError::Gpu(error) => error.into(),
+            RenderError::Size(..) => Self::Usage(error.to_string()),
+            RenderError::Shader(_) => Self::Other(error.to_string()),
         }
     }
 }

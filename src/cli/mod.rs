@@ -21,6 +21,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
+use crate::render::Gpu;
+use crate::render::driver::loop_iterations;
 use failure::Failure;
 
 /// What `--help` says about exit codes; the README has the same table.
@@ -109,11 +111,19 @@ fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
 }
 
 fn write_gallery(folder: &Path) -> Result<(), Failure> {
-    Err(Failure::Other(format!("not yet: {}", folder.display())))
+    std::fs::create_dir_all(folder)
+        .map_err(|error| Failure::Write { path: folder.to_path_buf(), reason: error.to_string() })?;
+    let written = crate::gallery::write_all(folder)
+        .map_err(|error| Failure::Write { path: PathBuf::from(&error.file), reason: error.reason })?;
+    written.iter().try_for_each(|path| say(&format!("wrote {}", path.display())))
 }
 
+/// Prints the driver's name, and how far its loops go.
 fn probe() -> Result<(), Failure> {
-    Err(Failure::Other("not yet".into()))
+    let gpu = Gpu::headless()?;
+    let iterations = loop_iterations(&gpu)?;
+    let info = &gpu.info;
+    say(&format!("{} ({}, {} {}), loops of {iterations}", info.name, info.backend, info.driver, info.driver_info))
 }
 
 /// One line on standard output. A reader that went away is no failure.

@@ -1,15 +1,18 @@
 //! `isolith render`: a picture, and more outputs beside it, without a window.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::failure::Failure;
 use super::outputs::{self, Quantity};
 use super::progress::Progress;
 use super::{complain, say};
-use crate::flat::{Buffers, FlatScene, flatten};
+use crate::flat::{Buffers, FlatScene, Warning, flatten};
 use crate::geometry::Camera;
-use crate::mesh::MeshLibrary;
+use crate::mesh::{MeshLibrary, TriangleMesh};
+use crate::render::driver::loop_iterations;
+use crate::render::{Gpu, Renderer};
 use crate::scene::file;
 
 /// Longest side of a picture, in pixels.
@@ -69,6 +72,13 @@ impl RenderArguments {
         }
     }
 
+    /// Prints what the artist should know; the picture is made all the same.
+    fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a Warning>) {
+        for Warning { node, name, reason } in warnings.into_iter().filter(|_| !self.quiet) {
+            complain(&format!("warning: {}: {name} {node}: {reason}", self.scene.display()));
+        }
+    }
+
     /// Every output with what it holds.
     fn outputs(&self) -> Vec<(Quantity, &Path)> {
         let all = [
@@ -89,21 +99,15 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     }
     let scene = file::load(&arguments.scene).map_err(Failure::Scene)?;
     let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?;
-    let mut meshes = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));
-    if !arguments.quiet {
-        for warning in &flat.warnings {
-            complain(&format!(
-                "warning: {}: {} {}: {}",
-                arguments.scene.display(),
-                warning.name,
-                warning.node,
-                warning.reason
-            ));
-        }
-    }
-    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let camera = choose_camera(&flat, &mut meshes, arguments.camera.as_deref(), aspect)?;
-    let buffers = picture(arguments, &flat, &mut meshes, &camera)?;
+    let mut library = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));
+    let (meshes, missing) = flat.load_meshes(&mut library);
+    arguments.warn(flat.warnings.iter().chain(&missing));
+    let camera = choose_camera(&flat, &meshes, arguments)?;
+    let buffers = if arguments.truth {
+        truth_picture(arguments, &flat, &meshes, &camera)?
+    } else {
+        gpu_picture(arguments, &flat, &meshes, &camera)?
+    };
     for (quantity, path) in arguments.outputs() {
         let note = outputs::write(quantity, path, &buffers, &flat)?;
         if !arguments.quiet {
@@ -118,15 +122,13 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     Ok(())
 }
 
+type Meshes = [Option<Arc<TriangleMesh>>];
+
 /// The scene's camera of this name, or the view that the scene has by itself.
-fn choose_camera(
-    flat: &FlatScene,
-    meshes: &mut MeshLibrary,
-    name: Option<&str>,
-    aspect: f64,
-) -> Result<Camera, Failure> {
-    let Some(name) = name else { return Ok(flat.default_camera(meshes, aspect)) };
-    if let Some(found) = flat.cameras.iter().find(|camera| camera.name == name) {
+fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<Camera, Failure> {
+    let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
+    let Some(name) = &arguments.camera else { return Ok(flat.default_camera(meshes, aspect)) };
+    if let Some(found) = flat.cameras.iter().find(|camera| camera.name == *name) {
         return Ok(found.camera);
     }
     let names: Vec<_> = flat.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
@@ -134,13 +136,30 @@ fn choose_camera(
     Err(Failure::Usage(format!("there is no camera \"{name}\"; the scene has {has}")))
 }
 
-fn picture(
+fn gpu_picture(
     arguments: &RenderArguments,
     flat: &FlatScene,
-    meshes: &mut MeshLibrary,
+    meshes: &Meshes,
     camera: &Camera,
 ) -> Result<Buffers, Failure> {
-    let _ = (flat, meshes, camera, Progress::start("rendering", arguments.quiet));
+    let gpu = Gpu::headless()?;
+    loop_iterations(&gpu)?;
+    let mut renderer = Renderer::new(&gpu)?;
+    let mut progress = Progress::start("rendering", arguments.quiet);
+    let result = renderer.render(flat, meshes, camera, arguments.size, &mut |share| progress.update(f64::from(share)));
+    progress.finish();
+    let (buffers, unfinished) = result?;
+    arguments.warn(&unfinished);
+    Ok(buffers)
+}
+
+fn truth_picture(
+    arguments: &RenderArguments,
+    flat: &FlatScene,
+    meshes: &Meshes,
+    camera: &Camera,
+) -> Result<Buffers, Failure> {
+    let _ = (arguments, flat, meshes, camera);
     Err(Failure::Other("not yet".into()))
 }
 

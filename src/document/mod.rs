@@ -92,14 +92,12 @@ impl Document {
         }
         let label = edit.label(&self.state.scene);
         let result = edit.perform(&mut self.state.scene);
-        if let Ok(change) = &result {
-            if change.changed {
-                self.revision += 1;
-                self.state.mark = self.revision;
-                self.state.drop_unknown();
-                if let Some(gesture) = &mut self.gesture {
-                    gesture.label.get_or_insert(label);
-                }
+        if result.as_ref().is_ok_and(|change| change.changed) {
+            self.revision += 1;
+            self.state.mark = self.revision;
+            self.state.drop_unknown();
+            if let Some(gesture) = &mut self.gesture {
+                gesture.label.get_or_insert(label);
             }
         }
         if alone {

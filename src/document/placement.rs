@@ -42,9 +42,9 @@ fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
         }
         let turned = DMat3::from_cols(columns.x_axis / scale.x, columns.y_axis / scale.y, columns.z_axis / scale.z);
         let skew = turned.transpose() * turned - DMat3::IDENTITY;
-        let skew = skew.to_cols_array().into_iter().fold(0.0, |a: f64, v| a.max(v.abs()));
-        // Written so that NaN fails as well.
-        if !(skew <= TOLERANCE) {
+        let skew = skew.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+        // The maximum passes over NaN, so it is looked for by itself.
+        if !turned.is_finite() || skew > TOLERANCE {
             return None;
         }
         (rounded_rotation(DQuat::from_mat3(&turned).normalize(), local.rotation), rounded(scale, local.scale))

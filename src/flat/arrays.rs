@@ -68,6 +68,8 @@ pub enum Join {
 /// slope 0 and finite dummies.
 pub type Row = [f32; 4];
 
+/// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
+pub const ROW_ALIGNMENT: usize = 16;
 /// Rows of a leaf before its parameters.
 pub const LEAF_ROWS: usize = 4;
 /// Rows of a group.
@@ -131,6 +133,10 @@ pub struct Component {
     pub first: u32,
     /// How many.
     pub count: u32,
+    /// Its first row in [`FlatScene::numbers`], a multiple of [`ROW_ALIGNMENT`].
+    pub numbers: u32,
+    /// How many rows.
+    pub rows: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
     /// Around its surface, relative to `origin`; may be unbounded.

@@ -16,6 +16,8 @@ pub(super) fn emit(
     let bounds = fold_bounds(operands).bounds;
     let origin = origin_of(&bounds, operands);
     let first = flat.nodes.len();
+    let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
+    flat.numbers.resize(numbers, [0.0; 4]);
     let mut stack = 0;
     for operand in operands {
         stack = stack.max(emit_operand(flat, operand, origin, material));
@@ -23,6 +25,8 @@ pub(super) fn emit(
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
+        numbers: numbers as u32,
+        rows: (flat.numbers.len() - numbers) as u32,
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),

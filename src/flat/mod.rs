@@ -6,7 +6,11 @@
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
+//! | `shade` | light on surfaces, twin of `shaders/light` |
+//! | `truth` | the whole picture by `twin`, `trace` and `shade` |
 //! | `pick` | which node a ray hits |
+//! | `meshes` | the meshes that a scene names, loaded |
+//! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
 //! | `compare` | how wrong a picture is, against the truth |
 
@@ -15,10 +19,13 @@ mod buffers;
 pub mod compare;
 mod emit;
 mod flatten;
-mod lights;
+pub mod mesh_rays;
+mod meshes;
 mod operands;
 pub mod pick;
+pub mod shade;
 pub mod trace;
+pub mod truth;
 pub mod twin;
 mod view;
 
@@ -26,4 +33,4 @@ pub use arrays::*;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten};
-pub use lights::{GpuLight, gpu_lights};
+pub use shade::{GpuLight, gpu_lights};

@@ -204,7 +204,11 @@ fn leaf<'a>(
     shape: &Shape,
     material: MaterialId,
 ) -> Operand<'a> {
-    let (shape, world_from_local, least, greatest) = normalise(shape, world_from_local);
+    let (shape, mut world_from_local, least, greatest) = normalise(shape, world_from_local);
+    if least == 1.0 && matches!(shape, Shape::Sphere { .. }) {
+        // A ball looks the same from every side: without a rotation its kernel is shorter.
+        world_from_local.matrix3 = DMat3::IDENTITY;
+    }
     let bounds = shape.bounds().transformed(&world_from_local);
     Operand {
         node,

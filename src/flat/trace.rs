@@ -1,1 +1,214 @@
-//! Truth tracer.
+//! Rays against the twin, with certainty instead of a step limit.
+//!
+//! A ray advances by the field, which is a safe step, until the field's sign changes; bisection then
+//! closes in on the surface. Close to the surface it creeps by steps far below any pixel, so that a ray
+//! that only comes near goes on and is never taken for a hit.
+//!
+//! Conventions that the renderer shares: what a ray hits is the first point where the field is
+//! negative, so a shape without volume is invisible; a ray that starts inside a solid hits at `near`.
+
+use glam::DVec3;
+use thiserror::Error;
+
+use super::twin::{field, surface};
+use super::{Component, FlatScene};
+use crate::geometry::{Aabb, Ray};
+
+/// Where a ray meets the first component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray.
+    pub t: f64,
+    /// Index into [`FlatScene::components`].
+    pub component: u32,
+    /// Index into [`FlatScene::nodes`].
+    pub leaf: u32,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct March {
+    /// What it hit.
+    pub hit: Option<Hit>,
+    /// How far, as an angle in radians, the ray could be turned before it might hit something else: the
+    /// least field over distance of every surface that it passed, and the depth over distance to which
+    /// it enters what it hits. The first is a lower bound within a factor of two, the second is not
+    /// followed beyond [`CLEAR`].
+    pub margin: f64,
+}
+
+/// A ray that could not be followed to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("a ray was not at its end after {MAX_EVALUATIONS} evaluations of component {component}")]
+pub struct TraceError {
+    /// Index into [`FlatScene::components`].
+    pub component: u32,
+}
+
+/// A ray gives up after so many evaluations of one component, rather than never end.
+pub const MAX_EVALUATIONS: u32 = 10_000_000;
+/// Margins beyond this angle are not measured further; a hundredth of a pixel and more.
+pub const CLEAR: f64 = 1e-4;
+
+/// Below this share of the distance the field counts as touching, and the ray creeps.
+const TOUCHING: f64 = 1e-10;
+/// Longest creeping step, as a share of the distance: a shorter chord may be missed.
+const LONGEST_CREEP: f64 = 1e-5;
+/// A hit is known within this share of the distance.
+const PRECISION: f64 = 1e-14;
+
+/// The first surface on the ray between `near` and `far`. One ray at a time; [`Tracer`] is quicker for
+/// many.
+pub fn trace(flat: &FlatScene, ray: &Ray, near: f64, far: f64) -> Result<Option<Hit>, TraceError> {
+    Tracer::new(flat).march(ray, near, far).map(|march| march.hit)
+}
+
+/// Traces many rays through one scene.
+#[derive(Clone)]
+pub struct Tracer<'a> {
+    flat: &'a FlatScene,
+    /// Bounds of the components, grown a little: the arrays are rounded to f32, their bounds are not.
+    bounds: Vec<Aabb>,
+    /// Entry, exit and index of the components on the present ray.
+    order: Vec<(f64, f64, u32)>,
+}
+
+impl<'a> Tracer<'a> {
+    /// Prepares a scene.
+    pub fn new(flat: &'a FlatScene) -> Self {
+        let grown = |c: &Component| {
+            let reach = [c.bounds.min, c.bounds.max].map(|v| v.abs().to_array()).concat();
+            c.bounds.expanded(1e-6 * reach.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max))
+        };
+        Self { flat, bounds: flat.components.iter().map(grown).collect(), order: Vec::new() }
+    }
+
+    /// Follows the ray from `near` to the first surface, or to `far`.
+    pub fn march(&mut self, ray: &Ray, near: f64, far: f64) -> Result<March, TraceError> {
+        self.order.clear();
+        for (index, component) in self.flat.components.iter().enumerate() {
+            let local = Ray { origin: ray.origin - component.origin, ..*ray };
+            if let Some((entry, exit)) = self.bounds[index].ray_interval(&local) {
+                let (entry, exit) = (entry.max(near), exit.min(far));
+                if entry <= exit {
+                    self.order.push((entry, exit, index as u32));
+                }
+            }
+        }
+        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut nearest: Option<(f64, u32)> = None;
+        let mut margin = f64::INFINITY;
+        for &(entry, exit, index) in &self.order {
+            let limit = nearest.map_or(exit, |(t, _)| exit.min(t));
+            if entry > limit {
+                break;
+            }
+            let mut line = Line::new(self.flat, index, ray);
+            if let Some(t) = line.first_hit(entry, limit)? {
+                nearest = Some((t, index));
+            }
+            margin = margin.min(line.margin);
+        }
+        let Some((t, component)) = nearest else { return Ok(March { hit: None, margin }) };
+        let line = Line::new(self.flat, component, ray);
+        let leaf = surface(self.flat, line.component, line.at(t)).leaf;
+        Ok(March { hit: Some(Hit { t, component, leaf }), margin: margin.min(line.depth(t)) })
+    }
+}
+
+/// A ray through one component.
+struct Line<'a> {
+    flat: &'a FlatScene,
+    component: &'a Component,
+    index: u32,
+    origin: DVec3,
+    direction: DVec3,
+    evaluations: u32,
+    margin: f64,
+}
+
+impl<'a> Line<'a> {
+    fn new(flat: &'a FlatScene, index: u32, ray: &Ray) -> Self {
+        let component = &flat.components[index as usize];
+        let origin = ray.origin - component.origin;
+        Self { flat, component, index, origin, direction: ray.direction, evaluations: 0, margin: f64::INFINITY }
+    }
+
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    fn field(&self, t: f64) -> f64 {
+        field(self.flat, self.component, self.at(t))
+    }
+
+    /// The size of the numbers at `t`: what rounding is relative to.
+    fn reach(&self, t: f64) -> f64 {
+        self.origin.length() + t
+    }
+
+    fn first_hit(&mut self, entry: f64, exit: f64) -> Result<Option<f64>, TraceError> {
+        let (mut t, mut f) = (entry, self.field(entry));
+        if f < 0.0 {
+            return Ok(Some(t));
+        }
+        let mut creep = 0.0;
+        while t < exit {
+            self.evaluations += 1;
+            if self.evaluations > MAX_EVALUATIONS {
+                return Err(TraceError { component: self.index });
+            }
+            creep = next_creep(creep, f, self.reach(t));
+            let next = (t + f.max(creep)).min(exit);
+            let g = self.field(next);
+            if g < 0.0 {
+                return Ok(Some(self.bisect(t, next)));
+            }
+            // Where the field, seen from the eye, begins to widen again, the ray has passed something.
+            if g * t > f * next {
+                self.pass(f, t);
+            }
+            (t, f) = (next, g);
+        }
+        self.pass(f, t);
+        Ok(None)
+    }
+
+    fn pass(&mut self, f: f64, t: f64) {
+        self.margin = self.margin.min(f / t.max(f64::MIN_POSITIVE));
+    }
+
+    /// The sign change between `outside` and `inside`.
+    fn bisect(&self, mut outside: f64, mut inside: f64) -> f64 {
+        while inside - outside > PRECISION * self.reach(inside) {
+            let middle = 0.5 * (outside + inside);
+            if self.field(middle) < 0.0 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        inside
+    }
+
+    /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. A ray that stays
+    /// as shallow for thousands of steps will not go deep any more.
+    fn depth(&self, mut t: f64) -> f64 {
+        let (mut deepest, mut creep) = (0.0, 0.0);
+        for _ in 0..4_000 {
+            let f = -self.field(t);
+            deepest = f64::max(deepest, f / t.max(f64::MIN_POSITIVE));
+            if deepest > CLEAR || (creep > 0.0 && f < 0.0) {
+                break;
+            }
+            creep = next_creep(creep, f, self.reach(t)).max(TOUCHING * self.reach(t));
+            t += f.max(creep);
+        }
+        deepest
+    }
+}
+
+/// The least step for a field of `f`, after one of `creep`: none where the field is not close to 0.
+fn next_creep(creep: f64, f: f64, reach: f64) -> f64 {
+    if f < TOUCHING * reach { (2.0 * creep).clamp(TOUCHING * reach, LONGEST_CREEP * reach) } else { 0.0 }
+}

@@ -1,17 +1,20 @@
 //! The view of a scene when nobody chose one.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 
 use super::FlatScene;
 use crate::geometry::{Aabb, Camera};
-use crate::mesh::MeshLibrary;
+use crate::mesh::TriangleMesh;
 
 /// From the scene to the eye, for scenes without cameras: a three-quarter view from above.
 pub const THREE_QUARTER: DVec3 = DVec3::new(0.62, 0.46, 1.0);
 
 impl FlatScene {
-    /// The scene's first camera; without cameras one that sees all that has an end.
-    pub fn default_camera(&self, meshes: &mut MeshLibrary, aspect: f64) -> Camera {
+    /// The scene's first camera; without cameras one that sees all that has an end. `meshes` stands beside
+    /// [`FlatScene::meshes`].
+    pub fn default_camera(&self, meshes: &[Option<Arc<TriangleMesh>>], aspect: f64) -> Camera {
         match self.cameras.first() {
             Some(first) => first.camera,
             None => Camera::framing(&self.content(meshes), THREE_QUARTER, Camera::DEFAULT_FOV_Y, aspect),
@@ -19,13 +22,13 @@ impl FlatScene {
     }
 
     /// A box in the world around everything that has an end; around the origin where nothing has.
-    pub fn content(&self, meshes: &mut MeshLibrary) -> Aabb {
+    pub fn content(&self, meshes: &[Option<Arc<TriangleMesh>>]) -> Aabb {
         let mut all = Aabb::EMPTY;
         for component in self.components.iter().filter(|component| component.bounds.is_finite()) {
             all = all.union(&component.bounds.translated(component.origin));
         }
-        for mesh in &self.meshes {
-            if let Ok(triangles) = meshes.get(&mesh.path) {
+        for (mesh, triangles) in self.meshes.iter().zip(meshes) {
+            if let Some(triangles) = triangles {
                 all = all.union(&triangles.bounds.transformed(&mesh.world_from_local));
             }
         }
@@ -51,14 +54,14 @@ mod tests {
     #[test]
     fn content_holds_what_has_an_end_and_leaves_out_what_has_none() {
         let flat = scene(&[(ShapeKind::Sphere, DVec3::new(10.0, 0.0, 0.0)), (ShapeKind::Plane, DVec3::ZERO)]);
-        let content = flat.content(&mut MeshLibrary::new(None));
+        let content = flat.content(&[]);
         assert!(content.contains(DVec3::new(10.4, 0.0, 0.0)) && !content.contains(DVec3::ZERO), "{content:?}");
     }
 
     #[test]
     fn an_empty_scene_and_an_endless_one_still_have_a_view() {
         for flat in [scene(&[]), scene(&[(ShapeKind::Plane, DVec3::ZERO)])] {
-            let camera = flat.default_camera(&mut MeshLibrary::new(None), 1.5);
+            let camera = flat.default_camera(&[], 1.5);
             assert!(camera.position.is_finite() && camera.position.y > 0.0);
         }
     }

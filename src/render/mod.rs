@@ -26,5 +26,5 @@ pub mod uniforms;
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
-pub use renderer::{Frame, RenderError, Renderer};
+pub use renderer::{Frame, RenderError, Renderer, Slot};
 pub use targets::BACKGROUND;

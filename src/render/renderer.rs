@@ -47,6 +47,7 @@ pub struct Frame {
     next: usize,
     effort_done: f64,
     effort: f64,
+    slot: Slot,
     overlay: OverlaySettings,
     origins: Vec<crate::scene::NodeId>,
 }
@@ -61,6 +62,23 @@ impl Frame {
     pub fn is_done(&self) -> bool {
         self.next == self.pieces.len()
     }
+}
+
+/// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// The picture at full size.
+    Full,
+    /// The coarse picture.
+    Preview,
+}
+
+/// Targets of a picture with the bind groups that lead to them; remade when its size changes or a
+/// buffer or kernel is replaced.
+#[derive(Debug)]
+struct SlotState {
+    targets: Targets,
+    groups: Option<Groups>,
 }
 
 /// Draws flat scenes.
@@ -82,13 +100,11 @@ pub struct Renderer {
     lights: Mirror,
     work: Mirror,
     unfinished: Mirror,
-    targets: Option<Targets>,
-    groups: Option<Groups>,
+    slots: [Option<SlotState>; 2],
     pace: Pace,
     kernels_built: u32,
 }
 
-/// Bind groups; remade when a buffer or the targets are replaced.
 #[derive(Debug)]
 struct Groups {
     view: BindGroup,
@@ -124,8 +140,7 @@ impl Renderer {
             lights: storage("lights"),
             work: Mirror::uniform(device, "work"),
             unfinished: Mirror::read_back(device, "unfinished"),
-            targets: None,
-            groups: None,
+            slots: [None, None],
             pace: Pace::new(gpu.is_software()),
             kernels_built: 0,
             layouts,
@@ -166,7 +181,7 @@ impl Renderer {
         size: [u32; 2],
         progress: &mut dyn FnMut(f32) -> bool,
     ) -> Result<(Buffers, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(flat, meshes, camera, size, OverlaySettings::default())?;
+        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
         while !frame.is_done() {
             if !progress(frame.progress()) {
                 return Err(RenderError::Cancelled);
@@ -174,14 +189,14 @@ impl Renderer {
             self.advance(&mut frame, Duration::ZERO)?;
         }
         progress(1.0);
-        let targets = self.targets.as_ref().expect("begin makes the targets");
-        let buffers = read_buffers(&self.gpu, targets)?;
+        let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
         Ok((buffers, self.unfinished_rays(&frame, flat)?))
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
     pub fn begin(
         &mut self,
+        slot: Slot,
         flat: &FlatScene,
         meshes: &[Option<Arc<TriangleMesh>>],
         camera: &Camera,
@@ -193,19 +208,27 @@ impl Renderer {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
         self.learn_features(flat)?;
-        if self.targets.as_ref().is_none_or(|t| t.size != size) {
-            self.targets = Some(Targets::new(&self.gpu.device, size));
-            self.groups = None;
+        if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
+            let targets = Targets::new(&self.gpu.device, size);
+            self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
         let pieces = plan(flat, camera, size, &self.pace);
-        self.upload(flat, camera, size, &pieces);
+        if self.upload(flat, camera, size, &pieces) {
+            self.forget_groups();
+        }
+        if self.slot(slot).groups.is_none() {
+            let groups = self.bind_all(&self.slot(slot).targets);
+            if let Some(state) = &mut self.slots[slot as usize] {
+                state.groups = Some(groups);
+            }
+        }
         self.mesh.prepare(&self.gpu.device, &self.gpu.queue, flat, meshes, camera.position);
         if !overlay.is_empty() {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, camera.position);
         }
         let effort = pieces.iter().map(|p| p.effort).sum();
         let origins = flat.components.iter().map(|c| flat.ids[c.first as usize]).collect();
-        Ok(Frame { pieces, next: 0, effort_done: 0.0, effort, overlay, origins })
+        Ok(Frame { pieces, next: 0, effort_done: 0.0, effort, slot, overlay, origins })
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
@@ -233,14 +256,10 @@ impl Renderer {
         }
     }
 
-    /// The picture: valid once the frame is done, until the next [`Renderer::begin`] of another size.
-    pub fn picture(&self) -> Option<&wgpu::TextureView> {
-        self.targets.as_ref().map(|t| &t.color.view)
-    }
-
-    /// The picture as a texture, see [`Renderer::picture`].
-    pub fn picture_texture(&self) -> Option<&wgpu::Texture> {
-        self.targets.as_ref().map(|t| &t.color.texture)
+    /// The picture in a slot: complete once its frame is done, and another texture after a
+    /// [`Renderer::begin`] of another size.
+    pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
+        self.slots[slot as usize].as_ref().map(|s| (&s.targets.color.view, s.targets.size))
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.
@@ -264,12 +283,23 @@ impl Renderer {
             self.gpu.check()?;
             self.features = features;
             self.kernels_built += 1;
-            self.groups = None;
+            self.forget_groups();
         }
         Ok(())
     }
 
-    fn upload(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2], pieces: &[Piece]) {
+    fn slot(&self, slot: Slot) -> &SlotState {
+        self.slots[slot as usize].as_ref().expect("begin makes the targets")
+    }
+
+    fn forget_groups(&mut self) {
+        for state in self.slots.iter_mut().flatten() {
+            state.groups = None;
+        }
+    }
+
+    /// Returns whether a buffer was replaced.
+    fn upload(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2], pieces: &[Piece]) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
         let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, camera.position)).collect();
         let lights = gpu_lights(flat, camera);
@@ -288,14 +318,11 @@ impl Renderer {
             self.work.set(device, queue, &work),
             self.unfinished.clear(device, queue, flat.components.len() * 4),
         ];
-        if uploads.contains(&true) || self.groups.is_none() {
-            self.groups = Some(self.bind_all());
-        }
+        uploads.contains(&true)
     }
 
-    fn bind_all(&self) -> Groups {
+    fn bind_all(&self, targets: &Targets) -> Groups {
         let device = &self.gpu.device;
-        let targets = self.targets.as_ref().expect("begin makes the targets first");
         let scene = [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::binding);
         let work = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: self.work.buffer(),
@@ -314,8 +341,8 @@ impl Renderer {
     }
 
     fn submit(&self, frame: &Frame, range: std::ops::Range<usize>) {
-        let groups = self.groups.as_ref().expect("begin binds");
-        let targets = self.targets.as_ref().expect("begin makes the targets");
+        let SlotState { targets, groups } = self.slot(frame.slot);
+        let groups = groups.as_ref().expect("begin binds");
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
         let mut at = range.start;

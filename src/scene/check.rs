@@ -126,14 +126,13 @@ fn name(name: &str) -> Result<(), Fault> {
 fn transform(transform: &Transform) -> Result<(), Fault> {
     vector("translation", transform.translation.to_array(), &POSITION)?;
     let length = transform.rotation.length();
-    // Written so that NaN fails as well.
-    if !((length - 1.0).abs() <= UNIT_TOLERANCE) {
+    if !length.is_finite() || (length - 1.0).abs() > UNIT_TOLERANCE {
         return Err(Fault::new("rotation", format!("must be a quaternion of length 1, not of length {length}")));
     }
     for (i, factor) in transform.scale.to_array().into_iter().enumerate() {
         if !SCALE.accept(factor.abs()) {
-            let [least, most] = SCALE.hard;
-            let reason = format!("must be {least} to {most} in magnitude, not {factor}");
+            let [least, most] = SCALE.hard.map(plain);
+            let reason = format!("must be {least} to {most} in magnitude, not {}", plain(factor));
             return Err(Fault::new(format!("scale[{i}]"), reason));
         }
     }
@@ -207,7 +206,14 @@ fn number(field: &str, value: f64, limits: &Limits) -> Result<(), Fault> {
     }
     let ([least, most], unit) = (limits.hard, limits.unit);
     let space = if unit.is_empty() || unit == "°" { "" } else { " " };
+    let (least, most, value) = (plain(least), plain(most), plain(value));
     Err(Fault::new(field, format!("must be {least} to {most}{space}{unit}, not {value}")))
+}
+
+/// A number for a message: with an exponent where it would have many zeros.
+fn plain(value: f64) -> String {
+    let magnitude = value.abs();
+    if value == 0.0 || (1e-4..1e9).contains(&magnitude) { value.to_string() } else { format!("{value:e}") }
 }
 
 fn vector(field: &str, values: [f64; 3], limits: &Limits) -> Result<(), Fault> {

@@ -3,6 +3,7 @@
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
 pub mod check;
+mod error;
 pub mod file;
 mod light;
 pub mod limits;
@@ -12,6 +13,7 @@ mod operator;
 mod shape;
 mod table;
 
+pub use error::SceneError;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId};
@@ -19,4 +21,4 @@ pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, Operator};
 pub(crate) use shape::for_each_shape;
 pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
-pub use table::{Scene, SceneError};
+pub use table::Scene;

@@ -240,3 +240,74 @@ fn plain(error: &io::Error) -> String {
         None => text,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEPS: [Step; 7] =
+        [Step::Look, Step::Create, Step::Write, Step::Sync, Step::Backup, Step::Rename, Step::SyncFolder];
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn whichever_step_fails_the_file_is_whole_and_nothing_is_left_over() {
+        for broken in STEPS {
+            let folder = tempfile::tempdir().unwrap();
+            let path = folder.path().join("scene.json");
+            fs::write(&path, "old").unwrap();
+            let mut seen = Vec::new();
+            let result = replace(&path, b"new", &mut |step| {
+                seen.push(step);
+                if step == broken { Err(io::ErrorKind::StorageFull.into()) } else { Ok(()) }
+            });
+            let (step, error) = result.unwrap_err();
+            assert_eq!((step, error.kind()), (broken, io::ErrorKind::StorageFull));
+            assert_eq!(seen, STEPS[..seen.len()], "the steps come in order");
+            // Only after the renaming does the new file stand there.
+            let expected = if broken == Step::SyncFolder { "new" } else { "old" };
+            assert_eq!(fs::read_to_string(&path).unwrap(), expected, "{broken:?}");
+            let backed_up = matches!(broken, Step::Rename | Step::SyncFolder);
+            let expected: &[&str] = if backed_up { &["scene.json", "scene.json~"] } else { &["scene.json"] };
+            assert_eq!(names(folder.path()), expected, "{broken:?}");
+        }
+    }
+
+    #[test]
+    fn all_steps_are_taken_and_the_old_file_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.json");
+        for (text, backup) in [("one", None), ("two", Some("one")), ("three", Some("two"))] {
+            let mut seen = Vec::new();
+            replace(&path, text.as_bytes(), &mut |step| {
+                seen.push(step);
+                Ok(())
+            })
+            .unwrap();
+            assert_eq!(seen.contains(&Step::Backup), backup.is_some());
+            assert_eq!(fs::read_to_string(&path).unwrap(), text);
+            assert_eq!(fs::read_to_string(folder.path().join("scene.json~")).ok().as_deref(), backup);
+        }
+        assert_eq!(names(folder.path()), ["scene.json", "scene.json~"]);
+    }
+
+    #[test]
+    fn only_leftovers_of_processes_that_are_gone_are_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.json");
+        let alive = format!(".scene.json.tmp-{}-7", std::process::id());
+        // Process ids end far below this.
+        for name in [".scene.json.tmp-4000000000-0", ".other.json.tmp-4000000000-0", ".scene.json.tmp-x", &alive] {
+            fs::write(folder.path().join(name), "half").unwrap();
+        }
+        remove_leftovers(&path);
+        let mut kept = vec![".other.json.tmp-4000000000-0".to_owned(), alive, ".scene.json.tmp-x".to_owned()];
+        kept.sort();
+        assert_eq!(names(folder.path()), kept);
+    }
+}

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use crate::scene::NodeId;
 use crate::scene::check::Fault;
 
 /// Why a file could not be read or written: which file, where in it, and the reason.
@@ -27,8 +28,8 @@ impl FileError {
     }
 
     /// The same about a node.
-    pub(super) fn of_node(mut self, name: &str, id: impl fmt::Display) -> Self {
-        self.node = Some(format!("{name} {id}").trim_start().to_owned());
+    pub(super) fn of_node(mut self, name: &str, id: NodeId) -> Self {
+        self.node = Some(format!("{} {id}", clipped(name, 60)).trim_start().to_owned());
         self
     }
 
@@ -42,6 +43,16 @@ impl FileError {
     pub(super) fn from_fault(file: &Path, outer: &str, fault: Fault) -> Self {
         Self::new(file, fault.reason).at(format!("{outer}.{}", fault.field))
     }
+}
+
+/// Text from a file, fit for a message: not too long, and without control characters.
+pub(super) fn clipped(text: &str, most: usize) -> String {
+    let mut out: String =
+        text.chars().take(most).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect();
+    if out.len() < text.len() && text.chars().nth(most).is_some() {
+        out.push('…');
+    }
+    out
 }
 
 impl fmt::Display for FileError {

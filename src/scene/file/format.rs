@@ -21,7 +21,7 @@ pub const VERSION: u64 = 1;
 
 /// A scene of Isolith. Lengths are metres, angles degrees, colours linear; +Y is up.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a scene in braces")]
 pub(super) struct SceneV1 {
     /// Version of the format.
     pub isolith: u64,
@@ -41,7 +41,7 @@ pub(super) struct SceneV1 {
 
 /// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` says what it is.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a node in braces")]
 pub(super) struct NodeV1 {
     /// Identity; never changes.
     pub id: NodeId,
@@ -82,7 +82,7 @@ pub(super) struct NodeV1 {
 
 /// Scale first, then rotation, then translation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a transform in braces")]
 pub(super) struct TransformV1 {
     /// Where the origin goes.
     #[serde(default, skip_serializing_if = "is_origin")]

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use serde::de::{Deserializer, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use serde_path_to_error::{Path as FieldPath, Segment};
 
-use super::FileError;
+use super::error::{FileError, clipped};
 use crate::scene::NodeId;
 
 /// Line and column, counted from 1, of what follows these bytes.
@@ -22,22 +22,51 @@ pub(super) fn json_error(text: &str, file: &Path, path: Option<&FieldPath>, erro
     let whole = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
     let reason = whole.strip_suffix(&place).unwrap_or(&whole);
+    let plain = clipped(reason, 400)
+        .replace("expected f64", "expected a number")
+        .replace("expected u64", "expected a whole number from 0")
+        .replace("expected struct ", "expected in braces: ")
+        .replace("expected internally tagged enum ", "expected in braces: ");
     let mut out = if error.line() > 0 {
-        FileError::new(file, format!("line {}, column {}: {reason}", error.line(), error.column()))
+        FileError::new(file, format!("line {}, column {}: {plain}", error.line(), error.column()))
     } else {
-        FileError::new(file, reason)
+        FileError::new(file, plain)
     };
-    let Some(path) = path.filter(|p| p.iter().next().is_some()) else { return out };
-    let shown = path.to_string();
-    if shown != "." {
-        out = out.at(shown);
+    let mut field = path.map(shown).unwrap_or_default();
+    if let Some((path, index)) = path.and_then(|p| Some((p, node_index(p)?))) {
+        let node = node_at(text, index);
+        let name = node.get("name").and_then(Value::as_str).unwrap_or_default();
+        match node.get("id").and_then(Value::as_u64) {
+            Some(id) => out = out.of_node(name, NodeId(id)),
+            None if !name.is_empty() => out.node = Some(clipped(name, 60)),
+            None => {}
+        }
+        field += &offender(&node, path, reason);
     }
-    if let Some(node) = node_index(path).and_then(|i| node_at(text, i)) {
-        if let Some(id) = node.id {
-            out = out.of_node(&node.name.chars().take(60).collect::<String>(), NodeId(id));
+    if let Some(name) = named(reason).filter(|name| field.rsplit('.').next() != Some(name)) {
+        field = format!("{field}.{}", clipped(name, 60)).trim_start_matches('.').to_owned();
+    }
+    if field.is_empty() { out } else { out.at(field) }
+}
+
+/// A path for messages, as far as it is known.
+fn shown(path: &FieldPath) -> String {
+    let mut out = String::new();
+    for segment in path.iter() {
+        match segment {
+            Segment::Seq { index } => out += &format!("[{index}]"),
+            Segment::Map { key } if out.is_empty() => out += &clipped(key, 60),
+            Segment::Map { key } => out += &format!(".{}", clipped(key, 60)),
+            _ => break,
         }
     }
     out
+}
+
+/// The field that a message of serde names itself.
+fn named(reason: &str) -> Option<&str> {
+    let heads = ["missing field `", "unknown field `", "duplicate field `"];
+    heads.iter().find_map(|head| reason.strip_prefix(head)?.split('`').next())
 }
 
 fn node_index(path: &FieldPath) -> Option<usize> {
@@ -48,24 +77,64 @@ fn node_index(path: &FieldPath) -> Option<usize> {
     }
 }
 
-/// What could be read of a node before the text went wrong.
-#[derive(Default)]
-struct Found {
-    id: Option<u64>,
-    name: String,
+/// The rest of the way to a value of the wrong type: an enum told apart by a `type` inside it is read as a
+/// whole first, and the path ends there. Empty where it cannot be told.
+fn offender(node: &Value, path: &FieldPath, reason: &str) -> String {
+    let mut at = node;
+    for segment in path.iter().skip(2) {
+        let next = match segment {
+            Segment::Map { key } => at.get(key.as_str()),
+            Segment::Seq { index } => at.get(*index),
+            _ => None,
+        };
+        let Some(next) = next else { return String::new() };
+        at = next;
+    }
+    // Depth is bounded by the JSON reader; the last entry is next, so the first in the file is found first.
+    let mut open = vec![(String::new(), at)];
+    while let Some((way, value)) = open.pop() {
+        if !way.is_empty() && is_blamed(value, reason) {
+            return way;
+        }
+        match value {
+            Value::Array(list) => {
+                open.extend(list.iter().enumerate().rev().map(|(i, v)| (format!("{way}[{i}]"), v)));
+            }
+            Value::Object(map) => {
+                open.extend(map.iter().rev().filter(|(k, _)| *k != "type").map(|(k, v)| (format!("{way}.{k}"), v)));
+            }
+            _ => {}
+        }
+    }
+    String::new()
 }
 
-/// Name and id of the node at `index`, read without keeping anything else.
-fn node_at(text: &str, index: usize) -> Option<Found> {
-    let mut found = Found::default();
-    // An error is expected here: the text is broken, or we stop early.
+/// Whether a message of serde is about this value.
+fn is_blamed(value: &Value, reason: &str) -> bool {
+    let found = match value {
+        Value::Null => "null".to_owned(),
+        Value::Bool(v) => format!("boolean `{v}`"),
+        Value::Number(v) if v.is_f64() => return false,
+        Value::Number(v) => format!("integer `{v}`"),
+        Value::String(v) => format!("string {v:?}"),
+        Value::Array(v) if reason.starts_with(&format!("invalid length {}, ", v.len())) => return true,
+        Value::Array(_) => "sequence".to_owned(),
+        Value::Object(_) => "map".to_owned(),
+    };
+    reason.strip_prefix("invalid type: ").and_then(|r| r.strip_prefix(&found)).is_some_and(|r| r.starts_with(", "))
+}
+
+/// What can be read of the node at `index` before the text goes wrong. Nothing else is kept.
+fn node_at(text: &str, index: usize) -> Value {
+    let mut found = Map::new();
+    // An error is expected here: the text is broken, or reading stops early.
     let _ = serde_json::Deserializer::from_str(text).deserialize_map(Top { index, found: &mut found });
-    Some(found)
+    Value::Object(found)
 }
 
 struct Top<'a> {
     index: usize,
-    found: &'a mut Found,
+    found: &'a mut Map<String, Value>,
 }
 
 impl<'de> Visitor<'de> for Top<'_> {
@@ -88,7 +157,7 @@ impl<'de> Visitor<'de> for Top<'_> {
 
 struct List<'a> {
     index: usize,
-    found: &'a mut Found,
+    found: &'a mut Map<String, Value>,
 }
 
 impl<'de> serde::de::DeserializeSeed<'de> for List<'_> {
@@ -116,7 +185,7 @@ impl<'de> Visitor<'de> for List<'_> {
 }
 
 struct Entry<'a> {
-    found: &'a mut Found,
+    found: &'a mut Map<String, Value>,
 }
 
 impl<'de> serde::de::DeserializeSeed<'de> for Entry<'_> {
@@ -136,11 +205,8 @@ impl<'de> Visitor<'de> for Entry<'_> {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
         while let Some(key) = map.next_key::<String>()? {
-            match key.as_str() {
-                "id" => self.found.id = map.next_value::<Value>()?.as_u64(),
-                "name" => self.found.name = map.next_value::<Value>()?.as_str().unwrap_or_default().to_owned(),
-                _ => drop(map.next_value::<IgnoredAny>()?),
-            }
+            let value = map.next_value()?;
+            self.found.insert(key, value);
         }
         Ok(())
     }

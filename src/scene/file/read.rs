@@ -9,7 +9,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::FileError;
+use super::error::{FileError, clipped};
 use super::format::{NodeV1, SceneV1, VERSION};
 use super::place;
 use crate::scene::limits::{MAX_DEPTH, MAX_FILE_BYTES, MAX_ID};
@@ -42,11 +42,14 @@ fn version(text: &str, file: &Path) -> Result<u64, FileError> {
     struct Header {
         isolith: Option<Value>,
     }
-    let header: Header = serde_json::from_str(text).map_err(|e| place::json_error(text, file, None, &e))?;
+    let header: Header = serde_json::from_str(text).map_err(|e| {
+        // Reading on as a scene tells the place better.
+        typed::<SceneV1>(text, file).err().unwrap_or_else(|| place::json_error(text, file, None, &e))
+    })?;
     let Some(version) = header.isolith else {
         return Err(FileError::new(file, "is missing: this is not a scene of Isolith").at("isolith"));
     };
-    let shown = || version.to_string().chars().take(40).collect::<String>();
+    let shown = || clipped(&version.to_string(), 40);
     version
         .as_u64()
         .ok_or_else(|| FileError::new(file, format!("must be the number of a version, not {}", shown())).at("isolith"))
@@ -82,7 +85,7 @@ fn scene_from_v1(scene: SceneV1, file: &Path) -> Result<Scene, FileError> {
 
 /// A node with its own values checked.
 fn checked(node: NodeV1, i: usize, file: &Path) -> Result<Node, FileError> {
-    let (name, id) = (shown(&node.name), node.id);
+    let (name, id) = (node.name.clone(), node.id);
     let kinds = "must hold exactly one of group, object, mesh, light, camera";
     let node = node
         .into_node()
@@ -116,7 +119,7 @@ fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
     let mut holds: HashMap<NodeId, bool> = HashMap::with_capacity(scene.nodes.len());
     let fail = |i: usize, field: &str, reason: String| {
         let node = &scene.nodes[i];
-        Err(FileError::new(file, reason).of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].{field}")))
+        Err(FileError::new(file, reason).of_node(&node.name, node.id).at(format!("nodes[{i}].{field}")))
     };
     for (i, node) in scene.nodes.iter().enumerate() {
         if node.id.0 > MAX_ID {
@@ -158,7 +161,7 @@ fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
         let node = &nodes[i];
         if depth > MAX_DEPTH {
             let error = FileError::new(file, format!("stands deeper than {MAX_DEPTH} groups"));
-            return Err(error.of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].parent")));
+            return Err(error.of_node(&node.name, node.id).at(format!("nodes[{i}].parent")));
         }
         reached[i] = true;
         order.push(i);
@@ -170,7 +173,7 @@ fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
             let i = on_cycle(nodes, i);
             let node = &nodes[i];
             let error = FileError::new(file, "the parents lead in a circle");
-            Err(error.of_node(&shown(&node.name), node.id).at(format!("nodes[{i}].parent")))
+            Err(error.of_node(&node.name, node.id).at(format!("nodes[{i}].parent")))
         }
     }
 }
@@ -187,9 +190,4 @@ fn on_cycle(nodes: &[NodeV1], start: usize) -> usize {
         }
     }
     at
-}
-
-/// A name for messages: never longer than a name may be.
-fn shown(name: &str) -> String {
-    name.chars().take(60).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }

@@ -1,0 +1,43 @@
+//! The meshes that a scene names, loaded.
+
+use std::sync::Arc;
+
+use super::{FlatScene, Warning};
+use crate::mesh::{MeshLibrary, TriangleMesh};
+
+impl FlatScene {
+    /// The meshes beside [`FlatScene::meshes`], and a warning for each that cannot be had: the scene is
+    /// drawn without it.
+    pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
+        let mut warnings = Vec::new();
+        let load = |mesh: &super::FlatMesh| match library.get(&mesh.path) {
+            Ok(triangles) => Some(triangles),
+            Err(error) => {
+                let reason = format!("the mesh is not drawn: {error}");
+                warnings.push(Warning { node: mesh.id, name: mesh.path.clone(), reason });
+                None
+            }
+        };
+        let meshes = self.meshes.iter().map(load).collect();
+        (meshes, warnings)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::flat::flatten;
+    use crate::mesh::MeshLibrary;
+    use crate::scene::{MeshNode, Node, NodeKind, Scene};
+
+    #[test]
+    fn a_mesh_that_is_missing_is_a_warning_about_its_node() {
+        let mut scene = Scene::new();
+        let node = NodeKind::Mesh(MeshNode { path: "no-such.glb".into(), material: None });
+        let id = scene.insert(None, 0, Node::new("statue", node)).unwrap();
+        let flat = flatten(&scene, 0.0).unwrap();
+        let (meshes, warnings) = flat.load_meshes(&mut MeshLibrary::new(Some(std::env::temp_dir())));
+        assert_eq!((meshes.len(), meshes[0].is_none()), (1, true));
+        assert_eq!((warnings.len(), warnings[0].node), (1, id));
+        assert!(warnings[0].reason.contains("no-such.glb"), "{}", warnings[0].reason);
+    }
+}

@@ -1,0 +1,148 @@
+//! The whole picture as it should be: every pixel traced by the twin.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+use super::mesh_rays::{Meshes, trace_meshes};
+use super::shade::{GpuLight, gpu_lights, shade_background, shade_decode, shade_encode, shade_surface};
+use super::trace::{TraceError, Tracer};
+use super::twin::{SurfaceMaterial, surface};
+use super::{BACKGROUND_DEPTH, Buffers, FlatScene, MESH_BIT, NO_LEAF};
+use crate::geometry::{Camera, Ray};
+use crate::mesh::{MeshHit, Texture, TriangleMesh};
+
+/// A picture, and how sure each pixel of it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// The picture.
+    pub buffers: Buffers,
+    /// Per pixel, in pixel footprints: how far its ray is from hitting something else, see
+    /// [`super::trace::March::margin`]. A renderer in f32 may differ where this is about 0.
+    pub margin: Vec<f32>,
+}
+
+/// Renders the scene through the centres of the pixels. `progress` hears the share that is done, from
+/// any thread.
+pub fn truth(
+    flat: &FlatScene,
+    meshes: &Meshes,
+    camera: &Camera,
+    [width, height]: [u32; 2],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<Truth, TraceError> {
+    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height] };
+    let tracer = Tracer::new(flat);
+    let done = AtomicU32::new(0);
+    let rows: Vec<Vec<Pixel>> = (0..height)
+        .into_par_iter()
+        .map_with(tracer, |tracer, y| {
+            let row = (0..width).map(|x| view.pixel(tracer, x, y)).collect();
+            progress(f64::from(done.fetch_add(1, Ordering::Relaxed) + 1) / f64::from(height));
+            row
+        })
+        .collect::<Result<_, _>>()?;
+    let mut buffers = Buffers::empty(width, height);
+    let mut margin = Vec::with_capacity(buffers.depth.len());
+    for (i, pixel) in rows.into_iter().flatten().enumerate() {
+        buffers.depth[i] = pixel.depth;
+        buffers.leaf[i] = pixel.leaf;
+        buffers.normal[i] = pixel.normal.as_vec3().to_array();
+        let [r, g, b] = (shade_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
+        buffers.color[i] = [r, g, b, 255];
+        margin.push(pixel.margin);
+    }
+    Ok(Truth { buffers, margin })
+}
+
+struct View<'a> {
+    flat: &'a FlatScene,
+    meshes: &'a Meshes,
+    camera: &'a Camera,
+    lights: Vec<GpuLight>,
+    size: [u32; 2],
+}
+
+struct Pixel {
+    depth: f32,
+    leaf: u32,
+    normal: DVec3,
+    color: DVec3,
+    margin: f32,
+}
+
+impl View<'_> {
+    fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
+        let size = DVec2::new(self.size[0].into(), self.size[1].into());
+        let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+        let mesh = trace_meshes(self.flat, self.meshes, &ray, self.camera.near, self.camera.far);
+        let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
+        let march = tracer.march(&ray, self.camera.near, limit)?;
+        let margin = (march.margin / self.camera.footprint(size.y)) as f32;
+        let (t, leaf, normal, material) = if let Some(hit) = march.hit {
+            let component = &self.flat.components[hit.component as usize];
+            let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
+            (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material)
+        } else if let Some((index, hit)) = mesh {
+            let (normal, material) = self.mesh_surface(index, &hit);
+            (hit.t, MESH_BIT | index as u32, normal, material)
+        } else {
+            let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
+            let color = shade_background(ray.direction.y, sky, horizon);
+            return Ok(Pixel { depth: BACKGROUND_DEPTH, leaf: NO_LEAF, normal: DVec3::ZERO, color, margin });
+        };
+        let color = self.shade(&ray, t, normal, &material);
+        Ok(Pixel { depth: t as f32, leaf, normal, color, margin })
+    }
+
+    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
+        let ambient = DVec3::from(self.flat.environment.ambient);
+        shade_surface(material, ray.direction * t, normal, -ray.direction, ambient, &self.lights)
+    }
+
+    fn mesh_surface(&self, index: usize, hit: &MeshHit) -> (DVec3, SurfaceMaterial) {
+        let placed = &self.flat.meshes[index];
+        let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
+        let normal = (normal_from_local * hit.normal).normalize();
+        let material = match (placed.material, &self.meshes[index]) {
+            (Some(material), _) => (&self.flat.materials[material as usize]).into(),
+            (None, Some(mesh)) => SurfaceMaterial { albedo: albedo(mesh, hit), ..FILE_MATERIAL },
+            (None, None) => FILE_MATERIAL,
+        };
+        (normal, material)
+    }
+}
+
+/// What a mesh wears that keeps its file's colours.
+pub const FILE_MATERIAL: SurfaceMaterial =
+    SurfaceMaterial { albedo: DVec3::ONE, specular: 0.0, emission: DVec3::ZERO, shininess: 32.0 };
+
+/// The mesh's own colour: that of the vertices times the texture.
+fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
+    let first = hit.triangle * 3;
+    let corners = [0, 1, 2].map(|i| mesh.indices[first as usize + i] as usize);
+    let mix = |corner: &dyn Fn(usize) -> DVec3| (0..3).map(|i| corner(corners[i]) * hit.weights[i]).sum::<DVec3>();
+    let color = mix(&|v| DVec3::from(mesh.colors[v].map(f64::from)));
+    let uv = mix(&|v| DVec3::new(mesh.uvs[v][0].into(), mesh.uvs[v][1].into(), 0.0));
+    let part = mesh.parts.iter().find(|part| part.indices.contains(&first));
+    match part.and_then(|part| part.base_color_texture) {
+        Some(texture) => color * sample(&mesh.textures[texture], uv.x, uv.y),
+        None => color,
+    }
+}
+
+/// The texture at (u, v), repeated, between the four nearest pixels; linear.
+fn sample(texture: &Texture, u: f64, v: f64) -> DVec3 {
+    let size = [texture.width, texture.height].map(i64::from);
+    let at = DVec2::new(u * size[0] as f64 - 0.5, v * size[1] as f64 - 0.5);
+    let (corner, part) = (at.floor(), at - at.floor());
+    let texel = |dx: i64, dy: i64| {
+        let x = (corner.x as i64 + dx).rem_euclid(size[0]);
+        let y = (corner.y as i64 + dy).rem_euclid(size[1]);
+        let start = 4 * (y * size[0] + x) as usize;
+        let [r, g, b] = [0, 1, 2].map(|i| f64::from(texture.rgba[start + i]) / 255.0);
+        shade_decode(DVec3::new(r, g, b))
+    };
+    texel(0, 0).lerp(texel(1, 0), part.x).lerp(texel(0, 1).lerp(texel(1, 1), part.x), part.y)
+}

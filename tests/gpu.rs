@@ -1,0 +1,72 @@
+//! One graphics device for all tests, because each one made costs time, and pictures of scenes.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
+
+use isolith::flat::{Buffers, FlatScene, flatten};
+use isolith::geometry::Camera;
+use isolith::mesh::{MeshLibrary, TriangleMesh};
+use isolith::render::{Gpu, Renderer};
+use isolith::scene::{Scene, file};
+
+/// The device and what draws with it.
+pub struct Shared {
+    pub gpu: Gpu,
+    pub renderer: Renderer,
+}
+
+/// The shared device. Fails the test where no driver answers.
+pub fn shared() -> MutexGuard<'static, Shared> {
+    static SHARED: LazyLock<Mutex<Shared>> = LazyLock::new(|| {
+        let gpu = Gpu::headless().unwrap_or_else(|error| {
+            panic!("no graphics driver answers ({error}); on Debian and Ubuntu: apt-get install mesa-vulkan-drivers libvulkan1")
+        });
+        let renderer = Renderer::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
+        Mutex::new(Shared { gpu, renderer })
+    });
+    // A test that failed while it held the device does not make the others fail.
+    SHARED.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// A scene, ready to be drawn.
+pub struct Subject {
+    pub name: String,
+    pub flat: FlatScene,
+    pub meshes: Vec<Option<Arc<TriangleMesh>>>,
+    pub camera: Camera,
+}
+
+impl Subject {
+    /// A scene that stands in no file, seen as it is by itself, in a square picture.
+    pub fn new(name: &str, scene: &Scene, folder: Option<PathBuf>) -> Self {
+        let flat = flatten(scene, 0.0).unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        let (meshes, missing) = flat.load_meshes(&mut MeshLibrary::new(folder));
+        assert!(missing.is_empty(), "{name}: {missing:?}");
+        let camera = flat.default_camera(&meshes, 1.0);
+        Self { name: name.into(), flat, meshes, camera }
+    }
+
+    /// Draws it on the shared device.
+    pub fn render(&self, side: u32) -> Buffers {
+        let renderer = &mut shared().renderer;
+        let picture = renderer.render(&self.flat, &self.meshes, &self.camera, [side, side], &mut |_| true);
+        let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", self.name));
+        assert!(unfinished.is_empty(), "{}: {unfinished:?}", self.name);
+        buffers
+    }
+}
+
+/// Every scene of the folder `scenes`, in the order of their names.
+pub fn scenes() -> impl Iterator<Item = Subject> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let entries = std::fs::read_dir(&folder).expect("the folder `scenes` can be read");
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry can be read").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "json"));
+    paths.sort();
+    assert!(!paths.is_empty(), "there is no scene in {}", folder.display());
+    paths.into_iter().map(move |path| {
+        let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
+        let scene = file::load(&path).unwrap_or_else(|error| panic!("{error}"));
+        Subject::new(&name, &scene, Some(folder.clone()))
+    })
+}

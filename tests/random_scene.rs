@@ -1,0 +1,193 @@
+//! Random scenes, the same for the same seed on every machine.
+
+use glam::{DQuat, DVec3};
+use isolith::geometry::Transform;
+use isolith::scene::{
+    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Limits, Material, MaterialId,
+    MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape, ShapeKind, limits,
+};
+
+/// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
+pub struct Random(u64);
+
+impl Random {
+    /// The sequence of this seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0xd134_2543_de82_ef95))
+    }
+
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Less than `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.bits() % n as u64) as usize
+    }
+
+    /// From 0 to 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// True once in `n` times.
+    pub fn once_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    /// One of these.
+    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+        from[self.below(from.len())]
+    }
+
+    /// A number within limits: ends, zeros, tiny and round ones often.
+    pub fn number(&mut self, limits: &Limits) -> f64 {
+        let [least, most] = limits.hard;
+        let value = match self.below(8) {
+            0 => self.pick(&[least, most, 0.0, -0.0, 1.0, 0.1, f64::MIN_POSITIVE, 5e-324, 1.0 / 3.0]),
+            1 => (self.unit() * 10.0).round(),
+            2 => least + (most - least) * self.unit(),
+            3 => self.unit() * 10f64.powi(self.below(20) as i32 - 12),
+            _ => limits.soft[0] + (limits.soft[1] - limits.soft[0]) * self.unit(),
+        };
+        value.clamp(least, most)
+    }
+
+    fn numbers(&mut self, limits: &Limits) -> [f64; 3] {
+        [self.number(limits), self.number(limits), self.number(limits)]
+    }
+
+    /// A name, now and then a hard one.
+    pub fn name(&mut self) -> String {
+        let parts = ["Pawn", "Häuschen", "球", "a \"b\" \\ c", "🙂", "", " ", "Torus 2", "x\u{202e}y", "{}[],:", "é́"];
+        (0..=self.below(3)).map(|_| self.pick(&parts)).collect()
+    }
+
+    /// A transform within the limits.
+    pub fn transform(&mut self) -> Transform {
+        let mut transform = Transform::IDENTITY;
+        if !self.once_in(3) {
+            transform.translation = self.numbers(&limits::POSITION).into();
+        }
+        if self.once_in(2) {
+            let axis = DVec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() + 0.01).normalize();
+            transform.rotation = DQuat::from_axis_angle(axis, self.unit() * 7.0);
+        }
+        if self.once_in(2) {
+            let factor = |r: &mut Self| (0.1 + r.number(&limits::UNIT)) * r.pick(&[1.0, -1.0, 1e5, 1e-5]);
+            transform.scale = DVec3::new(factor(self), factor(self), factor(self));
+        }
+        transform
+    }
+
+    /// A shape within its limits.
+    pub fn shape(&mut self) -> Shape {
+        let kind = self.pick(ShapeKind::ALL);
+        let mut shape = kind.default_shape();
+        for (i, param) in kind.params().iter().enumerate() {
+            let scalar = ParamValue::Scalar(self.number(&param.limits));
+            if !shape.set_value(i, scalar) {
+                assert!(shape.set_value(i, ParamValue::Vector(self.numbers(&param.limits).into())));
+            }
+        }
+        shape
+    }
+
+    /// A material within its limits.
+    pub fn material(&mut self, id: u64) -> Material {
+        let mut material = Material::new(MaterialId(id), self.name(), self.numbers(&limits::UNIT));
+        material.specular = self.number(&limits::UNIT);
+        material.shininess = self.number(&limits::SHININESS);
+        material.emission = self.numbers(&limits::INTENSITY);
+        material
+    }
+
+    /// Surroundings within their limits.
+    pub fn environment(&mut self) -> Environment {
+        let mut colour = || self.numbers(&limits::INTENSITY);
+        Environment { sky: colour(), horizon: colour(), ambient: colour() }
+    }
+
+    fn light(&mut self) -> Light {
+        let attenuation = Attenuation {
+            constant: 0.5 + self.number(&limits::UNIT),
+            linear: self.number(&limits::ATTENUATION),
+            quadratic: self.number(&limits::ATTENUATION),
+            range: self.number(&limits::RANGE),
+        };
+        let (a, b) = (self.number(&limits::CONE), self.number(&limits::CONE));
+        let light = match self.below(3) {
+            0 => LightKind::Directional {},
+            1 => LightKind::Point { attenuation },
+            _ => LightKind::Spot { attenuation, inner: a.min(b), outer: a.max(b) },
+        };
+        Light { color: self.numbers(&limits::INTENSITY), intensity: self.number(&limits::INTENSITY), light }
+    }
+
+    /// Operator and blend of a group.
+    pub fn group(&mut self) -> Group {
+        let blend = Blend { kernel: self.pick(&BlendKernel::ALL), radius: self.number(&limits::BLEND_RADIUS) };
+        Group { operator: self.pick(&Operator::ALL), blend }
+    }
+
+    fn kind(&mut self, materials: &[MaterialId]) -> NodeKind {
+        match self.below(if materials.is_empty() { 4 } else { 9 }) {
+            0 | 1 => NodeKind::Group(self.group()),
+            2 => NodeKind::Light(self.light()),
+            3 => {
+                let (a, b) = (self.number(&limits::CLIP), self.number(&limits::CLIP));
+                let near = a.min(b).min(1e8);
+                let far = a.max(b).max(near * 2.0);
+                NodeKind::Camera(CameraNode { fov_y: self.number(&limits::FOV), near, far })
+            }
+            4 => {
+                let path = self.pick(&["duck.glb", "models/a b/ü.gltf", "x.y/z"]).to_owned();
+                let material = if self.once_in(2) { Some(self.pick(materials)) } else { None };
+                NodeKind::Mesh(MeshNode { path, material })
+            }
+            _ => NodeKind::Object(Object { shape: self.shape(), material: self.pick(materials) }),
+        }
+    }
+
+    /// A node of any kind, without id and parent.
+    pub fn node(&mut self, materials: &[MaterialId]) -> Node {
+        let mut node = Node::new(self.name(), self.kind(materials));
+        node.transform = self.transform();
+        node.visible = !self.once_in(5);
+        node.locked = self.once_in(5);
+        node.negative = node.has_field() && self.once_in(4);
+        node
+    }
+}
+
+/// A scene of about `count` nodes, nested at random, with ids in no order and with gaps.
+pub fn random_scene(seed: u64, count: usize) -> Scene {
+    let mut random = Random::new(seed);
+    let mut materials = Vec::new();
+    for i in 0..random.below(4) as u64 {
+        let id = i * 3 + random.below(3) as u64;
+        materials.push(random.material(id));
+    }
+    let worn: Vec<MaterialId> = materials.iter().map(|m| m.id).collect();
+    let mut ids: Vec<u64> = (0..count as u64).map(|i| i * 3 + 1).collect();
+    for i in (1..ids.len()).rev() {
+        ids.swap(i, random.below(i + 1));
+    }
+    let mut nodes: Vec<Node> = Vec::new();
+    let mut open: Vec<NodeId> = Vec::new();
+    for id in ids {
+        open.truncate(if random.once_in(3) { random.below(open.len() + 1) } else { open.len() });
+        let node = Node { id: NodeId(id), parent: open.last().copied(), ..random.node(&worn) };
+        if matches!(node.kind, NodeKind::Group(_)) && open.len() < 40 {
+            open.push(node.id);
+        }
+        nodes.push(node);
+    }
+    let environment = random.environment();
+    Scene::from_tables(nodes, materials, environment, random.bits() >> 20).expect("random scenes keep the rules")
+}

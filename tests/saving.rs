@@ -1,0 +1,179 @@
+//! Saving: whatever goes wrong, the file that was there is there.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use isolith::document::{Document, Edit};
+use isolith::scene::{Scene, file};
+
+use crate::random_scene::{Random, random_scene};
+
+/// How often a saver is killed.
+const KILLS: u64 = 200;
+/// Tells this test, started once more as a process of its own, which file to save for ever.
+const SAVER: &str = "ISOLITH_TEST_SAVER";
+
+fn big_scenes() -> [Scene; 2] {
+    [random_scene(1, 700), random_scene(2, 650)]
+}
+
+#[test]
+fn killed_savers_lose_nothing() {
+    if let Some(path) = std::env::var_os(SAVER) {
+        save_for_ever(Path::new(&path));
+    }
+    let work = |part: u64| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("scene.json");
+        let scenes = big_scenes();
+        // Twice, so that there is a backup from the start.
+        file::save(&scenes[1], &path).expect("the first save");
+        file::save(&scenes[0], &path).expect("the second save");
+        let (mut left_over, mut second) = (0, 0);
+        for kill in (part..KILLS).step_by(2) {
+            kill_one(&path, kill);
+            left_over += u64::from(names(folder.path()).len() > 2);
+            let document = Document::open(&path).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
+            assert!(scenes.contains(document.scene()), "kill {kill}");
+            second += u64::from(*document.scene() == scenes[1]);
+            assert!(file::load(&folder.path().join("scene.json~")).is_ok_and(|s| scenes.contains(&s)), "kill {kill}");
+            assert_eq!(names(folder.path()), ["scene.json", "scene.json~"], "kill {kill}");
+        }
+        (left_over, second)
+    };
+    let (a, b) = std::thread::scope(|scope| {
+        let other = scope.spawn(|| work(0));
+        (work(1), other.join().expect("the other half"))
+    });
+    let (left_over, second) = (a.0 + b.0, a.1 + b.1);
+    eprintln!("{KILLS} kills, {left_over} of them inside a save");
+    assert!(left_over > 0, "no kill ever hit a save");
+    assert!(second > 0 && second < KILLS, "the savers never got to save: {second}");
+}
+
+/// Starts a saver, lets it work for a random while and kills it.
+fn kill_one(path: &Path, seed: u64) {
+    let mut saver = Command::new(std::env::current_exe().expect("this program"))
+        .args(["--exact", "saving::killed_savers_lose_nothing", "--nocapture"])
+        .env(SAVER, path)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the saver starts");
+    let lines = BufReader::new(saver.stdout.take().expect("piped")).lines();
+    assert!(lines.map_while(Result::ok).any(|line| line.contains("saving")), "the saver says when it starts");
+    let pause = Random::new(seed).unit() * 25_000.0;
+    std::thread::sleep(Duration::from_micros(pause as u64));
+    saver.kill().expect("it runs until it is killed");
+    saver.wait().expect("it has ended");
+}
+
+fn save_for_ever(path: &Path) -> ! {
+    let scenes = big_scenes();
+    std::io::stdout().write_all(b"\nsaving\n").expect("someone listens");
+    for scene in scenes.iter().rev().cycle() {
+        file::save(scene, path).expect("saving works");
+    }
+    unreachable!("the cycle has no end")
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("the folder is there");
+    let mut names: Vec<String> =
+        entries.map(|e| e.expect("readable").file_name().to_string_lossy().into_owned()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn saving_where_nothing_can_be_saved_says_why_and_stays_changed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plain_file = folder.path().join("plain.txt");
+    fs::write(&plain_file, "not a folder").expect("written");
+    let read_only = folder.path().join("read_only.json");
+    fs::write(&read_only, "keep me").expect("written");
+    let mut permissions = fs::metadata(&read_only).expect("there").permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&read_only, permissions).expect("set");
+    let cases: Vec<(PathBuf, &str)> = vec![
+        (folder.path().join("missing/scene.json"), "No such file"),
+        (plain_file.join("scene.json"), "Not a directory"),
+        (folder.path().to_path_buf(), "it is a folder"),
+        (read_only.clone(), "it is read-only"),
+        (folder.path().join("n".repeat(300)), "too long"),
+        (PathBuf::from("/dev/full"), "it is not a file"),
+        (PathBuf::from("/proc/scene.json"), "cannot be saved"),
+        (PathBuf::from("/"), "it is a folder"),
+        (PathBuf::new(), "cannot be saved"),
+    ];
+    let mut document = Document::new(random_scene(7, 5));
+    let environment = isolith::scene::Environment { sky: [0.5; 3], ..document.scene().environment };
+    document.apply(Edit::SetEnvironment(environment)).expect("valid");
+    for (path, reason) in cases {
+        let error = document.save_as(&path).expect_err("cannot work");
+        assert_eq!(error.file, path.display().to_string());
+        assert!(error.reason.contains(reason), "{reason}: {error}");
+        assert!(document.is_changed() && document.path().is_none());
+    }
+    assert_eq!(fs::read_to_string(&read_only).expect("there"), "keep me");
+    assert_eq!(names(folder.path()), ["plain.txt", "read_only.json"]);
+}
+
+#[test]
+fn loading_what_is_not_there_or_no_file_says_why() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let huge = folder.path().join("huge.json");
+    let size = isolith::scene::limits::MAX_FILE_BYTES + 1;
+    fs::File::create(&huge).and_then(|f| f.set_len(size)).expect("a sparse file");
+    let cases = [
+        (folder.path().join("gone.json"), "No such file"),
+        (folder.path().to_path_buf(), "is not a file"),
+        (PathBuf::from("/dev/zero"), "is not a file"),
+        (huge, "is larger than 256 MiB"),
+    ];
+    for (path, reason) in cases {
+        let error = Document::open(&path).expect_err("cannot work");
+        assert_eq!(error.file, path.display().to_string());
+        assert!(error.reason.contains(reason), "{reason}: {error}");
+    }
+}
+
+#[test]
+fn a_file_that_vanished_is_saved_anew() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.json");
+    let mut document = Document::new(random_scene(9, 9));
+    document.save_as(&path).expect("saved");
+    fs::remove_file(&path).expect("removed");
+    document.save().expect("saved again");
+    assert_eq!(file::load(&path).as_ref(), Ok(document.scene()));
+    fs::remove_dir_all(folder.path()).expect("removed");
+    let error = document.save().expect_err("the folder is gone");
+    assert!(error.reason.contains("No such file"), "{error}");
+}
+
+#[cfg(unix)]
+#[test]
+fn links_are_written_through_and_permissions_stay() {
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    let folder = tempfile::tempdir().expect("a folder");
+    let [real, link, dangling] = ["real.json", "link.json", "dangling.json"].map(|n| folder.path().join(n));
+    let [first, second] = big_scenes();
+    file::save(&first, &real).expect("saved");
+    fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).expect("set");
+    symlink("real.json", &link).expect("linked");
+    file::save(&second, &link).expect("saved");
+    assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
+    assert_eq!(file::load(&real), Ok(second.clone()));
+    assert_eq!(fs::metadata(&real).expect("there").permissions().mode() & 0o777, 0o640);
+    symlink("new.json", &dangling).expect("linked");
+    file::save(&second, &dangling).expect("saved");
+    assert_eq!(file::load(&folder.path().join("new.json")), Ok(second.clone()));
+    let ring = folder.path().join("ring.json");
+    symlink("ring.json", &ring).expect("linked");
+    let error = file::save(&second, &ring).expect_err("a circle");
+    assert!(error.reason.contains("circle"), "{error}");
+}
