@@ -1,23 +1,14 @@
 //! What lies under the pointer.
 
 use super::Editor;
+use crate::flat::pick;
 use crate::geometry::Ray;
 use crate::scene::NodeId;
 
-/// The node that the ray meets first.
-pub fn pick(editor: &mut Editor, ray: &Ray) -> Option<NodeId> {
-    let scene = editor.bench.document.snapshot();
-    let mut nearest: Option<(f64, NodeId)> = None;
-    for id in &editor.flat.scene.ids {
-        let Some((world, bounds)) = super::bounds::oriented(&scene, &mut editor.meshes, *id) else { continue };
-        let local = world.inverse();
-        let direction = local.transform_vector3(ray.direction);
-        let ray = Ray { origin: local.transform_point3(ray.origin), direction };
-        if let Some((t, _)) = bounds.ray_interval(&ray) {
-            if nearest.is_none_or(|(best, _)| t < best) {
-                nearest = Some((t, *id));
-            }
-        }
-    }
-    nearest.map(|(_, id)| id)
+/// The node that the ray meets first: the very surface that is drawn, not a box around it.
+pub fn pick_node(editor: &mut Editor, ray: &Ray) -> Option<NodeId> {
+    let flat = &editor.flat.scene;
+    let meshes: Vec<_> = flat.meshes.iter().map(|mesh| editor.meshes.get(&mesh.path).ok()).collect();
+    let camera = editor.navigation.camera();
+    pick::pick(flat, &meshes, ray, camera.near, camera.far)
 }

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::gizmo::{self, Arrows, Drag};
 use super::navigation::Navigation;
 use super::overlay::{self, Compass, Marker};
-use super::picking::pick;
+use super::picking::pick_node;
 use super::workbench::Workbench;
 use super::{Editor, Picture, theme};
 use crate::geometry::Camera;
@@ -241,7 +241,7 @@ fn click(editor: &mut Editor, ui: &Ui, response: &Response, projection: &Project
     }
     let markers = overlay::markers(editor, projection);
     let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
-    let hit = marker.or_else(|| pick(editor, &projection.ray(pointer)));
+    let hit = marker.or_else(|| pick_node(editor, &projection.ray(pointer)));
     let hit = hit.filter(|id| !is_locked(editor, *id));
     let mut selection = editor.bench.document.selection().to_vec();
     let adding = ui.input(|i| i.modifiers.shift || i.modifiers.command);
