@@ -167,6 +167,11 @@ impl Renderer {
         self.method = method;
     }
 
+    /// How many kernels are being built.
+    pub fn kernels_building(&self) -> usize {
+        self.kernels.building()
+    }
+
     /// The kernels.
     pub fn kernels(&mut self) -> &mut Kernels {
         &mut self.kernels
@@ -208,7 +213,7 @@ impl Renderer {
         }
         progress(1.0);
         let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
-        Ok((buffers, self.unfinished_rays(&frame, flat)?))
+        Ok((buffers, self.unfinished_rays(&frame)?))
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
@@ -296,8 +301,8 @@ impl Renderer {
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.
-    pub fn unfinished_rays(&self, frame: &Frame, flat: &FlatScene) -> Result<Vec<Warning>, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), flat.components.len() * COUNTS)?;
+    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
         let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
         let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
             node: *id,
