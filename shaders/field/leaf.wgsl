@@ -25,5 +25,6 @@ fn field_group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec
     let kind = (node.code >> 16u) & 0xffu;
     let out = (kind == JOIN_UNION && least >= so_far + joint.x)
         || (kind == JOIN_DIFFERENCE && least >= joint.x - so_far);
-    return out && joint.y > 0.0;
+    // Within its bounds nothing is known of the group's field: it may be far below 0.
+    return out && least > 0.0;
 }

@@ -1,17 +1,11 @@
-// The field with what the surface is made of: the same fold as `field/value.wgsl`, carrying the
-// materials mixed by the joints' weights, and the leaf that weighs most. Twin of `flat::twin::surface`.
+// The field with what the surface is made of: the same fold as `interpreted_value.wgsl`.
+// Twin of `flat::twin::surface`.
 
 #include "field/leaf.wgsl"
+#include "field/material.wgsl"
 
-struct Surface {
-    distance: f32,
-    leaf: u32,
-    albedo: vec3f,
-    specular: f32,
-    emission: vec3f,
-    shininess: f32,
-}
-
+var<private> surface_first: u32;
+var<private> surface_end: u32;
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_group: array<u32, STACK_SIZE>;
 
@@ -20,23 +14,20 @@ fn join_surface(node: FlatNode, support: f32, so_far: Surface, operand: Surface)
     if join == JOIN_FIRST {
         return operand;
     }
-    let joined = op_join(join, so_far.distance, operand.distance, support, node.code >> 24u);
-    let w = joined.y;
-    return Surface(
-        joined.x,
-        select(so_far.leaf, operand.leaf, w > 0.5),
-        mix(so_far.albedo, operand.albedo, w),
-        mix(so_far.specular, operand.specular, w),
-        mix(so_far.emission, operand.emission, w),
-        mix(so_far.shininess, operand.shininess, w),
-    );
+    return surface_join(so_far, operand, op_join(join, so_far.distance, operand.distance, support, node.code >> 24u));
 }
 
-fn surface(first: u32, end: u32, p: vec3f) -> Surface {
-    var so_far = Surface(0.0, first, vec3f(0.0), 0.0, vec3f(0.0), 1.0);
+// Chooses the component. Before any call of `surface`.
+fn surface_begin(component: Component) {
+    surface_first = component.first;
+    surface_end = component.end;
+}
+
+fn surface(p: vec3f) -> Surface {
+    var so_far = Surface(0.0, surface_first, vec3f(0.0), 0.0, vec3f(0.0), 1.0);
     var depth = 0u;
-    var at = first;
-    while at < end {
+    var at = surface_first;
+    while at < surface_end {
         let node = nodes[at];
         let joint = numbers[node.numbers];
         if (node.code & 0xffffu) == GROUP {
@@ -49,9 +40,7 @@ fn surface(first: u32, end: u32, p: vec3f) -> Surface {
             }
             at += node.extent;
         } else {
-            let m = materials[node.material];
-            let operand = Surface(leaf_distance(node, joint, p), at, m.albedo, m.specular, m.emission, m.shininess);
-            so_far = join_surface(node, joint.x, so_far, operand);
+            so_far = join_surface(node, joint.x, so_far, surface_leaf(at, leaf_distance(node, joint, p)));
             at += 1u;
         }
         while depth > 0u {
