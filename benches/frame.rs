@@ -34,7 +34,7 @@ fn drag(c: &mut Criterion) {
     let camera = flat.default_camera(&[], 16.0 / 9.0);
     let mut begin = |flat: &FlatScene| {
         renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
-        renderer.kernels_built()
+        renderer.kernels().built()
     };
     let built = begin(&flat);
     document.begin_gesture();

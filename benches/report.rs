@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use isolith::flat::truth::truth;
 use isolith::flat::{Accuracy, flatten};
-use isolith::render::{OverlaySettings, Slot};
+use isolith::render::{Method, OverlaySettings, Slot};
 
 /// Width and height of the measured pictures, in pixels.
 const SIDE: u32 = 256;
@@ -45,7 +45,11 @@ fn accuracy() -> String {
     for scene in gpu::scenes() {
         let truth = truth(&scene.flat, &scene.meshes, &scene.camera, [SIDE, SIDE], &|_| ());
         let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-        let a = Accuracy::against(&scene.render(SIDE), &truth, scene.camera.footprint(f64::from(SIDE)));
+        let a = Accuracy::against(
+            &scene.render(SIDE, Method::Specialised),
+            &truth,
+            scene.camera.footprint(f64::from(SIDE)),
+        );
         let verdict = if a.faults().is_empty() { "" } else { "beyond the limit" };
         writeln!(
             out,
@@ -72,7 +76,7 @@ fn drag() -> String {
     let camera = flat.default_camera(&[], 16.0 / 9.0);
     let size = [1280, 720];
     renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
-    let built = renderer.kernels_built();
+    let built = renderer.kernels().built();
     let mut rows: [(&str, Vec<Duration>); 4] =
         [("edit", vec![]), ("flatten", vec![]), ("upload and plan", vec![]), ("all", vec![])];
     document.begin_gesture();
@@ -94,6 +98,6 @@ fn drag() -> String {
         times.sort();
         writeln!(out, "| {name} | {:.3} |", times[REPEATS / 2].as_secs_f64() * 1e3).expect("strings take all");
     }
-    writeln!(out, "\nKernels built by the drag: {}.", renderer.kernels_built() - built).expect("strings take all");
+    writeln!(out, "\nKernels built by the drag: {}.", renderer.kernels().built() - built).expect("strings take all");
     out
 }
