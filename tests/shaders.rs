@@ -3,7 +3,7 @@
 use std::mem::{offset_of, size_of};
 
 use isolith::flat::{FlatMaterial, FlatNode, GpuLight};
-use isolith::render::shader::{FILES, Features, source};
+use isolith::render::kernel::{FILES, Features, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};

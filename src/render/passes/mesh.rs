@@ -11,8 +11,8 @@ use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::mesh::{Texture, TriangleMesh};
 use crate::render::buffers::Mirror;
+use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
-use crate::render::shader::{Features, ShaderError, source};
 use crate::render::targets::{BACKGROUND, Targets};
 
 /// The pass, and the meshes that are on the device.
@@ -128,17 +128,24 @@ impl MeshPass {
             bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
         }
         if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
-            let binding = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: self.instances.buffer(),
-                offset: 0,
-                size: std::num::NonZeroU64::new(size_of::<Instance>() as u64),
-            });
+            let binding = window(self.instances.buffer(), size_of::<Instance>());
             self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
         }
     }
 
+    /// Whether there is anything to draw.
+    pub fn is_empty(&self) -> bool {
+        self.draws.is_empty()
+    }
+
     /// Clears the shared targets and draws.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
+        // Another size, so another render pass; it only clears.
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear farthest"),
+            color_attachments: &[cleared(&targets.farthest.view, f64::from(BACKGROUND))],
+            ..Default::default()
+        }));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("mesh"),
             color_attachments: &[
@@ -251,10 +258,9 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
 }
 
 fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
-    let no_shapes = Features { shapes: [].into(), stack: 1 };
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
-        source: wgpu::ShaderSource::Wgsl(source("mesh.wgsl", &no_shapes)?.into()),
+        source: wgpu::ShaderSource::Wgsl(plain_source("mesh.wgsl")?.into()),
     });
     use wgpu::VertexFormat::{Float32x2, Float32x3};
     // Position, normal, colour, texture coordinate.

@@ -6,8 +6,8 @@ use wgpu::{BindGroup, BindGroupLayout, ShaderStages, TextureFormat};
 
 use crate::flat::FlatScene;
 use crate::render::buffers::Mirror;
+use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
-use crate::render::shader::{Features, ShaderError, source};
 use crate::render::targets::Targets;
 use crate::scene::NodeId;
 
@@ -70,10 +70,9 @@ impl OverlayPass {
             "overlay targets",
             &[entry(0, stage, read_texture(false)), entry(1, stage, read_texture(true))],
         );
-        let no_shapes = Features { shapes: [].into(), stack: 1 };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("overlay"),
-            source: wgpu::ShaderSource::Wgsl(source("overlay.wgsl", &no_shapes)?.into()),
+            source: wgpu::ShaderSource::Wgsl(plain_source("overlay.wgsl")?.into()),
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("overlay"),
