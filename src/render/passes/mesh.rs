@@ -34,10 +34,18 @@ pub struct MeshPass {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
-    /// Rows of eye-relative world space from the mesh's space.
-    pub eye_from_local: [[f32; 4]; 3],
-    /// Rows of the matrix for normals.
-    pub normal: [[f32; 4]; 3],
+    /// First row of eye-relative world space from the mesh's space.
+    pub eye_from_local_x: [f32; 4],
+    /// Second row.
+    pub eye_from_local_y: [f32; 4],
+    /// Third row.
+    pub eye_from_local_z: [f32; 4],
+    /// First row of the matrix for normals.
+    pub normal_x: [f32; 4],
+    /// Second row.
+    pub normal_y: [f32; 4],
+    /// Third row.
+    pub normal_z: [f32; 4],
     /// See `overridden`.
     pub albedo: [f32; 3],
     /// Strength of the highlight.
@@ -131,11 +139,6 @@ impl MeshPass {
             let binding = window(self.instances.buffer(), size_of::<Instance>());
             self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
         }
-    }
-
-    /// Whether there is anything to draw.
-    pub fn is_empty(&self) -> bool {
-        self.draws.is_empty()
     }
 
     /// Clears the shared targets and draws.
@@ -247,8 +250,12 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
     };
     let material = placed.material.map(|i| flat.materials[i as usize]);
     Instance {
-        eye_from_local: [row(0), row(1), row(2)],
-        normal: [normal_row(0), normal_row(1), normal_row(2)],
+        eye_from_local_x: row(0),
+        eye_from_local_y: row(1),
+        eye_from_local_z: row(2),
+        normal_x: normal_row(0),
+        normal_y: normal_row(1),
+        normal_z: normal_row(2),
         albedo: material.map_or([1.0; 3], |m| m.albedo),
         specular: material.map_or(OWN_SPECULAR, |m| m.specular),
         owner: MESH_BIT | index as u32,

@@ -46,7 +46,11 @@ pub struct Overlay {
     /// Bits before those of the meshes.
     pub leaf_count: u32,
     /// Unused.
-    pub padding: [u32; 3],
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
+    /// Unused.
+    pub padding_2: u32,
 }
 
 /// The pass.
@@ -125,7 +129,9 @@ impl OverlayPass {
             axis_x: (reduced.z - eye.z) as f32,
             axis_z: (reduced.x - eye.x) as f32,
             leaf_count: flat.nodes.len() as u32,
-            padding: [0; 3],
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);
