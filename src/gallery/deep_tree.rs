@@ -1,16 +1,16 @@
-//! A shell that grows by nesting: each group holds the next one, turned and scaled, 80 deep.
+//! A shell that grows by nesting: each group holds a rib and the next group, turned and scaled, 80 deep.
 //!
 //! The inner group is the first child everywhere. An evaluator then never has to put a value aside,
 //! and depth costs nothing but numbers.
 
-use super::stage::{Stage, blended, cylinder, ellipsoid, group, object, sphere, turn_x, turn_y, turn_z, v};
+use super::stage::{Stage, blended, cylinder, group, object, sphere, torus, turn_y, turn_z, v};
 use crate::scene::{BlendKernel, Operator, Scene};
 
 /// How many groups stand in one another.
 pub const DEPTH: i32 = 80;
-/// Turn from one chamber to the next, in degrees.
+/// Turn from one rib to the next, in degrees.
 const TURN: f64 = 15.0;
-/// Size of a chamber in terms of the one before.
+/// Size of a rib in terms of the one before.
 const SHRINK: f64 = 0.9655;
 
 pub(super) fn scene() -> Scene {
@@ -47,17 +47,17 @@ pub(super) fn scene() -> Scene {
     for (level, id) in levels.into_iter().enumerate() {
         let tint = tints[(level * tints.len()) / DEPTH as usize];
         let rib = if level % 2 == 0 { 1.0 } else { 0.9 };
-        stage.add(id, object("Chamber", ellipsoid(0.43 * rib, 0.18, 0.48 * rib), tint).at(v(1.0, 0.0, 0.0)));
+        stage.add(id, object("Rib", torus(0.31 * rib, 0.155), tint).at(v(1.0, 0.0, 0.0)));
     }
 
     let plinth = stage.add(None, blended("Plinth", Operator::Union, BlendKernel::Circular, 0.08));
     stage.add(plinth, object("Slab", cylinder(1.2, 0.2, 0.06), stone).at(v(0.0, -0.11, 0.0)));
     stage.add(plinth, object("Foot", cylinder(0.9, 0.2, 0.06), stone).at(v(0.0, 0.1, 0.0)));
-    stage.add(None, object("Pearl", sphere(0.2), tints[0]).at(v(0.95, 0.2, 0.62)).rotated(turn_x(0.0)));
+    stage.add(None, object("Pearl", sphere(0.2), tints[0]).at(v(0.95, 0.2, 0.62)));
 
     stage.sun("Key", [-0.7, 0.8, 0.8], [1.0, 0.94, 0.85], 1.0);
     stage.sun("Fill", [0.9, 0.1, 0.6], [0.55, 0.80, 1.0], 0.35);
     stage.sun("Rim", [0.3, 0.7, -1.0], [1.0, 0.85, 0.7], 0.8);
-    stage.camera([0.0, 1.95, 6.0], [0.0, 1.08, 0.0], 31.0);
+    stage.camera([0.0, 1.95, 6.0], [0.0, 1.02, 0.0], 33.0);
     stage.finish()
 }

@@ -54,7 +54,7 @@ fn spectacles(stage: &mut Stage, worn: NodeId, brass: MaterialId) {
 fn bust(stage: &mut Stage, marble: MaterialId, wool: MaterialId) {
     let bust = stage.add(None, blended("Bust", Operator::Union, BlendKernel::Quadratic, 0.16));
     stage.add(bust, object("Shoulders", ellipsoid(0.82, 0.30, 0.42), marble).at(v(0.0, 0.52, -0.1)));
-    stage.add(bust, object("Neck", cylinder(0.32, 0.9, 0.05), marble).at(v(0.0, 0.90, -0.14)));
+    stage.add(bust, object("Neck", cylinder(0.30, 1.2, 0.05), marble).at(v(0.04, 0.92, -0.30)));
     stage.add(bust, object("Column", cone(0.24, 0.40, 0.40), marble).at(v(0.0, 0.15, -0.1)));
     let plinth = stage.add(None, blended("Plinth", Operator::Union, BlendKernel::Circular, 0.05));
     stage.add(plinth, object("Top", cylinder(0.50, 0.10, 0.03), marble).at(v(0.0, -0.06, -0.1)));

@@ -37,8 +37,8 @@ fn on_planet(tilt: f64, heading: f64, height: f64) -> DVec3 {
 
 fn planet(stage: &mut Stage) {
     let soil = stage.matt("Soil", [0.30, 0.17, 0.42]);
-    let crater = stage.matt("Crater", [0.155, 0.085, 0.29]);
-    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.16));
+    let crater = stage.matt("Crater", [0.115, 0.055, 0.23]);
+    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.11));
     stage.add(planet, object("Ball", sphere(PLANET.1), soil).at(PLANET.0));
     for (tilt, heading, radius) in
         [(26.0, 200.0, 0.42), (31.0, -38.0, 0.34), (14.0, 78.0, 0.17), (43.0, -75.0, 0.30), (40.0, 150.0, 0.3)]
@@ -70,7 +70,7 @@ fn crystals(stage: &mut Stage) {
 }
 
 fn smoke(stage: &mut Stage) {
-    let smoke = stage.matt("Smoke", [0.70, 0.62, 0.64]);
+    let smoke = stage.matt("Smoke", [0.62, 0.55, 0.58]);
     let cloud = stage.add(None, blended("Smoke", Operator::Union, BlendKernel::Quadratic, 0.22));
     stage.add(cloud, object("Column", round_cone(0.30, 0.13, 0.75), smoke).at(v(-0.02, -0.30, 0.0)));
     let puffs = [
