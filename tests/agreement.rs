@@ -4,6 +4,7 @@
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
 use isolith::flat::{FlatScene, flatten};
+use isolith::render::kernel::{Evaluator, Features, Structure};
 use isolith::render::probe;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
@@ -49,8 +50,13 @@ fn agree(what: &str, scene: &Scene, random: &mut Random) {
     let share = POINTS.div_ceil(flat.components.len().max(1));
     for (index, component) in flat.components.iter().enumerate() {
         let points = points(random, share);
-        let values = probe::field(&shared().gpu, &flat, component, &points).unwrap();
-        compare(&flat, index, &points, &values).unwrap_or_else(|e| panic!("{what}: {e}\n{:?}", flat.numbers));
+        let mut evaluators = vec![Evaluator::Interpreted(Features::of(&flat))];
+        evaluators.extend(Structure::of(&flat, component).map(Evaluator::Specialised));
+        for evaluator in &evaluators {
+            let values = probe::field(&shared().gpu, &flat, index, &points, evaluator).unwrap();
+            compare(&flat, index, &points, &values)
+                .unwrap_or_else(|e| panic!("{what}, {evaluator:?}: {e}\n{:?}", flat.numbers));
+        }
     }
 }
 

@@ -1,1 +1,466 @@
-//! Filled in later.
+//! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
+
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use isolith::document::Document;
+use isolith::editor::{Editor, Picture};
+use isolith::scene::{Group, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};
+
+/// A group with a ball and a box, and a torus beside it.
+fn scene() -> (Scene, [NodeId; 4]) {
+    let mut scene = Scene::new();
+    let material = scene.materials()[0].id;
+    let object = |kind: ShapeKind, name: &str| {
+        Node::new(name, NodeKind::Object(Object { shape: kind.default_shape(), material }))
+    };
+    let group = scene.insert(None, 0, Node::new("Body", NodeKind::Group(Group::UNION))).unwrap();
+    let ball = scene.insert(Some(group), 0, object(ShapeKind::Sphere, "Ball")).unwrap();
+    let cube = scene.insert(Some(group), 1, object(ShapeKind::Box, "Cube")).unwrap();
+    let ring = scene.insert(None, 1, object(ShapeKind::Torus, "Ring")).unwrap();
+    (scene, [group, ball, cube, ring])
+}
+
+fn open(scene: Scene) -> Harness<'static, Editor> {
+    let mut editor = Editor::new(Document::new(scene));
+    editor.ask_for_paths_in_window();
+    let mut harness = Harness::builder()
+        .with_size(vec2(1280.0, 800.0))
+        .with_context_setup(Editor::setup)
+        .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &Picture::default()), editor);
+    harness.run();
+    harness
+}
+
+/// The place of a row's name in the tree, which is on the left.
+fn row(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
+    let rows = harness.get_all_by_label(name).filter(|n| n.rect().center().x < 200.0);
+    rows.map(|n| n.rect().center()).next().unwrap_or_else(|| panic!("no row {name}"))
+}
+
+fn pointer(harness: &mut Harness<'_, Editor>, pos: Pos2, pressed: bool) {
+    harness.event(Event::PointerMoved(pos));
+    harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });
+}
+
+fn click(harness: &mut Harness<'_, Editor>, pos: Pos2) {
+    pointer(harness, pos, true);
+    pointer(harness, pos, false);
+    harness.run();
+}
+
+fn select(harness: &mut Harness<'_, Editor>, name: &str) {
+    let pos = row(harness, name);
+    click(harness, pos);
+    // Long enough that the next click is no double click.
+    harness.run_steps(40);
+}
+
+fn press(harness: &mut Harness<'_, Editor>, modifiers: Modifiers, key: Key) {
+    harness.key_press_modifiers(modifiers, key);
+    harness.run();
+}
+
+/// Takes back every step and counts them.
+fn undo_all(harness: &mut Harness<'_, Editor>) -> usize {
+    let mut steps = 0;
+    while harness.state_mut().document_mut().undo() {
+        steps += 1;
+    }
+    steps
+}
+
+fn shape(harness: &Harness<'_, Editor>, id: NodeId) -> Shape {
+    match &harness.state().document().scene().node(id).unwrap().kind {
+        NodeKind::Object(object) => object.shape,
+        _ => panic!("not an object"),
+    }
+}
+
+#[test]
+fn a_drag_over_fifty_frames_is_one_step_and_undo_restores_the_scene() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ball");
+    assert_eq!(harness.state().document().selection(), [ball]);
+    let field = harness.get_by_label("Radius").rect().center();
+    pointer(&mut harness, field, true);
+    let mut revisions = std::collections::HashSet::new();
+    for frame in 1..=50 {
+        harness.event(Event::PointerMoved(field + vec2(frame as f32 * 2.0, 0.0)));
+        harness.step();
+        revisions.insert(harness.state().document().revision());
+        assert!(harness.state().view().navigating || frame < 5);
+    }
+    pointer(&mut harness, field + vec2(100.0, 0.0), false);
+    harness.run();
+    let Shape::Sphere { radius } = shape(&harness, ball) else { panic!() };
+    assert!(radius > 0.6, "{radius}");
+    assert!(revisions.len() > 20, "the value follows the pointer");
+    assert!(!harness.state().view().navigating);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().document().scene(), scene);
+    assert_eq!(harness.state().document().selection(), [ball]);
+    assert_eq!(undo_all(&mut harness), 0, "one step and no more");
+}
+
+#[test]
+fn the_flat_scene_follows_a_drag_in_the_same_frame() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    select(&mut harness, "Ball");
+    let field = harness.get_by_label("Radius").rect().center();
+    pointer(&mut harness, field, true);
+    harness.step();
+    for frame in 1..=10 {
+        let before = harness.state().document().revision();
+        let flat = harness.state().flat().clone();
+        harness.event(Event::PointerMoved(field + vec2(frame as f32 * 10.0, 0.0)));
+        harness.step();
+        let moved = harness.state().document().revision() != before;
+        assert_eq!(moved, **harness.state().flat() != *flat, "frame {frame}");
+    }
+    pointer(&mut harness, field, false);
+    harness.run();
+}
+
+#[test]
+fn typing_a_value_takes_an_expression_and_is_one_step() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ball");
+    let field = harness.get_by_label("Radius").rect().center();
+    click(&mut harness, field);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("3*2".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 6.0 }, "beyond the soft range, by typing");
+    assert_eq!(undo_all(&mut harness), 1);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn backspace_over_a_field_resets_it() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene);
+    select(&mut harness, "Ball");
+    harness.get_by_label("Radius").set_value_accesskit(2.0);
+    harness.run();
+    assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 2.0 });
+    let field = harness.get_by_label("Radius").rect().center();
+    harness.event(Event::PointerMoved(field));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Backspace);
+    assert_eq!(shape(&harness, ball), ShapeKind::Sphere.default_shape());
+}
+
+#[test]
+fn renaming_in_the_tree() {
+    let (scene, [_, _, cube, _]) = scene();
+    let mut harness = open(scene);
+    select(&mut harness, "Cube");
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    harness.get_by_label("New name");
+    harness.event(Event::Text("Xenon".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let name = |h: &Harness<'_, Editor>| h.state().document().scene().node(cube).unwrap().name.clone();
+    assert_eq!(name(&harness), "Xenon", "and X in a text field deletes nothing");
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(name(&harness), "Cube");
+    press(&mut harness, Modifiers::NONE, Key::F2);
+    harness.event(Event::Text("Other".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Escape);
+    assert_eq!(name(&harness), "Cube", "Escape leaves the name");
+}
+
+#[test]
+fn shortcuts_do_not_fire_in_text_fields() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ring");
+    let field = harness.get_by_label("Name").rect().center();
+    click(&mut harness, field);
+    for key in [Key::X, Key::H, Key::Delete, Key::N] {
+        press(&mut harness, Modifiers::NONE, key);
+    }
+    assert_eq!(harness.state().document().scene().nodes().len(), 4);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn delete_and_undo() {
+    let (scene, [group, ..]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Body");
+    press(&mut harness, Modifiers::NONE, Key::X);
+    assert_eq!(harness.state().document().scene().nodes().len(), 1);
+    press(&mut harness, Modifiers::COMMAND, Key::Z);
+    assert_eq!(*harness.state().document().scene(), scene);
+    assert_eq!(harness.state().document().selection(), [group]);
+    press(&mut harness, Modifiers::COMMAND, Key::Y);
+    assert_eq!(harness.state().document().scene().nodes().len(), 1);
+}
+
+#[test]
+fn changing_the_shape_keeps_the_node() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ball");
+    let combo = harness.get_by_label("Kind").rect().center();
+    click(&mut harness, combo);
+    let entries: Vec<_> = harness.get_all_by_label("Box").map(|n| n.rect().center()).collect();
+    click(&mut harness, entries[0]);
+    assert_eq!(shape(&harness, ball), Shape::Box { size: [1.0; 3], rounding: 0.0 });
+    harness.get_by_label("Size X");
+    assert_eq!(undo_all(&mut harness), 1);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn adding_grouping_and_duplicating() {
+    let mut harness = open(Scene::new());
+    harness.get_by_label("Add sphere").click();
+    harness.run();
+    harness.get_by_label("Add box").click();
+    harness.run();
+    let document = harness.state().document();
+    let names: Vec<_> = document.scene().nodes().iter().map(|n| n.name.as_str()).collect();
+    assert_eq!(names, ["Sphere", "Box"]);
+    let ids: Vec<_> = document.scene().nodes().iter().map(|n| n.id).collect();
+    harness.state_mut().document_mut().select(ids.clone());
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::D);
+    let scene = harness.state().document().scene().clone();
+    let group = &scene.nodes()[0];
+    assert!(matches!(group.kind, NodeKind::Group(g) if g.operator == isolith::scene::Operator::Difference));
+    assert_eq!(scene.children(Some(group.id)).map(|n| n.id).collect::<Vec<_>>(), ids);
+    press(&mut harness, Modifiers::SHIFT, Key::D);
+    assert_eq!(harness.state().document().scene().nodes().len(), 6);
+    assert_eq!(harness.state().document().selection().len(), 1, "the copy is selected");
+    assert_eq!(undo_all(&mut harness), 4);
+}
+
+#[test]
+fn rows_are_dragged_into_groups() {
+    let (scene, [group, _, _, ring]) = scene();
+    let mut harness = open(scene.clone());
+    let (from, onto) = (row(&harness, "Ring"), row(&harness, "Body"));
+    pointer(&mut harness, from, true);
+    harness.step();
+    for step in 1..=10 {
+        harness.event(Event::PointerMoved(from + (onto - from) * (step as f32 / 10.0)));
+        harness.step();
+    }
+    pointer(&mut harness, onto, false);
+    harness.run();
+    assert_eq!(harness.state().document().scene().node(ring).unwrap().parent, Some(group));
+    assert_eq!(undo_all(&mut harness), 1);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn hiding_by_the_eye_and_by_the_key() {
+    let (scene, [_, ball, ..]) = scene();
+    let mut harness = open(scene);
+    harness.get_by_label("Hide Ball").click();
+    harness.run();
+    let visible = |h: &Harness<'_, Editor>| h.state().document().scene().node(ball).unwrap().visible;
+    assert!(!visible(&harness));
+    press(&mut harness, Modifiers::ALT, Key::H);
+    assert!(visible(&harness));
+    select(&mut harness, "Ball");
+    press(&mut harness, Modifiers::NONE, Key::H);
+    assert!(!visible(&harness));
+    assert_eq!(undo_all(&mut harness), 3);
+}
+
+#[test]
+fn work_is_not_lost_without_a_question() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.json");
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    press(&mut harness, Modifiers::COMMAND, Key::N);
+    assert!(harness.query_by_label("Discard").is_none(), "nothing to lose");
+    harness.get_by_label("Add sphere").click();
+    harness.run();
+    press(&mut harness, Modifiers::COMMAND, Key::Q);
+    harness.get_by_label("Cancel").click();
+    harness.run();
+    assert!(!harness.state().wants_close());
+    press(&mut harness, Modifiers::COMMAND, Key::Q);
+    harness.get_by_label("Save").click();
+    harness.run();
+    // There is no file yet, so a path is asked for; then the window may close.
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text(path.display().to_string()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert!(harness.state().wants_close());
+    assert!(path.is_file());
+    assert_eq!(harness.state().title(), "scene.json – Isolith");
+}
+
+#[test]
+fn a_broken_file_is_a_message_and_the_scene_stays() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("broken.json");
+    std::fs::write(&path, "{").unwrap();
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    press(&mut harness, Modifiers::COMMAND, Key::O);
+    harness.event(Event::Text(path.display().to_string()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let message = harness.state().messages().last().unwrap();
+    assert!(message.text.contains("broken.json"), "{}", message.text);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn the_palette_runs_what_is_typed() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    press(&mut harness, Modifiers::NONE, Key::F3);
+    harness.event(Event::Text("octa".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let nodes = harness.state().document().scene().nodes();
+    assert_eq!(nodes.last().unwrap().name, "Octahedron");
+    assert!(!harness.state().has_dialog());
+}
+
+#[test]
+fn several_nodes_are_edited_together() {
+    let (scene, [_, ball, cube, _]) = scene();
+    let mut harness = open(scene);
+    harness.state_mut().document_mut().select(vec![ball, cube]);
+    harness.run();
+    harness.get_by_label("Position Y").set_value_accesskit(1.5);
+    harness.run();
+    let y = |h: &Harness<'_, Editor>, id| h.state().document().scene().node(id).unwrap().transform.translation.y;
+    assert_eq!((y(&harness, ball), y(&harness, cube)), (1.5, 1.5));
+    assert_eq!(undo_all(&mut harness), 1);
+}
+
+#[test]
+fn turning_and_clicking_in_the_picture() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    let rect = harness.get_by_label("Viewport").rect();
+    let before = harness.state().view().camera;
+    let start = rect.left_bottom() + vec2(60.0, -60.0);
+    pointer(&mut harness, start, true);
+    harness.step();
+    for step in 1..=8 {
+        harness.event(Event::PointerMoved(start + vec2(step as f32 * 10.0, 0.0)));
+        harness.step();
+        assert!(step < 3 || harness.state().view().navigating);
+    }
+    pointer(&mut harness, start + vec2(80.0, 0.0), false);
+    harness.run();
+    assert_ne!(harness.state().view().camera, before);
+    assert!(!harness.state().view().navigating);
+    assert_eq!(*harness.state().document().scene(), scene, "looking changes nothing");
+    click(&mut harness, rect.center());
+    assert_eq!(harness.state().document().selection().len(), 1, "something stands in the middle");
+    click(&mut harness, start);
+    assert!(harness.state().document().selection().is_empty(), "nothing in the corner");
+}
+
+#[test]
+fn an_arrow_moves_the_selection_in_one_step() {
+    let (scene, [.., ring]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ring");
+    press(&mut harness, Modifiers::NONE, Key::Num1);
+    let rect = harness.get_by_label("Viewport").rect();
+    let camera = harness.state().view().camera;
+    let size = harness.state().view().size_px.map(f64::from);
+    let (pixel, _) = camera.project(glam::DVec3::ZERO, size.into()).unwrap();
+    // On the arrow along X: to the right, seen from the front.
+    let start = rect.min + vec2(pixel.x as f32 + 50.0, pixel.y as f32);
+    pointer(&mut harness, start, true);
+    harness.step();
+    for step in 1..=20 {
+        harness.event(Event::PointerMoved(start + vec2(step as f32 * 4.0, 3.0)));
+        harness.step();
+    }
+    pointer(&mut harness, start + vec2(80.0, 3.0), false);
+    harness.run();
+    let moved = harness.state().document().scene().node(ring).unwrap().transform.translation;
+    assert!(moved.x > 0.05 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
+    let (now, _) = harness.state().view().camera.project(moved, size.into()).unwrap();
+    assert!((now.x - pixel.x - 80.0).abs() < 0.5, "the arrow stays under the pointer: {now} {pixel}");
+    assert_eq!(undo_all(&mut harness), 1);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn a_monkey_finds_no_panic_and_undo_leads_back() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = move |below: u64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        seed % below
+    };
+    const KEYS: [(Modifiers, Key); 16] = [
+        (Modifiers::NONE, Key::U),
+        (Modifiers::NONE, Key::I),
+        (Modifiers::NONE, Key::D),
+        (Modifiers::NONE, Key::N),
+        (Modifiers::NONE, Key::H),
+        (Modifiers::NONE, Key::X),
+        (Modifiers::SHIFT, Key::D),
+        (Modifiers::COMMAND, Key::G),
+        (Modifiers::COMMAND, Key::A),
+        (Modifiers::COMMAND, Key::Z),
+        (Modifiers::COMMAND, Key::Y),
+        (Modifiers::NONE, Key::F),
+        (Modifiers::NONE, Key::F2),
+        (Modifiers::NONE, Key::Escape),
+        (Modifiers::ALT, Key::ArrowUp),
+        (Modifiers::NONE, Key::Enter),
+    ];
+    for _ in 0..600 {
+        match random(3) {
+            0 => {
+                let (modifiers, key) = KEYS[random(KEYS.len() as u64) as usize];
+                harness.key_press_modifiers(modifiers, key);
+            }
+            which => {
+                // Below the menus: those could open files.
+                let pos = Pos2::new(random(1280) as f32, 40.0 + random(740) as f32);
+                pointer(&mut harness, pos, which == 1 && random(4) > 0);
+            }
+        }
+        harness.step();
+        if harness.state().document().scene().nodes().len() > 60 {
+            harness.state_mut().document_mut().undo();
+        }
+    }
+    harness.remove_cursor();
+    harness.run_ok();
+    harness.state().document().scene().assert_invariants();
+    undo_all(&mut harness);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn an_idle_editor_asks_for_no_frames() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    harness.run();
+    for _ in 0..3 {
+        harness.step();
+        let viewport = &harness.output().viewport_output[&egui::ViewportId::ROOT];
+        assert!(viewport.repaint_delay > std::time::Duration::from_secs(1), "{:?}", viewport.repaint_delay);
+    }
+    assert!(harness.get_by_label("Viewport").accesskit_node().id() != harness.root().accesskit_node().id());
+}

@@ -18,7 +18,7 @@ fn leaf_distance(node: FlatNode, joint: vec4f, p: vec3f) -> f32 {
 
 // Whether the group at `node` cannot change the value `so_far`: its field is at least slope times the
 // distance to its bounds, so beyond that the joint is exactly its first operand.
-fn group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec3f) -> bool {
+fn field_group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec3f) -> bool {
     let center = numbers[node.numbers + 1u].xyz;
     let half = numbers[node.numbers + 2u].xyz;
     let least = joint.y * length(max(abs(p - center) - half, vec3f(0.0)));

@@ -1,1 +1,328 @@
-//! The editor.
+//! The editor: what the artist sees and does. Names egui only; the picture comes from outside as a
+//! texture, and what it should show goes out as a [`View`] and a [`FlatScene`].
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `workbench` | the document with gestures (one drag, one undo step) and messages |
+//! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, palette |
+//! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `sheet`, `fields` | fields bound to the selected nodes, and the widgets they are made of |
+//! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `dialogs`, `palette`, `messages` | what comes up in front |
+
+mod bounds;
+mod commands;
+mod dialogs;
+mod expression;
+mod fields;
+mod gizmo;
+mod glyphs;
+mod insertion;
+mod inspector;
+mod inspector_kinds;
+mod inspector_material;
+mod inspector_scene;
+mod inspector_transform;
+mod messages;
+mod navigation;
+mod outliner;
+mod overlay;
+mod palette;
+mod picking;
+mod selection;
+mod shape_change;
+mod sheet;
+mod status;
+mod theme;
+mod toolbar;
+mod viewing;
+mod viewport;
+mod workbench;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::{CentralPanel, Context, Frame, Margin, Panel, TextureId, Ui, ViewportCommand};
+
+pub use commands::{Command, CommandId, Menu};
+pub use messages::{Message, Severity};
+pub use navigation::{Navigation, Side};
+
+use crate::document::{Document, RecentFiles};
+use crate::flat::{FlatScene, flatten};
+use crate::geometry::Camera;
+use crate::mesh::MeshLibrary;
+use crate::scene::{Light, Node, NodeKind, Scene};
+use workbench::Workbench;
+
+/// What the renderer has made.
+#[derive(Clone, Debug, Default)]
+pub struct Picture {
+    /// The picture, once there is one.
+    pub texture: Option<TextureId>,
+    /// Its size in pixels.
+    pub size_px: [u32; 2],
+    /// How much of it is done, 0 to 1; `None` when nothing is being drawn.
+    pub progress: Option<f32>,
+    /// A few words for the status bar: adapter, milliseconds.
+    pub status: String,
+}
+
+/// What the renderer should make.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// From where.
+    pub camera: Camera,
+    /// Size of the viewport in pixels; at least 1 × 1.
+    pub size_px: [u32; 2],
+    /// The camera or a value is being dragged: a fast picture is worth more than a fine one.
+    pub navigating: bool,
+    /// Whether the ground grid is wanted.
+    pub show_grid: bool,
+    /// Whether the selection is to be marked.
+    pub show_outline: bool,
+}
+
+/// An example that the File menu offers.
+pub struct Example {
+    /// Its entry in the menu.
+    pub name: String,
+    /// Makes its document, or says why it cannot.
+    pub open: Box<dyn Fn() -> Result<Document, String>>,
+}
+
+/// The editor.
+pub struct Editor {
+    bench: Workbench,
+    flat: Flattened,
+    meshes: MeshLibrary,
+    navigation: Navigation,
+    viewport: viewport::Viewport,
+    outliner: outliner::Outliner,
+    inspector: inspector::Inspector,
+    palette: palette::Palette,
+    dialogs: dialogs::Dialogs,
+    recent: RecentFiles,
+    examples: Vec<Example>,
+    show_grid: bool,
+    show_outline: bool,
+    shown_title: String,
+}
+
+/// The flat scene of a revision of the document.
+struct Flattened {
+    scene: Arc<FlatScene>,
+    revision: Option<u64>,
+    problem: Option<String>,
+}
+
+impl Flattened {
+    fn empty() -> Self {
+        let flat = flatten(&Scene::new(), 0.0).expect("an empty scene is within every limit");
+        Self { scene: Arc::new(flat), revision: None, problem: None }
+    }
+}
+
+impl Editor {
+    /// An editor for the document.
+    pub fn new(document: Document) -> Self {
+        let mut editor = Self {
+            bench: Workbench::new(Document::new(Scene::new())),
+            flat: Flattened::empty(),
+            meshes: MeshLibrary::new(None),
+            navigation: Navigation::default(),
+            viewport: viewport::Viewport::default(),
+            outliner: outliner::Outliner::default(),
+            inspector: inspector::Inspector::default(),
+            palette: palette::Palette::default(),
+            dialogs: dialogs::Dialogs::default(),
+            recent: RecentFiles::default(),
+            examples: Vec::new(),
+            show_grid: true,
+            show_outline: true,
+            shown_title: String::new(),
+        };
+        editor.replace_document(document);
+        editor
+    }
+
+    /// Installs fonts and the look. Once, before the first frame.
+    pub fn setup(ctx: &Context) {
+        theme::install(ctx);
+    }
+
+    /// Remembers files between runs in this list.
+    pub fn set_recent(&mut self, recent: RecentFiles) {
+        self.recent = recent;
+    }
+
+    /// Offers examples in the File menu.
+    pub fn set_examples(&mut self, examples: Vec<Example>) {
+        self.examples = examples;
+    }
+
+    /// Asks for paths in the window, never by the system's dialogs.
+    pub fn ask_for_paths_in_window(&mut self) {
+        self.dialogs.in_window = true;
+    }
+
+    /// Shows everything and takes the input of one frame. Afterwards [`Editor::flat`] and
+    /// [`Editor::view`] are those of this frame: a dragged value is in them already.
+    pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
+        let ctx = ui.ctx().clone();
+        self.poll_dialogs(&ctx);
+        self.guard_closing(&ctx);
+        self.open_dropped(&ctx);
+        commands::run_shortcuts(self, &ctx);
+        self.show_panels(ui, picture);
+        self.show_dialogs(&ctx);
+        palette::show(self, &ctx);
+        let corner = self.viewport.rect();
+        self.bench.messages.show_toasts(&ctx, corner);
+        if self.bench.messages.show_log {
+            self.bench.messages.show_log(&ctx);
+        }
+        self.bench.settle(&ctx);
+        self.refresh_flat();
+        self.send_title(&ctx);
+    }
+
+    fn show_panels(&mut self, ui: &mut Ui, picture: &Picture) {
+        let bar = Frame::new().fill(theme::BAR).inner_margin(Margin::symmetric(8, 5));
+        let side = Frame::new().fill(theme::PANEL).inner_margin(Margin::same(8));
+        Panel::top("toolbar").frame(bar).show(ui, |ui| toolbar::show(self, ui));
+        let narrow = Frame::new().fill(theme::BAR).inner_margin(Margin::symmetric(10, 3));
+        Panel::bottom("status").frame(narrow).show(ui, |ui| status::show(self, ui, picture));
+        Panel::left("outliner").frame(side).default_size(240.0).size_range(160.0..=520.0).show(ui, |ui| {
+            let chosen = self.outliner.show(ui, &mut self.bench);
+            for command in chosen {
+                command.run(self, &ui.ctx().clone());
+            }
+        });
+        Panel::right("inspector").frame(side).default_size(300.0).size_range(240.0..=520.0).show(ui, |ui| {
+            self.inspector.show(ui, &mut self.bench);
+        });
+        CentralPanel::default().frame(Frame::new().fill(theme::LINE)).show(ui, |ui| viewport::show(self, ui, picture));
+    }
+
+    /// What the renderer should show.
+    pub fn view(&self) -> View {
+        View {
+            camera: self.navigation.camera(),
+            size_px: self.viewport.size_px(),
+            navigating: self.viewport.is_navigating() || self.bench.is_changing(),
+            show_grid: self.show_grid,
+            show_outline: self.show_outline,
+        }
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.bench.document
+    }
+
+    /// The document, for changes from outside the panels.
+    pub fn document_mut(&mut self) -> &mut Document {
+        &mut self.bench.document
+    }
+
+    /// The document as arrays; the last good ones where the document is beyond a limit.
+    pub fn flat(&self) -> &Arc<FlatScene> {
+        &self.flat.scene
+    }
+
+    /// The meshes that the scene names.
+    pub fn meshes(&mut self) -> &mut MeshLibrary {
+        &mut self.meshes
+    }
+
+    /// The flat scene and the meshes together, for the renderer.
+    pub fn flat_and_meshes(&mut self) -> (&Arc<FlatScene>, &mut MeshLibrary) {
+        (&self.flat.scene, &mut self.meshes)
+    }
+
+    /// Tells the artist something.
+    pub fn report(&mut self, message: Message) {
+        self.bench.messages.push(message);
+    }
+
+    /// The messages so far, oldest first.
+    pub fn messages(&self) -> impl DoubleEndedIterator<Item = &Message> {
+        self.bench.messages.iter()
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> String {
+        format!("{} – Isolith", self.bench.document.title())
+    }
+
+    /// Whether the artist has agreed to close the window: nothing is left to save.
+    pub fn wants_close(&self) -> bool {
+        self.dialogs.closing
+    }
+
+    /// Whether a question waits for its answer.
+    pub fn has_dialog(&self) -> bool {
+        self.dialogs.is_open() || self.palette.is_open()
+    }
+
+    fn replace_document(&mut self, document: Document) {
+        self.bench.finish();
+        self.meshes.set_folder(document.path().and_then(folder_of));
+        self.bench.document = document;
+        self.outliner = outliner::Outliner::default();
+        self.flat.revision = None;
+        self.refresh_flat();
+        self.show_as_saved();
+    }
+
+    fn refresh_flat(&mut self) {
+        let revision = self.bench.document.revision();
+        if self.flat.revision == Some(revision) {
+            return;
+        }
+        self.flat.revision = Some(revision);
+        match flatten(self.bench.document.scene(), 0.0) {
+            Ok(flat) => {
+                self.flat.scene = Arc::new(flat);
+                self.flat.problem = None;
+            }
+            Err(error) => self.flat.problem = Some(error.to_string()),
+        }
+    }
+
+    fn open_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(path) = dropped {
+            self.intend(dialogs::Intent::Open(path), ctx);
+        }
+    }
+
+    fn send_title(&mut self, ctx: &Context) {
+        let title = self.title();
+        if title != self.shown_title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.shown_title = title;
+        }
+    }
+
+    fn rename_active(&mut self) {
+        if let Some(&id) = self.bench.document.selection().last() {
+            self.outliner.start_rename(self.bench.document.scene(), id);
+        }
+    }
+}
+
+/// What "New" gives: a sun and nothing else.
+pub fn new_document() -> Document {
+    let mut scene = Scene::new();
+    let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
+    let sun = Node::new("Sun", NodeKind::Light(Light::sun())).rotated(direction).at(glam::DVec3::new(2.0, 4.0, 3.0));
+    scene.insert(None, 0, sun).expect("an empty scene takes a light");
+    Document::new(scene)
+}
+
+/// The folder of a scene's file; the current one for a bare name.
+fn folder_of(file: &Path) -> Option<PathBuf> {
+    file.parent().map(|folder| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() })
+}

@@ -1,0 +1,26 @@
+//! Commands on documents.
+
+use egui::{Context, Key, Modifiers};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_SAVE, ICON_SAVE_AS};
+
+use super::{Command, Menu};
+use crate::editor::Editor;
+use crate::editor::dialogs::Intent;
+
+fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
+    Command::new(Menu::File, icon, name, help, run)
+}
+
+pub(super) fn commands() -> Vec<Command> {
+    const CTRL: Modifiers = Modifiers::COMMAND;
+    const SHIFT_CTRL: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+    vec![
+        new(ICON_NOTE_ADD, "New", "An empty scene with a light", |e, ctx| e.intend(Intent::New, ctx)).key(CTRL, Key::N),
+        new(ICON_FOLDER_OPEN, "Open…", "Opens a scene file", |e, ctx| e.intend(Intent::Choose, ctx)).key(CTRL, Key::O),
+        new(ICON_SAVE, "Save", "Writes the scene to its file", |e, ctx| e.save(None, ctx)).key(CTRL, Key::S).group(),
+        new(ICON_SAVE_AS, "Save as…", "Writes the scene to another file", |e, ctx| e.choose_save_path(None, ctx))
+            .key(SHIFT_CTRL, Key::S),
+        new(ICON_LOGOUT, "Quit", "Closes the window", |e, ctx| e.intend(Intent::Quit, ctx)).key(CTRL, Key::Q).group(),
+    ]
+}

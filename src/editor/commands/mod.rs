@@ -1,0 +1,228 @@
+//! Everything that the artist can order, in one table: it feeds the menus, the toolbar, the shortcuts
+//! and the palette.
+
+mod add;
+mod edit;
+mod file;
+mod view;
+
+use std::sync::LazyLock;
+
+use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Response, RichText, Ui};
+use egui_material_icons::MaterialIcon;
+
+use super::{Editor, theme};
+
+/// Where a command stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Documents.
+    File,
+    /// What changes the selection.
+    Edit,
+    /// New nodes.
+    Add,
+    /// The camera and what is shown.
+    View,
+}
+
+type Run = Box<dyn Fn(&mut Editor, &Context) + Send + Sync>;
+
+/// Something that the artist can order.
+pub struct Command {
+    /// What it is called, everywhere.
+    pub name: String,
+    /// Its menu.
+    pub menu: Menu,
+    /// Whether a line stands before it in its menu.
+    pub starts_group: bool,
+    /// Its picture.
+    pub icon: Option<MaterialIcon>,
+    /// One sentence about what it does.
+    pub help: String,
+    /// Its keys; the first is shown.
+    pub keys: Vec<KeyboardShortcut>,
+    enabled: fn(&Editor) -> bool,
+    run: Run,
+}
+
+/// A command's place in the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CommandId(usize);
+
+static TABLE: LazyLock<Vec<Command>> = LazyLock::new(|| {
+    let menus = [file::commands(), edit::commands(), add::commands(), view::commands()];
+    menus.into_iter().flatten().collect()
+});
+
+impl Command {
+    fn new(
+        menu: Menu,
+        icon: impl Into<Option<MaterialIcon>>,
+        name: impl Into<String>,
+        help: impl Into<String>,
+        run: impl Fn(&mut Editor, &Context) + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            menu,
+            starts_group: false,
+            icon: icon.into(),
+            help: help.into(),
+            keys: Vec::new(),
+            enabled: |_| true,
+            run: Box::new(run),
+        }
+    }
+
+    fn key(mut self, modifiers: Modifiers, key: Key) -> Self {
+        self.keys.push(KeyboardShortcut::new(modifiers, key));
+        self
+    }
+
+    fn when(mut self, enabled: fn(&Editor) -> bool) -> Self {
+        self.enabled = enabled;
+        self
+    }
+
+    fn group(mut self) -> Self {
+        self.starts_group = true;
+        self
+    }
+
+    /// Name, what it does and its keys.
+    pub fn tooltip(&self, ctx: &Context) -> String {
+        let keys: Vec<_> = self.keys.iter().map(|k| ctx.format_shortcut(k)).collect();
+        let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
+        format!("{}{keys}\n{}", self.name, self.help)
+    }
+}
+
+impl CommandId {
+    /// All commands, in the order of the menus.
+    pub fn all() -> impl Iterator<Item = Self> {
+        (0..TABLE.len()).map(Self)
+    }
+
+    /// The command of this name. The table is fixed: a wrong name is a mistake in the program.
+    pub fn named(name: &str) -> Self {
+        Self(TABLE.iter().position(|c| c.name == name).expect("a command of this name stands in the table"))
+    }
+
+    /// The command.
+    pub fn get(self) -> &'static Command {
+        &TABLE[self.0]
+    }
+
+    /// Whether it can be run now.
+    pub fn enabled(self, editor: &Editor) -> bool {
+        (self.get().enabled)(editor)
+    }
+
+    /// Runs it, where it can be run.
+    pub fn run(self, editor: &mut Editor, ctx: &Context) {
+        if self.enabled(editor) {
+            editor.bench.finish();
+            (self.get().run)(editor, ctx);
+        }
+    }
+}
+
+/// Runs the commands whose keys were pressed. Not while text is being typed.
+pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
+    if ctx.text_edit_focused() || editor.has_dialog() {
+        return;
+    }
+    while let Some(command) = ctx.input_mut(take_shortcut) {
+        command.run(editor, ctx);
+    }
+}
+
+/// Takes the first key press out of the input that belongs to a command.
+fn take_shortcut(input: &mut egui::InputState) -> Option<CommandId> {
+    let mut found = None;
+    input.events.retain(|event| {
+        let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+        if found.is_some() {
+            return true;
+        }
+        // Exactly these modifiers: Ctrl Z is not Shift Ctrl Z.
+        let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
+        found = CommandId::all().find(|c| c.get().keys.iter().any(fits));
+        found.is_none()
+    });
+    found
+}
+
+/// The entries of one menu; returns the command chosen.
+pub fn menu_entries(ui: &mut Ui, editor: &Editor, menu: Menu) -> Option<CommandId> {
+    let mut chosen = None;
+    for (index, command) in CommandId::all().filter(|c| c.get().menu == menu).enumerate() {
+        if command.get().starts_group && index > 0 {
+            ui.separator();
+        }
+        if entry(ui, command, command.enabled(editor)).clicked() {
+            chosen = Some(command);
+        }
+    }
+    chosen
+}
+
+/// The entries of the context menu of the selection; returns the command chosen.
+pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
+    const GROUPS: [&[&str]; 4] = [
+        &["Rename", "Duplicate", "Delete"],
+        &["Group", "Ungroup", "Toggle negative"],
+        &["Move up", "Move down"],
+        &["Toggle visible", "Toggle lock", "Frame selected"],
+    ];
+    let mut chosen = None;
+    for (index, names) in GROUPS.iter().enumerate() {
+        if index > 0 {
+            ui.separator();
+        }
+        for name in *names {
+            let command = CommandId::named(name);
+            if entry(ui, command, true).clicked() {
+                chosen = Some(command);
+            }
+        }
+    }
+    chosen
+}
+
+fn entry(ui: &mut Ui, id: CommandId, enabled: bool) -> Response {
+    let command = id.get();
+    let icon = match command.icon {
+        Some(icon) => icon.rich_text().size(theme::ICON_SIZE).color(theme::WEAK),
+        None => RichText::new("      "),
+    };
+    let mut button = Button::new((icon, command.name.as_str())).min_size(egui::vec2(190.0, 0.0));
+    if let Some(key) = command.keys.first() {
+        button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
+    }
+    let response = ui.add_enabled(enabled, button).on_hover_text(&command.help);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(command.name.clone()));
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    #[test]
+    fn names_and_keys_are_unique_and_everything_is_explained() {
+        let mut names = HashSet::new();
+        let mut keys = HashSet::new();
+        for id in CommandId::all() {
+            let command = id.get();
+            assert!(names.insert(&command.name), "{} twice", command.name);
+            assert!(!command.help.is_empty(), "{}", command.name);
+            for key in &command.keys {
+                assert!(keys.insert(*key), "{}: {key:?} twice", command.name);
+            }
+        }
+    }
+}

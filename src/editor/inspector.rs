@@ -1,0 +1,112 @@
+//! The panel on the right: everything about the selection, or the surroundings when nothing is selected.
+
+use std::sync::Arc;
+
+use egui::{RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
+
+use super::sheet::Sheet;
+use super::workbench::Workbench;
+use super::{fields, glyphs, inspector_kinds, inspector_material, inspector_scene, inspector_transform, theme};
+use crate::document::Edit;
+use crate::scene::limits::MAX_NAME;
+use crate::scene::{Node, NodeKind};
+
+/// What the inspector remembers between frames.
+#[derive(Default)]
+pub struct Inspector {
+    transform: inspector_transform::EulerMemory,
+}
+
+impl Inspector {
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, bench: &mut Workbench) {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 8.0;
+            let selected = bench.selected();
+            match selected.last() {
+                None => inspector_scene::show(ui, bench),
+                Some(active) => self.show_selection(ui, bench, active.clone(), selected),
+            }
+            ui.add_space(12.0);
+        });
+    }
+
+    fn show_selection(&mut self, ui: &mut Ui, bench: &mut Workbench, active: Arc<Node>, all: Vec<Arc<Node>>) {
+        header(ui, bench, &active, &all);
+        if all.iter().all(|n| n.has_field()) {
+            if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
+                inspector_kinds::role(ui, &mut sheet);
+            }
+        }
+        if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
+            self.transform.show(ui, &mut sheet);
+        }
+        let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
+        let Some(mut sheet) = Sheet::new(bench, alike) else { return };
+        match &active.kind {
+            NodeKind::Group(_) => inspector_kinds::group(ui, &mut sheet),
+            NodeKind::Object(object) => {
+                inspector_kinds::shape(ui, &mut sheet);
+                inspector_material::show(ui, &mut sheet, Some(object.material));
+            }
+            NodeKind::Mesh(mesh) => {
+                inspector_kinds::mesh(ui, &mut sheet, mesh);
+                inspector_material::show(ui, &mut sheet, mesh.material);
+            }
+            NodeKind::Light(_) => inspector_kinds::light(ui, &mut sheet),
+            NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut sheet),
+        }
+    }
+}
+
+fn same_kind(a: &NodeKind, b: &NodeKind) -> bool {
+    std::mem::discriminant(a) == std::mem::discriminant(b)
+}
+
+/// The word for a kind of node.
+pub fn kind_label(node: &Node) -> &'static str {
+    match &node.kind {
+        NodeKind::Group(_) => "Group",
+        NodeKind::Object(object) => object.shape.kind().label(),
+        NodeKind::Mesh(_) => "Mesh",
+        NodeKind::Light(_) => "Light",
+        NodeKind::Camera(_) => "Camera",
+    }
+}
+
+/// Icon, name, visibility, lock; the number of nodes where it is several.
+fn header(ui: &mut Ui, bench: &mut Workbench, active: &Node, all: &[Arc<Node>]) {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(22.0, theme::ROW_HEIGHT), egui::Sense::hover());
+        glyphs::paint_node(ui.painter(), glyphs::centered(rect, 17.0), active);
+        let mut name = active.name.clone();
+        let field = TextEdit::singleline(&mut name)
+            .char_limit(MAX_NAME)
+            .desired_width(ui.available_width() - 58.0)
+            .margin(egui::Margin::symmetric(6, 4));
+        let response = ui.add(field).on_hover_text("The name of the active node");
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Name"));
+        if response.changed() {
+            bench.apply_by(response.id, Edit::Replace(Node { name, ..active.clone() }));
+        }
+        let ids: Vec<_> = all.iter().map(|n| n.id).collect();
+        let (icon, text) = if active.visible { (ICON_VISIBILITY, "Hide") } else { (ICON_VISIBILITY_OFF, "Show") };
+        let color = if active.visible { theme::WEAK } else { theme::WARNING };
+        let eye = fields::icon_button(ui, icon, text, color);
+        if eye.clicked() {
+            bench.change(eye.id, &ids, |n| n.visible = !active.visible);
+        }
+        let (icon, text) = if active.locked { (ICON_LOCK, "Unlock") } else { (ICON_LOCK_OPEN, "Lock") };
+        let color = if active.locked { theme::WARNING } else { theme::WEAK };
+        let lock = fields::icon_button(ui, icon, text, color);
+        if lock.clicked() {
+            bench.change(lock.id, &ids, |n| n.locked = !active.locked);
+        }
+    });
+    let what = match all.len() {
+        1 => format!("{} {}", kind_label(active), active.id),
+        n => format!("{n} nodes selected; fields change all of them, “–” marks values that differ"),
+    };
+    ui.label(RichText::new(what).small().color(theme::WEAK));
+}

@@ -1,0 +1,291 @@
+//! The cards of each kind of node: group, shape, mesh, light, camera.
+
+use egui::{RichText, TextEdit, Ui};
+use glam::DVec3;
+
+use super::fields::{self, Field};
+use super::sheet::Sheet;
+use super::{shape_change, theme};
+use crate::scene::limits::{ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, RANGE};
+use crate::scene::{
+    Attenuation, BlendKernel, CameraNode, Group, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Operator,
+    Param, ParamValue, ShapeKind,
+};
+
+const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, default: Option<f64>) -> Field<'a> {
+    Field { label, help, limits, default }
+}
+
+fn no_help<T>(_: T) -> &'static str {
+    ""
+}
+
+/// Whether the node is joined or cut away; objects and groups.
+pub fn role(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    let help = "Cut away from what stands before it in its group, instead of joined";
+    sheet.toggle(ui, ("Role", "Negative (cut away)", help), |n| n.negative, |n, on| n.negative = on);
+}
+
+/// Operator and blend.
+pub fn group(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    fn get(n: &Node) -> Option<Group> {
+        if let NodeKind::Group(g) = n.kind { Some(g) } else { None }
+    }
+    fn with(n: &mut Node, change: impl FnOnce(&mut Group)) {
+        if let NodeKind::Group(g) = &mut n.kind {
+            change(g);
+        }
+    }
+    fields::card(ui, "Group", |ui| {
+        let describe = |o| match o {
+            Operator::Union => "What is in any child",
+            Operator::Intersection => "What is in every child",
+            Operator::Difference => "The first child without the later ones",
+        };
+        sheet.choice(
+            ui,
+            ("Operator", "How each child joins those before it"),
+            &Operator::ALL,
+            (Operator::label, describe),
+            |n| get(n).map(|g| g.operator),
+            |n, v| with(n, |g| g.operator = v),
+        );
+        let radius = field("Blend radius", "How round the joints are; 0 is a sharp edge", BLEND_RADIUS, Some(0.0));
+        sheet.number(ui, &radius, |n| get(n).map(|g| g.blend.radius), |n, v| with(n, |g| g.blend.radius = v));
+        let describe = |k| match k {
+            BlendKernel::Circular => "A fillet with a round section",
+            BlendKernel::Quadratic => "Softer ends, a little wider",
+            BlendKernel::Cubic => "The softest and widest",
+        };
+        sheet.choice(
+            ui,
+            ("Blend curve", "The curve of the rounding; all thicken equally"),
+            &BlendKernel::ALL,
+            (BlendKernel::label, describe),
+            |n| get(n).map(|g| g.blend.kernel),
+            |n, v| with(n, |g| g.blend.kernel = v),
+        );
+    });
+}
+
+fn object(n: &Node) -> Option<&Object> {
+    if let NodeKind::Object(o) = &n.kind { Some(o) } else { None }
+}
+
+fn object_mut(n: &mut Node) -> Option<&mut Object> {
+    if let NodeKind::Object(o) = &mut n.kind { Some(o) } else { None }
+}
+
+/// The shape's kind and its parameters, made from the table of shapes.
+pub fn shape(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    fields::card(ui, "Shape", |ui| {
+        sheet.choice(
+            ui,
+            ("Kind", "Another shape in the same place, about the same size"),
+            ShapeKind::ALL,
+            (ShapeKind::label, ShapeKind::help),
+            |n| object(n).map(|o| o.shape.kind()),
+            |n, kind| {
+                if let Some(o) = object_mut(n) {
+                    o.shape = shape_change::changed(&o.shape, kind);
+                }
+            },
+        );
+        let Some(kind) = sheet.common(|n| object(n).map(|o| o.shape.kind())).flatten() else {
+            ui.label(RichText::new("Different shapes: no common parameters").color(theme::WEAK));
+            return;
+        };
+        let defaults = kind.default_shape().values();
+        for (index, (param, default)) in kind.params().iter().zip(defaults).enumerate() {
+            parameter(ui, sheet, index, param, default);
+        }
+        if kind.params().is_empty() {
+            ui.label(RichText::new("No parameters: position and rotation say all.").color(theme::WEAK));
+        }
+    });
+}
+
+fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, default: ParamValue) {
+    let label = sentence_case(param.name);
+    let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).copied());
+    let set = |n: &mut Node, v: ParamValue| {
+        if let Some(o) = object_mut(n) {
+            o.shape.set_value(index, v);
+        }
+    };
+    match default {
+        ParamValue::Scalar(default) => {
+            let get = |n: &Node| if let Some(ParamValue::Scalar(v)) = value(n) { Some(v) } else { None };
+            let field = field(&label, param.help, param.limits, Some(default));
+            sheet.number(ui, &field, get, |n, v| set(n, ParamValue::Scalar(v)));
+        }
+        ParamValue::Vector(default) => {
+            let get =
+                |n: &Node| -> Option<DVec3> { if let Some(ParamValue::Vector(v)) = value(n) { Some(v) } else { None } };
+            // One reset value for three fields only where the default is the same along every axis.
+            let same = default.x == default.y && default.y == default.z;
+            let field = field(&label, param.help, param.limits, same.then_some(default.x));
+            sheet.vector(ui, &field, get, |n, v| set(n, ParamValue::Vector(v)));
+        }
+    }
+}
+
+/// `bottom_radius` → `Bottom radius`.
+fn sentence_case(name: &str) -> String {
+    let spaced = name.replace('_', " ");
+    let mut chars = spaced.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
+}
+
+/// The file of a mesh.
+pub fn mesh(ui: &mut Ui, sheet: &mut Sheet<'_>, mesh: &MeshNode) {
+    fields::card(ui, "Mesh", |ui| {
+        let help = "A .gltf or .glb file, relative to the scene's folder";
+        let mut path = mesh.path.clone();
+        let response = fields::row(ui, "File", help, |ui| {
+            ui.add(TextEdit::singleline(&mut path).desired_width(ui.available_width()).hint_text("models/thing.glb"))
+        });
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("File"));
+        if response.changed() {
+            sheet.change(response.id, |n| {
+                if let NodeKind::Mesh(m) = &mut n.kind {
+                    m.path.clone_from(&path);
+                }
+            });
+        }
+    });
+}
+
+fn light_of(n: &Node) -> Option<&Light> {
+    if let NodeKind::Light(l) = &n.kind { Some(l) } else { None }
+}
+
+fn set_light(n: &mut Node, change: impl FnOnce(&mut Light)) {
+    if let NodeKind::Light(l) = &mut n.kind {
+        change(l);
+    }
+}
+
+fn attenuation(n: &Node) -> Option<Attenuation> {
+    match light_of(n)?.light {
+        LightKind::Directional {} => None,
+        LightKind::Point { attenuation } | LightKind::Spot { attenuation, .. } => Some(attenuation),
+    }
+}
+
+fn set_attenuation(n: &mut Node, change: impl FnOnce(&mut Attenuation)) {
+    set_light(n, |l| match &mut l.light {
+        LightKind::Directional {} => {}
+        LightKind::Point { attenuation } | LightKind::Spot { attenuation, .. } => change(attenuation),
+    });
+}
+
+/// Index of a kind of light in the list.
+fn light_index(n: &Node) -> Option<usize> {
+    Some(match light_of(n)?.light {
+        LightKind::Directional {} => 0,
+        LightKind::Point { .. } => 1,
+        LightKind::Spot { .. } => 2,
+    })
+}
+
+fn light_kind(index: usize, attenuation: Attenuation) -> LightKind {
+    match index {
+        0 => LightKind::Directional {},
+        1 => LightKind::Point { attenuation },
+        _ => LightKind::Spot { attenuation, inner: 20.0, outer: 30.0 },
+    }
+}
+
+/// Colour, strength, kind and reach.
+pub fn light(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    fields::card(ui, "Light", |ui| {
+        sheet.choice(
+            ui,
+            ("Kind", "Where the light comes from; it shines along the node's −Z"),
+            &[0, 1, 2],
+            (|i: usize| ["Directional", "Point", "Spot"][i], no_help),
+            light_index,
+            |n, index| {
+                let kept = attenuation(n).unwrap_or_default();
+                set_light(n, |l| l.light = light_kind(index, kept));
+            },
+        );
+        let get = |n: &Node| light_of(n).map(|l| l.color);
+        sheet.color(ui, ("Colour", "Colour of the light"), get, |n, v| set_light(n, |l| l.color = v));
+        let intensity = field("Intensity", "Factor on the colour", INTENSITY, Some(2.0));
+        let get = |n: &Node| light_of(n).map(|l| l.intensity);
+        sheet.number(ui, &intensity, get, |n, v| set_light(n, |l| l.intensity = v));
+        spot(ui, sheet);
+        reach(ui, sheet);
+    });
+}
+
+fn spot(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    fn angles(n: &Node) -> Option<(f64, f64)> {
+        if let LightKind::Spot { inner, outer, .. } = light_of(n)?.light { Some((inner, outer)) } else { None }
+    }
+    fn set(n: &mut Node, change: impl FnOnce(&mut f64, &mut f64)) {
+        set_light(n, |l| {
+            if let LightKind::Spot { inner, outer, .. } = &mut l.light {
+                change(inner, outer);
+            }
+        });
+    }
+    let inner = field("Inner angle", "Half angle within which the light is full", CONE, Some(20.0));
+    sheet.number(ui, &inner, |n| angles(n).map(|a| a.0), |n, v| set(n, |i, o| (*i, *o) = (v, o.max(v))));
+    let outer = field("Outer angle", "Half angle at which the light has faded out", CONE, Some(30.0));
+    sheet.number(ui, &outer, |n| angles(n).map(|a| a.1), |n, v| set(n, |i, o| (*i, *o) = (i.min(v), v)));
+}
+
+fn reach(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    type Part = fn(&mut Attenuation) -> &mut f64;
+    let default = Attenuation::default();
+    let rows: [(Field<'_>, Part); 4] = [
+        (field("Range", "Nothing is lit beyond this distance", RANGE, Some(default.range)), |a| &mut a.range),
+        (
+            field(
+                "Constant",
+                "Weakening by 1 / (constant + linear d + quadratic d²)",
+                ATTENUATION,
+                Some(default.constant),
+            ),
+            |a| &mut a.constant,
+        ),
+        (field("Linear", "Weakening per metre", ATTENUATION, Some(default.linear)), |a| &mut a.linear),
+        (field("Quadratic", "Weakening per square metre", ATTENUATION, Some(default.quadratic)), |a| &mut a.quadratic),
+    ];
+    for (field, part) in rows {
+        let get = |n: &Node| attenuation(n).map(|mut a| *part(&mut a));
+        sheet.number(ui, &field, get, |n, v| set_attenuation(n, |a| *part(a) = v));
+    }
+}
+
+/// Angle of view and clipping.
+pub fn camera(ui: &mut Ui, sheet: &mut Sheet<'_>) {
+    type Part = fn(&mut CameraNode) -> &mut f64;
+    let rows: [(Field<'_>, Part); 3] = [
+        (field("View angle", "Full vertical angle of view", FOV, Some(40.0)), |c| &mut c.fov_y),
+        (field("Near", "Nothing nearer is seen", CLIP, Some(0.01)), |c| &mut c.near),
+        (field("Far", "Nothing farther is seen", CLIP, Some(1_000.0)), |c| &mut c.far),
+    ];
+    fields::card(ui, "Camera", |ui| {
+        for (field, part) in rows {
+            let get = |n: &Node| if let NodeKind::Camera(mut c) = n.kind { Some(*part(&mut c)) } else { None };
+            sheet.number(ui, &field, get, |n, v| {
+                if let NodeKind::Camera(c) = &mut n.kind {
+                    *part(c) = v;
+                }
+            });
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn parameter_names_become_labels() {
+        assert_eq!(super::sentence_case("bottom_radius"), "Bottom radius");
+        assert_eq!(super::sentence_case(""), "");
+    }
+}

@@ -1,0 +1,158 @@
+//! The material that the selection wears: which one, and what it looks like.
+
+use egui::{Color32, Rgba, RichText, TextEdit, Ui, vec2};
+use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
+
+use super::fields::{self, Field};
+use super::sheet::Sheet;
+use super::theme;
+use crate::document::Edit;
+use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS, UNIT};
+use crate::scene::{Limits, Material, MaterialId, Node, NodeKind};
+
+/// The card; `worn` is the active node's material, `None` for a mesh that keeps its own.
+pub fn show(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Option<MaterialId>) {
+    fields::card(ui, "Material", |ui| {
+        picker(ui, sheet, worn);
+        let material = worn.and_then(|id| sheet.bench().document.scene().material(id).cloned());
+        match material {
+            Some(material) => editor(ui, sheet, &material),
+            None => {
+                ui.label(RichText::new("The file's own materials are used.").color(theme::WEAK));
+            }
+        }
+    });
+}
+
+fn wear(node: &mut Node, id: Option<MaterialId>) {
+    match &mut node.kind {
+        NodeKind::Object(object) => object.material = id.unwrap_or(object.material),
+        NodeKind::Mesh(mesh) => mesh.material = id,
+        _ => {}
+    }
+}
+
+fn picker(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Option<MaterialId>) {
+    let materials = sheet.bench().document.scene().materials().to_vec();
+    let of_mesh = matches!(sheet.active().kind, NodeKind::Mesh(_));
+    let current = materials.iter().find(|m| Some(m.id) == worn);
+    let mut chosen = None;
+    let mut new = false;
+    let widget = fields::row(ui, "Wears", "Materials are shared: a change shows on everything that wears it", |ui| {
+        let shown = current.map_or("From the file", |m| m.name.as_str());
+        let combo = egui::ComboBox::from_id_salt("material").selected_text(shown).width(ui.available_width() - 28.0);
+        let response = combo.truncate().show_ui(ui, |ui| {
+            if of_mesh && ui.selectable_label(worn.is_none(), "From the file").clicked() {
+                chosen = Some(None);
+            }
+            for material in &materials {
+                if swatch_label(ui, material, Some(material.id) == worn).clicked() {
+                    chosen = Some(Some(material.id));
+                }
+            }
+        });
+        ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("Material"));
+        let (icon, text) = match current {
+            Some(_) => (ICON_CONTENT_COPY, "A copy of this material, for the selection alone"),
+            None => (ICON_ADD, "A new material"),
+        };
+        new = fields::icon_button(ui, icon, text, theme::WEAK).clicked();
+        response.response.id
+    });
+    if let Some(id) = chosen {
+        sheet.change(widget, |node| wear(node, id));
+    }
+    if new {
+        let id = sheet.bench().document.scene().next_material_id();
+        let material = match current {
+            Some(m) => Material { id, name: format!("{} copy", m.name), ..Material::clone(m) },
+            None => Material::new(id, "New material", [0.6; 3]),
+        };
+        sheet.bench().apply_by(widget, Edit::InsertMaterial(material));
+        sheet.change(widget, |node| wear(node, Some(id)));
+    }
+}
+
+/// An entry of the list with the material's colour in front.
+fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Response {
+    ui.horizontal(|ui| {
+        let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
+        ui.painter().rect_filled(rect, 3.0, display_color(material.albedo));
+        ui.selectable_label(selected, &material.name)
+    })
+    .inner
+}
+
+/// A linear colour as the screen shows it.
+pub fn display_color(linear: [f64; 3]) -> Color32 {
+    let [r, g, b] = linear.map(|v| v.clamp(0.0, 1.0) as f32);
+    Rgba::from_rgb(r, g, b).into()
+}
+
+fn editor(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
+    let mut name = material.name.clone();
+    let response = fields::row(ui, "Name", "", |ui| {
+        ui.add(TextEdit::singleline(&mut name).char_limit(MAX_NAME).desired_width(ui.available_width()))
+    });
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Material name"));
+    if response.changed() {
+        sheet.bench().change_material(response.id, Material { name, ..material.clone() });
+    }
+    color(ui, sheet, ("Colour", "Diffuse reflectance"), material, |m| &mut m.albedo);
+    number(ui, sheet, ("Highlight", "Strength of the highlight; 0 is matt"), (UNIT, 0.25), material, |m| {
+        &mut m.specular
+    });
+    let help = "Larger is a smaller, sharper highlight";
+    number(ui, sheet, ("Sharpness", help), (SHININESS, 48.0), material, |m| &mut m.shininess);
+    color(ui, sheet, ("Glow", "Light that it emits"), material, |m| &mut m.emission);
+    let strength = material.emission.iter().copied().fold(0.0, f64::max);
+    if strength > 0.0 {
+        glow_strength(ui, sheet, material, strength);
+    }
+}
+
+type Part<T> = fn(&mut Material) -> &mut T;
+
+fn color(ui: &mut Ui, sheet: &mut Sheet<'_>, text: (&str, &str), material: &Material, part: Part<[f64; 3]>) {
+    let mut edited = material.clone();
+    let value = *part(&mut edited);
+    let (widget, changed) = fields::row(ui, text.0, text.1, |ui| fields::color(ui, text.0, value));
+    if let Some(value) = changed {
+        *part(&mut edited) = value;
+        sheet.bench().change_material(widget, edited);
+    }
+}
+
+fn number(
+    ui: &mut Ui,
+    sheet: &mut Sheet<'_>,
+    (label, help): (&str, &str),
+    (limits, default): (Limits, f64),
+    material: &Material,
+    part: Part<f64>,
+) {
+    let mut edited = material.clone();
+    let value = *part(&mut edited);
+    let field = Field { label, help, limits, default: Some(default) };
+    let answer = fields::row(ui, label, help, |ui| {
+        let width = ui.available_width();
+        fields::number(ui, &field, label, value, false, width)
+    });
+    if let Some(value) = answer.value {
+        *part(&mut edited) = value;
+        sheet.bench().change_material(answer.widget, edited);
+    }
+}
+
+/// Emission beyond 1 cannot be picked as a colour: its brightest channel is a number of its own.
+fn glow_strength(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material, strength: f64) {
+    let field = Field { label: "Glow strength", help: "Its brightest channel", limits: INTENSITY, default: None };
+    let answer = fields::row(ui, field.label, field.help, |ui| {
+        let width = ui.available_width();
+        fields::number(ui, &field, field.label, strength, false, width)
+    });
+    if let Some(new) = answer.value {
+        let emission = material.emission.map(|v| v * new / strength);
+        sheet.bench().change_material(answer.widget, Material { emission, ..material.clone() });
+    }
+}

@@ -1,0 +1,128 @@
+//! Position, rotation, scale. Rotation is shown in degrees; the stored quaternion changes only when
+//! the artist changes an angle.
+
+use egui::{Id, Ui};
+use glam::{DQuat, DVec3, EulerRot};
+
+use super::fields::{self, Answer, Field};
+use super::sheet::Sheet;
+use crate::scene::limits::{POSITION, SCALE};
+use crate::scene::{Limits, Node, NodeKind};
+
+const POSITION_FIELD: Field<'_> = Field {
+    label: "Position",
+    help: "Where the node stands in its group, in metres",
+    limits: POSITION,
+    default: Some(0.0),
+};
+const ROTATION_FIELD: Field<'_> = Field {
+    label: "Rotation",
+    help: "Degrees: Y turns like a compass, then X tilts, then Z rolls",
+    limits: Limits { soft: [-180.0, 180.0], hard: [-36_000.0, 36_000.0], unit: "°" },
+    default: Some(0.0),
+};
+const SCALE_FIELD: Field<'_> = Field {
+    label: "Scale",
+    help: "Factor along each local axis; negative mirrors, zero is refused",
+    limits: Limits { soft: SCALE.soft, hard: [-SCALE.hard[1], SCALE.hard[1]], unit: "" },
+    default: Some(1.0),
+};
+
+/// The angles last typed, with the quaternion they gave: while that stands, they are shown as typed.
+#[derive(Default)]
+pub struct EulerMemory {
+    rotation: DQuat,
+    degrees: DVec3,
+}
+
+impl EulerMemory {
+    /// The card.
+    pub fn show(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
+        fields::card(ui, "Transform", |ui| {
+            sheet.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
+            self.rotation_row(ui, sheet);
+            let scalable = |n: &Node| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_));
+            sheet.vector(
+                ui,
+                &SCALE_FIELD,
+                |n| scalable(n).then_some(n.transform.scale),
+                |n, v| n.transform.scale = v.map(away_from_zero),
+            );
+        });
+    }
+
+    fn rotation_row(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
+        let shown = self.degrees(sheet.active().transform.rotation);
+        let mixed = [sheet.common(|n| n.transform.rotation).is_none(); 3];
+        let changed = fields::row(ui, ROTATION_FIELD.label, ROTATION_FIELD.help, |ui| {
+            fields::vector(ui, &ROTATION_FIELD, shown.to_array(), mixed)
+        });
+        let Some((axis, Answer { widget, value: Some(value) })) = changed else { return };
+        self.turn(sheet, widget, axis, value);
+    }
+
+    /// Sets one angle in every node, leaving their other angles.
+    fn turn(&mut self, sheet: &mut Sheet<'_>, widget: Id, axis: usize, value: f64) {
+        let mut degrees = self.degrees(sheet.active().transform.rotation);
+        degrees[axis] = value;
+        let (active, rotation) = (sheet.active().id, to_quaternion(degrees));
+        sheet.change(widget, |node| {
+            node.transform.rotation = if node.id == active {
+                rotation
+            } else {
+                let mut own = to_degrees(node.transform.rotation);
+                own[axis] = value;
+                to_quaternion(own)
+            };
+        });
+        (self.rotation, self.degrees) = (rotation, degrees);
+    }
+
+    fn degrees(&self, rotation: DQuat) -> DVec3 {
+        if rotation == self.rotation { self.degrees } else { to_degrees(rotation) }
+    }
+}
+
+/// Angles about X, Y and Z in degrees, applied Z first, then X, then Y.
+fn to_degrees(rotation: DQuat) -> DVec3 {
+    let (y, x, z) = rotation.to_euler(EulerRot::YXZ);
+    // Rounded to a billionth, so that −0 and 1e-15 do not show; adding 0 turns −0 into 0.
+    DVec3::new(x, y, z).map(|a| (a.to_degrees() * 1e9).round() / 1e9 + 0.0)
+}
+
+fn to_quaternion(degrees: DVec3) -> DQuat {
+    let r = degrees.map(f64::to_radians);
+    DQuat::from_euler(EulerRot::YXZ, r.y, r.x, r.z).normalize()
+}
+
+/// Zero would flatten space; the nearest factor allowed keeps the sign.
+fn away_from_zero(factor: f64) -> f64 {
+    if factor.abs() < SCALE.hard[0] { SCALE.soft[0].copysign(factor) } else { factor }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_survive_the_way_through_the_quaternion() {
+        for degrees in [DVec3::new(30.0, -120.0, 45.0), DVec3::new(-80.0, 10.0, 170.0), DVec3::ZERO] {
+            assert!((to_degrees(to_quaternion(degrees)) - degrees).length() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn typed_angles_are_shown_as_typed_even_where_they_are_not_unique() {
+        let degrees = DVec3::new(90.0, 400.0, 20.0);
+        let memory = EulerMemory { rotation: to_quaternion(degrees), degrees };
+        assert_eq!(memory.degrees(to_quaternion(degrees)), degrees);
+        assert_ne!(memory.degrees(DQuat::IDENTITY), degrees);
+    }
+
+    #[test]
+    fn a_scale_of_zero_keeps_its_sign_and_becomes_small() {
+        assert_eq!(away_from_zero(0.0), SCALE.soft[0]);
+        assert_eq!(away_from_zero(-0.0), -SCALE.soft[0]);
+        assert_eq!(away_from_zero(-2.0), -2.0);
+    }
+}

@@ -1,0 +1,248 @@
+//! The viewport's own camera: orbit, pan, zoom, frame. Pure mathematics in f64; a point under the
+//! pointer stays under it, to the pixel.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DQuat, DVec2, DVec3};
+
+use crate::geometry::{Aabb, Camera, Ray};
+
+/// A side to look from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// From +Z.
+    Front,
+    /// From −Z.
+    Back,
+    /// From +X.
+    Right,
+    /// From −X.
+    Left,
+    /// From +Y.
+    Top,
+    /// From −Y.
+    Bottom,
+}
+
+impl Side {
+    /// From the target to the eye.
+    pub fn direction(self) -> DVec3 {
+        match self {
+            Self::Front => DVec3::Z,
+            Self::Back => DVec3::NEG_Z,
+            Self::Right => DVec3::X,
+            Self::Left => DVec3::NEG_X,
+            Self::Top => DVec3::Y,
+            Self::Bottom => DVec3::NEG_Y,
+        }
+    }
+}
+
+/// A camera that turns about a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Navigation {
+    /// What it turns about.
+    pub target: DVec3,
+    /// From the target to the eye, in metres.
+    pub distance: f64,
+    /// World from camera.
+    pub rotation: DQuat,
+    /// Full vertical angle of view in radians.
+    pub fov_y: f64,
+}
+
+impl Default for Navigation {
+    fn default() -> Self {
+        let camera = Camera::looking_at(DVec3::new(3.2, 2.4, 4.0), DVec3::ZERO, Camera::DEFAULT_FOV_Y);
+        Self { target: DVec3::ZERO, distance: camera.position.length(), rotation: camera.rotation, fov_y: camera.fov_y }
+    }
+}
+
+impl Navigation {
+    /// Nearest and farthest distance to the target, in metres.
+    pub const DISTANCES: [f64; 2] = [1e-4, 1e7];
+
+    /// The camera as the renderer takes it.
+    pub fn camera(&self) -> Camera {
+        Camera {
+            position: self.eye(),
+            rotation: self.rotation,
+            fov_y: self.fov_y,
+            near: self.distance * 1e-3,
+            far: self.distance.max(1.0) * 1e4,
+        }
+    }
+
+    /// Where the eye is.
+    pub fn eye(&self) -> DVec3 {
+        self.target + self.rotation * DVec3::Z * self.distance
+    }
+
+    /// Takes over a camera's place; turns about the point in front of it that is nearest to `focus`.
+    pub fn look_through(&mut self, camera: &Camera, focus: DVec3) {
+        let forward = camera.rotation * DVec3::NEG_Z;
+        let distance = (focus - camera.position).dot(forward);
+        self.rotation = camera.rotation;
+        self.fov_y = camera.fov_y;
+        self.distance = if distance > 0.0 { self.limited(distance) } else { self.distance };
+        self.target = camera.position + forward * self.distance;
+    }
+
+    /// Turns about the target: a drag over the whole height turns by half a circle. The view keeps
+    /// its horizon; it stops at straight up and straight down.
+    pub fn orbit(&mut self, drag_px: DVec2, height_px: f64) {
+        let angle = drag_px * (PI / height_px.max(1.0));
+        let pitch_now = (self.rotation * DVec3::Z).y.clamp(-1.0, 1.0).asin();
+        let pitch = (pitch_now + angle.y).clamp(-FRAC_PI_2, FRAC_PI_2) - pitch_now;
+        let turned = DQuat::from_rotation_y(-angle.x) * self.rotation * DQuat::from_rotation_x(-pitch);
+        self.rotation = turned.normalize();
+    }
+
+    /// Moves sideways so that what is as far away as the target follows the pointer.
+    pub fn pan(&mut self, drag_px: DVec2, height_px: f64) {
+        let per_px = self.camera().footprint(height_px) * self.distance;
+        self.target += self.rotation * DVec3::new(-drag_px.x, drag_px.y, 0.0) * per_px;
+    }
+
+    /// Multiplies the distance by `factor`; what lies under `pixel`, as far away as the target, stays there.
+    pub fn zoom(&mut self, factor: f64, pixel: DVec2, size_px: DVec2) {
+        let distance = self.limited(self.distance * factor);
+        let factor = distance / self.distance;
+        let fixed = self.under_pointer(pixel, size_px);
+        self.target = fixed + (self.target - fixed) * factor;
+        self.distance = distance;
+    }
+
+    /// The point under `pixel` in the plane through the target that faces the eye.
+    pub fn under_pointer(&self, pixel: DVec2, size_px: DVec2) -> DVec3 {
+        let ray = self.ray(pixel, size_px);
+        let forward = self.rotation * DVec3::NEG_Z;
+        ray.at(self.distance / ray.direction.dot(forward))
+    }
+
+    /// The ray through a pixel.
+    pub fn ray(&self, pixel: DVec2, size_px: DVec2) -> Ray {
+        self.camera().ray(pixel, size_px)
+    }
+
+    /// Sees all of a finite box, from where it looks now, with a little air around it.
+    pub fn frame(&mut self, bounds: &Aabb, aspect: f64) {
+        if !bounds.is_finite() || bounds.is_empty() {
+            return;
+        }
+        let direction = self.rotation * DVec3::Z;
+        let framing = Camera::framing(bounds, direction, self.fov_y, aspect.max(1e-3));
+        self.target = bounds.center();
+        self.distance = self.limited((framing.position - self.target).length() * 1.05);
+    }
+
+    /// Looks at the target from a side.
+    pub fn look_from(&mut self, side: Side) {
+        self.rotation = match side {
+            Side::Top => DQuat::from_rotation_x(-FRAC_PI_2),
+            Side::Bottom => DQuat::from_rotation_x(FRAC_PI_2),
+            _ => Camera::looking_at(side.direction(), DVec3::ZERO, self.fov_y).rotation,
+        };
+    }
+
+    fn limited(&self, distance: f64) -> f64 {
+        distance.clamp(Self::DISTANCES[0], Self::DISTANCES[1])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: DVec2 = DVec2::new(800.0, 500.0);
+
+    fn somewhere() -> Navigation {
+        let mut view = Navigation { target: DVec3::new(1.0, -2.0, 3.0), distance: 7.0, ..Navigation::default() };
+        view.orbit(DVec2::new(130.0, -40.0), SIZE.y);
+        view
+    }
+
+    #[test]
+    fn orbiting_keeps_the_target_and_the_distance() {
+        let mut view = somewhere();
+        for i in 0..200 {
+            view.orbit(DVec2::new(37.0, if i % 3 == 0 { 90.0 } else { -31.0 }), SIZE.y);
+            let (pixel, depth) = view.camera().project(view.target, SIZE).unwrap();
+            assert!((pixel - SIZE * 0.5).length() < 1e-6 && (depth - 7.0).abs() < 1e-9);
+            let right = view.rotation * DVec3::X;
+            assert!(right.y.abs() < 1e-9, "the horizon stays level");
+            assert!((view.rotation * DVec3::Y).y > -1e-9, "never upside down");
+        }
+    }
+
+    #[test]
+    fn dragging_right_shows_more_of_the_left_side() {
+        let mut view = Navigation::default();
+        view.look_from(Side::Front);
+        view.orbit(DVec2::new(10.0, 0.0), SIZE.y);
+        assert!(view.eye().x < 0.0);
+        view.look_from(Side::Front);
+        view.orbit(DVec2::new(0.0, 10.0), SIZE.y);
+        assert!(view.eye().y > 0.0, "dragging down shows more of the top");
+    }
+
+    #[test]
+    fn panning_moves_the_point_under_the_pointer_with_it() {
+        let mut view = somewhere();
+        let start = DVec2::new(200.5, 130.25);
+        let point = view.under_pointer(start, SIZE);
+        let drag = DVec2::new(57.0, -21.0);
+        view.pan(drag, SIZE.y);
+        let (pixel, _) = view.camera().project(point, SIZE).unwrap();
+        assert!((pixel - (start + drag)).length() < 1e-8, "{pixel}");
+    }
+
+    #[test]
+    fn zooming_keeps_the_point_under_the_pointer() {
+        let mut view = somewhere();
+        let pixel = DVec2::new(612.5, 88.0);
+        let point = view.under_pointer(pixel, SIZE);
+        for factor in [0.5, 0.9, 1.7, 0.25, 3.0] {
+            view.zoom(factor, pixel, SIZE);
+            let (at, _) = view.camera().project(point, SIZE).unwrap();
+            assert!((at - pixel).length() < 1e-7, "{at}");
+        }
+        view.zoom(1e-30, pixel, SIZE);
+        assert_eq!(view.distance, Navigation::DISTANCES[0]);
+    }
+
+    #[test]
+    fn framing_shows_every_corner() {
+        let bounds = Aabb::new(DVec3::new(-3.0, 0.0, 10.0), DVec3::new(1.0, 9.0, 11.0));
+        for size in [SIZE, DVec2::new(200.0, 900.0)] {
+            let mut view = somewhere();
+            view.frame(&bounds, size.x / size.y);
+            for corner in bounds.corners() {
+                let (p, _) = view.camera().project(corner, size).unwrap();
+                assert!(p.cmpge(DVec2::ZERO).all() && p.cmple(size).all(), "{p}");
+            }
+        }
+        let mut view = somewhere();
+        view.frame(&Aabb::EVERYTHING, 1.0);
+        assert_eq!(view, somewhere(), "nothing to frame, nothing changes");
+    }
+
+    #[test]
+    fn each_side_looks_along_its_axis() {
+        for side in [Side::Front, Side::Back, Side::Right, Side::Left, Side::Top, Side::Bottom] {
+            let mut view = somewhere();
+            view.look_from(side);
+            assert!((view.rotation * DVec3::Z - side.direction()).length() < 1e-12, "{side:?}");
+            assert!((view.rotation * DVec3::X).y.abs() < 1e-12, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn looking_through_a_camera_sees_what_it_sees() {
+        let camera = Camera::looking_at(DVec3::new(5.0, 2.0, 1.0), DVec3::new(0.0, 1.0, 0.0), 0.6);
+        let mut view = Navigation::default();
+        view.look_through(&camera, DVec3::ZERO);
+        let (a, b) = (camera.ray(DVec2::new(13.0, 99.0), SIZE), view.ray(DVec2::new(13.0, 99.0), SIZE));
+        assert!((a.origin - b.origin).length() < 1e-9 && (a.direction - b.direction).length() < 1e-9);
+    }
+}

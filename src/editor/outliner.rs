@@ -1,0 +1,360 @@
+//! The tree of the scene: selecting, renaming, ordering, hiding, locking.
+
+use std::cell::RefCell;
+use std::collections::HashSet;
+
+use egui::{Color32, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui_ltreeview::{
+    Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState,
+};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
+
+use super::commands::{self, CommandId};
+use super::workbench::Workbench;
+use super::{fields, glyphs, theme};
+use crate::document::Edit;
+use crate::scene::limits::MAX_NAME;
+use crate::scene::{Node, NodeId, NodeKind, Scene};
+
+/// A row of the tree; `None` is the scene itself, which holds the top and is not shown.
+type RowId = Option<NodeId>;
+
+/// What the outliner remembers between frames.
+#[derive(Default)]
+pub struct Outliner {
+    tree: TreeViewState<RowId>,
+    rename: Option<Rename>,
+    search: String,
+    /// The selection last seen: a new one is scrolled to and its parents are opened.
+    seen: Vec<NodeId>,
+}
+
+struct Rename {
+    id: NodeId,
+    text: String,
+    focused: bool,
+}
+
+/// What a row asks for; done after the tree has been shown.
+enum Request {
+    Rename(NodeId, String),
+    EndRename,
+    Visible(egui::Id, NodeId),
+    Locked(egui::Id, NodeId),
+    Select(Vec<NodeId>),
+    Run(CommandId),
+}
+
+impl Outliner {
+    /// Starts renaming a node in place.
+    pub fn start_rename(&mut self, scene: &Scene, id: NodeId) {
+        if let Some(node) = scene.node(id) {
+            self.rename = Some(Rename { id, text: node.name.clone(), focused: false });
+        }
+    }
+
+    /// Shows the panel; returns the commands chosen from its context menu.
+    pub fn show(&mut self, ui: &mut Ui, bench: &mut Workbench) -> Vec<CommandId> {
+        self.search_field(ui);
+        let scene = bench.document.snapshot();
+        let reveal = self.follow_selection(bench, &scene);
+        let requests = RefCell::new(Vec::new());
+        let mut actions = Vec::new();
+        ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+            if scene.nodes().is_empty() {
+                empty(ui);
+                return;
+            }
+            ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
+            let shown = self.found(&scene);
+            let (tree, rename) = (&mut self.tree, &mut self.rename);
+            let view = TreeView::new(ui.make_persistent_id("outliner"))
+                .indent_hint_style(IndentHintStyle::Line)
+                .row_layout(RowLayout::AlignedIcons)
+                .fallback_context_menu(|ui, ids| context_menu(ui, ids, bench.document.selection(), &requests))
+                .default_node_height(Some(theme::ROW_HEIGHT));
+            let rows = Rows { scene: &scene, shown: shown.as_ref(), reveal: &reveal, requests: &requests };
+            actions = view.show_state(ui, tree, |builder| rows.build(builder, rename)).1;
+        });
+        for action in actions {
+            self.act(ui, bench, &scene, action);
+        }
+        self.answer(bench, requests.into_inner())
+    }
+
+    fn search_field(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let clear = if self.search.is_empty() { 0.0 } else { 26.0 };
+            let field = TextEdit::singleline(&mut self.search)
+                .hint_text("Search…")
+                .desired_width(ui.available_width() - clear)
+                .margin(egui::Margin::symmetric(8, 4));
+            let response = ui.add(field);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Search"));
+            if clear > 0.0 && fields::icon_button(ui, ICON_CLOSE, "Clear the search", theme::WEAK).clicked() {
+                self.search.clear();
+            }
+        });
+        ui.add_space(2.0);
+    }
+
+    /// Takes over the document's selection; returns the nodes that must be made visible.
+    fn follow_selection(&mut self, bench: &Workbench, scene: &Scene) -> Vec<NodeId> {
+        let selection = bench.document.selection();
+        let shown: HashSet<_> = self.tree.selected().iter().copied().flatten().collect();
+        if shown.len() != selection.len() || selection.iter().any(|id| !shown.contains(id)) {
+            self.tree.set_selected(selection.iter().copied().map(Some).collect());
+        }
+        if self.seen == selection {
+            return Vec::new();
+        }
+        self.seen = selection.to_vec();
+        for &id in selection {
+            let mut at = scene.node(id).and_then(|n| n.parent);
+            while let Some(parent) = at {
+                self.tree.set_openness(Some(parent), true);
+                at = scene.node(parent).and_then(|n| n.parent);
+            }
+        }
+        selection.last().copied().into_iter().collect()
+    }
+
+    /// The nodes whose name holds the text searched for, with those above them; `None` for all.
+    fn found(&self, scene: &Scene) -> Option<HashSet<NodeId>> {
+        let wanted = self.search.trim().to_lowercase();
+        if wanted.is_empty() {
+            return None;
+        }
+        let mut found = HashSet::new();
+        for node in scene.nodes().iter().filter(|n| n.name.to_lowercase().contains(&wanted)) {
+            let mut at = Some(node.id);
+            while let Some(id) = at.filter(|id| found.insert(*id)) {
+                at = scene.node(id).and_then(|n| n.parent);
+            }
+        }
+        Some(found)
+    }
+
+    fn act(&mut self, ui: &mut Ui, bench: &mut Workbench, scene: &Scene, action: Action<RowId>) {
+        match action {
+            Action::SetSelected(rows) => {
+                let ids: Vec<_> = rows.into_iter().flatten().collect();
+                self.seen.clone_from(&ids);
+                bench.document.select(ids);
+            }
+            Action::Activate(activate) => {
+                if let Some(id) = activate.selected.into_iter().flatten().last() {
+                    self.start_rename(scene, id);
+                }
+            }
+            Action::Drag(drag) if destination(scene, &drag).is_none() => drag.remove_drop_marker(ui),
+            Action::Move(drag) => {
+                let Some((ids, parent, position)) = destination(scene, &drag) else { return };
+                bench.apply(Edit::Move { ids, parent, position });
+            }
+            _ => {}
+        }
+    }
+
+    fn answer(&mut self, bench: &mut Workbench, requests: Vec<Request>) -> Vec<CommandId> {
+        let mut run = Vec::new();
+        for request in requests {
+            match request {
+                Request::Rename(id, name) => {
+                    self.rename = None;
+                    let node = bench.document.scene().node(id).map(|n| Node::clone(n));
+                    if let Some(node) = node.filter(|n| n.name != name && !name.trim().is_empty()) {
+                        bench.apply(Edit::Replace(Node { name, ..node }));
+                    }
+                }
+                Request::EndRename => self.rename = None,
+                Request::Visible(widget, id) => bench.change(widget, &[id], |n| n.visible = !n.visible),
+                Request::Locked(widget, id) => bench.change(widget, &[id], |n| n.locked = !n.locked),
+                Request::Select(ids) => bench.document.select(ids),
+                Request::Run(command) => run.push(command),
+            }
+        }
+        run
+    }
+}
+
+fn empty(ui: &mut Ui) {
+    ui.add_space(24.0);
+    ui.vertical_centered(|ui| {
+        ui.label(RichText::new("Nothing here yet").color(theme::TEXT));
+        ui.label(
+            RichText::new("Add a shape with the buttons above,\nor open a scene: File ▸ Examples.").color(theme::WEAK),
+        );
+    });
+}
+
+/// Where a drag would put its nodes: `None` where that is not allowed.
+fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>, RowId, usize)> {
+    let parent = drag.target;
+    let ids: Vec<NodeId> = drag.source.iter().copied().flatten().collect();
+    let into_itself = |p| ids.iter().any(|id| scene.is_within(p, *id));
+    if ids.is_empty() || parent.is_some_and(into_itself) {
+        return None;
+    }
+    // Positions are counted without the nodes that move.
+    let rest: Vec<NodeId> = scene.children(parent).map(|n| n.id).filter(|id| !ids.contains(id)).collect();
+    let index = |row: &RowId| row.and_then(|id| rest.iter().position(|r| *r == id));
+    let position = match &drag.position {
+        DirPosition::First => 0,
+        DirPosition::Last => rest.len(),
+        DirPosition::Before(row) => index(row)?,
+        DirPosition::After(row) => index(row)? + 1,
+    };
+    Some((ids, parent, position))
+}
+
+fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &RefCell<Vec<Request>>) {
+    let ids: Vec<NodeId> = rows.iter().copied().flatten().collect();
+    if !ids.is_empty() && ids.iter().any(|id| !selection.contains(id)) {
+        requests.borrow_mut().push(Request::Select(ids));
+    }
+    ui.set_min_width(210.0);
+    if let Some(chosen) = commands::context_entries(ui) {
+        requests.borrow_mut().push(Request::Run(chosen));
+        ui.close();
+    }
+}
+
+/// Everything that the rows are made from.
+struct Rows<'a> {
+    scene: &'a Scene,
+    shown: Option<&'a HashSet<NodeId>>,
+    reveal: &'a [NodeId],
+    requests: &'a RefCell<Vec<Request>>,
+}
+
+impl Rows<'_> {
+    /// Adds all rows, without recursion: scenes may be nested a thousand deep.
+    fn build(&self, builder: &mut egui_ltreeview::TreeViewBuilder<'_, RowId>, rename: &mut Option<Rename>) {
+        builder.node(NodeBuilder::dir(None).flatten(true).default_open(true));
+        let (nodes, depths) = (self.scene.nodes(), self.scene.depths());
+        let mut open_groups = 0;
+        let mut hidden_above: Vec<bool> = Vec::new();
+        let mut index = 0;
+        while index < nodes.len() {
+            let node = &nodes[index];
+            let depth = depths[index] as usize;
+            while open_groups > depth {
+                builder.close_dir();
+                open_groups -= 1;
+            }
+            hidden_above.truncate(depth);
+            let inherited = hidden_above.last().copied().unwrap_or(false);
+            hidden_above.push(inherited || !node.visible);
+            if self.shown.is_some_and(|shown| !shown.contains(&node.id)) {
+                index = self.scene.subtree(index).end;
+                continue;
+            }
+            let open = self.row(builder, node, inherited, rename);
+            if matches!(node.kind, NodeKind::Group(_)) {
+                open_groups += 1;
+                if !open {
+                    index = self.scene.subtree(index).end;
+                    continue;
+                }
+            }
+            index += 1;
+        }
+        for _ in 0..=open_groups {
+            builder.close_dir();
+        }
+    }
+
+    fn row(
+        &self,
+        builder: &mut egui_ltreeview::TreeViewBuilder<'_, RowId>,
+        node: &Node,
+        hidden_above: bool,
+        rename: &mut Option<Rename>,
+    ) -> bool {
+        let row = match node.kind {
+            NodeKind::Group(_) => NodeBuilder::dir(Some(node.id)),
+            _ => NodeBuilder::leaf(Some(node.id)),
+        };
+        let dim = hidden_above || !node.visible;
+        let row = row
+            .activatable(true)
+            .icon(|ui| {
+                let rect = glyphs::centered(ui.max_rect(), 14.0);
+                let painter = ui.painter().with_clip_rect(ui.clip_rect());
+                glyphs::paint_node(&painter, rect, node);
+            })
+            .label_ui(|ui| match rename.as_mut().filter(|r| r.id == node.id) {
+                Some(rename) => self.name_field(ui, rename),
+                None => self.name(ui, node, dim),
+            })
+            .accessory(|ui| self.switches(ui, node));
+        builder.node(row)
+    }
+
+    fn name(&self, ui: &mut Ui, node: &Node, dim: bool) {
+        let color = match () {
+            () if dim => theme::FAINT,
+            () if node.negative => theme::NEGATIVE,
+            () => theme::TEXT,
+        };
+        let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
+        let response = ui.add(egui::Label::new(text.color(color)).selectable(false));
+        if node.negative {
+            ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
+        }
+        if self.reveal.contains(&node.id) {
+            response.scroll_to_me(None);
+        }
+    }
+
+    fn name_field(&self, ui: &mut Ui, rename: &mut Rename) {
+        let field = TextEdit::singleline(&mut rename.text).char_limit(MAX_NAME).desired_width(140.0);
+        let response = ui.add(field.margin(egui::Margin::symmetric(4, 1)));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("New name"));
+        if !rename.focused {
+            rename.focused = true;
+            response.request_focus();
+            let mut state = egui::text_edit::TextEditState::load(ui.ctx(), response.id).unwrap_or_default();
+            let end = egui::text::CCursor::new(rename.text.chars().count());
+            state.cursor.set_char_range(Some(egui::text::CCursorRange::two(egui::text::CCursor::new(0), end)));
+            state.store(ui.ctx(), response.id);
+        } else if response.lost_focus() {
+            let cancelled = ui.input(|i| i.key_pressed(Key::Escape));
+            let request = if cancelled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
+            self.requests.borrow_mut().push(request);
+        }
+    }
+
+    /// The eye and the lock at the right end of the row; the lock appears when it is of use.
+    fn switches(&self, ui: &mut Ui, node: &Node) {
+        let row = ui.clip_rect().with_min_y(ui.max_rect().top()).with_max_y(ui.max_rect().bottom());
+        let hovered = ui.rect_contains_pointer(row);
+        let rest = if hovered { theme::WEAK } else { theme::RESTING };
+        ui.spacing_mut().item_spacing.x = 0.0;
+        let (icon, verb, color) = match node.visible {
+            true => (ICON_VISIBILITY, "Hide", rest),
+            false => (ICON_VISIBILITY_OFF, "Show", theme::WARNING),
+        };
+        let eye = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        if eye.clicked() {
+            self.requests.borrow_mut().push(Request::Visible(eye.id, node.id));
+        }
+        let (icon, verb, color) = match node.locked {
+            false => (ICON_LOCK_OPEN, "Lock", if hovered { rest } else { Color32::TRANSPARENT }),
+            true => (ICON_LOCK, "Unlock", theme::WARNING),
+        };
+        let lock = switch(ui, icon, &format!("{verb} {}", node.name), color);
+        if lock.clicked() {
+            self.requests.borrow_mut().push(Request::Locked(lock.id, node.id));
+        }
+    }
+}
+
+fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: Color32) -> egui::Response {
+    let text = icon.rich_text().size(14.0).color(color);
+    let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
+    response
+}

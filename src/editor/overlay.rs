@@ -1,0 +1,150 @@
+//! What is painted over the picture: the selection's boxes, lights and cameras, the compass.
+
+use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
+use glam::DVec3;
+
+use super::navigation::Side;
+use super::viewport::Projection;
+use super::{Editor, bounds, glyphs, theme};
+use crate::scene::{NodeId, NodeKind};
+
+/// Boxes are painted for so many selected nodes at most.
+const MOST_BOXES: usize = 64;
+
+/// The oriented boxes of the selected nodes.
+pub fn selection_boxes(editor: &mut Editor, painter: &Painter, projection: &Projection) {
+    let selection = editor.bench.document.selection().to_vec();
+    let active = selection.last().copied();
+    for id in selection.into_iter().rev().take(MOST_BOXES) {
+        let scene = editor.bench.document.scene();
+        let is_marker = scene.node(id).is_some_and(|n| matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_)));
+        if is_marker {
+            continue;
+        }
+        let Some((world_from_local, bounds)) = bounds::oriented(scene, &mut editor.meshes, id) else { continue };
+        let color = if Some(id) == active { theme::ACCENT } else { theme::ACCENT.gamma_multiply(0.6) };
+        let corners = bounds.corners().map(|c| projection.to_screen(world_from_local.transform_point3(c)));
+        paint_box(painter, &corners, Stroke::new(1.25, color));
+    }
+}
+
+/// The corners of a box, each as three short strokes: it marks the room and hides little.
+fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
+    const SHARE: f32 = 0.22;
+    for (index, corner) in corners.iter().enumerate() {
+        for axis in 0..3 {
+            let (Some(from), Some(to)) = (corner, corners[index ^ (1 << axis)]) else { continue };
+            painter.line_segment([*from, *from + (to - *from) * SHARE], stroke);
+        }
+    }
+}
+
+/// A light or a camera on the screen.
+pub struct Marker {
+    /// Its node.
+    pub id: NodeId,
+    /// Where, in points.
+    pub at: Pos2,
+}
+
+impl Marker {
+    /// Reach of the pointer, in points.
+    pub const GRAB: f32 = 13.0;
+}
+
+/// The visible lights and cameras; none for the camera that is looked through.
+pub fn markers(editor: &Editor, projection: &Projection) -> Vec<Marker> {
+    let flat = editor.flat();
+    let lights = flat.lights.iter().map(|l| (l.id, l.position));
+    let cameras = flat.cameras.iter().map(|c| (c.id, c.camera.position));
+    let eye = editor.navigation.eye();
+    let near = editor.navigation.distance * 1e-2;
+    lights
+        .chain(cameras)
+        .filter(|(_, position)| position.distance(eye) > near)
+        .filter_map(|(id, position)| Some(Marker { id, at: projection.to_screen(position)? }))
+        .collect()
+}
+
+/// Paints the markers, with the direction in which the selected ones shine or look.
+pub fn paint_markers(editor: &Editor, painter: &Painter, projection: &Projection, markers: &[Marker]) {
+    for marker in markers {
+        let scene = editor.bench.document.scene();
+        let Some(node) = scene.node(marker.id) else { continue };
+        let selected = editor.bench.document.selection().contains(&marker.id);
+        let color = glyphs::node_color(node);
+        if selected {
+            let world = scene.world_from_local(marker.id);
+            let reach = projection.metres_per_point(world.translation) * 60.0;
+            let ahead = world.translation + (world.matrix3 * DVec3::NEG_Z).normalize_or_zero() * reach;
+            if let Some(tip) = projection.to_screen(ahead) {
+                painter.arrow(marker.at, tip - marker.at, Stroke::new(1.5, color.gamma_multiply(0.8)));
+            }
+        }
+        let ring = if selected { theme::ACCENT } else { Color32::from_black_alpha(0) };
+        painter.circle(marker.at, 11.0, Color32::from_black_alpha(110), Stroke::new(1.5, ring));
+        glyphs::paint_node(painter, glyphs::centered(Rect::from_center_size(marker.at, vec2(14.0, 14.0)), 14.0), node);
+    }
+}
+
+/// The compass: the world's axes as the eye sees them; a click looks along one.
+pub struct Compass {
+    balls: [(Side, Pos2, f32); 6],
+    center: Pos2,
+}
+
+impl Compass {
+    const ARM: f32 = 28.0;
+    const BALL: f32 = 8.0;
+
+    /// The compass in the upper right corner of the viewport.
+    pub fn new(rect: Rect, rotation: glam::DQuat) -> Self {
+        let center = rect.right_top() + vec2(-50.0, 50.0);
+        let inverse = rotation.inverse();
+        let sides = [Side::Right, Side::Top, Side::Front, Side::Left, Side::Bottom, Side::Back];
+        let mut balls = sides.map(|side| {
+            let seen = (inverse * side.direction()).as_vec3();
+            (side, center + vec2(seen.x, -seen.y) * Self::ARM, seen.z)
+        });
+        balls.sort_by(|a, b| a.2.total_cmp(&b.2));
+        Self { balls, center }
+    }
+
+    /// The side under the pointer, the nearest first.
+    pub fn side_at(&self, pointer: Pos2) -> Option<Side> {
+        self.balls.iter().rev().find(|(_, at, _)| at.distance(pointer) <= Self::BALL + 1.0).map(|ball| ball.0)
+    }
+
+    /// Paints it, far balls first.
+    pub fn paint(&self, painter: &Painter, hovered: Option<Side>) {
+        if hovered.is_some() {
+            painter.circle_filled(self.center, Self::ARM + 14.0, Color32::from_white_alpha(10));
+        }
+        for (side, at, depth) in self.balls {
+            let direction = side.direction();
+            let axis = (0..3).find(|a| direction[*a] != 0.0).unwrap_or(0);
+            let positive = direction[axis] > 0.0;
+            let dim = 0.55 + 0.45 * (depth + 1.0) * 0.5;
+            let color = theme::AXES[axis].gamma_multiply(dim);
+            if positive {
+                painter.line_segment([self.center, at], Stroke::new(2.0, color));
+                painter.circle_filled(at, Self::BALL, color);
+                let font = FontId::proportional(11.0);
+                painter.text(at, Align2::CENTER_CENTER, ["X", "Y", "Z"][axis], font, Color32::from_black_alpha(200));
+            } else {
+                painter.circle(at, Self::BALL - 2.0, color.gamma_multiply(0.25), Stroke::new(1.25, color));
+            }
+            if hovered == Some(side) {
+                painter.circle_stroke(at, Self::BALL + 1.0, Stroke::new(1.5, Color32::WHITE));
+            }
+        }
+    }
+}
+
+/// A word to beginners in the middle of an empty viewport.
+pub fn empty_hint(painter: &Painter, rect: Rect) {
+    let at = rect.center() + vec2(0.0, -10.0);
+    painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::TEXT);
+    let text = "Add a shape with the buttons above, or open File ▸ Examples";
+    painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::WEAK);
+}

@@ -1,0 +1,132 @@
+//! The palette: every command by its name.
+
+use egui::{Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, vec2};
+
+use super::commands::CommandId;
+use super::{Editor, theme};
+
+/// What the palette remembers while it is open.
+#[derive(Default)]
+pub struct Palette {
+    open: bool,
+    text: String,
+    chosen: usize,
+    focus: bool,
+}
+
+impl Palette {
+    /// Opens it, empty.
+    pub fn open(&mut self) {
+        *self = Self { open: true, focus: true, ..Self::default() };
+    }
+
+    /// Whether it is open.
+    pub fn is_open(&self) -> bool {
+        self.open
+    }
+}
+
+/// Shows the palette where it is open, and runs what is chosen.
+pub fn show(editor: &mut Editor, ctx: &Context) {
+    if !editor.palette.open {
+        return;
+    }
+    let found = matches(&editor.palette.text);
+    let (up, down, enter, escape) = ctx.input_mut(|i| {
+        let mut key = |key| i.consume_key(Modifiers::NONE, key);
+        (key(Key::ArrowUp), key(Key::ArrowDown), key(Key::Enter), key(Key::Escape))
+    });
+    let last = found.len().saturating_sub(1);
+    let palette = &mut editor.palette;
+    palette.chosen = (palette.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
+    let mut run = found.get(palette.chosen).copied().filter(|_| enter);
+    let moved = up || down;
+    let response = Area::new(Id::unique("palette"))
+        .order(Order::Foreground)
+        .anchor(Align2::CENTER_TOP, vec2(0.0, 120.0))
+        .show(ctx, |ui| {
+            Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
+                ui.set_width(420.0);
+                if let Some(command) = list(editor, ui, &found, moved) {
+                    run = Some(command);
+                }
+            });
+        });
+    let outside = response.response.clicked_elsewhere() && !editor.palette.focus;
+    editor.palette.focus = false;
+    if escape || outside || enter || run.is_some() {
+        editor.palette.open = false;
+        // The key belongs to the palette, not to the widget that had the keyboard before.
+        ctx.memory_mut(|m| m.stop_text_input());
+    }
+    if let Some(command) = run {
+        command.run(editor, ctx);
+    }
+}
+
+fn list(editor: &mut Editor, ui: &mut egui::Ui, found: &[CommandId], moved: bool) -> Option<CommandId> {
+    let field = TextEdit::singleline(&mut editor.palette.text)
+        .hint_text("Find a command…")
+        .desired_width(f32::INFINITY)
+        .margin(egui::Margin::symmetric(8, 6));
+    let response = ui.add(field);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find command"));
+    if editor.palette.focus {
+        response.request_focus();
+    }
+    if response.changed() {
+        editor.palette.chosen = 0;
+    }
+    ui.add_space(4.0);
+    let mut run = None;
+    ScrollArea::vertical().max_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 1.0;
+        if found.is_empty() {
+            ui.label(RichText::new("No command has this name.").color(theme::WEAK));
+        }
+        for (index, id) in found.iter().enumerate() {
+            let command = id.get();
+            let icon = match command.icon {
+                Some(icon) => icon.rich_text().color(theme::WEAK),
+                None => RichText::new("    "),
+            };
+            let keys = command.keys.first().map_or_else(String::new, |k| ui.ctx().format_shortcut(k));
+            let button = Button::selectable(index == editor.palette.chosen, (icon, command.name.as_str()))
+                .min_size(vec2(ui.available_width(), 26.0))
+                .shortcut_text(RichText::new(keys).color(theme::FAINT));
+            let response = ui.add_enabled(id.enabled(editor), button);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("Run {}", command.name)));
+            if index == editor.palette.chosen && moved {
+                response.scroll_to_me(None);
+            }
+            if response.on_hover_text(&command.help).clicked() {
+                run = Some(*id);
+            }
+        }
+    });
+    run
+}
+
+/// The commands whose name holds every word typed; those that begin with the text first.
+fn matches(text: &str) -> Vec<CommandId> {
+    let wanted = text.to_lowercase();
+    let words: Vec<&str> = wanted.split_whitespace().collect();
+    let name = |id: &CommandId| id.get().name.to_lowercase();
+    let mut found: Vec<_> = CommandId::all().filter(|id| words.iter().all(|w| name(id).contains(w))).collect();
+    found.sort_by_key(|id| !name(id).starts_with(wanted.trim()));
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_may_come_in_any_order_and_a_beginning_comes_first() {
+        let names = |text| matches(text).into_iter().map(|id| id.get().name.clone()).collect::<Vec<_>>();
+        assert_eq!(names("view top"), ["Top view"]);
+        assert_eq!(names("s").first().map(String::as_str), Some("Save"));
+        assert_eq!(names("").len(), CommandId::all().count());
+        assert!(names("xyzzy").is_empty());
+    }
+}

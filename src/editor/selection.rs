@@ -1,0 +1,176 @@
+//! What can be done with the selection: each function is one undo step.
+
+use std::collections::HashSet;
+
+use super::workbench::Workbench;
+use crate::document::Edit;
+use crate::scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
+
+/// The selected nodes that do not stand below another selected one, in the scene's order.
+pub fn roots(bench: &Workbench) -> Vec<NodeId> {
+    let scene = bench.document.scene();
+    let mut ids = bench.document.selection().to_vec();
+    ids.sort_by_key(|id| scene.index_of(*id));
+    let mut roots: Vec<NodeId> = Vec::new();
+    for id in ids {
+        if !roots.last().is_some_and(|root| scene.is_within(id, *root)) {
+            roots.push(id);
+        }
+    }
+    roots
+}
+
+/// Copies the selection and selects the copies.
+pub fn duplicate(bench: &mut Workbench) {
+    let added = bench.apply(Edit::Duplicate(roots(bench)));
+    if !added.is_empty() {
+        bench.document.select(added);
+    }
+}
+
+/// Removes the selection and selects what stands beside it.
+pub fn delete(bench: &mut Workbench) {
+    let ids = roots(bench);
+    let scene = bench.document.scene();
+    let parent = ids.first().and_then(|id| scene.node(*id)).and_then(|n| n.parent);
+    let siblings: Vec<NodeId> = scene.children(parent).map(|n| n.id).collect();
+    let at = siblings.iter().position(|id| ids.contains(id)).unwrap_or(0);
+    let beside = siblings[at..].iter().chain(siblings[..at].iter().rev()).find(|id| !ids.contains(id)).copied();
+    bench.apply(Edit::Remove(ids));
+    bench.document.select(beside.or(parent).into_iter().collect());
+}
+
+/// Makes the selection the operands of `operator`. One selected group only changes its operator,
+/// unless a `new` group is wanted.
+pub fn join(bench: &mut Workbench, operator: Operator, new: bool) {
+    let ids = roots(bench);
+    let single = ids.first().filter(|_| ids.len() == 1).and_then(|id| bench.document.scene().node(*id).cloned());
+    if let (false, Some(NodeKind::Group(group))) = (new, single.as_ref().map(|n| &n.kind)) {
+        let node = Node {
+            kind: NodeKind::Group(Group { operator, ..*group }),
+            ..Node::clone(single.as_ref().expect("matched above"))
+        };
+        bench.apply(Edit::Replace(node));
+        return;
+    }
+    let group = Group { operator, ..Group::UNION };
+    let added = bench.apply(Edit::Group { ids, group });
+    if !added.is_empty() {
+        bench.document.select(added);
+    }
+}
+
+/// Takes the children out of the selected groups and removes the groups.
+pub fn ungroup(bench: &mut Workbench) {
+    let scene = bench.document.snapshot();
+    let groups: Vec<_> = roots(bench)
+        .into_iter()
+        .filter_map(|id| scene.node(id))
+        .filter(|n| matches!(n.kind, NodeKind::Group(_)))
+        .cloned()
+        .collect();
+    if groups.is_empty() {
+        return;
+    }
+    let freed = bench.together(|bench| {
+        let mut freed = Vec::new();
+        for group in &groups {
+            let children: Vec<NodeId> = scene.children(Some(group.id)).map(|n| n.id).collect();
+            let position = place(bench.document.scene(), group.id);
+            freed.extend(children.iter().copied());
+            bench.apply(Edit::Move { ids: children, parent: group.parent, position });
+            bench.apply(Edit::Remove(vec![group.id]));
+        }
+        freed
+    });
+    bench.document.select(freed);
+}
+
+/// Moves each of the selection one place up (−1) or down (+1) among its siblings.
+pub fn shift(bench: &mut Workbench, by: isize) {
+    let mut ids = roots(bench);
+    if by > 0 {
+        ids.reverse();
+    }
+    bench.together(|bench| {
+        let mut done = HashSet::new();
+        for id in ids {
+            let scene = bench.document.scene();
+            let Some(parent) = scene.node(id).map(|n| n.parent) else { continue };
+            let siblings: Vec<NodeId> = scene.children(parent).map(|n| n.id).collect();
+            let at = place(scene, id);
+            let target = at.checked_add_signed(by).filter(|t| *t < siblings.len());
+            // A block at the border stays together.
+            if let Some(position) = target.filter(|t| !done.contains(&siblings[*t])) {
+                bench.apply(Edit::Move { ids: vec![id], parent, position });
+            }
+            done.insert(id);
+        }
+    });
+}
+
+/// The place of a node among its siblings.
+pub fn place(scene: &Scene, id: NodeId) -> usize {
+    let parent = scene.node(id).and_then(|n| n.parent);
+    scene.children(parent).position(|n| n.id == id).unwrap_or(0)
+}
+
+/// Cuts the selection away, or joins it again: all as the active node.
+pub fn toggle_negative(bench: &mut Workbench) {
+    let on = bench.selected().last().is_some_and(|n| !n.negative);
+    change_each(bench, |n| n.negative = on && n.has_field());
+}
+
+/// Hides or shows the selection: all as the active node.
+pub fn toggle_visible(bench: &mut Workbench) {
+    let on = bench.selected().last().is_some_and(|n| !n.visible);
+    change_each(bench, |n| n.visible = on);
+}
+
+/// Locks or unlocks the selection: all as the active node.
+pub fn toggle_locked(bench: &mut Workbench) {
+    let on = bench.selected().last().is_some_and(|n| !n.locked);
+    change_each(bench, |n| n.locked = on);
+}
+
+fn change_each(bench: &mut Workbench, change: impl Fn(&mut Node)) {
+    let nodes = bench.selected();
+    bench.together(|bench| {
+        for node in nodes {
+            let mut node = Node::clone(&node);
+            change(&mut node);
+            bench.apply(Edit::Replace(node));
+        }
+    });
+}
+
+/// Shows everything that is hidden.
+pub fn show_all(bench: &mut Workbench) {
+    let hidden: Vec<_> = bench.document.scene().nodes().iter().filter(|n| !n.visible).cloned().collect();
+    bench.together(|bench| {
+        for node in hidden {
+            bench.apply(Edit::Replace(Node { visible: true, ..Node::clone(&node) }));
+        }
+    });
+}
+
+/// Selects every node at the top that is not locked.
+pub fn select_all(bench: &mut Workbench) {
+    let ids = bench.document.scene().children(None).filter(|n| !n.locked).map(|n| n.id).collect();
+    bench.document.select(ids);
+}
+
+/// Materials that nothing wears; the first is kept for new objects where nothing else would be left.
+pub fn unused_materials(scene: &Scene) -> Vec<MaterialId> {
+    let worn: HashSet<MaterialId> = scene
+        .nodes()
+        .iter()
+        .filter_map(|n| match &n.kind {
+            NodeKind::Object(object) => Some(object.material),
+            NodeKind::Mesh(mesh) => mesh.material,
+            _ => None,
+        })
+        .collect();
+    let keep_first = usize::from(worn.is_empty());
+    scene.materials().iter().map(|m| m.id).filter(|id| !worn.contains(id)).skip(keep_first).collect()
+}

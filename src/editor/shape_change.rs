@@ -1,0 +1,93 @@
+//! Changing a shape in place: the new shape fills the room of the old one.
+
+use glam::DVec3;
+
+use crate::scene::{Shape, ShapeKind};
+
+/// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
+/// then the kind's defaults.
+pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
+    let bounds = from.bounds();
+    let half = bounds.half().max(DVec3::splat(1e-3));
+    if from.kind() == kind || !bounds.is_finite() {
+        return if from.kind() == kind { *from } else { kind.default_shape() };
+    }
+    let mean = (half.x + half.y + half.z) / 3.0;
+    let side = (half.x + half.z) * 0.5;
+    let shape = match kind {
+        ShapeKind::Sphere => Shape::Sphere { radius: mean },
+        ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half.to_array() },
+        ShapeKind::Box => Shape::Box { size: (half * 2.0).to_array(), rounding: 0.0 },
+        ShapeKind::BoxFrame => Shape::BoxFrame { size: (half * 2.0).to_array(), thickness: 0.2 * half.min_element() },
+        ShapeKind::Torus => {
+            let minor_radius = half.y.min(side * 0.4);
+            Shape::Torus { major_radius: side - minor_radius, minor_radius }
+        }
+        ShapeKind::Cylinder => Shape::Cylinder { radius: side, height: 2.0 * half.y, rounding: 0.0 },
+        ShapeKind::CappedCone => {
+            Shape::CappedCone { bottom_radius: side, top_radius: 0.4 * side, height: 2.0 * half.y }
+        }
+        ShapeKind::RoundCone => {
+            let bottom_radius = side.min(half.y);
+            let top_radius = 0.5 * bottom_radius;
+            Shape::RoundCone { bottom_radius, top_radius, height: 2.0 * half.y - bottom_radius - top_radius }
+        }
+        ShapeKind::Capsule => {
+            let radius = side.min(half.y);
+            let (center, reach) = (bounds.center(), DVec3::Y * (half.y - radius));
+            Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius }
+        }
+        ShapeKind::Plane => Shape::Plane {},
+        ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
+        ShapeKind::Octahedron => Shape::Octahedron { radius: mean },
+    };
+    rounded(shape)
+}
+
+/// The shape with every number rounded to a micrometre, so that the inspector shows tidy values.
+fn rounded(mut shape: Shape) -> Shape {
+    use crate::scene::ParamValue::{Scalar, Vector};
+    let tidy = |v: f64| (v * 1e6).round() / 1e6;
+    for (index, value) in shape.values().into_iter().enumerate() {
+        let value = match value {
+            Scalar(v) => Scalar(tidy(v)),
+            Vector(v) => Vector(v.map(tidy)),
+        };
+        shape.set_value(index, value);
+    }
+    shape
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_change_keeps_about_the_size_and_every_value_is_allowed() {
+        for &from in ShapeKind::ALL {
+            for &to in ShapeKind::ALL {
+                let old = from.default_shape();
+                let new = changed(&old, to);
+                assert_eq!(new.kind(), to);
+                for (param, value) in to.params().iter().zip(new.packed()) {
+                    assert!(param.limits.accept(value), "{from:?} to {to:?}: {} {value}", param.name);
+                }
+                if old.bounds().is_finite() && new.bounds().is_finite() {
+                    let ratio = new.bounds().half().length() / old.bounds().half().length();
+                    assert!((0.4..=1.6).contains(&ratio), "{from:?} to {to:?}: {ratio}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_becomes_the_ball_inside_it_and_comes_back() {
+        let cube = Shape::Box { size: [2.0; 3], rounding: 0.1 };
+        assert_eq!(changed(&cube, ShapeKind::Sphere), Shape::Sphere { radius: 1.0 });
+        assert_eq!(
+            changed(&Shape::Sphere { radius: 1.0 }, ShapeKind::Box),
+            Shape::Box { size: [2.0; 3], rounding: 0.0 }
+        );
+        assert_eq!(changed(&cube, ShapeKind::Box), cube, "the same kind changes nothing");
+    }
+}

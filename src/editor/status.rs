@@ -1,0 +1,60 @@
+//! The bar at the bottom: what the mouse does, what is going on, how much there is.
+
+use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
+
+use super::{Editor, Picture, theme};
+
+/// Shows the bar.
+pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
+    ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
+    ui.horizontal(|ui| {
+        ui.set_height(20.0);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            counts(editor, ui);
+            if !picture.status.is_empty() {
+                ui.label(RichText::new(&picture.status).color(theme::WEAK));
+            }
+            if let Some(progress) = picture.progress {
+                ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| left(editor, ui));
+        });
+    });
+}
+
+fn counts(editor: &Editor, ui: &mut Ui) {
+    let nodes = editor.bench.document.scene().nodes().len();
+    let components = editor.flat().components.len();
+    let selected = editor.bench.document.selection().len();
+    let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
+    let text = format!("{chosen}{} · {}", plural(nodes, "node"), plural(components, "component"));
+    let help = "A component is a part that meets the others only by hard union, and is drawn on its own";
+    ui.label(RichText::new(text).color(theme::WEAK)).on_hover_text(help);
+}
+
+fn plural(count: usize, word: &str) -> String {
+    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+}
+
+/// A problem of the scene, or the newest message for a while, or what the mouse does.
+fn left(editor: &mut Editor, ui: &mut Ui) {
+    if let Some(problem) = &editor.flat.problem {
+        let text = format!("Not shown: {problem}");
+        ui.label(super::messages::Severity::Error.icon().size(14.0));
+        ui.add(egui::Label::new(RichText::new(text).color(theme::ERROR)).truncate());
+        return;
+    }
+    if let Some(warning) = editor.flat().warnings.first().cloned() {
+        let more = editor.flat().warnings.len() - 1;
+        let more = if more > 0 { format!(" (+{more})") } else { String::new() };
+        let text = format!("{}: {}{more}", warning.name, warning.reason);
+        ui.label(super::messages::Severity::Warning.icon().size(14.0));
+        let button = Button::new(RichText::new(text).color(theme::WARNING)).frame(false).truncate();
+        if ui.add(button).on_hover_text("Selects the node").clicked() {
+            editor.bench.document.select(vec![warning.node]);
+        }
+        return;
+    }
+    let hint = editor.viewport.hint(&editor.bench);
+    ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
+}

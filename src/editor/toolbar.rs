@@ -1,0 +1,112 @@
+//! The bar at the top: menus, then the buttons used most.
+
+use egui::{Button, MenuBar, Response, RichText, Ui, vec2};
+
+use super::commands::{self, CommandId, Menu};
+use super::dialogs::Intent;
+use super::{Editor, glyphs, theme};
+use crate::scene::ShapeKind;
+
+/// Shows the bar.
+pub fn show(editor: &mut Editor, ui: &mut Ui) {
+    let mut chosen = None;
+    MenuBar::new().ui(ui, |ui| {
+        ui.label(RichText::new("Isolith").strong().color(theme::ACCENT));
+        ui.add_space(6.0);
+        for (name, menu) in [("File", Menu::File), ("Edit", Menu::Edit), ("Add", Menu::Add), ("View", Menu::View)] {
+            ui.menu_button(name, |ui| {
+                ui.set_min_width(230.0);
+                if menu == Menu::File {
+                    file_lists(editor, ui);
+                }
+                if let Some(command) = commands::menu_entries(ui, editor, menu) {
+                    chosen = Some(command);
+                }
+            });
+        }
+    });
+    ui.add_space(3.0);
+    ui.horizontal_wrapped(|ui| {
+        ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
+        buttons(editor, ui, &["Undo", "Redo"], &mut chosen);
+        divider(ui);
+        for &kind in ShapeKind::ALL {
+            if shape_button(editor, ui, kind).clicked() {
+                chosen = Some(CommandId::named(kind.label()));
+            }
+        }
+        divider(ui);
+        buttons(editor, ui, &["Sun", "Point light", "Spot light", "Mesh…"], &mut chosen);
+        divider(ui);
+        buttons(editor, ui, &["Unite", "Intersect", "Subtract", "Toggle negative", "Group"], &mut chosen);
+        divider(ui);
+        buttons(editor, ui, &["Duplicate", "Delete"], &mut chosen);
+        divider(ui);
+        buttons(editor, ui, &["Frame all", "Frame selected"], &mut chosen);
+    });
+    if let Some(command) = chosen {
+        command.run(editor, &ui.ctx().clone());
+    }
+}
+
+fn divider(ui: &mut Ui) {
+    ui.add_space(3.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(1.0, 26.0), egui::Sense::hover());
+    ui.painter().vline(rect.center().x, rect.y_range().shrink(4.0), (1.0, theme::FAINT.gamma_multiply(0.6)));
+    ui.add_space(3.0);
+}
+
+fn square(ui: &mut Ui, enabled: bool, button: Button<'_>, name: &str) -> Response {
+    let response = ui.add_enabled(enabled, button.min_size(vec2(30.0, 26.0)).frame_when_inactive(false));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
+    response
+}
+
+fn buttons(editor: &Editor, ui: &mut Ui, names: &[&str], chosen: &mut Option<CommandId>) {
+    for name in names {
+        let id = CommandId::named(name);
+        let command = id.get();
+        let text = command.icon.map_or_else(|| RichText::new(*name), |icon| icon.rich_text().size(17.0));
+        let response = square(ui, id.enabled(editor), Button::new(text), name);
+        let tooltip = command.tooltip(ui.ctx());
+        if response.on_hover_text(&tooltip).on_disabled_hover_text(tooltip).clicked() {
+            *chosen = Some(id);
+        }
+    }
+}
+
+fn shape_button(_: &Editor, ui: &mut Ui, kind: ShapeKind) -> Response {
+    let response = square(ui, true, Button::new(""), &format!("Add {}", kind.label().to_lowercase()));
+    let color = if response.hovered() { egui::Color32::WHITE } else { theme::OBJECT };
+    glyphs::paint_shape(ui.painter(), glyphs::centered(response.rect, 17.0), kind, color);
+    response.on_hover_text(format!("Add: {}\n{}", kind.label(), kind.help()))
+}
+
+/// Recent files and examples, at the top of the File menu.
+fn file_lists(editor: &mut Editor, ui: &mut Ui) {
+    let mut intent = None;
+    ui.add_enabled_ui(!editor.recent.paths().is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in editor.recent.paths() {
+                let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    intent = Some(Intent::Open(path.clone()));
+                }
+            }
+        });
+    });
+    ui.add_enabled_ui(!editor.examples.is_empty(), |ui| {
+        ui.menu_button("Examples", |ui| {
+            for (index, example) in editor.examples.iter().enumerate() {
+                if ui.button(&example.name).clicked() {
+                    intent = Some(Intent::Example(index));
+                }
+            }
+        });
+    });
+    ui.separator();
+    if let Some(intent) = intent {
+        ui.close();
+        editor.intend(intent, &ui.ctx().clone());
+    }
+}
