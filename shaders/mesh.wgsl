@@ -6,9 +6,9 @@
 
 struct Instance {
     // Rows of eye-relative world space from the mesh's space.
-    x: vec4f,
-    y: vec4f,
-    z: vec4f,
+    eye_from_local_x: vec4f,
+    eye_from_local_y: vec4f,
+    eye_from_local_z: vec4f,
     // Rows of the matrix for normals.
     normal_x: vec4f,
     normal_y: vec4f,
@@ -51,7 +51,11 @@ struct Written {
 @vertex
 fn mesh_vertex(vertex: Vertex) -> Varying {
     let p = vec4f(vertex.position, 1.0);
-    let position = vec3f(dot(instance.x, p), dot(instance.y, p), dot(instance.z, p));
+    let position = vec3f(
+        dot(instance.eye_from_local_x, p),
+        dot(instance.eye_from_local_y, p),
+        dot(instance.eye_from_local_z, p),
+    );
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
     // `right` and `up` are half the picture at distance 1, so their squares undo their lengths.

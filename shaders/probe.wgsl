@@ -1,12 +1,11 @@
 // Not a pass: the field at given points, for the tests that compare it with the CPU twin.
 
-#include "field/value.wgsl"
+#include "generated/value.wgsl"
 
 struct Probe {
-    first: u32,
-    end: u32,
+    component: u32,
     count: u32,
-    padding: u32,
+    padding: vec2u,
 }
 
 @group(0) @binding(0) var<uniform> probe: Probe;
@@ -17,6 +16,7 @@ struct Probe {
 @compute @workgroup_size(64)
 fn probe_field(@builtin(global_invocation_id) id: vec3u) {
     if id.x < probe.count {
-        values[id.x] = field(probe.first, probe.end, points[id.x].xyz);
+        field_begin(components[probe.component]);
+        values[id.x] = field(points[id.x].xyz);
     }
 }

@@ -11,6 +11,11 @@
 @group(2) @binding(2) var diffuse_target: texture_2d<f32>;
 @group(2) @binding(3) var emission_target: texture_2d<f32>;
 @group(2) @binding(4) var color_target: texture_storage_2d<rgba8unorm, write>;
+@group(2) @binding(5) var owner_target: texture_2d<u32>;
+@group(2) @binding(6) var leaf_target: texture_storage_2d<r32uint, write>;
+
+// Meshes do not emit, and have this highlight.
+const MESH_EMISSION: vec4f = vec4f(0.0, 0.0, 0.0, 32.0);
 
 #include "light/shade.wgsl"
 
@@ -22,10 +27,15 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {
     }
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
+    let owner = textureLoad(owner_target, pixel, 0).x;
+    let is_field = (owner & MESH_BIT) == 0u;
+    if !is_field {
+        textureStore(leaf_target, pixel, vec4u(owner));
+    }
     var color = shade_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let diffuse = textureLoad(diffuse_target, pixel, 0);
-        let emission = textureLoad(emission_target, pixel, 0);
+        let emission = select(MESH_EMISSION, textureLoad(emission_target, pixel, 0), is_field);
         color = shade_surface(
             diffuse.rgb,
             diffuse.a,

@@ -1,9 +1,10 @@
-// Pass `surface`: once per hit pixel of a field, the normal, the material and the leaf.
+// Pass `surface`: once per hit pixel of a component, the normal, the material and the leaf.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
-#include "field/surface.wgsl"
+#include "common/tiles.wgsl"
+#include "generated/surface.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var owner_target: texture_2d<u32>;
@@ -11,31 +12,27 @@
 @group(2) @binding(3) var diffuse_target: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(4) var emission_target: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(5) var leaf_target: texture_storage_2d<r32uint, write>;
+@group(2) @binding(6) var<storage, read> tiles: array<Tile>;
 
 // Half the side of the tetrahedron of differences, in footprints: wide enough for f32, narrow enough
 // for a curve of a few pixels' radius.
 const DIFFERENCE: f32 = 0.1;
-const SPACING: f32 = 1.2e-4;
+// The same relative to the coordinates, where f32 is coarser than the footprint.
+const DIFFERENCE_LEAST: f32 = 1.2e-4;
 
 @compute @workgroup_size(8, 8)
-fn surface_pass(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = work.origin + id.xy;
-    if pixel.x >= work.end.x || pixel.y >= work.end.y {
+fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let pixel = tile_pixel(tiles[work.first_tile + group.x]) + local.xy;
+    if !view_contains(pixel) || textureLoad(owner_target, pixel, 0).x != work.component {
         return;
     }
-    let owner = textureLoad(owner_target, pixel, 0).x;
-    if owner == NO_OWNER || (owner & MESH_BIT) != 0u {
-        // The mesh pass has written its own normal and material.
-        textureStore(leaf_target, pixel, vec4u(owner));
-        textureStore(emission_target, pixel, vec4f(0.0, 0.0, 0.0, 32.0));
-        return;
-    }
-    let component = components[owner];
+    let component = components[work.component];
+    surface_begin(component);
     let direction = view_direction(pixel);
     let t = textureLoad(depth_target, pixel, 0).x;
     let p = component.eye + direction * t;
     let reach = max(max(abs(p.x), abs(p.y)), abs(p.z));
-    let h = max(DIFFERENCE * view.footprint * t, SPACING * reach);
+    let h = max(DIFFERENCE * view.footprint * t, DIFFERENCE_LEAST * reach);
     // The gradient from a tetrahedron (Quilez, "normals for an SDF"), the surface itself last: the
     // field is called from one place, so it is compiled once.
     var gradient = vec3f(0.0);
@@ -43,7 +40,7 @@ fn surface_pass(@builtin(global_invocation_id) id: vec3u) {
     for (var i = 0u; i < 5u; i += 1u) {
         let corner = vec3f(f32((i & 1u) << 1u), f32(i & 2u), f32(((i >> 1u) ^ i ^ 1u) & 1u) * 2.0) - 1.0;
         let offset = select(corner, vec3f(0.0), i == 4u);
-        center = surface(component.first, component.end, p + offset * h);
+        center = surface(p + offset * h);
         gradient += offset * center.distance;
     }
     let size = length(gradient);

@@ -1,94 +1,134 @@
-// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996).
+// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996), over the tiles
+// that the cone pass has left.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
-#include "field/value.wgsl"
+#include "common/tiles.wgsl"
+#include "generated/value.wgsl"
+#include "common/bounds.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_storage_2d<r32float, read_write>;
 @group(2) @binding(1) var owner_target: texture_storage_2d<r32uint, write>;
 // Where a march that has not ended goes on; MARCH_ENDED for the others.
 @group(2) @binding(2) var march_target: texture_storage_2d<r32float, read_write>;
-// Rays that had not ended after the last round, per component.
-@group(2) @binding(3) var<storage, read_write> unfinished: array<atomic<u32>>;
+// The farthest depth in each tile.
+@group(2) @binding(3) var farthest_target: texture_storage_2d<r32float, write>;
+@group(2) @binding(4) var<storage, read> tiles: array<Tile>;
+// For each component: rays that had not ended after the last round, evaluations, rays marched, unused.
+@group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 const MARCH_ENDED: f32 = -1.0;
-// Nearer than this, in footprints, the march creeps until it sees the sign change: a ray that only
+// All lengths below are in footprints of a pixel at the place in question.
+// Where a straight approach at an angle that is not grazing is this near, its line is followed to the end.
+const HIT: f32 = 1e-3;
+// The least fall of the field per distance that is not grazing.
+const STEEP: f32 = 0.2;
+// Below this, a straight approach is tried to its end at once, and taken back if there is no surface.
+const LEAP: f32 = 1.0;
+// At grazing angles, steps shorter than this creep until they see the sign change: a ray that only
 // comes near is never taken for a hit.
-const CREEP_BELOW: f32 = 1e-3;
-// Longest creeping step, in footprints: a chord shorter than this may be missed.
+const CREEP: f32 = 1e-3;
+// Longest creeping step: a chord shorter than this may be missed.
 const CREEP_LONGEST: f32 = 0.03;
-// Relative spacing of f32, with room for the rounding of a few operations.
-const SPACING: f32 = 2.4e-7;
 
-// Where the ray is within the component's bounds: entry and exit.
-fn bounds_interval(component: Component, direction: vec3f) -> vec2f {
-    // A component of the direction that is zero would give 0 times infinity.
-    let d = select(direction, vec3f(1e-9), abs(direction) < vec3f(1e-9));
-    let a = (component.low - component.eye) / d;
-    let b = (component.high - component.eye) / d;
-    let near = min(a, b);
-    let far = max(a, b);
-    var interval = vec2f(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
-    let plane = component.half_space;
-    let height = dot(plane.xyz, component.eye) + plane.w;
-    let climb = dot(plane.xyz, direction);
-    if height > 0.0 {
-        // The eye is outside: in at the crossing, or never. A little early, so that the march sees
-        // the sign change.
-        let crossing = -height / min(climb, -1e-30) * (1.0 - 4.0 * SPACING);
-        interval.x = select(3e38, max(interval.x, crossing), climb < 0.0);
+var<workgroup> farthest: atomic<u32>;
+
+struct March {
+    t: f32,
+    hit: bool,
+    ended: bool,
+    evaluations: u32,
+}
+
+// From `start` to a hit, to beyond `exit`, or through `max_steps` evaluations.
+fn march(component: Component, direction: vec3f, start: f32, exit: f32) -> March {
+    let reach = length(component.eye);
+    var t = start;
+    // The last point known to be outside with nothing before it, and its field.
+    var safe = vec2f(start, 0.0);
+    var leaping = false;
+    var may_leap = true;
+    var creep = 0.0;
+    for (var step = 0u; step < work.max_steps; step += 1u) {
+        let f = field(component.eye + direction * t);
+        let footprint = view.footprint * t;
+        // Fall of the field per distance since the last point; 0 at the first one.
+        let fall = select(0.0, (safe.y - f) / (t - safe.x), t > safe.x && safe.y > 0.0);
+        if f < 0.0 {
+            // Secant between the last point outside and this one.
+            let root = safe.x + (t - safe.x) * safe.y / (safe.y - f);
+            return March(select(t, root, safe.y > 0.0), true, true, step + 1u);
+        }
+        if fall > STEEP && f < HIT * footprint {
+            return March(t + f / fall, true, true, step + 1u);
+        }
+        if leaping {
+            // No surface where the line led: go on from the sphere that was left too early.
+            leaping = false;
+            may_leap = false;
+            t = safe.x + safe.y;
+        } else {
+            let near = max(CREEP * footprint, SPACING * (t + reach));
+            let longest = max(near, CREEP_LONGEST * footprint);
+            creep = select(0.0, clamp(creep * 2.0, near, longest), f < near);
+            leaping = may_leap && fall > STEEP && f < LEAP * footprint && f > near;
+            may_leap = true;
+            safe = vec2f(t, f);
+            // A leap ends a little inside, where the sign tells.
+            t += select(max(f, creep), f / fall + 0.25 * HIT * footprint, leaping);
+        }
+        if t > exit && !leaping {
+            return March(t, false, true, step + 1u);
+        }
     }
-    return interval;
+    return March(safe.x, false, false, work.max_steps);
 }
 
 @compute @workgroup_size(8, 8)
-fn trace(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = work.origin + id.xy;
-    if pixel.x >= work.end.x || pixel.y >= work.end.y {
-        return;
-    }
+fn trace(
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_id) local: vec3u,
+    @builtin(local_invocation_index) lane: u32,
+) {
+    let tile = tiles[work.first_tile + group.x];
+    let pixel = tile_pixel(tile) + local.xy;
     let component = components[work.component];
-    let direction = view_direction(pixel);
-    let interval = bounds_interval(component, direction);
-    let depth = textureLoad(depth_target, pixel).x;
-    let exit = min(min(interval.y, view.far), depth);
-    var t = max(interval.x, view.near);
-    if work.round > 0u {
-        t = textureLoad(march_target, pixel).x;
-        if t == MARCH_ENDED {
-            return;
+    field_begin(component);
+    var depth = 0.0;
+    if view_contains(pixel) {
+        depth = textureLoad(depth_target, pixel).x;
+        let direction = view_direction(pixel);
+        let interval = bounds_interval(component, direction, 0.0);
+        let exit = min(min(interval.y, view.far), depth);
+        var start = max(max(interval.x, view.near), max(tile.start, bounds_half_space_entry(component, direction)));
+        if work.round > 0u {
+            start = textureLoad(march_target, pixel).x;
+            start = select(start, NEVER, start == MARCH_ENDED);
+        }
+        var marched = March(start, false, true, 0u);
+        if start <= exit {
+            marched = march(component, direction, start, exit);
+        }
+        if marched.hit && marched.t < depth {
+            depth = marched.t;
+            textureStore(depth_target, pixel, vec4f(depth));
+            textureStore(owner_target, pixel, vec4u(work.component));
+        }
+        if work.last_round == 0u {
+            textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
+        } else if !marched.ended {
+            atomicAdd(&march_counts[work.component * 4u], 1u);
+        }
+        if COUNTING {
+            atomicAdd(&march_counts[work.component * 4u + 1u], marched.evaluations);
+            atomicAdd(&march_counts[work.component * 4u + 2u], select(0u, 1u, marched.evaluations > 0u));
         }
     }
-    var ended = t > exit;
-    var hit = false;
-    var last = vec2f(t, 0.0);
-    var creep = 0.0;
-    for (var step = 0u; step < work.max_steps && !ended; step += 1u) {
-        let f = field(component.first, component.end, component.eye + direction * t);
-        if f < 0.0 {
-            hit = true;
-            // Secant between the last point outside and this one; the first point has none before it.
-            t = select(t, last.x + (t - last.x) * last.y / (last.y - f), last.y > 0.0);
-            break;
-        }
-        let footprint = view.footprint * t;
-        let near_enough = max(CREEP_BELOW * footprint, SPACING * (t + length(component.eye)));
-        creep = select(0.0, clamp(creep * 2.0, near_enough, max(near_enough, CREEP_LONGEST * footprint)), f < near_enough);
-        last = vec2f(t, f);
-        t += max(f, creep);
-        ended = t > exit;
-    }
-    if hit && t < depth {
-        textureStore(depth_target, pixel, vec4f(t));
-        textureStore(owner_target, pixel, vec4u(work.component));
-    }
-    let open = !hit && !ended;
-    if work.last_round == 1u {
-        if open {
-            atomicAdd(&unfinished[work.component], 1u);
-        }
-    } else {
-        textureStore(march_target, pixel, vec4f(select(MARCH_ENDED, t, open)));
+    // Depths are positive, so their bits are in order.
+    atomicMax(&farthest, bitcast<u32>(depth));
+    workgroupBarrier();
+    if lane == 0u {
+        textureStore(farthest_target, tile_pixel(tile) / TILE, vec4f(bitcast<f32>(atomicLoad(&farthest))));
     }
 }

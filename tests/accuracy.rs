@@ -1,1 +1,49 @@
-//! Filled in later.
+//! Every scene's picture against the truth, on the same rays.
+
+use isolith::flat::Accuracy;
+use isolith::flat::truth::truth;
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+
+use crate::gpu::{Subject, scenes};
+
+/// Width and height of the pictures, in pixels.
+const SIDE: u32 = 256;
+
+/// The error of what the renderer draws of `drawn`, measured against the truth of `meant`.
+fn measure(drawn: &Subject, meant: &Subject, side: u32) -> Accuracy {
+    let truth = truth(&meant.flat, &meant.meshes, &meant.camera, [side, side], &|_| ());
+    let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
+    Accuracy::against(&drawn.render(side), &truth, meant.camera.footprint(f64::from(side)))
+}
+
+#[test]
+fn every_scene_is_as_exact_as_promised() {
+    let mut faults = Vec::new();
+    for scene in scenes() {
+        let found = measure(&scene, &scene, SIDE);
+        faults.extend(found.faults().iter().map(|fault| format!("{}: {fault} ({found:?})", scene.name)));
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// A ball before the background.
+fn ball(radius: f64, lifted: f64) -> Subject {
+    let mut scene = Scene::new();
+    let object = Object { shape: Shape::Sphere { radius }, material: MaterialId(1) };
+    let node = Node::new("ball", NodeKind::Object(object)).at([0.0, lifted, 0.0].into());
+    scene.insert(None, 0, node).expect("the scene has room");
+    let mut subject = Subject::new("ball", &scene, None);
+    let eye = glam::DVec3::new(0.3, 0.4, 3.0);
+    subject.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
+    subject
+}
+
+#[test]
+fn a_ball_is_exact_and_a_slightly_different_one_is_refused() {
+    const SMALL: u32 = 64;
+    let right = ball(0.8, 0.0);
+    assert_eq!(measure(&right, &right, SMALL).faults(), [""; 0]);
+    for wrong in [ball(0.802, 0.0), ball(0.798, 0.0), ball(0.8, 0.003)] {
+        assert!(!measure(&wrong, &right, SMALL).faults().is_empty());
+    }
+}

@@ -146,6 +146,17 @@ fn the_schema_describes_the_format() {
     let schema = file::schema();
     assert_eq!(schema["properties"]["isolith"]["const"], 1);
     assert_eq!(schema["additionalProperties"], false);
+    let node = &schema["$defs"]["NodeV1"];
+    assert_eq!(node["additionalProperties"], false);
+    assert_eq!(node["oneOf"].as_array().map(Vec::len), Some(5));
+    // Whatever is written is described.
+    let written = file::to_json(&random_scene(4, 40)).expect("valid");
+    let written: serde_json::Value = serde_json::from_str(&written).expect("JSON");
+    for entry in written["nodes"].as_array().expect("a list") {
+        for key in entry.as_object().expect("an object").keys() {
+            assert!(node["properties"].get(key).is_some(), "{key}");
+        }
+    }
     let text = schema.to_string();
     for word in ["hexagonal_prism", "quadratic", "next_id", "fov_y", "attenuation", "rotation"] {
         assert!(text.contains(word), "{word}");

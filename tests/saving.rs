@@ -104,7 +104,7 @@ fn saving_where_nothing_can_be_saved_says_why_and_stays_changed() {
         (folder.path().to_path_buf(), "it is a folder"),
         (read_only.clone(), "it is read-only"),
         (folder.path().join("n".repeat(300)), "too long"),
-        (PathBuf::from("/dev/full"), "it is not a file"),
+        (PathBuf::from("/dev/null"), "it is not a file"),
         (PathBuf::from("/proc/scene.json"), "cannot be saved"),
         (PathBuf::from("/"), "it is a folder"),
         (PathBuf::new(), "cannot be saved"),
@@ -128,11 +128,14 @@ fn loading_what_is_not_there_or_no_file_says_why() {
     let huge = folder.path().join("huge.json");
     let size = isolith::scene::limits::MAX_FILE_BYTES + 1;
     fs::File::create(&huge).and_then(|f| f.set_len(size)).expect("a sparse file");
-    let cases = [
+    let cases = vec![
         (folder.path().join("gone.json"), "No such file"),
         (folder.path().to_path_buf(), "is not a file"),
         (PathBuf::from("/dev/zero"), "is not a file"),
         (huge, "is larger than 256 MiB"),
+        // Where it exists, a file that opens and cannot be read.
+        #[cfg(target_os = "linux")]
+        (PathBuf::from("/proc/self/mem"), "cannot be read: Input/output error"),
     ];
     for (path, reason) in cases {
         let error = Document::open(&path).expect_err("cannot work");

@@ -2,15 +2,40 @@
 
 use std::mem::{offset_of, size_of};
 
-use isolith::flat::{FlatMaterial, FlatNode, GpuLight};
-use isolith::render::shader::{FILES, Features, source};
+use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
+use isolith::gallery;
+use isolith::render::kernel::{Evaluator, FILES, Features, Options, Structure, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
+use isolith::render::{Instance, Overlay};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The passes: the files that stand in no folder.
 fn passes() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(name, _)| *name).filter(|name| !name.contains('/'))
+}
+
+/// The interpreter for every shape, and specialised kernels for every structure of the shipped scenes.
+fn evaluators() -> Vec<Evaluator> {
+    let flats =
+        gallery::all().into_iter().map(|(name, scene)| flatten(&scene, 0.0).unwrap_or_else(|e| panic!("{name}: {e}")));
+    let mut structures: Vec<_> = flats
+        .flat_map(|flat| flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect::<Vec<_>>())
+        .collect();
+    structures.sort();
+    structures.dedup();
+    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
+    let interpreted = alone.chain([Features::all()]).map(Evaluator::Interpreted);
+    interpreted.chain(structures.into_iter().map(Evaluator::Specialised)).collect()
+}
+
+/// Every file of a pass with the interpreter for everything, then with a specialised kernel.
+fn sources() -> Vec<(&'static str, String)> {
+    let everything = Evaluator::Interpreted(Features::all());
+    let special =
+        evaluators().into_iter().find(|e| matches!(e, Evaluator::Specialised(_))).expect("scenes have structures");
+    let text = |pass, evaluator| source(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    passes().flat_map(|pass| [(pass, text(pass, &everything)), (pass, text(pass, &special))]).collect()
 }
 
 /// The module that a source makes, or what is wrong with it.
@@ -22,33 +47,39 @@ fn validate(source: &str) -> Result<naga::Module, String> {
 }
 
 #[test]
-fn every_pass_is_valid_with_all_shapes_and_with_each_alone() {
-    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
-    let choices: Vec<_> = alone.chain([Features::all()]).collect();
+fn every_pass_is_valid_with_every_evaluator() {
+    let choices = evaluators();
+    let options = [Options::default(), Options { counting: true, skipping: true }];
     let mut count = 0;
     for pass in passes() {
-        for features in &choices {
-            let text = source(pass, features).unwrap_or_else(|error| panic!("{error}"));
-            if let Err(fault) = validate(&text) {
-                panic!("{pass} with {features:?}:\n{fault}");
+        for evaluator in &choices {
+            for options in options {
+                let text = source(pass, evaluator, options).unwrap_or_else(|error| panic!("{error}"));
+                // Passes without a field are the same for all.
+                if !text.contains("fn field(") && !text.contains("fn surface(") && count > 0 {
+                    continue;
+                }
+                if let Err(fault) = validate(&text) {
+                    panic!("{pass} with {evaluator:?}:\n{fault}");
+                }
+                count += 1;
             }
-            count += 1;
         }
     }
-    assert!(count > ShapeKind::ALL.len(), "no pass was looked at");
+    assert!(count > 50, "hardly a pass was looked at: {count}");
 }
 
 #[test]
-fn no_pass_grows_a_recursion_or_lacks_an_entry_point() {
-    for pass in passes() {
-        let module = validate(&source(pass, &Features::all()).expect("checked above")).expect("checked above");
+fn every_source_is_valid_and_has_an_entry_point() {
+    for (pass, text) in sources() {
+        let module = validate(&text).unwrap_or_else(|fault| panic!("{pass}:\n{fault}"));
         assert!(!module.entry_points.is_empty(), "{pass} has no entry point");
     }
 }
 
 #[test]
 fn every_file_is_part_of_some_pass() {
-    let all = passes().map(|pass| source(pass, &Features::all()).expect("checked above")).collect::<String>();
+    let all: String = sources().into_iter().map(|(_, text)| text).collect();
     for (name, text) in FILES {
         let first = text.lines().find(|line| line.starts_with("fn ") || line.starts_with("const "));
         assert!(first.is_none_or(|line| all.contains(line)), "{name} is included by nothing");
@@ -108,14 +139,38 @@ fn rust_and_wgsl_agree_about_every_struct() {
             "View" =
                 View { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
         ),
-        layout!("Work" = Work { origin, end, component, max_steps, round, last_round }),
+        layout!("Work" = Work { origin, end, component, max_steps, round, last_round, list, first_tile, padding }),
+        layout!(
+            "Instance" = Instance {
+                eye_from_local_x,
+                eye_from_local_y,
+                eye_from_local_z,
+                normal_x,
+                normal_y,
+                normal_z,
+                albedo,
+                specular,
+                owner,
+                overridden,
+                padding
+            }
+        ),
+        layout!(
+            "Overlay" =
+                Overlay { eye, cell, grid, outline, axis_x, axis_z, leaf_count, padding_0, padding_1, padding_2 }
+        ),
         layout!(
             "Light" =
                 GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }
         ),
     ];
     let modules: Vec<_> = passes()
-        .map(|pass| validate(&source(pass, &Features::all()).expect("checked above")).expect("checked above"))
+        .map(|pass| {
+            validate(
+                &source(pass, &Evaluator::Interpreted(Features::all()), Options::default()).expect("checked above"),
+            )
+            .expect("checked above")
+        })
         .collect();
     for layout in &layouts {
         let holds = |m: &&naga::Module| m.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(layout.name));

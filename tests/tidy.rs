@@ -81,6 +81,7 @@ fn forbidden_uses_are_caught() {
     assert!(caught("src/editor/a.rs", "fn f(d: &wgpu::Device) {}", "only render and app may use wgpu"));
     assert!(caught("src/render/a.rs", "use egui::Ui;", "only editor and app may use egui"));
     assert!(caught("src/render/a.rs", "use egui_ltreeview::X;", "only editor and app may use egui"));
+    assert!(caught("src/render/a.rs", "use crate::scene::Scene;", "the renderer sees no Scene"));
     assert!(caught("src/document/mod.rs", "fn f() { std::fs::read(\"x\"); }", "touch the file system"));
     assert!(caught("src/flat/mod.rs", "use std::fs;", "touch the file system"));
     assert!(caught("src/flat/mod.rs", "fn f() { File::open(\"x\"); }", "touch the file system"));
@@ -92,7 +93,7 @@ fn allowed_uses_are_let_through() {
     fine("src/scene/a.rs", "use crate::geometry::Aabb;\nuse super::Node;\nuse crate::scene::Light;");
     fine("src/scene/mod.rs", "mod tests {\n use super::*;\n}");
     fine("src/scene/a.rs", "/// See [`crate::flat`] and `wgpu::Device`.\nfn f() {}");
-    fine("src/render/gpu.rs", "use wgpu::Device;");
+    fine("src/render/gpu.rs", "use wgpu::util::DeviceExt;\nuse crate::scene::ShapeKind;");
     fine("src/scene/file/mod.rs", "use std::fs;");
     fine("src/flat/a.rs", "#[cfg(test)]\nmod tests {\n fn f() { std::fs::read(\"x\").unwrap(); }\n}");
 }

@@ -1,4 +1,4 @@
-// One dispatch: which component, which part of the picture, how far.
+// One piece of work: which component, which part of the picture, how far.
 
 struct Work {
     // Upper left pixel.
@@ -12,6 +12,14 @@ struct Work {
     round: u32,
     // 1 in the last round: what has not ended by now is counted.
     last_round: u32,
+    // Which of `tile_counts`: where the cone pass counts the tiles that are left.
+    list: u32,
+    // Where its tiles start in `tiles`.
+    first_tile: u32,
+    padding: vec2u,
 }
 
 @group(3) @binding(0) var<uniform> work: Work;
+
+// Pixels along a side of a tile: a workgroup's.
+const TILE: u32 = 8u;

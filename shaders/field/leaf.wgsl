@@ -18,12 +18,13 @@ fn leaf_distance(node: FlatNode, joint: vec4f, p: vec3f) -> f32 {
 
 // Whether the group at `node` cannot change the value `so_far`: its field is at least slope times the
 // distance to its bounds, so beyond that the joint is exactly its first operand.
-fn group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec3f) -> bool {
+fn field_group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec3f) -> bool {
     let center = numbers[node.numbers + 1u].xyz;
     let half = numbers[node.numbers + 2u].xyz;
     let least = joint.y * length(max(abs(p - center) - half, vec3f(0.0)));
     let kind = (node.code >> 16u) & 0xffu;
     let out = (kind == JOIN_UNION && least >= so_far + joint.x)
         || (kind == JOIN_DIFFERENCE && least >= joint.x - so_far);
-    return out && joint.y > 0.0;
+    // Within its bounds nothing is known of the group's field: it may be far below 0.
+    return out && least > 0.0;
 }

@@ -53,3 +53,16 @@ fn op_blend(difference: f32, support: f32, kernel: u32) -> vec2f {
     }
     return vec2f(support * h * h * h / 6.0, 0.5 * h * h);
 }
+
+// The hard operators, for kernels that know that nothing is blended.
+fn op_hard_union(a: f32, b: f32) -> vec2f {
+    return vec2f(min(a, b), select(0.0, 1.0, b < a));
+}
+
+fn op_hard_intersection(a: f32, b: f32) -> vec2f {
+    return vec2f(max(a, b), select(0.0, 1.0, b > a));
+}
+
+fn op_hard_difference(a: f32, b: f32) -> vec2f {
+    return vec2f(max(a, -b), select(0.0, 1.0, -b > a));
+}

@@ -10,6 +10,18 @@ use indicatif::{ProgressBar, ProgressStyle};
 /// Where standard error is no terminal, a line is written this often instead of a bar.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
+/// What Ctrl-C does. A second one always ends the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interrupts {
+    /// The task hears of it at its next step.
+    StopTheTask,
+    /// The task cannot be stopped, and nothing is lost when it ends in the middle.
+    EndTheProgram,
+}
+
+/// Exit code of a program that was interrupted, by the custom of shells: 128 and the signal's number.
+const INTERRUPTED: i32 = 130;
+
 /// Shows how far a long task is, on standard error, and tells it when to stop.
 pub struct Progress {
     task: &'static str,
@@ -19,17 +31,12 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Nothing done yet. From now on Ctrl-C asks the task to stop instead of ending the program; a second
-    /// one ends it.
-    pub fn start(task: &'static str, quiet: bool) -> Self {
-        catch_interrupts();
-        let shown = (!quiet && std::io::stderr().is_terminal()).then(|| {
-            let bar = ProgressBar::new(1000);
-            let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {eta} left");
-            bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-            bar.set_message(task);
-            bar
-        });
+    /// Nothing done yet.
+    pub fn start(task: &'static str, quiet: bool, interrupts: Interrupts) -> Self {
+        if interrupts == Interrupts::StopTheTask {
+            catch_interrupts();
+        }
+        let shown = (!quiet && std::io::stderr().is_terminal()).then(|| bar(task));
         Self { task, shown, last_line: Instant::now(), quiet }
     }
 
@@ -52,6 +59,13 @@ impl Progress {
     }
 }
 
+fn bar(task: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {eta} left");
+    let bar = ProgressBar::new(1000).with_style(style.expect("the template is fixed"));
+    bar.set_message(task);
+    bar
+}
+
 /// Whether Ctrl-C was pressed.
 pub fn is_cancelled() -> bool {
     CANCELLED.load(Ordering::Relaxed)
@@ -65,7 +79,7 @@ fn catch_interrupts() {
         // Without a handler Ctrl-C still ends the program, only less gently.
         let _ = ctrlc::set_handler(|| {
             if CANCELLED.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
+                std::process::exit(INTERRUPTED);
             }
         });
     });

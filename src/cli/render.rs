@@ -1,16 +1,18 @@
 //! `isolith render`: a picture, and more outputs beside it, without a window.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::Mutex;
 use std::time::Instant;
 
 use super::failure::Failure;
 use super::outputs::{self, Quantity};
-use super::progress::Progress;
+use super::progress::{Interrupts, Progress};
 use super::{complain, say};
+use crate::flat::mesh_rays::Meshes;
+use crate::flat::truth::truth;
 use crate::flat::{Buffers, FlatScene, Warning, flatten};
 use crate::geometry::Camera;
-use crate::mesh::{MeshLibrary, TriangleMesh};
+use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
 use crate::render::{Gpu, Renderer};
 use crate::scene::file;
@@ -122,8 +124,6 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     Ok(())
 }
 
-type Meshes = [Option<Arc<TriangleMesh>>];
-
 /// The scene's camera of this name, or the view that the scene has by itself.
 fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<Camera, Failure> {
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
@@ -145,7 +145,7 @@ fn gpu_picture(
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
     let mut renderer = Renderer::new(&gpu)?;
-    let mut progress = Progress::start("rendering", arguments.quiet);
+    let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
     let result = renderer.render(flat, meshes, camera, arguments.size, &mut |share| progress.update(f64::from(share)));
     progress.finish();
     let (buffers, unfinished) = result?;
@@ -159,8 +159,16 @@ fn truth_picture(
     meshes: &Meshes,
     camera: &Camera,
 ) -> Result<Buffers, Failure> {
-    let _ = (arguments, flat, meshes, camera);
-    Err(Failure::Other("not yet".into()))
+    let progress = Mutex::new(Progress::start("tracing", arguments.quiet, Interrupts::EndTheProgram));
+    let truth = truth(flat, meshes, camera, arguments.size, &|share| {
+        if let Ok(mut progress) = progress.lock() {
+            progress.update(share);
+        }
+    });
+    if let Ok(progress) = progress.into_inner() {
+        progress.finish();
+    }
+    truth.map(|truth| truth.buffers).map_err(|error| Failure::Other(error.to_string()))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

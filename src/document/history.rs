@@ -85,3 +85,29 @@ impl History {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Group, Material, MaterialId, Node, NodeKind};
+
+    #[test]
+    fn big_scenes_are_kept_for_fewer_steps() {
+        let node = |i| Node { id: NodeId(i), ..Node::new("n", NodeKind::Group(Group::UNION)) };
+        let clay = vec![Material::new(MaterialId(1), "Clay", [0.5; 3])];
+        let nodes = (0..100_000).map(node).collect();
+        let scene = Arc::new(Scene::from_tables(nodes, clay, Default::default(), 1).unwrap());
+        let state = || State { scene: Arc::clone(&scene), selection: Vec::new(), mark: 0 };
+        let mut history = History::default();
+        for i in 0..250 {
+            history.push(i.to_string(), state());
+        }
+        let kept = history.undo_labels().count();
+        assert_eq!(kept, MAX_HISTORY_NODES / scene.nodes().len());
+        assert_eq!(history.undo_labels().next(), Some("249"));
+        let mut now = state();
+        assert_eq!(std::iter::from_fn(|| history.undo(&mut now).then_some(())).count(), kept);
+        assert_eq!(history.weight, 0);
+        assert_eq!(std::iter::from_fn(|| history.redo(&mut now).then_some(())).count(), kept);
+    }
+}

@@ -45,7 +45,7 @@ impl FlatNode {
 }
 
 /// How an operand joins what precedes it in its group; the number stands in [`FlatNode::code`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Join {
     /// The first operand: it is the start.

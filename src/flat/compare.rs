@@ -1,6 +1,7 @@
 //! How wrong a picture is, measured against the truth on the same rays.
 
 use super::Buffers;
+use super::truth::Truth;
 
 /// Most pixels that may differ in hit or miss, as a share of all.
 pub const MAX_HIT_MISS_SHARE: f64 = 1e-4;
@@ -8,6 +9,10 @@ pub const MAX_HIT_MISS_SHARE: f64 = 1e-4;
 pub const MAX_DEPTH_P99: f64 = 0.05;
 /// Largest median error of the normal, in degrees.
 pub const MAX_NORMAL_P50: f64 = 0.1;
+
+/// Rays that pass a surface's edge at a smaller angle, in radians, are grazing: the eye, the direction, their
+/// product and their sum are each rounded to 24 bits.
+pub const GRAZING_ANGLE: f64 = 4.0 * f32::EPSILON as f64;
 
 /// The errors of a picture. Depth and normal are compared where both pictures hit something.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,9 +38,15 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Compares pixel by pixel. `footprint` is the width of a pixel at distance 1, see
-    /// [`crate::geometry::Camera::footprint`]; `is_grazing` is asked about pixels that differ in hit or
-    /// miss. Pictures of different sizes differ in every pixel.
+    /// The errors against the truth. `footprint` is the width of a pixel at distance 1, see
+    /// [`crate::geometry::Camera::footprint`].
+    pub fn against(measured: &Buffers, truth: &Truth, footprint: f64) -> Self {
+        let grazing = GRAZING_ANGLE / footprint;
+        Self::of(measured, &truth.buffers, footprint, |i| f64::from(truth.margin[i]) <= grazing)
+    }
+
+    /// Compares pixel by pixel. `is_grazing` is asked about pixels that differ in hit or miss. Pictures of
+    /// different sizes differ in every pixel.
     pub fn of(measured: &Buffers, truth: &Buffers, footprint: f64, mut is_grazing: impl FnMut(usize) -> bool) -> Self {
         let pixels = truth.depth.len();
         if (measured.width, measured.height) != (truth.width, truth.height) {

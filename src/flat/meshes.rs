@@ -6,7 +6,7 @@ use super::{FlatScene, Warning};
 use crate::mesh::{MeshLibrary, TriangleMesh};
 
 impl FlatScene {
-    /// The meshes beside [`FlatScene::meshes`], and a warning for each that cannot be had: the scene is
+    /// The meshes beside [`FlatScene::meshes`], as rays and renderer want them, and a warning for each that cannot be had: the scene is
     /// drawn without it.
     pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
         let mut warnings = Vec::new();

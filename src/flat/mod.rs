@@ -9,6 +9,7 @@
 //! | `shade` | light on surfaces, twin of `shaders/light` |
 //! | `truth` | the whole picture by `twin`, `trace` and `shade` |
 //! | `pick` | which node a ray hits |
+//! | `mesh_rays` | rays against the meshes |
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |

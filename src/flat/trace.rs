@@ -191,18 +191,20 @@ impl<'a> Line<'a> {
         inside
     }
 
-    /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. A ray that stays
-    /// as shallow for thousands of steps will not go deep any more.
-    fn depth(&self, mut t: f64) -> f64 {
-        let (mut deepest, mut creep) = (0.0, 0.0);
-        for _ in 0..4_000 {
-            let f = -self.field(t);
-            deepest = f64::max(deepest, f / t.max(f64::MIN_POSITIVE));
-            if deepest > CLEAR || (creep > 0.0 && f < 0.0) {
+    /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. Probes at growing
+    /// distances: one of them is close to the middle of the chord, however short that is.
+    fn depth(&self, t: f64) -> f64 {
+        let reach = self.reach(t);
+        let mut deepest = 0.0;
+        let mut ahead = TOUCHING * reach;
+        while ahead < reach && deepest < CLEAR {
+            let depth = -self.field(t + ahead) / (t + ahead);
+            // The first probes are no farther from the surface than rounding.
+            if depth < 0.0 && ahead > 1e-8 * reach {
                 break;
             }
-            creep = next_creep(creep, f, self.reach(t)).max(TOUCHING * self.reach(t));
-            t += f.max(creep);
+            deepest = f64::max(deepest, depth);
+            ahead *= 1.3;
         }
         deepest
     }

@@ -85,7 +85,7 @@ impl View<'_> {
             let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
             (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material)
         } else if let Some((index, hit)) = mesh {
-            let (normal, material) = self.mesh_surface(index, &hit);
+            let (normal, material) = self.mesh_surface(index, &hit, ray.direction);
             (hit.t, MESH_BIT | index as u32, normal, material)
         } else {
             let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
@@ -101,10 +101,12 @@ impl View<'_> {
         shade_surface(material, ray.direction * t, normal, -ray.direction, ambient, &self.lights)
     }
 
-    fn mesh_surface(&self, index: usize, hit: &MeshHit) -> (DVec3, SurfaceMaterial) {
+    fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {
         let placed = &self.flat.meshes[index];
         let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
-        let normal = (normal_from_local * hit.normal).normalize();
+        let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
+        // Both sides are shown, each facing the eye.
+        let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
         let material = match (placed.material, &self.meshes[index]) {
             (Some(material), _) => (&self.flat.materials[material as usize]).into(),
             (None, Some(mesh)) => SurfaceMaterial { albedo: albedo(mesh, hit), ..FILE_MATERIAL },

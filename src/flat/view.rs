@@ -1,12 +1,10 @@
 //! The view of a scene when nobody chose one.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 
 use super::FlatScene;
+use super::mesh_rays::Meshes;
 use crate::geometry::{Aabb, Camera};
-use crate::mesh::TriangleMesh;
 
 /// From the scene to the eye, for scenes without cameras: a three-quarter view from above.
 pub const THREE_QUARTER: DVec3 = DVec3::new(0.62, 0.46, 1.0);
@@ -14,7 +12,7 @@ pub const THREE_QUARTER: DVec3 = DVec3::new(0.62, 0.46, 1.0);
 impl FlatScene {
     /// The scene's first camera; without cameras one that sees all that has an end. `meshes` stands beside
     /// [`FlatScene::meshes`].
-    pub fn default_camera(&self, meshes: &[Option<Arc<TriangleMesh>>], aspect: f64) -> Camera {
+    pub fn default_camera(&self, meshes: &Meshes, aspect: f64) -> Camera {
         match self.cameras.first() {
             Some(first) => first.camera,
             None => Camera::framing(&self.content(meshes), THREE_QUARTER, Camera::DEFAULT_FOV_Y, aspect),
@@ -22,7 +20,7 @@ impl FlatScene {
     }
 
     /// A box in the world around everything that has an end; around the origin where nothing has.
-    pub fn content(&self, meshes: &[Option<Arc<TriangleMesh>>]) -> Aabb {
+    pub fn content(&self, meshes: &Meshes) -> Aabb {
         let mut all = Aabb::EMPTY;
         for component in self.components.iter().filter(|component| component.bounds.is_finite()) {
             all = all.union(&component.bounds.translated(component.origin));

@@ -26,10 +26,32 @@ impl Mirror {
         Self::new(device, label, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC)
     }
 
-    /// Makes the buffer hold `size` zero bytes, whatever the device has written since.
-    pub fn clear(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, size: usize) -> bool {
+    /// An empty buffer for every use: read as storage and as uniform, written, read back.
+    pub fn rows(device: &wgpu::Device, label: &'static str) -> Self {
+        let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
+        Self::new(device, label, usages)
+    }
+
+    /// An empty buffer that holds the arguments of indirect dispatches, written by the device.
+    pub fn indirect(device: &wgpu::Device, label: &'static str) -> Self {
+        let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
+        Self::new(device, label, usages)
+    }
+
+    /// Makes the buffer hold `bytes`, whatever the device has written since.
+    pub fn reset(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
         self.held.clear();
-        self.set(device, queue, &vec![0; size])
+        self.set(device, queue, bytes)
+    }
+
+    /// Makes room for `size` bytes; what they are does not matter.
+    pub fn reserve(&mut self, device: &wgpu::Device, size: usize) -> bool {
+        let grown = size as u64 > self.buffer.size();
+        if grown {
+            self.buffer = create(device, self.label, self.usage, size.next_power_of_two());
+            self.held.clear();
+        }
+        grown
     }
 
     fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {

@@ -2,10 +2,10 @@
 
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
+use super::kernel::plain_source;
 use super::layouts::{bind, compute_pipeline, entry, layout, write_storage};
 use super::readback::read_words;
 use super::schedule::MAX_ITERATIONS;
-use super::shader::{Features, source};
 
 /// Iterations that are tried.
 const TRIED: u32 = 100_000;
@@ -15,8 +15,7 @@ const TRIED: u32 = 100_000;
 pub fn loop_iterations(gpu: &Gpu) -> Result<u32, GpuError> {
     let device = &gpu.device;
     let group_layout = layout(device, "driver", &[entry(0, wgpu::ShaderStages::COMPUTE, write_storage())]);
-    let nothing = Features { shapes: [].into(), stack: 1 };
-    let text = source("driver.wgsl", &nothing).map_err(|e| GpuError::Lost(e.to_string()))?;
+    let text = plain_source("driver.wgsl").map_err(|e| GpuError::Lost(e.to_string()))?;
     let pipeline = compute_pipeline(device, "driver", text, "driver_count_iterations", &[&group_layout]);
     let mut counted = Mirror::read_back(device, "counted");
     counted.set(device, &gpu.queue, bytemuck::cast_slice(&[0, TRIED, 0, 0]));

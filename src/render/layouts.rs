@@ -4,11 +4,12 @@ use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType
 use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 
 /// Layouts that several passes share.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Layouts {
     /// Group 0: `View`.
     pub view: BindGroupLayout,
-    /// Group 1 of the field passes: nodes, numbers, components, materials.
+    /// Group 1 of the field passes: nodes, numbers, components, materials, and the component's own rows
+    /// once more as a uniform at a dynamic offset.
     pub scene: BindGroupLayout,
     /// Group 3: `Work`, at a dynamic offset.
     pub work: BindGroupLayout,
@@ -20,7 +21,12 @@ impl Layouts {
         let everywhere = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
         Self {
             view: layout(device, "view", &[entry(0, everywhere, uniform(false))]),
-            scene: layout(device, "scene", &[0, 1, 2, 3].map(|b| entry(b, ShaderStages::COMPUTE, read_storage()))),
+            scene: layout(
+                device,
+                "scene",
+                &[0, 1, 2, 3, 4]
+                    .map(|b| entry(b, ShaderStages::COMPUTE, if b < 4 { read_storage() } else { uniform(true) })),
+            ),
             work: layout(device, "work", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }
     }
@@ -84,6 +90,12 @@ pub fn read_texture(unsigned: bool) -> BindingType {
         view_dimension: wgpu::TextureViewDimension::D2,
         multisampled: false,
     }
+}
+
+/// `size` bytes of a buffer at a dynamic offset.
+pub fn window(buffer: &wgpu::Buffer, size: usize) -> wgpu::BindingResource<'_> {
+    let size = std::num::NonZeroU64::new(size as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
 }
 
 /// A bind group of views and buffers in the order of their bindings.

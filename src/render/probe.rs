@@ -5,49 +5,59 @@ use wgpu::ShaderStages;
 
 use super::buffers::Mirror;
 use super::gpu::Gpu;
-use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, write_storage};
+use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options, source};
+use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
 use super::readback::read_words;
-use super::renderer::RenderError;
-use super::shader::{Features, source};
-use crate::flat::{Component, FlatScene};
+use super::renderer::{RenderError, padded_rows};
+use super::uniforms::GpuComponent;
+use crate::flat::{FlatScene, ROW_ALIGNMENT};
 
-/// The field of `component` at `points` (relative to its origin), by the interpreter of the passes.
-pub fn field(gpu: &Gpu, flat: &FlatScene, component: &Component, points: &[DVec3]) -> Result<Vec<f32>, RenderError> {
+/// The field of the component of this index at `points` (relative to its origin), by the same source as
+/// the passes.
+pub fn field(
+    gpu: &Gpu,
+    flat: &FlatScene,
+    index: usize,
+    points: &[DVec3],
+    evaluator: &Evaluator,
+) -> Result<Vec<f32>, RenderError> {
     let Gpu { device, queue, .. } = gpu;
     let stage = ShaderStages::COMPUTE;
     let layouts = Layouts::new(device);
     let own = layout(device, "probe", &[entry(0, stage, uniform(false))]);
     let data = layout(device, "probe data", &[entry(0, stage, read_storage()), entry(1, stage, write_storage())]);
-    let text = source("probe.wgsl", &Features::of(flat))?;
+    let text = source("probe.wgsl", evaluator, Options::default())?;
     let pipeline = compute_pipeline(device, "probe", text, "probe_field", &[&own, &layouts.scene, &data]);
     let uploaded = |bytes: &[u8]| {
-        let mut mirror = Mirror::read_back(device, "probe");
+        let mut mirror = Mirror::rows(device, "probe");
         mirror.set(device, queue, bytes);
         mirror
     };
-    let mut settings = Mirror::uniform(device, "probe");
-    let numbers = [component.first, component.first + component.count, points.len() as u32, 0];
-    settings.set(device, queue, bytemuck::cast_slice(&numbers));
+    let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
+    let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
     let scene = [
         uploaded(bytemuck::cast_slice(&flat.nodes)),
-        uploaded(bytemuck::cast_slice(&flat.numbers)),
-        uploaded(&[]),
+        uploaded(bytemuck::cast_slice(&padded_rows(flat))),
+        uploaded(bytemuck::cast_slice(&components)),
         uploaded(bytemuck::cast_slice(&flat.materials)),
     ];
+    let mut bindings: Vec<_> = scene.iter().map(Mirror::binding).collect();
+    bindings.push(window(scene[1].buffer(), MAX_KERNEL_ROWS as usize * 16));
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
     let groups = [
         bind(device, "probe", &own, &[settings.binding()]),
-        bind(device, "scene", &layouts.scene, &scene.each_ref().map(Mirror::binding)),
+        bind(device, "scene", &layouts.scene, &bindings),
         bind(device, "probe data", &data, &[positions.binding(), values.binding()]),
     ];
+    debug_assert_eq!(flat.components[index].numbers as usize % ROW_ALIGNMENT, 0);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);
-        for (i, group) in groups.iter().enumerate() {
-            pass.set_bind_group(i as u32, group, &[]);
-        }
+        pass.set_bind_group(0, &groups[0], &[]);
+        pass.set_bind_group(1, &groups[1], &[flat.components[index].numbers * 16]);
+        pass.set_bind_group(2, &groups[2], &[]);
         pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
     }
     queue.submit([encoder.finish()]);

@@ -8,18 +8,19 @@ use wgpu::BindGroup;
 
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
-use super::layouts::{Layouts, bind};
+use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError};
+use super::kernels::{Choice, Kernels, Method};
+use super::layouts::{Layouts, bind, window};
+use super::passes::farthest::FarthestPass;
+use super::passes::field::{FieldGroups, Lists};
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
-use super::passes::surface::SurfacePass;
-use super::passes::trace::TracePass;
 use super::readback::{read_buffers, read_words};
-use super::schedule::{DISPATCH_TARGET, Pace, Piece, Stage, plan};
-use super::shader::{Features, ShaderError};
+use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
-use crate::flat::{Buffers, FlatScene, Warning, gpu_lights};
+use crate::flat::{Buffers, FlatScene, Row, Warning, gpu_lights};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
@@ -43,24 +44,26 @@ pub enum RenderError {
 /// A frame under way.
 #[derive(Debug)]
 pub struct Frame {
-    pieces: Vec<Piece>,
+    plan: Plan,
+    choices: Vec<Choice>,
     next: usize,
-    effort_done: f64,
-    effort: f64,
+    seconds_done: f64,
+    seconds: f64,
     slot: Slot,
     overlay: OverlaySettings,
+    rows: Vec<u32>,
     origins: Vec<crate::scene::NodeId>,
 }
 
 impl Frame {
     /// Share that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
-        if self.is_done() { 1.0 } else { (self.effort_done / self.effort.max(1e-9)) as f32 }
+        if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
     }
 
     /// Whether the picture is complete.
     pub fn is_done(&self) -> bool {
-        self.next == self.pieces.len()
+        self.next == self.plan.pieces.len()
     }
 }
 
@@ -86,9 +89,9 @@ struct SlotState {
 pub struct Renderer {
     gpu: Gpu,
     layouts: Layouts,
-    features: Features,
-    trace: TracePass,
-    surface: SurfacePass,
+    kernels: Kernels,
+    method: Method,
+    farthest: FarthestPass,
     shade: ShadePass,
     mesh: MeshPass,
     overlay: OverlayPass,
@@ -99,10 +102,11 @@ pub struct Renderer {
     view: Mirror,
     lights: Mirror,
     work: Mirror,
-    unfinished: Mirror,
+    tiles: Mirror,
+    tile_counts: Mirror,
+    march_counts: Mirror,
     slots: [Option<SlotState>; 2],
     pace: Pace,
-    kernels_built: u32,
 }
 
 #[derive(Debug)]
@@ -111,54 +115,71 @@ struct Groups {
     scene: BindGroup,
     work: BindGroup,
     lights: BindGroup,
-    trace: BindGroup,
-    surface: BindGroup,
+    field: FieldGroups,
+    farthest: BindGroup,
     shade: BindGroup,
 }
 
 /// Dynamic offsets of `Work` are multiples of this.
 const WORK_STRIDE: usize = 256;
+/// Bytes of a tile in a list.
+const TILE_BYTES: usize = 8;
+/// Words that are counted for each component.
+const COUNTS: usize = 4;
+/// Invocations in a workgroup of the cone pass.
+const CONE_GROUP: u32 = 64;
 
 impl Renderer {
-    /// A renderer on `gpu`. Its kernels know no shape until a scene brings one.
+    /// A renderer on `gpu`. Its interpreter knows no shape until a scene brings one.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let features = Features { shapes: [].into(), stack: 1 };
+        let options = Options { counting: false, skipping: !gpu.is_software() };
         let storage = |label| Mirror::storage(device, label);
         let renderer = Self {
-            trace: TracePass::new(device, &layouts, &features)?,
-            surface: SurfacePass::new(device, &layouts, &features)?,
+            kernels: Kernels::new(gpu, &layouts, options)?,
+            method: Method::Auto,
+            farthest: FarthestPass::new(device, &layouts)?,
             shade: ShadePass::new(device, &layouts)?,
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
             nodes: storage("nodes"),
-            numbers: storage("numbers"),
+            numbers: Mirror::rows(device, "numbers"),
             components: storage("components"),
             materials: storage("materials"),
             view: Mirror::uniform(device, "view"),
             lights: storage("lights"),
             work: Mirror::uniform(device, "work"),
-            unfinished: Mirror::read_back(device, "unfinished"),
+            tiles: storage("tiles"),
+            tile_counts: Mirror::indirect(device, "tile counts"),
+            march_counts: Mirror::read_back(device, "march counts"),
             slots: [None, None],
             pace: Pace::new(gpu.is_software()),
-            kernels_built: 0,
             layouts,
-            features,
             gpu: gpu.clone(),
         };
         gpu.check()?;
         Ok(renderer)
     }
 
+    /// Chooses how components are evaluated from now on.
+    pub fn set_method(&mut self, method: Method) {
+        self.method = method;
+    }
+
+    /// How many kernels are being built.
+    pub fn kernels_building(&self) -> usize {
+        self.kernels.building()
+    }
+
+    /// The kernels.
+    pub fn kernels(&mut self) -> &mut Kernels {
+        &mut self.kernels
+    }
+
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
-    }
-
-    /// How often kernels had to be built because a scene used more than they knew.
-    pub fn kernels_built(&self) -> u32 {
-        self.kernels_built
     }
 
     /// Bytes of scene data uploaded so far.
@@ -167,8 +188,10 @@ impl Renderer {
     }
 
     /// How long a whole frame is expected to take.
-    pub fn estimate(&self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Duration {
-        self.pace.time_for(plan(flat, camera, size, &self.pace).iter().map(|p| p.effort).sum())
+    pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
+        let specialised: Vec<bool> = self.kernels.choose(flat, self.method)?.iter().map(|c| c.specialised).collect();
+        let plan = plan(flat, camera, size, &specialised, &self.pace);
+        Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
 
     /// The picture of a whole scene. `progress` is told the share that is done, between dispatches, and
@@ -190,7 +213,7 @@ impl Renderer {
         }
         progress(1.0);
         let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
-        Ok((buffers, self.unfinished_rays(&frame, flat)?))
+        Ok((buffers, self.unfinished_rays(&frame)?))
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
@@ -207,14 +230,18 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        self.learn_features(flat)?;
+        let choices = self.kernels.choose(flat, self.method)?;
+        self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
-        let pieces = plan(flat, camera, size, &self.pace);
-        if self.upload(flat, camera, size, &pieces) {
-            self.forget_groups();
+        let specialised: Vec<bool> = choices.iter().map(|c| c.specialised).collect();
+        let plan = plan(flat, camera, size, &specialised, &self.pace);
+        if self.upload(flat, camera, size, &plan) {
+            for state in self.slots.iter_mut().flatten() {
+                state.groups = None;
+            }
         }
         if self.slot(slot).groups.is_none() {
             let groups = self.bind_all(&self.slot(slot).targets);
@@ -226,9 +253,17 @@ impl Renderer {
         if !overlay.is_empty() {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, camera.position);
         }
-        let effort = pieces.iter().map(|p| p.effort).sum();
-        let origins = flat.components.iter().map(|c| flat.ids[c.first as usize]).collect();
-        Ok(Frame { pieces, next: 0, effort_done: 0.0, effort, slot, overlay, origins })
+        Ok(Frame {
+            seconds: self.pace.seconds(plan.effort()),
+            plan,
+            choices,
+            next: 0,
+            seconds_done: 0.0,
+            slot,
+            overlay,
+            rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
+            origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
+        })
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
@@ -237,19 +272,22 @@ impl Renderer {
         let start = Instant::now();
         loop {
             let first = frame.next;
-            let most = self.pace.effort_in(DISPATCH_TARGET);
-            let mut effort = 0.0;
+            let mut effort = Effort::default();
             let mut end = first;
-            while end < frame.pieces.len() && (end == first || effort + frame.pieces[end].effort <= most) {
-                effort += frame.pieces[end].effort;
+            while end < frame.plan.pieces.len() {
+                let more = effort + frame.plan.pieces[end].effort;
+                if end > first && self.pace.seconds(more) > DISPATCH_TARGET.as_secs_f64() {
+                    break;
+                }
+                effort = more;
                 end += 1;
             }
             let submitted = Instant::now();
+            frame.seconds_done += self.pace.seconds(effort);
             self.submit(frame, first..end);
             self.gpu.wait()?;
             self.pace.learn(effort, submitted.elapsed());
             frame.next = end;
-            frame.effort_done += effort;
             if frame.is_done() || start.elapsed() >= budget {
                 return Ok(());
             }
@@ -263,8 +301,9 @@ impl Renderer {
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.
-    pub fn unfinished_rays(&self, frame: &Frame, flat: &FlatScene) -> Result<Vec<Warning>, RenderError> {
-        let counts = read_words(&self.gpu, self.unfinished.buffer(), flat.components.len())?;
+    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
+        let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
         let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
             node: *id,
             name: String::new(),
@@ -273,50 +312,31 @@ impl Renderer {
         Ok(warnings.collect())
     }
 
-    fn learn_features(&mut self, flat: &FlatScene) -> Result<(), RenderError> {
-        let wanted = Features::of(flat);
-        if !self.features.covers(&wanted) {
-            // Only ever more: going back and forth between scenes builds nothing twice.
-            let features = self.features.union(&wanted);
-            self.trace = TracePass::new(&self.gpu.device, &self.layouts, &features)?;
-            self.surface = SurfacePass::new(&self.gpu.device, &self.layouts, &features)?;
-            self.gpu.check()?;
-            self.features = features;
-            self.kernels_built += 1;
-            self.forget_groups();
-        }
-        Ok(())
-    }
-
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
     }
 
-    fn forget_groups(&mut self) {
-        for state in self.slots.iter_mut().flatten() {
-            state.groups = None;
-        }
-    }
-
     /// Returns whether a buffer was replaced.
-    fn upload(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2], pieces: &[Piece]) -> bool {
+    fn upload(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &Plan) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
         let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, camera.position)).collect();
         let lights = gpu_lights(flat, camera);
         let view = View::new(camera, size, flat, lights.len() as u32);
-        let mut work = vec![0_u8; pieces.len() * WORK_STRIDE];
-        for (slot, piece) in work.chunks_exact_mut(WORK_STRIDE).zip(pieces) {
+        let mut work = vec![0_u8; plan.pieces.len() * WORK_STRIDE];
+        for (slot, piece) in work.chunks_exact_mut(WORK_STRIDE).zip(&plan.pieces) {
             slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
         }
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers)),
+            self.numbers.set(device, queue, bytemuck::cast_slice(&padded_rows(flat))),
             self.components.set(device, queue, bytemuck::cast_slice(&components)),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.work.set(device, queue, &work),
-            self.unfinished.clear(device, queue, flat.components.len() * 4),
+            self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
+            self.tile_counts.reset(device, queue, bytemuck::cast_slice(&vec![[0_u32, 1, 1, 0]; plan.lists as usize])),
+            self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
         ];
         uploads.contains(&true)
     }
@@ -324,18 +344,21 @@ impl Renderer {
     fn bind_all(&self, targets: &Targets) -> Groups {
         let device = &self.gpu.device;
         let scene = [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::binding);
-        let work = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: self.work.buffer(),
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<Work>() as u64),
-        });
+        let own_rows = window(self.numbers.buffer(), MAX_KERNEL_ROWS as usize * size_of::<Row>());
+        let scene: Vec<_> = scene.into_iter().chain([own_rows]).collect();
+        let lists = Lists {
+            tiles: self.tiles.buffer(),
+            tile_counts: self.tile_counts.buffer(),
+            march_counts: self.march_counts.buffer(),
+        };
+        let work = window(self.work.buffer(), size_of::<Work>());
         Groups {
             view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
             scene: bind(device, "scene", &self.layouts.scene, &scene),
             work: bind(device, "work", &self.layouts.work, &[work]),
             lights: self.shade.bind_lights(device, self.lights.binding()),
-            trace: self.trace.bind(device, targets, self.unfinished.buffer()),
-            surface: self.surface.bind(device, targets),
+            field: self.kernels.field().bind(device, targets, lists),
+            farthest: self.farthest.bind(device, targets),
             shade: self.shade.bind(device, targets),
         }
     }
@@ -345,43 +368,84 @@ impl Renderer {
         let groups = groups.as_ref().expect("begin binds");
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let pieces = &frame.plan.pieces;
         let mut at = range.start;
         while at < range.end {
-            if frame.pieces[at].stage == Stage::Mesh {
+            if pieces[at].stage == Stage::Mesh {
                 self.mesh.record(&mut encoder, targets, &groups.view);
                 at += 1;
                 continue;
             }
-            let end = (at..range.end).find(|i| frame.pieces[*i].stage == Stage::Mesh).unwrap_or(range.end);
-            self.record_compute(&mut encoder, groups, &frame.pieces[at..end], at);
+            let end = (at..range.end).find(|i| pieces[*i].stage == Stage::Mesh).unwrap_or(range.end);
+            self.record_compute(&mut encoder, groups, frame, at..end);
             at = end;
         }
-        if range.end == frame.pieces.len() && !frame.overlay.is_empty() {
+        if range.end == pieces.len() && !frame.overlay.is_empty() {
             self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
         }
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    fn record_compute(&self, encoder: &mut wgpu::CommandEncoder, groups: &Groups, pieces: &[Piece], first: usize) {
+    fn record_compute(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &Groups,
+        frame: &Frame,
+        range: std::ops::Range<usize>,
+    ) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_bind_group(0, &groups.view, &[]);
-        let mut stage = None;
-        for (i, piece) in pieces.iter().enumerate() {
-            if stage != Some(piece.stage) {
-                stage = Some(piece.stage);
-                let (pipeline, data, targets) = match piece.stage {
-                    Stage::Trace => (self.trace.pipeline(), &groups.scene, &groups.trace),
-                    Stage::Surface => (self.surface.pipeline(), &groups.scene, &groups.surface),
-                    Stage::Shade => (self.shade.pipeline(), &groups.lights, &groups.shade),
-                    Stage::Mesh => unreachable!("the caller records it as a render pass"),
-                };
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, data, &[]);
-                pass.set_bind_group(2, targets, &[]);
+        for at in range {
+            let piece = &frame.plan.pieces[at];
+            pass.set_bind_group(3, &groups.work, &[(at * WORK_STRIDE) as u32]);
+            match piece.stage {
+                Stage::Farthest => {
+                    pass.set_pipeline(self.farthest.pipeline());
+                    pass.set_bind_group(1, self.farthest.scene(), &[]);
+                    pass.set_bind_group(2, &groups.farthest, &[]);
+                }
+                Stage::Shade => {
+                    pass.set_pipeline(self.shade.pipeline());
+                    pass.set_bind_group(1, &groups.lights, &[]);
+                    pass.set_bind_group(2, &groups.shade, &[]);
+                }
+                _ => {
+                    self.record_field(&mut pass, groups, frame, piece);
+                    continue;
+                }
             }
-            pass.set_bind_group(3, &groups.work, &[((first + i) * WORK_STRIDE) as u32]);
             let [x, y] = piece.tiles();
             pass.dispatch_workgroups(x, y, 1);
         }
     }
+
+    /// A pass over one component.
+    fn record_field(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups, frame: &Frame, piece: &Piece) {
+        let component = piece.work.component as usize;
+        let kernel = &frame.choices[component].kernel;
+        let (pipeline, targets) = match piece.stage {
+            Stage::Cone => (&kernel.cone, &groups.field.cone),
+            Stage::Trace => (&kernel.trace, &groups.field.trace),
+            Stage::Surface => (&kernel.surface, &groups.field.surface),
+            Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
+        };
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]);
+        pass.set_bind_group(2, targets, &[]);
+        if piece.stage == Stage::Cone {
+            let [x, y] = piece.tiles();
+            pass.dispatch_workgroups((x * y).div_ceil(CONE_GROUP), 1, 1);
+        } else {
+            pass.dispatch_workgroups_indirect(self.tile_counts.buffer(), u64::from(piece.work.list) * 16);
+        }
+    }
+}
+
+/// The rows, with room behind them: a kernel's window on the rows of the last component must not end
+/// outside the buffer.
+pub(super) fn padded_rows(flat: &FlatScene) -> Vec<Row> {
+    let mut rows = Vec::with_capacity(flat.numbers.len() + MAX_KERNEL_ROWS as usize);
+    rows.extend_from_slice(&flat.numbers);
+    rows.resize(flat.numbers.len() + MAX_KERNEL_ROWS as usize, [0.0; 4]);
+    rows
 }

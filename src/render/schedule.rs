@@ -5,6 +5,7 @@
 
 use std::time::Duration;
 
+use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3};
 
 use super::uniforms::Work;
@@ -28,9 +29,13 @@ pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 pub enum Stage {
     /// Clear the targets and draw the meshes.
     Mesh,
-    /// March one component.
+    /// The farthest depth of each tile after the meshes.
+    Farthest,
+    /// Find the tiles that a component touches.
+    Cone,
+    /// March one component within these tiles.
     Trace,
-    /// Normals and materials.
+    /// Normals and materials of its hits.
     Surface,
     /// Light.
     Shade,
@@ -43,88 +48,163 @@ pub struct Piece {
     pub stage: Stage,
     /// What it does.
     pub work: Work,
-    /// Expected effort, in evaluations of a leaf.
-    pub effort: f64,
+    /// Expected effort.
+    pub effort: Effort,
 }
 
 impl Piece {
-    /// Workgroups along x and y.
+    /// Tiles along x and y.
     pub fn tiles(&self) -> [u32; 2] {
         [0, 1].map(|i| (self.work.end[i] - self.work.origin[i]).div_ceil(TILE))
+    }
+}
+
+/// Effort, in evaluations of a leaf, by the kind of kernel that makes them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// By interpreted kernels, and everything else.
+    pub interpreted: f64,
+    /// By specialised kernels.
+    pub specialised: f64,
+}
+
+impl Effort {
+    fn new(specialised: bool, amount: f64) -> Self {
+        if specialised {
+            Self { specialised: amount, ..Self::default() }
+        } else {
+            Self { interpreted: amount, ..Self::default() }
+        }
+    }
+}
+
+impl std::ops::Add for Effort {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { interpreted: self.interpreted + other.interpreted, specialised: self.specialised + other.specialised }
     }
 }
 
 /// How fast the device is, learnt from what was measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    seconds_per_effort: f64,
+    interpreted: f64,
+    specialised: f64,
 }
 
 impl Pace {
     /// A first guess.
     pub fn new(software: bool) -> Self {
-        Self { seconds_per_effort: if software { 2e-8 } else { 2e-11 } }
+        if software {
+            Self { interpreted: 4e-8, specialised: 2e-9 }
+        } else {
+            Self { interpreted: 5e-11, specialised: 1e-11 }
+        }
     }
 
-    /// Effort that is expected to take this long.
-    pub fn effort_in(&self, time: Duration) -> f64 {
-        time.as_secs_f64() / self.seconds_per_effort
+    /// Seconds that the effort is expected to take.
+    pub fn seconds(&self, effort: Effort) -> f64 {
+        effort.interpreted * self.interpreted + effort.specialised * self.specialised
     }
 
-    /// Time that the effort is expected to take.
-    pub fn time_for(&self, effort: f64) -> Duration {
-        Duration::from_secs_f64((effort * self.seconds_per_effort).min(1e6))
+    /// Effort of one kind that is expected to take this long.
+    fn effort_in(&self, time: Duration, specialised: bool) -> f64 {
+        time.as_secs_f64() / if specialised { self.specialised } else { self.interpreted }
     }
 
     /// Learns from a measurement. Slower than expected counts at once, faster bit by bit.
-    pub fn learn(&mut self, effort: f64, took: Duration) {
+    pub fn learn(&mut self, effort: Effort, took: Duration) {
+        let expected = self.seconds(effort);
         // Below a millisecond it is the submission that is measured, not the work.
-        if effort <= 0.0 || took < Duration::from_millis(1) {
+        if expected <= 0.0 || took < Duration::from_millis(1) {
             return;
         }
-        let seen = took.as_secs_f64() / effort;
-        let share = if seen > self.seconds_per_effort { 0.6 } else { 0.15 };
-        self.seconds_per_effort += (seen - self.seconds_per_effort) * share;
+        let ratio = (took.as_secs_f64() / expected).clamp(0.05, 20.0);
+        let gain = if ratio > 1.0 { 0.6 } else { 0.2 };
+        let of_special = effort.specialised * self.specialised / expected;
+        self.specialised *= 1.0 + (ratio - 1.0) * gain * of_special;
+        self.interpreted *= 1.0 + (ratio - 1.0) * gain * (1.0 - of_special);
     }
 }
 
-/// All dispatches of a frame, in order.
-pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], pace: &Pace) -> Vec<Piece> {
+/// All dispatches of a frame.
+#[derive(Clone, Debug, Default)]
+pub struct Plan {
+    /// In order.
+    pub pieces: Vec<Piece>,
+    /// Lists of tiles that the cone passes write.
+    pub lists: u32,
+    /// Tiles in all lists together, if none is dropped.
+    pub tiles: u32,
+}
+
+/// Expected evaluations of a component per pixel of its outline: measured on the shipped scenes.
+const CONE_EVALUATIONS: f64 = 0.2;
+const TRACE_EVALUATIONS: f64 = 4.0;
+const SURFACE_EVALUATIONS: f64 = 3.0;
+
+/// Plans a frame. `specialised` tells for each component whether its kernel is.
+pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], specialised: &[bool], pace: &Pace) -> Plan {
     let whole = Rect { origin: [0, 0], end: size };
-    let most = pace.effort_in(DISPATCH_TARGET);
-    let mut pieces = vec![Piece { stage: Stage::Mesh, work: whole.work(0), effort: 0.0 }];
+    let mut plan = Plan::default();
+    plan.push(Stage::Mesh, whole.work(0), Effort::default());
+    if !flat.meshes.is_empty() {
+        plan.push(Stage::Farthest, whole.work(0), Effort::new(false, whole.pixels() * 0.05));
+    }
+    let mut surfaces = Vec::new();
     for index in front_to_back(flat, camera) {
-        let component = &flat.components[index];
-        let Some(rect) = Rect::around(component, camera, size) else { continue };
-        plan_trace(flat, index, rect, most, &mut pieces);
+        let Some(rect) = Rect::around(&flat.components[index], camera, size) else { continue };
+        plan.component(flat, index, rect, specialised[index], pace, &mut surfaces);
     }
-    // A normal and a material take five evaluations of the component that was hit.
-    let mean = flat.nodes.len() as f64 / flat.components.len().max(1) as f64;
-    let largest = flat.components.iter().map(|c| c.count).max().unwrap_or(0);
-    let surface = 5.0 * (mean + 0.1 * f64::from(largest)) + 1.0;
-    let shade = 1.0 + flat.lights.len() as f64;
-    for (stage, per_pixel) in [(Stage::Surface, surface), (Stage::Shade, shade)] {
-        whole.cut(per_pixel, most, |rect| {
-            pieces.push(Piece { stage, work: rect.work(0), effort: rect.pixels() * per_pixel });
-        });
-    }
-    pieces
+    // Normals only of what is still seen when all components are there.
+    plan.pieces.append(&mut surfaces);
+    let per_pixel = 0.3 + 0.2 * flat.lights.len() as f64;
+    whole.cut(per_pixel, pace.effort_in(DISPATCH_TARGET, false), |rect| {
+        plan.push(Stage::Shade, rect.work(0), Effort::new(false, rect.pixels() * per_pixel));
+    });
+    plan
 }
 
-fn plan_trace(flat: &FlatScene, index: usize, rect: Rect, most: f64, pieces: &mut Vec<Piece>) {
-    let component = &flat.components[index];
-    let max_steps = if component.bounds.is_finite() { MAX_STEPS } else { MAX_STEPS_UNBOUNDED };
-    // One iteration for each entry and one for each group that ends.
-    let steps = (MAX_ITERATIONS / (2 * component.count + 1)).clamp(1, max_steps);
-    let rounds = max_steps.div_ceil(steps);
-    for round in 0..rounds {
-        // Most rays have ended long before the last round; the others are few.
-        let expected = if round == 0 { f64::from(steps.min(24)) } else { 0.3 };
-        let per_pixel = f64::from(component.count) * expected;
-        rect.cut(per_pixel, most, |rect| {
-            let work =
-                Work { max_steps: steps, round, last_round: u32::from(round + 1 == rounds), ..rect.work(index as u32) };
-            pieces.push(Piece { stage: Stage::Trace, work, effort: rect.pixels() * per_pixel });
+impl Plan {
+    /// Effort of the whole frame.
+    pub fn effort(&self) -> Effort {
+        self.pieces.iter().fold(Effort::default(), |sum, piece| sum + piece.effort)
+    }
+
+    fn push(&mut self, stage: Stage, work: Work, effort: Effort) {
+        self.pieces.push(Piece { stage, work, effort });
+    }
+
+    fn component(
+        &mut self,
+        flat: &FlatScene,
+        index: usize,
+        rect: Rect,
+        specialised: bool,
+        pace: &Pace,
+        surfaces: &mut Vec<Piece>,
+    ) {
+        let component = &flat.components[index];
+        let leaves = f64::from(component.count);
+        let max_steps = if component.bounds.is_finite() { MAX_STEPS } else { MAX_STEPS_UNBOUNDED };
+        // The interpreter takes an iteration for each entry and one for each group that ends.
+        let per_evaluation = if specialised { 1 } else { 2 * component.count + 2 };
+        let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, max_steps);
+        let rounds = max_steps.div_ceil(steps);
+        rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, specialised), |rect| {
+            let list = Work { list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
+            let effort = |evaluations: f64| Effort::new(specialised, rect.pixels() * leaves * evaluations);
+            self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
+            for round in 0..rounds {
+                let last_round = u32::from(round + 1 == rounds);
+                let work = Work { max_steps: steps, round, last_round, ..list };
+                // Most rays have ended long before the last round.
+                self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.02 }));
+            }
+            surfaces.push(Piece { stage: Stage::Surface, work: list, effort: effort(SURFACE_EVALUATIONS) });
+            self.lists += 1;
+            self.tiles += rect.tiles();
         });
     }
 }
@@ -188,8 +268,12 @@ impl Rect {
         f64::from(self.end[0] - self.origin[0]) * f64::from(self.end[1] - self.origin[1])
     }
 
+    fn tiles(&self) -> u32 {
+        [0, 1].map(|i| (self.end[i] - self.origin[i]).div_ceil(TILE)).iter().product()
+    }
+
     fn work(&self, component: u32) -> Work {
-        Work { origin: self.origin, end: self.end, component, max_steps: 0, round: 0, last_round: 0 }
+        Work { origin: self.origin, end: self.end, component, ..Work::zeroed() }
     }
 
     /// Cuts into pieces of at most `most` effort, or of one tile.
@@ -246,10 +330,11 @@ mod tests {
     #[test]
     fn the_pace_follows_what_is_measured() {
         let mut pace = Pace::new(true);
-        for _ in 0..40 {
-            pace.learn(1e6, Duration::from_millis(100));
+        let effort = Effort { interpreted: 1e6, specialised: 1e7 };
+        for _ in 0..60 {
+            pace.learn(effort, Duration::from_millis(100));
         }
-        let expected = pace.time_for(1e6).as_secs_f64();
+        let expected = pace.seconds(effort);
         assert!((expected - 0.1).abs() < 0.01, "{expected}");
     }
 }

@@ -5,16 +5,19 @@
 //! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] where nothing is |
 //! | owner | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
 //! | march | R32Float | trace | where a march goes on in the next round |
+//! | farthest | R32Float | farthest, trace | the farthest depth in each tile of 8 by 8 pixels |
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world |
 //! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
 //! | emission | Rgba16Float | surface | emission, shininess |
-//! | leaf | R32Uint | surface | entry of the subtree-extent array, or as owner |
+//! | leaf | R32Uint | surface, shade | entry of the subtree-extent array; where no field is, as owner |
 //! | color | Rgba8Unorm | shade, overlay | the picture, sRGB encoded |
 //! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
 //!
 //! `shaders/common/depth.wgsl` is the twin of the conventions.
 
 use wgpu::{TextureFormat, TextureUsages};
+
+use super::schedule::TILE;
 
 /// Depth where nothing was hit.
 pub const BACKGROUND: f32 = 1e30;
@@ -30,6 +33,8 @@ pub struct Targets {
     pub owner: Target,
     /// See the module's table.
     pub march: Target,
+    /// See the module's table.
+    pub farthest: Target,
     /// See the module's table.
     pub normal: Target,
     /// See the module's table.
@@ -59,11 +64,13 @@ impl Targets {
         let compute = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let both = compute | TextureUsages::RENDER_ATTACHMENT;
         let target = |label, format, usage| Target::new(device, label, size, format, usage);
+        let tiles = size.map(|v| v.div_ceil(TILE));
         Self {
             size,
             depth: target("depth", TextureFormat::R32Float, both),
             owner: target("owner", TextureFormat::R32Uint, both),
             march: target("march", TextureFormat::R32Float, compute),
+            farthest: Target::new(device, "farthest", tiles, TextureFormat::R32Float, both),
             normal: target("normal", TextureFormat::Rgba32Float, both),
             diffuse: target("diffuse", TextureFormat::Rgba16Float, both),
             emission: target("emission", TextureFormat::Rgba16Float, compute),

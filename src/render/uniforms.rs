@@ -102,7 +102,7 @@ impl GpuComponent {
     }
 }
 
-/// One dispatch: which component, which part of the picture, how far.
+/// One piece of work: which component, which part of the picture, how far.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct Work {
@@ -118,4 +118,10 @@ pub struct Work {
     pub round: u32,
     /// 1 in the last round.
     pub last_round: u32,
+    /// Where the cone pass counts the tiles that are left.
+    pub list: u32,
+    /// Where these tiles start.
+    pub first_tile: u32,
+    /// Unused.
+    pub padding: [u32; 2],
 }

@@ -10,7 +10,7 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("document", &["scene", "geometry"]),
     ("gallery", &["scene", "geometry"]),
     ("flat", &["scene", "mesh", "geometry"]),
-    ("render", &["flat", "mesh", "geometry"]),
+    ("render", &["flat", "scene", "mesh", "geometry"]),
     ("editor", &["document", "scene", "flat", "mesh", "geometry"]),
     ("app", &["editor", "render", "document", "scene", "flat", "mesh", "geometry"]),
     ("cli", &["app", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
@@ -32,9 +32,14 @@ const CRATES: &[(&str, &[&str])] = &[
 const FILE_OWNERS: &[&str] =
     &["src/scene/file", "src/mesh/", "src/document/recent", "src/document/store", "src/cli/", "src/gallery/write"];
 
-/// What the functions of a shader file begin with, by the start of the file's path. Passes are known by
-/// their own names.
-pub const SHADER_PREFIXES: &[(&str, &[&str])] = &[];
+/// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
+const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind", "Group", "Object"];
+
+/// Words behind which a name is given.
+const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const", "static", "let"];
+
+/// The build script stands beside what it serves, but is a program of its own.
+const BUILD_SCRIPT: &str = "src/render/embed_shaders.rs";
 
 /// Most lines of a Rust file, of a shader, and of a Rust function.
 pub const MAX_LINES: [usize; 3] = [500, 250, 70];
@@ -104,7 +109,12 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
                     report(word.line, "only files that own files touch the file system".into());
                 }
             }
-            name if is_vague(name) => report(word.line, format!("`{name}` is a name that says nothing")),
+            _ if NAMING.contains(&word.text) && is_vague(next) => {
+                report(word.line, format!("`{next}` is a name that says nothing"));
+            }
+            name if module == Some("render") && HIDDEN_FROM_RENDER.contains(&name) && !tested => {
+                report(word.line, format!("the renderer sees no {name}, only what flat makes of it"));
+            }
             name if in_path || words.get(i.wrapping_sub(1)).is_some_and(|w| w.text == "use") => {
                 for (owned, owners) in CRATES.iter().filter(|(owned, _)| of_crate(name, owned)) {
                     if module.is_some_and(|m| !owners.contains(&m)) {
@@ -134,8 +144,11 @@ fn of_crate(name: &str, owned: &str) -> bool {
     name.strip_prefix(owned).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
 }
 
-/// The top-level module that the file belongs to; none for the roots and for files outside `src`.
+/// The top-level module that the file belongs to; none for the roots, the build script and files outside `src`.
 pub fn module_of(path: &str) -> Option<&str> {
+    if path == BUILD_SCRIPT {
+        return None;
+    }
     let name = path.strip_prefix("src/")?.split('/').next()?;
     let name = name.strip_suffix(".rs").unwrap_or(name);
     (name != "lib" && name != "main").then_some(name)
@@ -237,17 +250,13 @@ fn wgsl(path: &str, text: &str, found: &mut Vec<String>) {
     if !text.starts_with("//") {
         found.push(format!("{path}:1: the file does not say what it is for"));
     }
-    let stem = path.rsplit('/').next().unwrap_or(path).trim_end_matches(".wgsl");
-    let own = [format!("{stem}_")];
-    let listed = SHADER_PREFIXES.iter().find(|(start, _)| path.starts_with(start)).map(|(_, p)| *p);
+    // A function's name holds that of its file or of its folder: `sdf_sphere`, `shade_encode`.
+    let inside = path.strip_prefix("shaders/").unwrap_or(path).trim_end_matches(".wgsl");
     let words = tokens(text);
     for pair in words.windows(2).filter(|pair| pair[0].text == "fn") {
-        let name = pair[1].text;
-        let fits = name == stem
-            || own.iter().any(|p| name.starts_with(p))
-            || listed.is_some_and(|prefixes| prefixes.iter().any(|p| name.starts_with(p)));
-        if !fits {
-            found.push(format!("{path}:{}: `{name}` does not carry the name of its file", pair[1].line));
+        let name = format!("_{}_", pair[1].text);
+        if !inside.split('/').any(|part| name.contains(&format!("_{part}_"))) {
+            found.push(format!("{path}:{}: `{}` does not carry the name of its file", pair[1].line, pair[1].text));
         }
     }
 }

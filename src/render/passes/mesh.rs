@@ -11,8 +11,8 @@ use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::mesh::{Texture, TriangleMesh};
 use crate::render::buffers::Mirror;
+use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
-use crate::render::shader::{Features, ShaderError, source};
 use crate::render::targets::{BACKGROUND, Targets};
 
 /// The pass, and the meshes that are on the device.
@@ -34,10 +34,18 @@ pub struct MeshPass {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
-    /// Rows of eye-relative world space from the mesh's space.
-    pub eye_from_local: [[f32; 4]; 3],
-    /// Rows of the matrix for normals.
-    pub normal: [[f32; 4]; 3],
+    /// First row of eye-relative world space from the mesh's space.
+    pub eye_from_local_x: [f32; 4],
+    /// Second row.
+    pub eye_from_local_y: [f32; 4],
+    /// Third row.
+    pub eye_from_local_z: [f32; 4],
+    /// First row of the matrix for normals.
+    pub normal_x: [f32; 4],
+    /// Second row.
+    pub normal_y: [f32; 4],
+    /// Third row.
+    pub normal_z: [f32; 4],
     /// See `overridden`.
     pub albedo: [f32; 3],
     /// Strength of the highlight.
@@ -128,17 +136,19 @@ impl MeshPass {
             bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
         }
         if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
-            let binding = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: self.instances.buffer(),
-                offset: 0,
-                size: std::num::NonZeroU64::new(size_of::<Instance>() as u64),
-            });
+            let binding = window(self.instances.buffer(), size_of::<Instance>());
             self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
         }
     }
 
     /// Clears the shared targets and draws.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
+        // Another size, so another render pass; it only clears.
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear farthest"),
+            color_attachments: &[cleared(&targets.farthest.view, f64::from(BACKGROUND))],
+            ..Default::default()
+        }));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("mesh"),
             color_attachments: &[
@@ -240,8 +250,12 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
     };
     let material = placed.material.map(|i| flat.materials[i as usize]);
     Instance {
-        eye_from_local: [row(0), row(1), row(2)],
-        normal: [normal_row(0), normal_row(1), normal_row(2)],
+        eye_from_local_x: row(0),
+        eye_from_local_y: row(1),
+        eye_from_local_z: row(2),
+        normal_x: normal_row(0),
+        normal_y: normal_row(1),
+        normal_z: normal_row(2),
         albedo: material.map_or([1.0; 3], |m| m.albedo),
         specular: material.map_or(OWN_SPECULAR, |m| m.specular),
         owner: MESH_BIT | index as u32,
@@ -251,10 +265,9 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
 }
 
 fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
-    let no_shapes = Features { shapes: [].into(), stack: 1 };
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
-        source: wgpu::ShaderSource::Wgsl(source("mesh.wgsl", &no_shapes)?.into()),
+        source: wgpu::ShaderSource::Wgsl(plain_source("mesh.wgsl")?.into()),
     });
     use wgpu::VertexFormat::{Float32x2, Float32x3};
     // Position, normal, colour, texture coordinate.

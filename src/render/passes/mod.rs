@@ -1,8 +1,8 @@
-//! The passes, each with its shader of the same name, in the order of the frame: mesh, trace, surface,
-//! shade, overlay.
+//! The passes, each with its shader of the same name, in the order of the frame: mesh, farthest, cone, trace,
+//! surface, shade, overlay. Cone, trace and surface evaluate the field and live together in `field`.
 
+pub mod farthest;
+pub mod field;
 pub mod mesh;
 pub mod overlay;
 pub mod shade;
-pub mod surface;
-pub mod trace;

@@ -6,8 +6,8 @@ use wgpu::{BindGroup, BindGroupLayout, ShaderStages, TextureFormat};
 
 use crate::flat::FlatScene;
 use crate::render::buffers::Mirror;
+use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
-use crate::render::shader::{Features, ShaderError, source};
 use crate::render::targets::Targets;
 use crate::scene::NodeId;
 
@@ -46,7 +46,11 @@ pub struct Overlay {
     /// Bits before those of the meshes.
     pub leaf_count: u32,
     /// Unused.
-    pub padding: [u32; 3],
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
+    /// Unused.
+    pub padding_2: u32,
 }
 
 /// The pass.
@@ -70,10 +74,9 @@ impl OverlayPass {
             "overlay targets",
             &[entry(0, stage, read_texture(false)), entry(1, stage, read_texture(true))],
         );
-        let no_shapes = Features { shapes: [].into(), stack: 1 };
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("overlay"),
-            source: wgpu::ShaderSource::Wgsl(source("overlay.wgsl", &no_shapes)?.into()),
+            source: wgpu::ShaderSource::Wgsl(plain_source("overlay.wgsl")?.into()),
         });
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("overlay"),
@@ -126,7 +129,9 @@ impl OverlayPass {
             axis_x: (reduced.z - eye.z) as f32,
             axis_z: (reduced.x - eye.x) as f32,
             leaf_count: flat.nodes.len() as u32,
-            padding: [0; 3],
+            padding_0: 0,
+            padding_1: 0,
+            padding_2: 0,
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);

@@ -2,8 +2,8 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 
+use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
-use crate::render::shader::{Features, ShaderError, source};
 use crate::render::targets::Targets;
 
 /// The pass.
@@ -28,17 +28,26 @@ impl ShadePass {
                 entry(2, stage, read_texture(false)),
                 entry(3, stage, read_texture(false)),
                 entry(4, stage, write_texture(TextureFormat::Rgba8Unorm)),
+                entry(5, stage, read_texture(true)),
+                entry(6, stage, write_texture(TextureFormat::R32Uint)),
             ],
         );
         let groups = [&layouts.view, &lights, &targets, &layouts.work];
-        let no_shapes = Features { shapes: [].into(), stack: 1 };
-        let pipeline = compute_pipeline(device, "shade", source("shade.wgsl", &no_shapes)?, "shade", &groups);
+        let pipeline = compute_pipeline(device, "shade", plain_source("shade.wgsl")?, "shade", &groups);
         Ok(Self { pipeline, lights, targets })
     }
 
     /// The pass's own bind group.
     pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.color];
+        let views = [
+            &targets.depth,
+            &targets.normal,
+            &targets.diffuse,
+            &targets.emission,
+            &targets.color,
+            &targets.owner,
+            &targets.leaf,
+        ];
         let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
         bind(device, "shade targets", &self.targets, &resources)
     }

@@ -4,6 +4,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 
 use super::{FileError, parse, to_json};
 use crate::scene::limits::MAX_FILE_BYTES;
@@ -45,7 +46,7 @@ pub fn save(scene: &Scene, path: &Path) -> Result<(), FileError> {
 }
 
 /// Removes the temporary files that savers of this file left when they were killed. Those of processes
-/// that still run are left alone; where the system does not tell, nothing is removed.
+/// that still run are left alone; where the system does not tell, those of the last day are.
 pub fn remove_leftovers(path: &Path) {
     let Ok(target) = resolved(path) else { return };
     let (Some(folder), Some(prefix)) = (folder_of(&target), temporary_prefix(&target)) else { return };
@@ -53,7 +54,7 @@ pub fn remove_leftovers(path: &Path) {
     for entry in entries.flatten() {
         let name = entry.file_name();
         let process = name.to_str().and_then(|n| n.strip_prefix(&prefix)?.split('-').next()?.parse::<u32>().ok());
-        if process.is_some_and(is_gone) {
+        if process.is_some_and(|id| is_gone(id).unwrap_or_else(|| is_old(&entry))) {
             // Nothing is lost where this fails: the next time tries again.
             let _ = fs::remove_file(entry.path());
         }
@@ -216,10 +217,16 @@ fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether no process has this id any more.
-fn is_gone(process: u32) -> bool {
+/// Whether no process has this id any more; `None` where the system does not tell.
+fn is_gone(process: u32) -> Option<bool> {
     let proc = Path::new("/proc");
-    proc.join("self").exists() && !proc.join(process.to_string()).exists()
+    proc.join("self").exists().then(|| !proc.join(process.to_string()).exists())
+}
+
+/// No save takes a day.
+fn is_old(entry: &fs::DirEntry) -> bool {
+    let modified = entry.metadata().and_then(|m| m.modified()).ok();
+    modified.and_then(|t| t.elapsed().ok()).is_some_and(|age| age > Duration::from_secs(24 * 60 * 60))
 }
 
 /// Equal, but for rotations that writing settles.

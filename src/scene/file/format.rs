@@ -9,6 +9,7 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use crate::geometry::Transform;
 use crate::scene::limits::{MAX_MATERIALS, MAX_NODES};
@@ -187,6 +188,8 @@ pub fn schema() -> serde_json::Value {
     let mut schema = schemars::schema_for!(SceneV1).to_value();
     schema["title"] = "Isolith scene".into();
     schema["properties"]["isolith"]["const"] = VERSION.into();
+    let kinds = ["group", "object", "mesh", "light", "camera"];
+    schema["$defs"]["NodeV1"]["oneOf"] = kinds.iter().map(|kind| json!({ "required": [kind] })).collect();
     schema
 }
 

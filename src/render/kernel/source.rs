@@ -1,10 +1,12 @@
-//! WGSL source of each pass: includes resolved, and the choice of shapes generated for what a scene uses.
+//! WGSL source of each pass: includes resolved, and what depends on the evaluator generated.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use thiserror::Error;
 
+use super::specialise::{Fold, specialise};
+use super::{Evaluator, Options};
 use crate::flat::{FlatScene, MAX_STACK};
 use crate::scene::ShapeKind;
 
@@ -13,7 +15,7 @@ pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.r
 
 /// What the interpreter must be able to evaluate. Kernels are built for it and cached by it, so a
 /// changed value never builds one.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Features {
     /// Shapes in use.
     pub shapes: BTreeSet<ShapeKind>,
@@ -54,8 +56,7 @@ impl Features {
     fn shapes_wgsl(&self) -> String {
         let mut out = String::new();
         for kind in &self.shapes {
-            let file = kind.function().trim_start_matches("sdf_");
-            writeln!(out, "#include \"sdf/{file}.wgsl\"").expect("strings take all");
+            writeln!(out, "{}", shape_include(*kind)).expect("strings take all");
         }
         writeln!(out, "const STACK_SIZE: u32 = {}u;", self.stack).expect("strings take all");
         out.push_str("fn shape_distance(shape: u32, p: vec3f, a: vec4f, b: vec4f) -> f32 {\n    switch shape {\n");
@@ -81,41 +82,76 @@ pub enum ShaderError {
     },
 }
 
-/// The whole source of the shader `entry`, each file included once, before its first user.
-pub fn source(entry: &str, features: &Features) -> Result<String, ShaderError> {
-    let mut out = String::new();
-    let mut seen = BTreeSet::new();
-    let generated = features.shapes_wgsl();
-    include(entry, entry, &generated, &mut seen, &mut out)?;
-    Ok(out)
+/// The line that includes a shape's function.
+pub(super) fn shape_include(kind: ShapeKind) -> String {
+    format!("#include \"sdf/{}.wgsl\"", kind.function().trim_start_matches("sdf_"))
 }
 
-fn include(
-    name: &str,
-    from: &str,
-    generated: &str,
-    seen: &mut BTreeSet<String>,
-    out: &mut String,
-) -> Result<(), ShaderError> {
-    if !seen.insert(name.to_owned()) {
-        return Ok(());
-    }
-    let text = if name == "generated/shapes.wgsl" {
-        generated
-    } else {
-        let missing = || ShaderError::NoFile { from: from.to_owned(), name: name.to_owned() };
-        FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
-    };
-    for line in text.lines() {
-        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
-            Some(included) => include(included, name, generated, seen, out)?,
+/// The whole source of the shader `entry`, each file included once, before its first user.
+pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
+    let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
+    writeln!(resolver.out, "const COUNTING: bool = {};", options.counting).expect("strings take all");
+    resolver.include(entry, entry)?;
+    Ok(resolver.out)
+}
+
+/// The same for a shader that evaluates no field.
+pub fn plain_source(entry: &str) -> Result<String, ShaderError> {
+    let nothing = Evaluator::Interpreted(Features { shapes: BTreeSet::new(), stack: 1 });
+    source(entry, &nothing, Options::default())
+}
+
+struct Resolver<'a> {
+    evaluator: &'a Evaluator,
+    options: Options,
+    seen: BTreeSet<String>,
+    out: String,
+}
+
+impl Resolver<'_> {
+    fn include(&mut self, name: &str, from: &str) -> Result<(), ShaderError> {
+        if !self.seen.insert(name.to_owned()) {
+            return Ok(());
+        }
+        let generated = self.generated(name);
+        let text = match &generated {
+            Some(text) => text,
             None => {
-                out.push_str(line);
-                out.push('\n');
+                let missing = || ShaderError::NoFile { from: from.to_owned(), name: name.to_owned() };
+                FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
+            }
+        };
+        for line in text.lines() {
+            match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+                Some(included) => self.include(included, name)?,
+                None => {
+                    self.out.push_str(line);
+                    self.out.push('\n');
+                }
             }
         }
+        Ok(())
     }
-    Ok(())
+
+    /// Files that do not exist: the evaluator decides what is in them.
+    fn generated(&self, name: &str) -> Option<String> {
+        match (name, self.evaluator) {
+            ("generated/value.wgsl", Evaluator::Interpreted(_)) => {
+                Some("#include \"field/interpreted_value.wgsl\"".to_owned())
+            }
+            ("generated/surface.wgsl", Evaluator::Interpreted(_)) => {
+                Some("#include \"field/interpreted_surface.wgsl\"".to_owned())
+            }
+            ("generated/shapes.wgsl", Evaluator::Interpreted(features)) => Some(features.shapes_wgsl()),
+            ("generated/value.wgsl", Evaluator::Specialised(structure)) => {
+                Some(specialise(structure, Fold::Value, self.options))
+            }
+            ("generated/surface.wgsl", Evaluator::Specialised(structure)) => {
+                Some(specialise(structure, Fold::Surface, self.options))
+            }
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]
@@ -124,17 +160,17 @@ mod tests {
 
     #[test]
     fn files_are_included_once_and_missing_ones_are_named() {
-        let text = source("trace.wgsl", &Features::all()).unwrap();
+        let text = source("trace.wgsl", &Evaluator::Interpreted(Features::all()), Options::default()).unwrap();
         assert_eq!(text.matches("fn view_direction").count(), 1);
         assert!(!text.contains("#include"));
-        let error = source("no_such.wgsl", &Features::all()).unwrap_err();
+        let error = plain_source("no_such.wgsl").unwrap_err();
         assert!(error.to_string().contains("no_such.wgsl"));
     }
 
     #[test]
     fn a_kernel_holds_only_the_shapes_in_use() {
         let features = Features { shapes: [ShapeKind::Sphere].into(), stack: 1 };
-        let text = source("trace.wgsl", &features).unwrap();
+        let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
         assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
     }
 }

@@ -3,6 +3,8 @@
 
 #include "field/leaf.wgsl"
 
+var<private> value_first: u32;
+var<private> value_end: u32;
 var<private> value_stack: array<f32, STACK_SIZE>;
 var<private> value_group: array<u32, STACK_SIZE>;
 
@@ -14,16 +16,22 @@ fn join_value(node: FlatNode, support: f32, so_far: f32, value: f32) -> f32 {
     return op_join(join, so_far, value, support, node.code >> 24u).x;
 }
 
-// `p` relative to the component's origin; `first` and `end` delimit its entries.
-fn field(first: u32, end: u32, p: vec3f) -> f32 {
+// Chooses the component. Before any call of `field`.
+fn field_begin(component: Component) {
+    value_first = component.first;
+    value_end = component.end;
+}
+
+// The field at `p`, relative to the component's origin.
+fn field(p: vec3f) -> f32 {
     var so_far = 0.0;
     var depth = 0u;
-    var at = first;
-    while at < end {
+    var at = value_first;
+    while at < value_end {
         let node = nodes[at];
         let joint = numbers[node.numbers];
         if (node.code & 0xffffu) == GROUP {
-            if !group_is_out_of_reach(node, joint, so_far, p) {
+            if !field_group_is_out_of_reach(node, joint, so_far, p) {
                 value_stack[depth] = so_far;
                 value_group[depth] = at;
                 depth += 1u;

@@ -1,0 +1,56 @@
+// The field with what the surface is made of: the same fold as `interpreted_value.wgsl`.
+// Twin of `flat::twin::surface`.
+
+#include "field/leaf.wgsl"
+#include "field/material.wgsl"
+
+var<private> surface_first: u32;
+var<private> surface_end: u32;
+var<private> surface_stack: array<Surface, STACK_SIZE>;
+var<private> surface_group: array<u32, STACK_SIZE>;
+
+fn join_surface(node: FlatNode, support: f32, so_far: Surface, operand: Surface) -> Surface {
+    let join = (node.code >> 16u) & 0xffu;
+    if join == JOIN_FIRST {
+        return operand;
+    }
+    return surface_join(so_far, operand, op_join(join, so_far.distance, operand.distance, support, node.code >> 24u));
+}
+
+// Chooses the component. Before any call of `surface`.
+fn surface_begin(component: Component) {
+    surface_first = component.first;
+    surface_end = component.end;
+}
+
+fn surface(p: vec3f) -> Surface {
+    var so_far = Surface(0.0, surface_first, vec3f(0.0), 0.0, vec3f(0.0), 1.0);
+    var depth = 0u;
+    var at = surface_first;
+    while at < surface_end {
+        let node = nodes[at];
+        let joint = numbers[node.numbers];
+        if (node.code & 0xffffu) == GROUP {
+            if !field_group_is_out_of_reach(node, joint, so_far.distance, p) {
+                surface_stack[depth] = so_far;
+                surface_group[depth] = at;
+                depth += 1u;
+                at += 1u;
+                continue;
+            }
+            at += node.extent;
+        } else {
+            so_far = join_surface(node, joint.x, so_far, surface_leaf(at, leaf_distance(node, joint, p)));
+            at += 1u;
+        }
+        while depth > 0u {
+            let group = nodes[surface_group[depth - 1u]];
+            if surface_group[depth - 1u] + group.extent != at {
+                break;
+            }
+            depth -= 1u;
+            so_far = join_surface(group, numbers[group.numbers].x, surface_stack[depth], so_far);
+        }
+    }
+    return so_far;
+}

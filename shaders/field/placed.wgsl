@@ -1,0 +1,21 @@
+// Leaves of a specialised kernel: where the point stands in the leaf's own space.
+
+#include "common/scene.wgsl"
+#include "sdf/op.wgsl"
+
+// The component's rows; a specialised kernel knows at which of them each leaf begins.
+@group(1) @binding(4) var<uniform> rows: array<vec4f, ROW_COUNT>;
+
+fn placed(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
+    return vec3f(dot(x.xyz, p) + x.w, dot(y.xyz, p) + y.w, dot(z.xyz, p) + z.w);
+}
+
+// The same where the leaf is only moved.
+fn placed_moved(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
+    return p + vec3f(x.w, y.w, z.w);
+}
+
+// The least that the field of a group can be: see `Row` on the CPU.
+fn placed_bounds(p: vec3f, joint: vec4f, center: vec4f, half: vec4f) -> f32 {
+    return joint.y * length(max(abs(p - center.xyz) - half.xyz, vec3f(0.0)));
+}

@@ -1,0 +1,134 @@
+//! The passes that evaluate a component: `cone`, `trace`, `surface`. One kernel holds all three, built
+//! for one [`Evaluator`].
+
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+
+use crate::render::kernel::{Evaluator, Options, ShaderError, source};
+use crate::render::layouts::*;
+use crate::render::targets::Targets;
+
+/// The pipelines of one evaluator.
+#[derive(Debug)]
+pub struct Kernel {
+    /// Which tiles of the picture a component touches, and from where on.
+    pub cone: ComputePipeline,
+    /// Hits within these tiles.
+    pub trace: ComputePipeline,
+    /// Normal, material and leaf of the hits.
+    pub surface: ComputePipeline,
+}
+
+/// Layouts of the targets of the three passes.
+#[derive(Debug)]
+pub struct FieldLayouts {
+    cone: BindGroupLayout,
+    trace: BindGroupLayout,
+    surface: BindGroupLayout,
+}
+
+/// Bind groups for the targets of the three passes.
+#[derive(Debug)]
+pub struct FieldGroups {
+    /// Of [`Kernel::cone`].
+    pub cone: BindGroup,
+    /// Of [`Kernel::trace`].
+    pub trace: BindGroup,
+    /// Of [`Kernel::surface`].
+    pub surface: BindGroup,
+}
+
+/// Buffers that the passes hand on to each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Lists<'a> {
+    /// Tiles that are left, list after list.
+    pub tiles: &'a wgpu::Buffer,
+    /// For each list the arguments of its indirect dispatch.
+    pub tile_counts: &'a wgpu::Buffer,
+    /// For each component, what was counted.
+    pub march_counts: &'a wgpu::Buffer,
+}
+
+impl FieldLayouts {
+    /// Makes them.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let numbered = |types: &[wgpu::BindingType]| -> Vec<_> {
+            let stage = ShaderStages::COMPUTE;
+            types.iter().enumerate().map(|(i, ty)| entry(i as u32, stage, *ty)).collect()
+        };
+        let cone = [read_texture(false), write_storage(), write_storage()];
+        let trace = [
+            read_write_texture(TextureFormat::R32Float),
+            write_texture(TextureFormat::R32Uint),
+            read_write_texture(TextureFormat::R32Float),
+            write_texture(TextureFormat::R32Float),
+            read_storage(),
+            write_storage(),
+        ];
+        let surface = [
+            read_texture(false),
+            read_texture(true),
+            write_texture(TextureFormat::Rgba32Float),
+            write_texture(TextureFormat::Rgba16Float),
+            write_texture(TextureFormat::Rgba16Float),
+            write_texture(TextureFormat::R32Uint),
+            read_storage(),
+        ];
+        Self {
+            cone: layout(device, "cone targets", &numbered(&cone)),
+            trace: layout(device, "trace targets", &numbered(&trace)),
+            surface: layout(device, "surface targets", &numbered(&surface)),
+        }
+    }
+
+    /// Builds the kernel of an evaluator.
+    ///
+    /// # Errors
+    /// A shader file is missing. What the driver thinks of the source is reported to the device.
+    pub fn build(
+        &self,
+        device: &wgpu::Device,
+        layouts: &Layouts,
+        evaluator: &Evaluator,
+        options: Options,
+    ) -> Result<Kernel, ShaderError> {
+        let pipeline = |name: &str, entry_point: &str, targets: &BindGroupLayout| {
+            let groups = [&layouts.view, &layouts.scene, targets, &layouts.work];
+            let text = source(&format!("{name}.wgsl"), evaluator, options)?;
+            Ok(compute_pipeline(device, name, text, entry_point, &groups))
+        };
+        Ok(Kernel {
+            cone: pipeline("cone", "cone", &self.cone)?,
+            trace: pipeline("trace", "trace", &self.trace)?,
+            surface: pipeline("surface", "surface_pass", &self.surface)?,
+        })
+    }
+
+    /// Binds the targets.
+    pub fn bind(&self, device: &wgpu::Device, targets: &Targets, lists: Lists<'_>) -> FieldGroups {
+        let texture = wgpu::BindingResource::TextureView;
+        let cone =
+            [texture(&targets.farthest.view), lists.tiles.as_entire_binding(), lists.tile_counts.as_entire_binding()];
+        let trace = [
+            texture(&targets.depth.view),
+            texture(&targets.owner.view),
+            texture(&targets.march.view),
+            texture(&targets.farthest.view),
+            lists.tiles.as_entire_binding(),
+            lists.march_counts.as_entire_binding(),
+        ];
+        let surface = [
+            texture(&targets.depth.view),
+            texture(&targets.owner.view),
+            texture(&targets.normal.view),
+            texture(&targets.diffuse.view),
+            texture(&targets.emission.view),
+            texture(&targets.leaf.view),
+            lists.tiles.as_entire_binding(),
+        ];
+        FieldGroups {
+            cone: bind(device, "cone targets", &self.cone, &cone),
+            trace: bind(device, "trace targets", &self.trace, &trace),
+            surface: bind(device, "surface targets", &self.surface, &surface),
+        }
+    }
+}

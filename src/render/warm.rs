@@ -1,0 +1,84 @@
+//! Has a driver compile kernels before they are needed, on a device of its own.
+
+use super::buffers::Mirror;
+use super::gpu::{Gpu, GpuError};
+use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options, Structure};
+use super::layouts::{Layouts, bind, window};
+use super::passes::field::{FieldGroups, FieldLayouts, Lists};
+use super::targets::Targets;
+use super::uniforms::{View, Work};
+
+/// A device with just enough on it to dispatch a kernel over nothing.
+#[derive(Debug)]
+pub struct Warmer {
+    gpu: Gpu,
+    layouts: Layouts,
+    field: FieldLayouts,
+    options: Options,
+    view: wgpu::BindGroup,
+    scene: wgpu::BindGroup,
+    work: wgpu::BindGroup,
+    groups: FieldGroups,
+}
+
+impl Warmer {
+    /// Opens the device.
+    pub fn new(options: Options) -> Result<Self, GpuError> {
+        let gpu = Gpu::headless()?;
+        let device = &gpu.device;
+        let layouts = Layouts::new(device);
+        let field = FieldLayouts::new(device);
+        let zeros = |size: usize| {
+            let mut mirror = Mirror::rows(device, "warm");
+            mirror.set(device, &gpu.queue, &vec![0; size]);
+            mirror
+        };
+        let rows = zeros(MAX_KERNEL_ROWS as usize * 16);
+        let small = zeros(1024);
+        let lists = Lists { tiles: small.buffer(), tile_counts: rows.buffer(), march_counts: rows.buffer() };
+        let scene = [
+            small.binding(),
+            small.binding(),
+            small.binding(),
+            small.binding(),
+            window(rows.buffer(), MAX_KERNEL_ROWS as usize * 16),
+        ];
+        Ok(Self {
+            view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<View>())]),
+            scene: bind(device, "scene", &layouts.scene, &scene),
+            work: bind(device, "work", &layouts.work, &[window(small.buffer(), size_of::<Work>())]),
+            groups: field.bind(device, &Targets::new(device, [8, 8]), lists),
+            layouts,
+            field,
+            options,
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Compiles the kernel of `structure` by dispatching it over nothing. Failures show up again where
+    /// the kernel is built for use.
+    pub fn warm(&self, structure: &Structure) {
+        let evaluator = Evaluator::Specialised(structure.clone());
+        let Ok(kernel) = self.field.build(&self.gpu.device, &self.layouts, &evaluator, self.options) else { return };
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_bind_group(0, &self.view, &[]);
+            pass.set_bind_group(1, &self.scene, &[0]);
+            pass.set_bind_group(3, &self.work, &[0]);
+            let passes = [
+                (&kernel.cone, &self.groups.cone),
+                (&kernel.trace, &self.groups.trace),
+                (&kernel.surface, &self.groups.surface),
+            ];
+            for (pipeline, targets) in passes {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(2, targets, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+            }
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        // A failed kernel is reported where it is built for use.
+        let _ = self.gpu.wait();
+    }
+}

@@ -1,0 +1,106 @@
+//! Reproducible random numbers, points and parameters.
+
+use glam::DVec3;
+use isolith::scene::{ParamValue, Shape, ShapeKind};
+
+/// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
+pub struct Random(u64);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d)
+    }
+
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// Uniform in `low..high`.
+    pub fn range(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn index(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    pub fn chance(&mut self, share: f64) -> bool {
+        self.range(0.0, 1.0) < share
+    }
+
+    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
+        from[self.index(from.len())]
+    }
+
+    /// Uniform in the cube of this half size.
+    pub fn point(&mut self, half: f64) -> DVec3 {
+        DVec3::new(self.range(-half, half), self.range(-half, half), self.range(-half, half))
+    }
+
+    /// Uniform on the unit sphere.
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            let p = self.point(1.0);
+            if p.length() < 1.0 && p.length() > 1e-3 {
+                return p.normalize();
+            }
+        }
+    }
+}
+
+/// A shape whose numbers all come from `number`, which is given the limits' soft range.
+pub fn shape_with(kind: ShapeKind, mut number: impl FnMut([f64; 2]) -> f64) -> Shape {
+    let mut shape = kind.default_shape();
+    for (i, value) in shape.values().into_iter().enumerate() {
+        let limits = kind.params()[i].limits;
+        let mut next = || number(limits.soft).clamp(limits.hard[0], limits.hard[1]);
+        let value = match value {
+            ParamValue::Scalar(_) => ParamValue::Scalar(next()),
+            ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
+        };
+        assert!(shape.set_value(i, value));
+    }
+    shape
+}
+
+/// Ordinary shapes: the default, random ones, random ones with zeros, all zero.
+pub fn ordinary(kind: ShapeKind, count: usize) -> Vec<Shape> {
+    let mut random = Random::new(kind as u64);
+    let mut shapes = vec![kind.default_shape(), shape_with(kind, |_| 0.0)];
+    for i in 0..count {
+        let zeros = if i % 3 == 2 { 0.4 } else { 0.0 };
+        shapes.push(shape_with(kind, |[low, high]| {
+            if random.chance(zeros) { 0.0 } else { random.range(low.max(-2.0), high.min(2.0)) }
+        }));
+    }
+    shapes
+}
+
+/// Shapes at the limits: zeros, tiny and huge numbers in every mixture.
+pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
+    let mut random = Random::new(1_000 + kind as u64);
+    (0..count).map(|_| shape_with(kind, |_| random.pick(&[0.0, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1e3, 1e6, 1e9]))).collect()
+}
+
+/// The size of a shape: the greatest of its numbers.
+pub fn size(shape: &Shape) -> f64 {
+    shape.packed().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
+}
+
+/// Points where formulas break: the centre, the axes, planes of symmetry, edges, far away.
+pub fn special_points(shape: &Shape) -> Vec<DVec3> {
+    let q = shape.packed();
+    let mut coordinates = vec![0.0, 1e-30, 1e-9, 0.25, 1.0, -1.0, 1e6, -1e9];
+    coordinates.extend(q[..3].iter().flat_map(|v| [*v, 0.5 * v, -0.5 * v]));
+    let mut points = Vec::new();
+    for &x in &coordinates {
+        for &y in &coordinates {
+            points.extend([DVec3::new(x, y, 0.0), DVec3::new(x, 0.0, y), DVec3::new(0.0, x, y), DVec3::new(x, y, x)]);
+        }
+    }
+    points
+}
