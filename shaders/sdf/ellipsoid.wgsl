@@ -20,19 +20,19 @@ fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let gap = (r - r.x) * (r + r.x);
     let w = r * off;
     let least = max(max(w.x, max(w.y - gap.y, w.z - gap.z)), max(length(w) - gap.z, 1e-30));
-    var s = max(least, ellipsoid_start(w.x, w.yz, gap.yz));
-    s = max(s, ellipsoid_start(length(w.xy), vec2f(0.0, w.z), vec2f(0.0, gap.z - gap.y)) - gap.y);
-    s = ellipsoid_step(s, least, w, gap);
-    s = ellipsoid_step(s, least, w, gap);
-    s = ellipsoid_step(s, least, w, gap);
-    s = ellipsoid_step(s, least, w, gap);
+    var s = max(least, sdf_ellipsoid_start(w.x, w.yz, gap.yz));
+    s = max(s, sdf_ellipsoid_start(length(w.xy), vec2f(0.0, w.z), vec2f(0.0, gap.z - gap.y)) - gap.y);
+    s = sdf_ellipsoid_step(s, least, w, gap);
+    s = sdf_ellipsoid_step(s, least, w, gap);
+    s = sdf_ellipsoid_step(s, least, w, gap);
+    s = sdf_ellipsoid_step(s, least, w, gap);
     var n = off / (s + gap);
     n = normalize(n / max(n.x, max(n.y, n.z)));
     return (dot(n, q) - length(r * n)) * scale;
 }
 
 // One step of Newton's method.
-fn ellipsoid_step(s: f32, least: f32, w: vec3f, gap: vec3f) -> f32 {
+fn sdf_ellipsoid_step(s: f32, least: f32, w: vec3f, gap: vec3f) -> f32 {
     let v = w / (s + gap);
     let square = dot(v, v);
     return max(s + (sqrt(square) - 1.0) * square / max(dot(v, v / (s + gap)), 1e-37), least);
@@ -40,7 +40,7 @@ fn ellipsoid_step(s: f32, least: f32, w: vec3f, gap: vec3f) -> f32 {
 
 // A lower bound of the root, near it where the term `w` / s is steep: the others are replaced by their
 // tangents at 0, which gives a cubic equation, and that by its larger summand.
-fn ellipsoid_start(w: f32, others: vec2f, gaps: vec2f) -> f32 {
+fn sdf_ellipsoid_start(w: f32, others: vec2f, gaps: vec2f) -> f32 {
     let term = select(vec2f(0.0), others / max(gaps, vec2f(1e-9)), gaps > vec2f(1e-9));
     let rest = 1.0 - dot(term, term);
     let fall = max(2.0 * dot(term, term / max(gaps, vec2f(1e-9))), 1e-37);

@@ -17,6 +17,9 @@ use crate::scene::NodeId;
 const AT_ONCE: Duration = Duration::from_millis(40);
 /// Time given to the full picture in each frame of the window.
 const PER_FRAME: Duration = Duration::from_millis(24);
+/// A full picture that takes longer than this waits for the kernels that are being built: they make it
+/// many times faster than the interpreter would.
+const WORTH_WAITING: Duration = Duration::from_millis(1500);
 /// Pixels of the window to a side of a coarse pixel, at most.
 const COARSEST: u32 = 8;
 
@@ -29,6 +32,8 @@ pub(super) struct Canvas {
     wanted: Option<Wanted>,
     under_way: Option<(Frame, Instant)>,
     took: Duration,
+    /// The full picture waits for kernels that are being built.
+    waiting: bool,
 }
 
 /// Everything that the picture depends on.
@@ -50,6 +55,7 @@ impl Canvas {
             wanted: None,
             under_way: None,
             took: Duration::ZERO,
+            waiting: false,
         })
     }
 
@@ -87,7 +93,8 @@ impl Canvas {
         let (meshes, _) = flat.load_meshes(library);
         let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
         let wanted = Wanted { view, flat, meshes: addresses, outline };
-        if self.wanted.as_ref() != Some(&wanted) {
+        let news = self.follow_kernels(editor, ctx);
+        if self.wanted.as_ref() != Some(&wanted) || (news && self.waiting) {
             self.start(&wanted, &meshes)?;
             self.wanted = Some(wanted);
         }
@@ -105,20 +112,21 @@ impl Canvas {
             }
             ctx.request_repaint();
         }
-        self.follow_kernels(editor, ctx);
         Ok(())
     }
 
     /// Kernels that are being built are waited for without hurry; those that failed are told of.
-    fn follow_kernels(&mut self, editor: &mut Editor, ctx: &egui::Context) {
+    /// True when another one has become ready.
+    fn follow_kernels(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
         let kernels = self.renderer.kernels();
-        kernels.collect();
+        let news = kernels.collect();
         for failure in kernels.take_failures() {
             editor.report(Message::warning(failure));
         }
         if kernels.building() > 0 {
             ctx.request_repaint_after(Duration::from_millis(200));
         }
+        news
     }
 
     /// Begins the full picture, after a coarse one if the full one is not to be had at once.
@@ -134,6 +142,11 @@ impl Canvas {
             let mut frame = self.renderer.begin(Slot::Preview, flat, meshes, &camera, size, overlay.clone())?;
             self.renderer.advance(&mut frame, Duration::MAX)?;
             self.show(Slot::Preview);
+        }
+        self.waiting = full > WORTH_WAITING && self.renderer.kernels_building() > 0;
+        if self.waiting {
+            self.under_way = None;
+            return Ok(());
         }
         let mut frame = self.renderer.begin(Slot::Full, flat, meshes, &camera, size_px, overlay)?;
         if full <= AT_ONCE {

@@ -163,3 +163,86 @@ pub fn shade_decode(encoded: DVec3) -> DVec3 {
 fn vector(v: [f32; 3]) -> DVec3 {
     DVec3::from(v.map(f64::from))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flat::flatten;
+    use crate::scene::{Light, Node, NodeKind, Scene};
+
+    const GREY: SurfaceMaterial =
+        SurfaceMaterial { albedo: DVec3::splat(0.5), specular: 0.5, emission: DVec3::ZERO, shininess: 16.0 };
+
+    fn light(kind: LightKind) -> GpuLight {
+        let light = Light { color: [1.0, 0.5, 0.25], intensity: 2.0, light: kind };
+        let flat = FlatLight { id: crate::scene::NodeId(1), position: DVec3::Y * 4.0, direction: DVec3::NEG_Y, light };
+        GpuLight::new(&flat, DVec3::Y)
+    }
+
+    /// A floor 2 below the light's height over the eye, seen from the side.
+    fn floor(lights: &[GpuLight], x: f64) -> DVec3 {
+        shade_surface(&GREY, DVec3::new(x, 1.0, -2.0), DVec3::Y, DVec3::Z, DVec3::ZERO, lights)
+    }
+
+    #[test]
+    fn a_directional_light_gives_albedo_times_colour_times_cosine() {
+        let sun = light(LightKind::Directional {});
+        let matt = SurfaceMaterial { specular: 0.0, ..GREY };
+        let tilted = DVec3::new(0.0, 0.5, 0.75_f64.sqrt());
+        let color = shade_surface(&matt, DVec3::ZERO, tilted, DVec3::Z, DVec3::ZERO, &[sun]);
+        assert!((color - DVec3::new(0.5, 0.25, 0.125)).length() < 1e-7, "{color}");
+        assert_eq!(shade_surface(&matt, DVec3::ZERO, DVec3::NEG_Y, DVec3::Z, DVec3::ZERO, &[sun]), DVec3::ZERO);
+    }
+
+    #[test]
+    fn point_lights_weaken_and_end_at_their_range() {
+        let attenuation = Attenuation { constant: 1.0, linear: 0.5, quadratic: 0.25, range: 8.0 };
+        let lamp = light(LightKind::Point { attenuation });
+        assert!((shade_attenuation(&lamp, 2.0) - (1.0 - 1.0 / 256.0_f64).powi(2) / 3.0).abs() < 1e-6);
+        assert_eq!(shade_attenuation(&lamp, 8.0), 0.0);
+        assert_eq!(shade_attenuation(&lamp, 100.0), 0.0);
+        let nothing = Attenuation { constant: 0.0, linear: 0.0, quadratic: 0.0, range: 8.0 };
+        assert!(shade_attenuation(&light(LightKind::Point { attenuation: nothing }), 0.0).is_finite());
+    }
+
+    #[test]
+    fn spots_are_full_within_and_dark_without() {
+        for (inner, outer) in [(20.0, 30.0), (30.0, 30.0), (0.0, 0.0)] {
+            let spot = light(LightKind::Spot { attenuation: Attenuation::default(), inner, outer });
+            let share = |degrees: f64| {
+                let (s, c) = degrees.to_radians().sin_cos();
+                shade_incoming(&spot, vector(spot.position) + DVec3::new(s, -c, 0.0)).1
+            };
+            if inner > 1.0 {
+                assert_eq!(share(inner - 1.0), shade_attenuation(&spot, 1.0));
+            }
+            assert_eq!(share(outer + 1.0), 0.0);
+        }
+        assert!(
+            floor(&[light(LightKind::Spot { attenuation: Attenuation::default(), inner: 60.0, outer: 70.0 })], 0.1).x
+                > 0.1
+        );
+    }
+
+    #[test]
+    fn a_scene_without_lights_is_not_black_and_one_with_lights_keeps_its_own() {
+        let camera = Camera::looking_at(DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO, 0.7);
+        let mut scene = Scene::new();
+        let studio = gpu_lights(&flatten(&scene, 0.0).unwrap(), &camera);
+        let facing = (camera.position).normalize();
+        let color = shade_surface(&GREY, -camera.position, facing, facing, DVec3::ZERO, &studio);
+        assert!(color.min_element() > 0.1, "{color}");
+        scene.insert(None, 0, Node::new("Sun", NodeKind::Light(Light::sun()))).unwrap();
+        let own = gpu_lights(&flatten(&scene, 0.0).unwrap(), &camera);
+        assert_eq!((own.len(), own[0].direction), (1, [0.0, 0.0, -1.0]));
+    }
+
+    #[test]
+    fn encoding_is_undone_by_decoding() {
+        for i in 0..=100 {
+            let c = DVec3::splat(f64::from(i) / 100.0);
+            assert!((shade_decode(shade_encode(c)) - c).length() < 1e-4);
+        }
+        assert_eq!(shade_encode(DVec3::new(-1.0, 2.0, 0.0)), DVec3::new(0.0, 1.0, 0.0));
+    }
+}

@@ -1,7 +1,7 @@
 //! Rays against the twin, with certainty instead of a step limit.
 //!
-//! A ray advances by the field, which is a safe step, until the field's sign changes; bisection then
-//! closes in on the surface. Close to the surface it creeps by steps far below any pixel, so that a ray
+//! A ray advances by the field, which is a safe step, until the field's sign changes; secants and
+//! bisection then close in on the surface. Close to the surface it creeps by steps far below any pixel, so that a ray
 //! that only comes near goes on and is never taken for a hit.
 //!
 //! Conventions that the renderer shares: what a ray hits is the first point where the field is
@@ -50,8 +50,9 @@ pub const MAX_EVALUATIONS: u32 = 10_000_000;
 /// Margins beyond this angle are not measured further; a hundredth of a pixel and more.
 pub const CLEAR: f64 = 1e-4;
 
-/// Below this share of the distance the field counts as touching, and the ray creeps.
-const TOUCHING: f64 = 1e-10;
+/// Below this share of the distance the field counts as touching, and the ray creeps, at first by steps
+/// of this share.
+const TOUCHING: f64 = 1e-7;
 /// Longest creeping step, as a share of the distance: a shorter chord may be missed.
 const LONGEST_CREEP: f64 = 1e-5;
 /// A hit is known within this share of the distance.
@@ -162,7 +163,7 @@ impl<'a> Line<'a> {
             let next = (t + f.max(creep)).min(exit);
             let g = self.field(next);
             if g < 0.0 {
-                return Ok(Some(self.bisect(t, next)));
+                return Ok(Some(self.close_in([t, f], [next, g])));
             }
             // Where the field, seen from the eye, begins to widen again, the ray has passed something.
             if g * t > f * next {
@@ -178,17 +179,28 @@ impl<'a> Line<'a> {
         self.margin = self.margin.min(f / t.max(f64::MIN_POSITIVE));
     }
 
-    /// The sign change between `outside` and `inside`.
-    fn bisect(&self, mut outside: f64, mut inside: f64) -> f64 {
-        while inside - outside > PRECISION * self.reach(inside) {
-            let middle = 0.5 * (outside + inside);
-            if self.field(middle) < 0.0 {
-                inside = middle;
-            } else {
-                outside = middle;
+    /// The sign change between a point outside and one inside, each with its field: secants, and the
+    /// middle wherever a secant has not halved what is left.
+    fn close_in(&self, mut outside: [f64; 2], mut inside: [f64; 2]) -> f64 {
+        let precision = PRECISION * self.reach(inside[0]);
+        let mut use_secant = true;
+        loop {
+            let width = inside[0] - outside[0];
+            if width <= precision {
+                return inside[0];
             }
+            // A little to either side of the secant's root, so that both ends move.
+            let share = if use_secant { (outside[1] / (outside[1] - inside[1])).clamp(1e-3, 0.999) } else { 0.5 };
+            for t in [share * (1.0 - 1e-6), share * (1.0 + 1e-6)].map(|share| outside[0] + width * share) {
+                let f = self.field(t);
+                if f < 0.0 {
+                    inside = [t, f];
+                    break;
+                }
+                outside = [t, f];
+            }
+            use_secant = inside[0] - outside[0] < 0.5 * width;
         }
-        inside
     }
 
     /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. Probes at growing
@@ -196,7 +208,7 @@ impl<'a> Line<'a> {
     fn depth(&self, t: f64) -> f64 {
         let reach = self.reach(t);
         let mut deepest = 0.0;
-        let mut ahead = TOUCHING * reach;
+        let mut ahead = 1e-10 * reach;
         while ahead < reach && deepest < CLEAR {
             let depth = -self.field(t + ahead) / (t + ahead);
             // The first probes are no farther from the surface than rounding.

@@ -45,6 +45,7 @@ pub enum RenderError {
 #[derive(Debug)]
 pub struct Frame {
     plan: Plan,
+    keys: Vec<Option<u128>>,
     choices: Vec<Choice>,
     next: usize,
     seconds_done: f64,
@@ -189,7 +190,9 @@ impl Renderer {
 
     /// How long a whole frame is expected to take.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        let specialised: Vec<bool> = self.kernels.choose(flat, self.method)?.iter().map(|c| c.specialised).collect();
+        let keys = Kernels::keys(flat, self.method);
+        let choices = self.kernels.choose(flat, &keys, self.method)?;
+        let specialised: Vec<bool> = choices.iter().map(|c| c.specialised).collect();
         let plan = plan(flat, camera, size, &specialised, &self.pace);
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
@@ -230,7 +233,8 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        let choices = self.kernels.choose(flat, self.method)?;
+        let keys = Kernels::keys(flat, self.method);
+        let choices = self.kernels.choose(flat, &keys, self.method)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
@@ -256,6 +260,7 @@ impl Renderer {
         Ok(Frame {
             seconds: self.pace.seconds(plan.effort()),
             plan,
+            keys,
             choices,
             next: 0,
             seconds_done: 0.0,
@@ -270,6 +275,9 @@ impl Renderer {
     /// dispatches of about [`DISPATCH_TARGET`]. Waits for the device, and learns its pace.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
         let start = Instant::now();
+        if self.kernels.collect() {
+            self.kernels.refresh(&frame.keys, &mut frame.choices);
+        }
         loop {
             let first = frame.next;
             let mut effort = Effort::default();

@@ -88,23 +88,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             frustum(radius, radius, height).into_iter().map(|f| mapped(f, round)).collect()
         }
         Shape::CappedCone { bottom_radius, top_radius, height } => frustum(bottom_radius, top_radius, height),
-        Shape::RoundCone { bottom_radius, top_radius, height } => {
-            let half = 0.5 * height;
-            let mut patches = vec![
-                ball(DVec3::Y * -half, DVec3::splat(bottom_radius), *shape),
-                ball(DVec3::Y * half, DVec3::splat(top_radius), *shape),
-            ];
-            // Where a tangent plane touches both balls.
-            if (bottom_radius - top_radius).abs() < height {
-                let tilt = ((bottom_radius - top_radius) / height).asin();
-                let touch = move |r: f64, y: f64| (r * tilt.cos(), y + r * tilt.sin());
-                let (low, high) = (touch(bottom_radius, -half), touch(top_radius, half));
-                patches.push(Box::new(move |u, v| {
-                    Some(turned(low.0 + (high.0 - low.0) * v, low.1 + (high.1 - low.1) * v, u))
-                }));
-            }
-            patches
-        }
+        Shape::RoundCone { bottom_radius, top_radius, height } => round_cone(bottom_radius, top_radius, height),
         Shape::Capsule { start, end, radius } => {
             let (start, end) = (DVec3::from(start), DVec3::from(end));
             let (a, b) = (end - start).try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
@@ -224,6 +208,21 @@ fn frustum(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
         Box::new(move |u, v| Some(turned(from[0] + (to[0] - from[0]) * v, from[1] + (to[1] - from[1]) * v, u)))
     };
     vec![ring([0.0, -half], [bottom, -half]), ring([bottom, -half], [top, half]), ring([top, half], [0.0, half])]
+}
+
+/// Two balls, and the side that touches both.
+fn round_cone(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
+    let shape = Shape::RoundCone { bottom_radius: bottom, top_radius: top, height };
+    let half = 0.5 * height;
+    let mut patches =
+        vec![ball(DVec3::Y * -half, DVec3::splat(bottom), shape), ball(DVec3::Y * half, DVec3::splat(top), shape)];
+    if (bottom - top).abs() < height {
+        let tilt = ((bottom - top) / height).asin();
+        let touch = move |r: f64, y: f64| (r * tilt.cos(), y + r * tilt.sin());
+        let (low, high) = (touch(bottom, -half), touch(top, half));
+        patches.push(Box::new(move |u, v| Some(turned(low.0 + (high.0 - low.0) * v, low.1 + (high.1 - low.1) * v, u))));
+    }
+    patches
 }
 
 fn hexagonal_prism(radius: f64, half: f64) -> Vec<Patch> {

@@ -8,7 +8,8 @@ use isolith::flat::trace::{Tracer, trace};
 use isolith::flat::truth::truth;
 use isolith::flat::{FlatScene, Hitee, flatten};
 use isolith::geometry::{Camera, Ray};
-use isolith::scene::{Blend, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};
+use isolith::mesh::MeshLibrary;
+use isolith::scene::{Blend, Group, MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};
 
 use super::samples::Random;
 
@@ -154,4 +155,75 @@ fn a_truth_picture_has_every_buffer() {
         }
     }
     assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
+}
+
+#[test]
+fn meshes_stand_among_fields() {
+    let mut scene = Scene::new();
+    let mesh = NodeKind::Mesh(MeshNode { path: "models/suzanne.glb".into(), material: None });
+    let stretched = Node::new("Mesh", mesh).at(DVec3::new(0.3, 0.0, 0.0)).scaled(DVec3::new(1.5, 1.0, 0.5));
+    let mesh_id = scene.insert(None, 0, stretched).unwrap();
+    // In front of the lower half.
+    let wall = object(Shape::Box { size: [10.0, 10.0, 0.2], rounding: 0.0 }).at(DVec3::new(0.0, -5.0, 3.0));
+    let wall_id = scene.insert(None, 1, wall).unwrap();
+    let flat = flatten(&scene, 0.0).unwrap();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes");
+    let (meshes, missing) = flat.load_meshes(&mut MeshLibrary::new(Some(folder.into())));
+    assert!(missing.is_empty(), "{missing:?}");
+    let camera = Camera::looking_at(DVec3::new(0.0, 0.0, 8.0), DVec3::ZERO, 0.5);
+    let size = [64, 64];
+    let picture = truth(&flat, &meshes, &camera, size, &|_| {}).unwrap().buffers;
+    let world_from_local = scene.world_from_local(mesh_id);
+    let triangles = meshes[0].as_ref().unwrap();
+    let mut seen = [0; 3];
+    for y in 0..size[1] {
+        for x in 0..size[0] {
+            let i = picture.index(x, y);
+            let ray = camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), DVec2::splat(64.0));
+            let p = ray.at(f64::from(picture.depth[i]));
+            let picked = pick(&flat, &meshes, &ray, camera.near, camera.far);
+            match picture.hitee(i) {
+                Hitee::Background => {
+                    assert_eq!(picked, None);
+                    seen[0] += 1;
+                }
+                Hitee::Leaf(leaf) => {
+                    assert_eq!((flat.ids[leaf], picked), (wall_id, Some(wall_id)));
+                    seen[1] += 1;
+                }
+                Hitee::Mesh(index) => {
+                    assert_eq!((flat.meshes[index].id, picked), (mesh_id, Some(mesh_id)));
+                    // The point lies on the mesh: a ray along the normal from just before it hits at once.
+                    let normal = DVec3::from(picture.normal[i].map(f64::from));
+                    assert!((normal.length() - 1.0).abs() < 1e-6 && normal.dot(ray.direction) <= 0.0);
+                    let local_from_world = world_from_local.inverse();
+                    let local = Ray {
+                        origin: local_from_world.transform_point3(p - ray.direction * 1e-3),
+                        direction: local_from_world.transform_vector3(ray.direction),
+                    };
+                    let hit = triangles.hit(&local, 1.0).expect("a triangle is there");
+                    assert!((hit.t - 1e-3).abs() < 1e-5, "{}", hit.t);
+                    seen[2] += 1;
+                }
+            }
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
+}
+
+#[test]
+fn zz_speed() {
+    for (name, scene) in isolith::gallery::all() {
+        let flat = flatten(&scene, 0.0).unwrap();
+        let camera = flat.default_camera(&[], 1.0);
+        let now = std::time::Instant::now();
+        let t = truth(&flat, &[], &camera, [256, 256], &|_| {});
+        println!(
+            "{name}: {:?} ok {} components {} nodes {}",
+            now.elapsed(),
+            t.is_ok(),
+            flat.components.len(),
+            flat.nodes.len()
+        );
+    }
 }

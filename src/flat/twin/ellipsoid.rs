@@ -2,9 +2,11 @@
 
 use super::Real;
 
-/// Steps of Newton's method. Four are enough for f32 (the GPU's count); after eight the error over
+/// Most steps of Newton's method. Four are enough for f32 (the GPU's count); after eight the error over
 /// random half axes, thin and zero ones included, is that of f64's rounding.
 const STEPS: usize = 8;
+/// A residual at which another step would change nothing: the value follows the square of the error.
+const CONVERGED: f64 = 1e-12;
 /// How far points on the planes of symmetry are moved off them, relative to the size.
 const OFF: f64 = 1e-12;
 
@@ -45,6 +47,9 @@ fn normal(p: [f64; 3], r: [f64; 3]) -> [f64; 3] {
     for _ in 0..STEPS {
         let v: [f64; 3] = std::array::from_fn(|i| w[i] / (s + gap[i]));
         let square = dot(v, v);
+        if (square - 1.0).abs() < CONVERGED {
+            break;
+        }
         let fall = dot(v, std::array::from_fn(|i| v[i] / (s + gap[i])));
         s = (s + (square.sqrt() - 1.0) * square / fall.max(1e-300)).max(least);
     }
