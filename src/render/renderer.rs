@@ -8,7 +8,7 @@ use wgpu::BindGroup;
 
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
-use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError};
+use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Choice, Kernels, Method};
 use super::layouts::{Layouts, bind, window};
 use super::passes::farthest::FarthestPass;
@@ -135,7 +135,8 @@ impl Renderer {
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let options = Options { counting: false, skipping: !gpu.is_software() };
+        let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
+        let options = Options { counting: false, skipping };
         let storage = |label| Mirror::storage(device, label);
         let renderer = Self {
             kernels: Kernels::new(gpu, &layouts, options)?,
