@@ -66,14 +66,14 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             break;
         }
     }
-    count_evaluations(steps);
+    cone_count(steps);
     if t <= exit {
         let slot = atomicAdd(&tile_counts[work.list * 4u], 1u);
         tiles[work.first_tile + slot] = Tile(place.x | (place.y << 16u), t);
     }
 }
 
-fn count_evaluations(steps: u32) {
+fn cone_count(steps: u32) {
     if COUNTING {
         atomicAdd(&tile_counts[work.list * 4u + 3u], steps);
     }

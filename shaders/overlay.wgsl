@@ -81,24 +81,30 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     if t > textureLoad(depth_target, pixel, 0).x * (1.0 - 1e-4) {
         return vec4f(0.0);
     }
-    let at = overlay.eye.xz + direction.xz * t;
-    // Width of a pixel on the plane, along each axis.
-    let slant = vec2f(1.0) / max(abs(direction.y), 1e-4);
-    let width = view.footprint * t * slant;
-    let fine = overlay_lines(at, overlay.cell, width) * 0.22;
-    let coarse = overlay_lines(at, overlay.cell * 10.0, width) * 0.45;
+    let at = overlay_ground(pixel);
+    // How far the ground moves from this pixel to its neighbours.
+    let width = abs(overlay_ground(pixel + vec2u(1u, 0u)) - at) + abs(overlay_ground(pixel + vec2u(0u, 1u)) - at);
+    let fine = overlay_lines(at, overlay.cell, width) * 0.12;
+    let coarse = overlay_lines(at, overlay.cell * 10.0, width) * 0.25;
     var color = vec3f(0.75);
     var strength = max(fine, coarse);
-    let on_axis = vec2f(abs(at.y - overlay.axis_x), abs(at.x - overlay.axis_z)) < width * 1.5;
+    let on_axis = vec2f(abs(at.y - overlay.axis_x), abs(at.x - overlay.axis_z)) < width.yx;
     if on_axis.x {
         color = vec3f(0.9, 0.3, 0.33);
-        strength = 0.8;
+        strength = 0.6;
     } else if on_axis.y {
         color = vec3f(0.3, 0.5, 0.95);
-        strength = 0.8;
+        strength = 0.6;
     }
     let fade = exp2(-t / (overlay.cell * 60.0));
     return vec4f(color, strength * fade);
+}
+
+// Where the ray of a pixel meets the plane y = 0, in the reduced grid.
+fn overlay_ground(pixel: vec2u) -> vec2f {
+    let direction = view_direction(pixel);
+    let fall = select(direction.y, 1e-6, abs(direction.y) < 1e-6);
+    return overlay.eye.xz - direction.xz * (overlay.eye.y / fall);
 }
 
 fn overlay_lines(at: vec2f, cell: f32, width: vec2f) -> f32 {

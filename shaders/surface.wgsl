@@ -14,8 +14,8 @@
 @group(2) @binding(5) var leaf_target: texture_storage_2d<r32uint, write>;
 @group(2) @binding(6) var<storage, read> tiles: array<Tile>;
 
-// Half the side of the tetrahedron of differences, in footprints: wide enough for f32, narrow enough
-// for a curve of a few pixels' radius.
+// Half the span of the differences, in footprints: wide enough for f32, narrow enough for a curve of a
+// few pixels' radius.
 const DIFFERENCE: f32 = 0.1;
 // The same relative to the coordinates, where f32 is coarser than the footprint.
 const DIFFERENCE_LEAST: f32 = 1.2e-4;
@@ -33,13 +33,14 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let p = component.eye + direction * t;
     let reach = max(max(abs(p.x), abs(p.y)), abs(p.z));
     let h = max(DIFFERENCE * view.footprint * t, DIFFERENCE_LEAST * reach);
-    // The gradient from a tetrahedron (Quilez, "normals for an SDF"), the surface itself last: the
-    // field is called from one place, so it is compiled once.
+    // The gradient from central differences, right to the second order (a tetrahedron saves two
+    // evaluations and is right to the first only), the surface itself last: the field is called from one
+    // place, so it is compiled once.
     var gradient = vec3f(0.0);
     var center = Surface(0.0, 0u, vec3f(0.0), 0.0, vec3f(0.0), 1.0);
-    for (var i = 0u; i < 5u; i += 1u) {
-        let corner = vec3f(f32((i & 1u) << 1u), f32(i & 2u), f32(((i >> 1u) ^ i ^ 1u) & 1u) * 2.0) - 1.0;
-        let offset = select(corner, vec3f(0.0), i == 4u);
+    for (var i = 0u; i < 7u; i += 1u) {
+        let axis = select(vec3f(0.0), vec3f(1.0), vec3u(i >> 1u) == vec3u(0u, 1u, 2u));
+        let offset = select(axis, -axis, (i & 1u) == 1u);
         center = surface(p + offset * h);
         gradient += offset * center.distance;
     }

@@ -42,7 +42,7 @@ struct March {
 }
 
 // From `start` to a hit, to beyond `exit`, or through `max_steps` evaluations.
-fn march(component: Component, direction: vec3f, start: f32, exit: f32) -> March {
+fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) -> March {
     let reach = length(component.eye);
     var t = start;
     // The last point known to be outside with nothing before it, and its field.
@@ -50,15 +50,28 @@ fn march(component: Component, direction: vec3f, start: f32, exit: f32) -> March
     var leaping = false;
     var may_leap = true;
     var creep = 0.0;
+    // The nearest point known to be inside, and its field; NEVER until there is one.
+    var inside = vec2f(NEVER, 0.0);
     for (var step = 0u; step < work.max_steps; step += 1u) {
         let f = field(component.eye + direction * t);
         let footprint = view.footprint * t;
+        let bracketed = inside.x < NEVER;
         // Fall of the field per distance since the last point; 0 at the first one.
         let fall = select(0.0, (safe.y - f) / (t - safe.x), t > safe.x && safe.y > 0.0);
-        if f < 0.0 {
-            // Secant between the last point outside and this one.
-            let root = safe.x + (t - safe.x) * safe.y / (safe.y - f);
-            return March(select(t, root, safe.y > 0.0), true, true, step + 1u);
+        if f < 0.0 || bracketed {
+            // The sign has changed: close in by secants between the last point outside and the first
+            // inside. After a leap the two may be footprints apart, too far for a single one.
+            if f < 0.0 {
+                inside = vec2f(t, f);
+            } else {
+                safe = vec2f(t, f);
+            }
+            let root = safe.x + (inside.x - safe.x) * safe.y / (safe.y - inside.y);
+            if safe.y <= 0.0 || abs(f) < max(HIT * footprint, SPACING * (t + reach)) || root == t {
+                return March(select(inside.x, root, safe.y > 0.0), true, true, step + 1u);
+            }
+            t = root;
+            continue;
         }
         if fall > STEEP && f < HIT * footprint {
             return March(t + f / fall, true, true, step + 1u);
@@ -108,7 +121,7 @@ fn trace(
         }
         var marched = March(start, false, true, 0u);
         if start <= exit {
-            marched = march(component, direction, start, exit);
+            marched = trace_march(component, direction, start, exit);
         }
         if marched.hit && marched.t < depth {
             depth = marched.t;

@@ -1,5 +1,6 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -36,6 +37,12 @@ fn open(scene: Scene) -> Harness<'static, Editor> {
 fn row(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
     let rows = harness.get_all_by_label(name).filter(|n| n.rect().center().x < 200.0);
     rows.map(|n| n.rect().center()).next().unwrap_or_else(|| panic!("no row {name}"))
+}
+
+/// The field of this name, not the label beside it.
+fn field<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::Node<'h> {
+    let found = harness.get_all_by_label(name).find(|n| n.accesskit_node().role() != Role::Label);
+    found.unwrap_or_else(|| panic!("no field {name}"))
 }
 
 fn pointer(harness: &mut Harness<'_, Editor>, pos: Pos2, pressed: bool) {
@@ -83,16 +90,16 @@ fn a_drag_over_fifty_frames_is_one_step_and_undo_restores_the_scene() {
     let mut harness = open(scene.clone());
     select(&mut harness, "Ball");
     assert_eq!(harness.state().document().selection(), [ball]);
-    let field = harness.get_by_label("Radius").rect().center();
-    pointer(&mut harness, field, true);
+    let radius = field(&harness, "Radius").rect().center();
+    pointer(&mut harness, radius, true);
     let mut revisions = std::collections::HashSet::new();
     for frame in 1..=50 {
-        harness.event(Event::PointerMoved(field + vec2(frame as f32 * 2.0, 0.0)));
+        harness.event(Event::PointerMoved(radius + vec2(frame as f32 * 2.0, 0.0)));
         harness.step();
         revisions.insert(harness.state().document().revision());
         assert!(harness.state().view().navigating || frame < 5);
     }
-    pointer(&mut harness, field + vec2(100.0, 0.0), false);
+    pointer(&mut harness, radius + vec2(100.0, 0.0), false);
     harness.run();
     let Shape::Sphere { radius } = shape(&harness, ball) else { panic!() };
     assert!(radius > 0.6, "{radius}");
@@ -109,18 +116,18 @@ fn the_flat_scene_follows_a_drag_in_the_same_frame() {
     let (scene, _) = scene();
     let mut harness = open(scene);
     select(&mut harness, "Ball");
-    let field = harness.get_by_label("Radius").rect().center();
-    pointer(&mut harness, field, true);
+    let radius = field(&harness, "Radius").rect().center();
+    pointer(&mut harness, radius, true);
     harness.step();
     for frame in 1..=10 {
         let before = harness.state().document().revision();
         let flat = harness.state().flat().clone();
-        harness.event(Event::PointerMoved(field + vec2(frame as f32 * 10.0, 0.0)));
+        harness.event(Event::PointerMoved(radius + vec2(frame as f32 * 10.0, 0.0)));
         harness.step();
         let moved = harness.state().document().revision() != before;
         assert_eq!(moved, **harness.state().flat() != *flat, "frame {frame}");
     }
-    pointer(&mut harness, field, false);
+    pointer(&mut harness, radius, false);
     harness.run();
 }
 
@@ -129,8 +136,8 @@ fn typing_a_value_takes_an_expression_and_is_one_step() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene.clone());
     select(&mut harness, "Ball");
-    let field = harness.get_by_label("Radius").rect().center();
-    click(&mut harness, field);
+    let radius = field(&harness, "Radius").rect().center();
+    click(&mut harness, radius);
     press(&mut harness, Modifiers::COMMAND, Key::A);
     harness.event(Event::Text("3*2".into()));
     harness.run();
@@ -145,11 +152,11 @@ fn backspace_over_a_field_resets_it() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene);
     select(&mut harness, "Ball");
-    harness.get_by_label("Radius").set_value_accesskit(2.0);
+    field(&harness, "Radius").set_value_accesskit(2.0);
     harness.run();
     assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 2.0 });
-    let field = harness.get_by_label("Radius").rect().center();
-    harness.event(Event::PointerMoved(field));
+    let radius = field(&harness, "Radius").rect().center();
+    harness.event(Event::PointerMoved(radius));
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Backspace);
     assert_eq!(shape(&harness, ball), ShapeKind::Sphere.default_shape());
@@ -161,7 +168,7 @@ fn renaming_in_the_tree() {
     let mut harness = open(scene);
     select(&mut harness, "Cube");
     press(&mut harness, Modifiers::NONE, Key::F2);
-    harness.get_by_label("New name");
+    field(&harness, "New name");
     harness.event(Event::Text("Xenon".into()));
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Enter);
@@ -181,8 +188,8 @@ fn shortcuts_do_not_fire_in_text_fields() {
     let (scene, _) = scene();
     let mut harness = open(scene.clone());
     select(&mut harness, "Ring");
-    let field = harness.get_by_label("Name").rect().center();
-    click(&mut harness, field);
+    let name = field(&harness, "Name").rect().center();
+    click(&mut harness, name);
     for key in [Key::X, Key::H, Key::Delete, Key::N] {
         press(&mut harness, Modifiers::NONE, key);
     }
@@ -209,12 +216,12 @@ fn changing_the_shape_keeps_the_node() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene.clone());
     select(&mut harness, "Ball");
-    let combo = harness.get_by_label("Kind").rect().center();
+    let combo = field(&harness, "Kind").rect().center();
     click(&mut harness, combo);
     let entries: Vec<_> = harness.get_all_by_label("Box").map(|n| n.rect().center()).collect();
     click(&mut harness, entries[0]);
     assert_eq!(shape(&harness, ball), Shape::Box { size: [1.0; 3], rounding: 0.0 });
-    harness.get_by_label("Size X");
+    field(&harness, "Size X");
     assert_eq!(undo_all(&mut harness), 1);
     assert_eq!(*harness.state().document().scene(), scene);
 }
@@ -339,7 +346,7 @@ fn several_nodes_are_edited_together() {
     let mut harness = open(scene);
     harness.state_mut().document_mut().select(vec![ball, cube]);
     harness.run();
-    harness.get_by_label("Position Y").set_value_accesskit(1.5);
+    field(&harness, "Position Y").set_value_accesskit(1.5);
     harness.run();
     let y = |h: &Harness<'_, Editor>, id| h.state().document().scene().node(id).unwrap().transform.translation.y;
     assert_eq!((y(&harness, ball), y(&harness, cube)), (1.5, 1.5));

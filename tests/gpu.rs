@@ -6,7 +6,7 @@ use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 use isolith::flat::{Buffers, FlatScene, flatten};
 use isolith::geometry::Camera;
 use isolith::mesh::{MeshLibrary, TriangleMesh};
-use isolith::render::{Gpu, Renderer};
+use isolith::render::{Gpu, Method, Renderer};
 use isolith::scene::{Scene, file};
 
 /// The device and what draws with it.
@@ -47,8 +47,9 @@ impl Subject {
     }
 
     /// Draws it on the shared device.
-    pub fn render(&self, side: u32) -> Buffers {
+    pub fn render(&self, side: u32, method: Method) -> Buffers {
         let renderer = &mut shared().renderer;
+        renderer.set_method(method);
         let picture = renderer.render(&self.flat, &self.meshes, &self.camera, [side, side], &mut |_| true);
         let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", self.name));
         assert!(unfinished.is_empty(), "{}: {unfinished:?}", self.name);

@@ -93,6 +93,7 @@ fn allowed_uses_are_let_through() {
     fine("src/scene/a.rs", "use crate::geometry::Aabb;\nuse super::Node;\nuse crate::scene::Light;");
     fine("src/scene/mod.rs", "mod tests {\n use super::*;\n}");
     fine("src/scene/a.rs", "/// See [`crate::flat`] and `wgpu::Device`.\nfn f() {}");
+    fine("src/scene/a.rs", "#[cfg(test)]\nmod tests {\n use crate::render::X;\n}");
     fine("src/render/gpu.rs", "use wgpu::util::DeviceExt;\nuse crate::scene::ShapeKind;");
     fine("src/scene/file/mod.rs", "use std::fs;");
     fine("src/flat/a.rs", "#[cfg(test)]\nmod tests {\n fn f() { std::fs::read(\"x\").unwrap(); }\n}");

@@ -2,7 +2,7 @@
 // Twin of `flat::twin::surface`.
 
 #include "field/leaf.wgsl"
-#include "field/material.wgsl"
+#include "field/surface.wgsl"
 
 var<private> surface_first: u32;
 var<private> surface_end: u32;

@@ -19,6 +19,9 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use crate::app;
+use crate::document::Document;
+use crate::editor::new_document;
 use clap::{Parser, Subcommand};
 
 use crate::render::Gpu;
@@ -92,7 +95,11 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
 /// Opens the editor; where no window can be shown, renders the scene to a file instead.
 fn open(scene: Option<&Path>) -> Result<(), Failure> {
     if has_display(|name| std::env::var_os(name)) {
-        return Err(Failure::Graphics("not yet".into()));
+        let document = match scene {
+            Some(path) => Document::open(path).map_err(Failure::Scene)?,
+            None => new_document(),
+        };
+        return app::run(document).map_err(|e| Failure::Graphics(e.to_string()));
     }
     let Some(scene) = scene else {
         return Err(Failure::Graphics("no display is set; give a scene and it is rendered to a picture".into()));

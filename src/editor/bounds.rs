@@ -14,9 +14,10 @@ pub fn of_nodes(scene: &Scene, meshes: &mut MeshLibrary, ids: &[NodeId]) -> Opti
     let mut bounds = Aabb::EMPTY;
     for &id in ids {
         let Some(index) = scene.index_of(id) else { continue };
-        for node in &scene.nodes()[scene.subtree(index)] {
-            bounds = bounds.union(&of_node(scene, meshes, node));
-        }
+        visit(scene, index, scene.world_from_local(id), |node, world_from_node| {
+            bounds = bounds.union(&of_node(meshes, node, &world_from_node));
+            true
+        });
     }
     (!bounds.is_empty()).then_some(bounds)
 }
@@ -25,19 +26,35 @@ pub fn of_nodes(scene: &Scene, meshes: &mut MeshLibrary, ids: &[NodeId]) -> Opti
 /// where there is nothing else.
 pub fn of_scene(scene: &Scene, meshes: &mut MeshLibrary) -> Option<Aabb> {
     let (mut solid, mut rest) = (Aabb::EMPTY, Aabb::EMPTY);
-    let mut index = 0;
-    while let Some(node) = scene.nodes().get(index) {
-        if !node.visible {
-            index = scene.subtree(index).end;
-            continue;
-        }
-        let bounds = of_node(scene, meshes, node);
-        let target = if has_size(node) { &mut solid } else { &mut rest };
-        *target = target.union(&bounds);
-        index += 1;
+    for top in scene.children(None) {
+        let Some(index) = scene.index_of(top.id) else { continue };
+        visit(scene, index, top.transform.to_affine(), |node, world_from_node| {
+            if node.visible {
+                let target = if has_size(node) { &mut solid } else { &mut rest };
+                *target = target.union(&of_node(meshes, node, &world_from_node));
+            }
+            node.visible
+        });
     }
     let all = if solid.is_empty() { rest } else { solid };
     (!all.is_empty()).then_some(all)
+}
+
+/// Calls `each` with the node at `index` and all below it and their transforms, given the first one's.
+/// What stands below a node for which it answers false is left out.
+fn visit(scene: &Scene, index: usize, first: DAffine3, mut each: impl FnMut(&Node, DAffine3) -> bool) {
+    let (nodes, depths) = (scene.nodes(), scene.depths());
+    let mut chain: Vec<DAffine3> = Vec::new();
+    let end = scene.subtree(index).end;
+    let mut at = index;
+    while at < end {
+        let level = (depths[at] - depths[index]) as usize;
+        chain.truncate(level);
+        let parent = chain.last().copied();
+        let matrix = parent.map_or(first, |parent| parent * nodes[at].transform.to_affine());
+        chain.push(matrix);
+        at = if each(&nodes[at], matrix) { at + 1 } else { scene.subtree(at).end };
+    }
 }
 
 fn has_size(node: &Node) -> bool {
@@ -48,11 +65,8 @@ fn has_size(node: &Node) -> bool {
     }
 }
 
-fn of_node(scene: &Scene, meshes: &mut MeshLibrary, node: &Node) -> Aabb {
-    match local(meshes, node) {
-        Some(bounds) => bounds.transformed(&scene.world_from_local(node.id)),
-        None => Aabb::EMPTY,
-    }
+fn of_node(meshes: &mut MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aabb {
+    local(meshes, node).map_or(Aabb::EMPTY, |bounds| bounds.transformed(world_from_node))
 }
 
 /// The box around a node's own surface in its local space; `None` for a group.
@@ -70,14 +84,12 @@ pub fn local(meshes: &mut MeshLibrary, node: &Node) -> Option<Aabb> {
 /// oriented box that turns with the node.
 pub fn oriented(scene: &Scene, meshes: &mut MeshLibrary, id: NodeId) -> Option<(DAffine3, Aabb)> {
     let index = scene.index_of(id)?;
-    let world_from_local = scene.world_from_local(id);
-    let local_from_world = world_from_local.inverse();
     let mut bounds = Aabb::EMPTY;
-    for node in &scene.nodes()[scene.subtree(index)] {
-        if let Some(own) = local(meshes, node) {
-            bounds = bounds.union(&own.transformed(&(local_from_world * scene.world_from_local(node.id))));
-        }
-    }
+    visit(scene, index, DAffine3::IDENTITY, |node, root_from_node| {
+        bounds = bounds.union(&of_node(meshes, node, &root_from_node));
+        true
+    });
+    let world_from_local = scene.world_from_local(id);
     (!bounds.is_empty()).then_some((world_from_local, bounds))
 }
 

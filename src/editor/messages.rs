@@ -117,11 +117,6 @@ impl Messages {
         }
     }
 
-    /// The newest message.
-    pub fn last(&self) -> Option<&Message> {
-        self.entries.back().map(|e| &e.message)
-    }
-
     /// All messages kept, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Message> {
         self.entries.iter().map(|e| &e.message)
@@ -203,6 +198,6 @@ mod tests {
             messages.push(Message::info(i.to_string()));
         }
         assert_eq!(messages.entries.len(), Messages::KEPT);
-        assert_eq!(messages.last(), Some(&Message::info("999")));
+        assert_eq!(messages.iter().next_back(), Some(&Message::info("999")));
     }
 }

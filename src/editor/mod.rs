@@ -49,10 +49,10 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
-use crate::flat::{FlatScene, flatten};
+use crate::flat::{FlatMesh, FlatScene, flatten};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
-use crate::scene::{Light, Node, NodeKind, Scene};
+use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
 use workbench::Workbench;
 
 /// What the renderer has made.
@@ -107,6 +107,8 @@ pub struct Editor {
     show_grid: bool,
     show_outline: bool,
     shown_title: String,
+    /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
+    typing: bool,
 }
 
 /// The flat scene of a revision of the document.
@@ -114,12 +116,14 @@ struct Flattened {
     scene: Arc<FlatScene>,
     revision: Option<u64>,
     problem: Option<String>,
+    /// A mesh that cannot be read, and why.
+    mesh_problem: Option<(NodeId, String)>,
 }
 
 impl Flattened {
     fn empty() -> Self {
         let flat = flatten(&Scene::new(), 0.0).expect("an empty scene is within every limit");
-        Self { scene: Arc::new(flat), revision: None, problem: None }
+        Self { scene: Arc::new(flat), revision: None, problem: None, mesh_problem: None }
     }
 }
 
@@ -141,6 +145,7 @@ impl Editor {
             show_grid: true,
             show_outline: true,
             shown_title: String::new(),
+            typing: false,
         };
         editor.replace_document(document);
         editor
@@ -185,6 +190,7 @@ impl Editor {
         self.bench.settle(&ctx);
         self.refresh_flat();
         self.send_title(&ctx);
+        self.typing = ctx.text_edit_focused();
     }
 
     fn show_panels(&mut self, ui: &mut Ui, picture: &Picture) {
@@ -289,6 +295,8 @@ impl Editor {
             }
             Err(error) => self.flat.problem = Some(error.to_string()),
         }
+        let broken = |mesh: &FlatMesh| Some((mesh.id, self.meshes.get(&mesh.path).err()?.to_string()));
+        self.flat.mesh_problem = self.flat.scene.meshes.iter().find_map(broken);
     }
 
     fn open_dropped(&mut self, ctx: &Context) {

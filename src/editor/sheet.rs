@@ -27,11 +27,6 @@ impl<'a> Sheet<'a> {
         self.nodes.last().expect("a sheet is never empty")
     }
 
-    /// The nodes edited.
-    pub fn nodes(&self) -> &[Arc<Node>] {
-        &self.nodes
-    }
-
     /// The document and its messages.
     pub fn bench(&mut self) -> &mut Workbench {
         self.bench

@@ -3,6 +3,7 @@
 use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
 
 use super::{Editor, Picture, theme};
+use crate::scene::NodeId;
 
 /// Shows the bar.
 pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
@@ -44,17 +45,25 @@ fn left(editor: &mut Editor, ui: &mut Ui) {
         ui.add(egui::Label::new(RichText::new(text).color(theme::ERROR)).truncate());
         return;
     }
-    if let Some(warning) = editor.flat().warnings.first().cloned() {
-        let more = editor.flat().warnings.len() - 1;
-        let more = if more > 0 { format!(" (+{more})") } else { String::new() };
-        let text = format!("{}: {}{more}", warning.name, warning.reason);
+    if let Some((node, text)) = warning(editor) {
         ui.label(super::messages::Severity::Warning.icon().size(14.0));
         let button = Button::new(RichText::new(text).color(theme::WARNING)).frame(false).truncate();
         if ui.add(button).on_hover_text("Selects the node").clicked() {
-            editor.bench.document.select(vec![warning.node]);
+            editor.bench.document.select(vec![node]);
         }
         return;
     }
     let hint = editor.viewport.hint(&editor.bench);
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
+}
+
+/// The first thing that the artist should look at, with its node.
+fn warning(editor: &Editor) -> Option<(NodeId, String)> {
+    if let Some(problem) = &editor.flat.mesh_problem {
+        return Some(problem.clone());
+    }
+    let warnings = &editor.flat().warnings;
+    let first = warnings.first()?;
+    let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
+    Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
 }

@@ -31,7 +31,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         buttons(editor, ui, &["Undo", "Redo"], &mut chosen);
         divider(ui);
         for &kind in ShapeKind::ALL {
-            if shape_button(editor, ui, kind).clicked() {
+            if shape_button(ui, kind).clicked() {
                 chosen = Some(CommandId::named(kind.label()));
             }
         }
@@ -68,14 +68,23 @@ fn buttons(editor: &Editor, ui: &mut Ui, names: &[&str], chosen: &mut Option<Com
         let command = id.get();
         let text = command.icon.map_or_else(|| RichText::new(*name), |icon| icon.rich_text().size(17.0));
         let response = square(ui, id.enabled(editor), Button::new(text), name);
-        let tooltip = command.tooltip(ui.ctx());
+        let tooltip = match *name {
+            "Undo" => with_step(command.tooltip(ui.ctx()), editor.bench.document.undo_label()),
+            "Redo" => with_step(command.tooltip(ui.ctx()), editor.bench.document.redo_label()),
+            _ => command.tooltip(ui.ctx()),
+        };
         if response.on_hover_text(&tooltip).on_disabled_hover_text(tooltip).clicked() {
             *chosen = Some(id);
         }
     }
 }
 
-fn shape_button(_: &Editor, ui: &mut Ui, kind: ShapeKind) -> Response {
+/// The tooltip with the step that it is about.
+fn with_step(tooltip: String, step: Option<&str>) -> String {
+    step.map_or(tooltip.clone(), |step| format!("{tooltip}: {step}"))
+}
+
+fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
     let response = square(ui, true, Button::new(""), &format!("Add {}", kind.label().to_lowercase()));
     let color = if response.hovered() { egui::Color32::WHITE } else { theme::OBJECT };
     glyphs::paint_shape(ui.painter(), glyphs::centered(response.rect, 17.0), kind, color);

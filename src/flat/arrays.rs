@@ -189,8 +189,8 @@ pub struct FlatScene {
 
 /// Largest stack for which an evaluator exists, see [`Component::stack`].
 pub const MAX_STACK: u32 = 32;
-/// Most entries in one component: an invocation visits them five times, twice each, for a normal and a material,
-/// and lavapipe ends every loop after 65 535 iterations.
-pub const MAX_COMPONENT_NODES: usize = 6_000;
+/// Most entries in one component: an invocation visits them seven times, twice each, for a normal and a
+/// material, and lavapipe ends every loop after 65 535 iterations.
+pub const MAX_COMPONENT_NODES: usize = 4_200;
 /// Most entries in all components together.
 pub const MAX_FLAT_NODES: usize = 1 << 20;

@@ -7,11 +7,11 @@ use crate::scene::{BlendKernel, Operator, Scene};
 const RADIUS: f64 = 0.26;
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.045, 0.06, 0.10], [0.20, 0.21, 0.25], [0.24, 0.26, 0.31]);
+    let mut stage = Stage::new([0.02, 0.03, 0.05], [0.055, 0.065, 0.09], [0.22, 0.24, 0.29]);
     let columns = [
-        (BlendKernel::Circular, [0.83, 0.39, 0.055], [0.50, 0.065, 0.030]),
-        (BlendKernel::Quadratic, [0.42, 0.66, 0.16], [0.030, 0.27, 0.20]),
-        (BlendKernel::Cubic, [0.30, 0.56, 0.86], [0.11, 0.085, 0.45]),
+        (BlendKernel::Circular, [0.74, 0.30, 0.030], [0.50, 0.065, 0.030]),
+        (BlendKernel::Quadratic, [0.27, 0.50, 0.075], [0.030, 0.27, 0.20]),
+        (BlendKernel::Cubic, [0.13, 0.36, 0.72], [0.11, 0.085, 0.45]),
     ];
     let tray = stage.matt("Slate", [0.075, 0.085, 0.11]);
     stage.add(None, object("Tray", cuboid(4.9, 0.3, 4.9, 0.12), tray).at(v(0.0, -0.13, 0.0)));
@@ -27,9 +27,9 @@ pub(super) fn scene() -> Scene {
             stage.add(cell, object("Post", cylinder(radius, 0.9, 0.03), post).at(v(0.0, lift, 0.0)));
         }
     }
-    stage.sun("Key", [-0.8, 0.75, 0.35], [1.0, 0.95, 0.88], 1.0);
+    stage.sun("Key", [-0.8, 0.75, 0.35], [1.0, 0.95, 0.88], 0.92);
     stage.sun("Fill", [0.7, 0.35, 0.9], [0.72, 0.82, 1.0], 0.30);
     stage.sun("Rim", [0.5, 0.4, -1.0], [0.9, 0.95, 1.0], 0.7);
-    stage.camera([0.0, 5.6, 6.1], [0.0, 0.1, 0.15], 39.0);
+    stage.camera([-0.9, 5.2, 5.9], [0.0, 0.0, 0.05], 39.0);
     stage.finish()
 }

@@ -6,8 +6,8 @@ use super::stage::{Stage, blended, cone, cuboid, cylinder, ellipsoid, group, obj
 use crate::scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.10, 0.13, 0.17], [0.46, 0.40, 0.34], [0.30, 0.30, 0.32]);
-    let ivory = stage.glossy("Ivory", [0.78, 0.66, 0.47], 0.35, 60.0);
+    let mut stage = Stage::new([0.05, 0.07, 0.10], [0.135, 0.115, 0.10], [0.26, 0.26, 0.28]);
+    let ivory = stage.glossy("Ivory", [0.74, 0.60, 0.40], 0.35, 60.0);
     let ebony = stage.glossy("Ebony", [0.035, 0.026, 0.024], 0.5, 70.0);
     let maple = stage.glossy("Maple", [0.60, 0.40, 0.20], 0.12, 30.0);
     let walnut = stage.glossy("Walnut", [0.13, 0.052, 0.024], 0.18, 30.0);
@@ -17,7 +17,7 @@ pub(super) fn scene() -> Scene {
     pawn(&mut stage, "White pawn", v(0.0, 0.0, 0.0), ivory);
     pawn(&mut stage, "Black pawn", v(1.0, 0.0, -1.0), ebony);
 
-    stage.sun("Window", [-0.75, 0.9, 0.65], [1.0, 0.93, 0.82], 1.05);
+    stage.sun("Window", [-0.75, 0.9, 0.65], [1.0, 0.93, 0.82], 0.95);
     stage.sun("Sky", [0.9, 0.35, 0.25], [0.55, 0.70, 1.0], 0.30);
     stage.sun("Back light", [0.35, 0.45, -1.0], [1.0, 0.86, 0.66], 0.7);
     stage.camera([-1.15, 1.55, 3.1], [0.17, 0.47, -0.12], 31.0);

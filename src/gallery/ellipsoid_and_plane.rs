@@ -6,7 +6,7 @@ use super::stage::{Stage, blended, ellipsoid, object, turn_x, turn_y, turn_z, v}
 use crate::scene::{BlendKernel, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.20, 0.38, 0.62], [0.86, 0.74, 0.60], [0.30, 0.33, 0.40]);
+    let mut stage = Stage::new([0.10, 0.25, 0.52], [0.55, 0.60, 0.66], [0.30, 0.33, 0.40]);
     let sand = stage.matt("Sand", [0.72, 0.50, 0.31]);
     let ink = stage.glossy("Ink", [0.016, 0.075, 0.17], 0.7, 90.0);
     let shell = stage.glossy("Shell", [0.84, 0.76, 0.66], 0.35, 50.0);
@@ -18,12 +18,12 @@ pub(super) fn scene() -> Scene {
     stage.add(beach, whale.at(v(0.0, 0.62, 0.0)).rotated(turn_y(24.0) * turn_z(15.0)));
 
     let pebbles: [(f64, f64, [f64; 3], f64, _); 6] = [
-        (-2.15, 1.15, [0.42, 0.13, 0.30], 20.0, shell),
+        (-1.9, 1.3, [0.42, 0.13, 0.30], 20.0, shell),
         (-1.25, 1.85, [0.24, 0.09, 0.19], -35.0, rust),
         (1.55, 1.55, [0.34, 0.16, 0.22], 60.0, shell),
         (2.35, 0.75, [0.20, 0.08, 0.15], 10.0, rust),
         (2.75, -1.3, [0.50, 0.22, 0.36], -20.0, shell),
-        (-2.9, -0.9, [0.33, 0.15, 0.24], 75.0, rust),
+        (-2.5, -0.6, [0.33, 0.15, 0.24], 75.0, rust),
     ];
     for (x, z, radii, turn, material) in pebbles {
         let pebble = object("Pebble", Shape::Ellipsoid { radii }, material);
@@ -34,6 +34,6 @@ pub(super) fn scene() -> Scene {
 
     stage.sun("Evening sun", [-0.9, 0.62, 0.45], [1.0, 0.85, 0.66], 1.0);
     stage.sun("Sky", [0.3, 1.0, -0.5], [0.55, 0.72, 1.0], 0.28);
-    stage.camera([-0.55, 2.05, 6.6], [0.12, 0.47, 0.0], 34.0);
+    stage.camera([-0.5, 1.35, 7.0], [0.05, 0.82, 0.0], 33.0);
     stage.finish()
 }

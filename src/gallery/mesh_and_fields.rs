@@ -7,11 +7,11 @@ use super::stage::{
 use crate::scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.05, 0.16, 0.19], [0.33, 0.47, 0.45], [0.30, 0.32, 0.33]);
+    let mut stage = Stage::new([0.02, 0.075, 0.09], [0.10, 0.20, 0.20], [0.25, 0.27, 0.28]);
     let felt = stage.matt("Felt", [0.030, 0.032, 0.055]);
     let ribbon = stage.glossy("Ribbon", [0.62, 0.035, 0.045], 0.3, 40.0);
     let brass = stage.glossy("Brass", [0.70, 0.43, 0.11], 0.8, 70.0);
-    let marble = stage.glossy("Marble", [0.70, 0.69, 0.66], 0.3, 60.0);
+    let marble = stage.glossy("Marble", [0.52, 0.51, 0.49], 0.3, 60.0);
     let wool = stage.matt("Wool", [0.055, 0.30, 0.30]);
 
     let head = mesh("Suzanne", "models/suzanne.glb");
@@ -22,10 +22,10 @@ pub(super) fn scene() -> Scene {
     spectacles(&mut stage, worn, brass);
     bust(&mut stage, marble, wool);
 
-    stage.sun("Key", [-0.65, 0.75, 0.9], [1.0, 0.94, 0.86], 0.95);
+    stage.spot("Key", [[-3.2, 4.6, 4.6], [0.0, 1.2, 0.0]], [1.0, 0.94, 0.86], 1.5, [14.0, 32.0]);
     stage.sun("Fill", [1.0, 0.25, 0.5], [0.62, 0.84, 1.0], 0.30);
     stage.sun("Rim", [0.6, 0.6, -0.9], [1.0, 0.92, 0.80], 0.9);
-    stage.camera([0.0, 1.85, 6.2], [0.0, 1.35, 0.0], 33.0);
+    stage.camera([0.0, 1.7, 6.0], [0.0, 1.27, 0.0], 32.0);
     stage.finish()
 }
 
@@ -44,7 +44,7 @@ fn spectacles(stage: &mut Stage, worn: NodeId, brass: MaterialId) {
     for side in [-1.0, 1.0] {
         let ring = object("Ring", torus(0.205, 0.026), brass);
         stage.add(frame, ring.at(v(side * 0.275, 0.0, 0.06)).rotated(turn_y(side * 12.0) * turn_x(90.0)));
-        let temple = capsule([side * 0.47, 0.03, 0.02], [side * 0.88, 0.08, -0.62], 0.022);
+        let temple = capsule([side * 0.47, 0.03, 0.02], [side * 0.70, 0.05, -0.42], 0.022);
         stage.add(frame, object("Temple", temple, brass));
     }
     stage.add(frame, object("Bridge", capsule([-0.09, 0.04, 0.09], [0.09, 0.04, 0.09], 0.024), brass));
@@ -54,7 +54,7 @@ fn spectacles(stage: &mut Stage, worn: NodeId, brass: MaterialId) {
 fn bust(stage: &mut Stage, marble: MaterialId, wool: MaterialId) {
     let bust = stage.add(None, blended("Bust", Operator::Union, BlendKernel::Quadratic, 0.16));
     stage.add(bust, object("Shoulders", ellipsoid(0.82, 0.30, 0.42), marble).at(v(0.0, 0.52, -0.1)));
-    stage.add(bust, object("Neck", cylinder(0.30, 0.7, 0.05), marble).at(v(0.0, 0.85, -0.1)));
+    stage.add(bust, object("Neck", cylinder(0.30, 1.2, 0.05), marble).at(v(0.04, 0.92, -0.30)));
     stage.add(bust, object("Column", cone(0.24, 0.40, 0.40), marble).at(v(0.0, 0.15, -0.1)));
     let plinth = stage.add(None, blended("Plinth", Operator::Union, BlendKernel::Circular, 0.05));
     stage.add(plinth, object("Top", cylinder(0.50, 0.10, 0.03), marble).at(v(0.0, -0.06, -0.1)));

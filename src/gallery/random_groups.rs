@@ -15,7 +15,7 @@ const SPACING: f64 = 1.5;
 /// machine.
 pub fn random(leaves: usize, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
-    let mut stage = Stage::new([0.06, 0.075, 0.11], [0.24, 0.245, 0.27], [0.27, 0.28, 0.32]);
+    let mut stage = Stage::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
     let palette = [
         ("Coral", [0.80, 0.16, 0.085]),
         ("Amber", [0.84, 0.42, 0.045]),
@@ -51,7 +51,7 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
                 _ => ("Torus", torus(random.between(0.18, 0.34), random.between(0.05, 0.12))),
             };
             let material = materials[tints[random.below(2)]];
-            let place = DVec3::from([0; 3].map(|_| random.between(-0.5, 0.5)));
+            let place = DVec3::from([0; 3].map(|_| random.between(-0.44, 0.44)));
             stage.add(id, object(name, shape, material).at(place).rotated(random.rotation()));
         }
     }
@@ -75,9 +75,9 @@ fn light_and_frame(stage: &mut Stage, cells: [usize; 3]) {
     stage.sun("Key", [-0.6, 0.8, 0.8], [1.0, 0.95, 0.88], 1.0);
     stage.sun("Fill", [1.0, 0.2, 0.4], [0.65, 0.80, 1.0], 0.32);
     stage.sun("Rim", [0.3, 0.5, -1.0], [1.0, 0.9, 0.8], 0.6);
-    let half = DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.95));
+    let half = DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.85));
     let direction = DVec3::new(-0.42, 0.38, 1.0).normalize();
-    let position = direction * half.length() * 3.05;
+    let position = direction * half.length() * 2.55;
     stage.camera(position.to_array(), [0.0; 3], 36.0);
 }
 

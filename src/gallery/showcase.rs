@@ -12,19 +12,19 @@ use crate::scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene
 const PLANET: (DVec3, f64) = (DVec3::new(0.0, -3.3, 0.0), 2.6);
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.008, 0.012, 0.05], [0.115, 0.045, 0.155], [0.20, 0.20, 0.30]);
+    let mut stage = Stage::new([0.008, 0.012, 0.05], [0.050, 0.018, 0.085], [0.19, 0.19, 0.28]);
     planet(&mut stage);
     crystals(&mut stage);
     smoke(&mut stage);
     rocket(&mut stage);
     sky(&mut stage);
 
-    stage.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 1.05);
+    stage.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 0.92);
     stage.sun("Planet light", [0.9, 0.15, 0.15], [0.45, 0.50, 1.0], 0.45);
     stage.sun("Back light", [0.35, 0.35, -1.0], [0.75, 0.60, 1.0], 0.8);
     let falloff = Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.1, range: 6.0 };
-    stage.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.42, 0.10], 2.2, falloff);
-    stage.camera([-0.55, 1.75, 7.4], [0.0, 0.98, 0.0], 37.0);
+    stage.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.36, 0.08], 1.7, falloff);
+    stage.camera([-0.7, 1.55, 7.7], [0.12, 0.68, 0.0], 41.0);
     stage.finish()
 }
 
@@ -37,8 +37,8 @@ fn on_planet(tilt: f64, heading: f64, height: f64) -> DVec3 {
 
 fn planet(stage: &mut Stage) {
     let soil = stage.matt("Soil", [0.30, 0.17, 0.42]);
-    let crater = stage.matt("Crater", [0.155, 0.085, 0.29]);
-    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.16));
+    let crater = stage.matt("Crater", [0.115, 0.055, 0.23]);
+    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.11));
     stage.add(planet, object("Ball", sphere(PLANET.1), soil).at(PLANET.0));
     for (tilt, heading, radius) in
         [(26.0, 200.0, 0.42), (31.0, -38.0, 0.34), (14.0, 78.0, 0.17), (43.0, -75.0, 0.30), (40.0, 150.0, 0.3)]
@@ -70,7 +70,7 @@ fn crystals(stage: &mut Stage) {
 }
 
 fn smoke(stage: &mut Stage) {
-    let smoke = stage.matt("Smoke", [0.74, 0.66, 0.67]);
+    let smoke = stage.matt("Smoke", [0.62, 0.55, 0.58]);
     let cloud = stage.add(None, blended("Smoke", Operator::Union, BlendKernel::Quadratic, 0.22));
     stage.add(cloud, object("Column", round_cone(0.30, 0.13, 0.75), smoke).at(v(-0.02, -0.30, 0.0)));
     let puffs = [

@@ -132,18 +132,35 @@ impl Kernels {
         any
     }
 
-    /// The kernel for each component.
-    pub fn choose(&mut self, flat: &FlatScene, method: Method) -> Result<Vec<Choice>, ShaderError> {
+    /// Kernels that have become ready since `choices` were made, put in their place.
+    pub fn refresh(&mut self, flat_keys: &[Option<u128>], choices: &mut [Choice]) {
+        for (key, choice) in flat_keys.iter().zip(choices) {
+            let Some(Slot { state: State::Ready(kernel), .. }) = key.and_then(|k| self.specialised.get(&k)) else {
+                continue;
+            };
+            *choice = Choice { kernel: kernel.clone(), specialised: true };
+        }
+    }
+
+    /// The key of each component's structure; `None` where it gets no kernel of its own.
+    pub fn keys(flat: &FlatScene, method: Method) -> Vec<Option<u128>> {
+        let key = |c| if method == Method::Interpreted { None } else { Structure::key(flat, c) };
+        flat.components.iter().map(key).collect()
+    }
+
+    /// The kernel for each component; `keys` from [`Kernels::keys`].
+    pub fn choose(
+        &mut self,
+        flat: &FlatScene,
+        keys: &[Option<u128>],
+        method: Method,
+    ) -> Result<Vec<Choice>, ShaderError> {
         self.collect();
         self.clock += 1;
         let mut choices = Vec::with_capacity(flat.components.len());
         let mut needs_interpreter = false;
-        for component in &flat.components {
-            let found = match method {
-                Method::Interpreted => None,
-                Method::Auto | Method::Specialised => Structure::key(flat, component),
-            };
-            let ready = match found {
+        for (component, key) in flat.components.iter().zip(keys) {
+            let ready = match *key {
                 None => None,
                 Some(key) => self.specialised(key, method, || Structure::of(flat, component)),
             };

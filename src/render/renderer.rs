@@ -45,6 +45,7 @@ pub enum RenderError {
 #[derive(Debug)]
 pub struct Frame {
     plan: Plan,
+    keys: Vec<Option<u128>>,
     choices: Vec<Choice>,
     next: usize,
     seconds_done: f64,
@@ -167,6 +168,11 @@ impl Renderer {
         self.method = method;
     }
 
+    /// How many kernels are being built.
+    pub fn kernels_building(&self) -> usize {
+        self.kernels.building()
+    }
+
     /// The kernels.
     pub fn kernels(&mut self) -> &mut Kernels {
         &mut self.kernels
@@ -184,7 +190,9 @@ impl Renderer {
 
     /// How long a whole frame is expected to take.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        let specialised: Vec<bool> = self.kernels.choose(flat, self.method)?.iter().map(|c| c.specialised).collect();
+        let keys = Kernels::keys(flat, self.method);
+        let choices = self.kernels.choose(flat, &keys, self.method)?;
+        let specialised: Vec<bool> = choices.iter().map(|c| c.specialised).collect();
         let plan = plan(flat, camera, size, &specialised, &self.pace);
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
@@ -208,7 +216,7 @@ impl Renderer {
         }
         progress(1.0);
         let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
-        Ok((buffers, self.unfinished_rays(&frame, flat)?))
+        Ok((buffers, self.unfinished_rays(&frame)?))
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
@@ -225,7 +233,8 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        let choices = self.kernels.choose(flat, self.method)?;
+        let keys = Kernels::keys(flat, self.method);
+        let choices = self.kernels.choose(flat, &keys, self.method)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
@@ -251,6 +260,7 @@ impl Renderer {
         Ok(Frame {
             seconds: self.pace.seconds(plan.effort()),
             plan,
+            keys,
             choices,
             next: 0,
             seconds_done: 0.0,
@@ -265,6 +275,9 @@ impl Renderer {
     /// dispatches of about [`DISPATCH_TARGET`]. Waits for the device, and learns its pace.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
         let start = Instant::now();
+        if self.kernels.collect() {
+            self.kernels.refresh(&frame.keys, &mut frame.choices);
+        }
         loop {
             let first = frame.next;
             let mut effort = Effort::default();
@@ -296,8 +309,8 @@ impl Renderer {
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.
-    pub fn unfinished_rays(&self, frame: &Frame, flat: &FlatScene) -> Result<Vec<Warning>, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), flat.components.len() * COUNTS)?;
+    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
         let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
         let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
             node: *id,

@@ -128,9 +128,11 @@ impl CommandId {
     }
 }
 
-/// Runs the commands whose keys were pressed. Not while text is being typed.
+/// Runs the commands whose keys were pressed. Not while text is being typed, something is being
+/// dragged, or a menu is open: there the keys mean other things.
 pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
-    if ctx.text_edit_focused() || editor.has_dialog() {
+    let dragging = ctx.input(|i| i.pointer.any_down());
+    if editor.typing || ctx.text_edit_focused() || editor.has_dialog() || dragging || ctx.any_popup_open() {
         return;
     }
     while let Some(command) = ctx.input_mut(take_shortcut) {
@@ -142,7 +144,7 @@ pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
 fn take_shortcut(input: &mut egui::InputState) -> Option<CommandId> {
     let mut found = None;
     input.events.retain(|event| {
-        let egui::Event::Key { key, pressed: true, modifiers, .. } = event else { return true };
+        let egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
         if found.is_some() {
             return true;
         }

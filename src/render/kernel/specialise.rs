@@ -50,7 +50,7 @@ impl Writer<'_> {
             self.line(&super::source::shape_include(shape));
         }
         if self.fold == Fold::Surface {
-            self.line("#include \"field/material.wgsl\"");
+            self.line("#include \"field/surface.wgsl\"");
             self.line("var<private> surface_first: u32;");
         }
         // Copied once: a uniform read at each use costs several times as much on a processor.
@@ -76,8 +76,8 @@ impl Writer<'_> {
             ),
         }
         let mut row = 0;
-        // Groups under way: where each ends, its entry, its first row, whether a branch surrounds it.
-        let mut open: Vec<(usize, Entry, usize, bool)> = Vec::new();
+        // Groups under way: where each ends, its entry, its first row.
+        let mut open: Vec<(usize, Entry, usize)> = Vec::new();
         for (at, entry) in self.structure.entries.iter().enumerate() {
             let level = open.len();
             if entry.shape.is_some() {
@@ -90,22 +90,23 @@ impl Writer<'_> {
                     && entry.join != Join::Intersection;
                 if skipped {
                     self.open_branch(level, entry, row);
+                } else {
+                    // A block of its own, because the group after this one needs the same name.
+                    self.line("    {");
                 }
                 let kind = if self.fold == Fold::Value { "f32" } else { "Surface" };
                 self.line(&format!("    var s{}: {kind};", level + 1));
-                open.push((at + entry.extent as usize, *entry, row, skipped));
+                open.push((at + entry.extent as usize, *entry, row));
             }
             row += entry.rows();
-            while let Some((end, group, first, skipped)) = open.last().copied() {
+            while let Some((end, group, first)) = open.last().copied() {
                 if end != at + 1 {
                     break;
                 }
                 open.pop();
                 let level = open.len();
                 self.join(level, &group, first, &format!("s{}", level + 1));
-                if skipped {
-                    self.line("    }");
-                }
+                self.line("    }");
             }
         }
         self.line("    return s0;\n}");

@@ -1,0 +1,54 @@
+//! What the processor does between a drag and the GPU, at ten thousand nodes. The promise is less than a
+//! millisecond in all, and that no kernel is built.
+
+mod ten_thousand;
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use isolith::flat::{FlatScene, flatten};
+use isolith::render::{Gpu, OverlaySettings, Renderer, Slot};
+
+/// Size of the viewport in pixels.
+const SIZE: [u32; 2] = [1280, 720];
+
+fn stations(c: &mut Criterion) {
+    let (mut document, dragged) = ten_thousand::document();
+    c.bench_function("flatten 10 000 nodes", |b| b.iter(|| black_box(flatten(document.scene(), 0.0))));
+    c.bench_function("snapshot of 10 000 nodes", |b| {
+        b.iter(|| {
+            // The first edit of a gesture copies the table, because undo still holds the old one.
+            document.begin_gesture();
+            ten_thousand::drag(&mut document, dragged, 0.31);
+            document.end_gesture();
+            document.undo()
+        });
+    });
+}
+
+fn drag(c: &mut Criterion) {
+    let (mut document, dragged) = ten_thousand::document();
+    let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+    let mut renderer = Renderer::new(&gpu).expect("a renderer on a device that answers");
+    let flat = flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 16.0 / 9.0);
+    let mut begin = |flat: &FlatScene| {
+        renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
+        renderer.kernels().built()
+    };
+    let built = begin(&flat);
+    document.begin_gesture();
+    let mut radius = 0.3;
+    c.bench_function("drag at 10 000 nodes: edit, flatten, upload, plan", |b| {
+        b.iter(|| {
+            radius = if radius > 0.5 { 0.3 } else { radius + 0.001 };
+            ten_thousand::drag(&mut document, dragged, radius);
+            let flat = flatten(document.scene(), 0.0).expect("within the limits");
+            assert_eq!(begin(&flat), built, "a drag built a kernel");
+        });
+    });
+    document.end_gesture();
+}
+
+criterion_group!(benches, stations, drag);
+criterion_main!(benches);

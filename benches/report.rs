@@ -1,0 +1,103 @@
+//! How exact every scene's picture is, and what a drag costs: as tables, printed and written into
+//! `benches/README.md` between their marks.
+
+#[path = "../tests/gpu.rs"]
+mod gpu;
+mod ten_thousand;
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use isolith::flat::truth::truth;
+use isolith::flat::{Accuracy, flatten};
+use isolith::render::{Method, OverlaySettings, Slot};
+
+/// Width and height of the measured pictures, in pixels.
+const SIDE: u32 = 256;
+/// How often a time is taken; the median is shown.
+const REPEATS: usize = 101;
+
+fn main() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/README.md");
+    let mut text = std::fs::read_to_string(&path).expect("benches/README.md is part of the source");
+    for (mark, table) in [("accuracy", accuracy()), ("drag", drag())] {
+        writeln!(std::io::stdout(), "{table}").expect("standard output takes text");
+        text = replaced(&text, mark, &table);
+    }
+    std::fs::write(&path, text).expect("benches/README.md can be written");
+}
+
+/// `text` with what stands between the marks of this name replaced.
+fn replaced(text: &str, mark: &str, table: &str) -> String {
+    let [begin, end] = ["begin", "end"].map(|side| format!("<!-- {mark}:{side} -->"));
+    let start = text.find(&begin).expect("the mark that begins a table") + begin.len();
+    let stop = text.find(&end).expect("the mark that ends a table");
+    format!("{}\n\n{}\n{}", &text[..start], table, &text[stop..])
+}
+
+fn accuracy() -> String {
+    let info = gpu::shared().gpu.info.clone();
+    let mut out = format!("On {} ({}), {SIDE}x{SIDE} pixels.\n\n", info.name, info.driver_info);
+    out += "| scene | components | hit/miss differs | grazing | depth p50 | p99 | max | normal p50 | p99 | |\n";
+    out += "|---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
+    for scene in gpu::scenes() {
+        let truth = truth(&scene.flat, &scene.meshes, &scene.camera, [SIDE, SIDE], &|_| ());
+        let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+        let a = Accuracy::against(
+            &scene.render(SIDE, Method::Specialised),
+            &truth,
+            scene.camera.footprint(f64::from(SIDE)),
+        );
+        let verdict = if a.faults().is_empty() { "" } else { "beyond the limit" };
+        writeln!(
+            out,
+            "| {} | {} | {} | {} | {:.5} | {:.5} | {:.4} | {:.4} | {:.3} | {verdict} |",
+            scene.name,
+            scene.flat.components.len(),
+            a.hit_miss_differs,
+            a.grazing,
+            a.depth_p50,
+            a.depth_p99,
+            a.depth_max,
+            a.normal_p50,
+            a.normal_p99,
+        )
+        .expect("strings take all");
+    }
+    out
+}
+
+fn drag() -> String {
+    let (mut document, dragged) = ten_thousand::document();
+    let renderer = &mut gpu::shared().renderer;
+    let flat = flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 16.0 / 9.0);
+    let size = [1280, 720];
+    renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
+    let built = renderer.kernels().built();
+    let mut rows: [(&str, Vec<Duration>); 4] =
+        [("edit", vec![]), ("flatten", vec![]), ("upload and plan", vec![]), ("all", vec![])];
+    document.begin_gesture();
+    for i in 0..REPEATS {
+        let start = Instant::now();
+        ten_thousand::drag(&mut document, dragged, 0.3 + 0.001 * i as f64);
+        let edited = Instant::now();
+        let flat = flatten(document.scene(), 0.0).expect("within the limits");
+        let flattened = Instant::now();
+        renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
+        let begun = Instant::now();
+        let times = [edited - start, flattened - edited, begun - flattened, begun - start];
+        rows.iter_mut().zip(times).for_each(|((_, all), time)| all.push(time));
+    }
+    document.end_gesture();
+    let mut out = format!("{} nodes, {REPEATS} frames.\n\n", document.scene().nodes().len());
+    out += "| station | median ms |\n|---|--:|\n";
+    for (name, mut times) in rows {
+        times.sort();
+        writeln!(out, "| {name} | {:.3} |", times[REPEATS / 2].as_secs_f64() * 1e3).expect("strings take all");
+    }
+    writeln!(out, "\nKernels built by the drag: {}.", renderer.kernels().built() - built).expect("strings take all");
+    out
+}

@@ -1,1 +1,0 @@
-//! Joins editor and renderer in one window.
