@@ -28,9 +28,14 @@ fn open(scene: Scene) -> Harness<'static, Editor> {
     let mut harness = Harness::builder()
         .with_size(vec2(1280.0, 800.0))
         .with_context_setup(Editor::setup)
-        .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &Picture::default()), editor);
+        .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &picture()), editor);
     harness.run();
     harness
+}
+
+/// Nothing drawn yet, but something to say in the status bar.
+fn picture() -> Picture {
+    Picture { progress: Some(0.4), status: "adapter, 12 ms".into(), ..Picture::default() }
 }
 
 /// The place of a row's name in the tree, which is on the left.

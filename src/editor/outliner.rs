@@ -67,6 +67,8 @@ impl Outliner {
                 return;
             }
             ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
+            // The tree paints the selection at a third of this while the keyboard is elsewhere.
+            ui.visuals_mut().widgets.inactive.weak_bg_fill = theme::ACCENT;
             let shown = self.found(&scene);
             let (tree, rename) = (&mut self.tree, &mut self.rename);
             let view = TreeView::new(ui.make_persistent_id("outliner"))

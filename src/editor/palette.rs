@@ -2,7 +2,7 @@
 
 use egui::{Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, vec2};
 
-use super::commands::CommandId;
+use super::commands::{CommandId, ICON_ROOM};
 use super::{Editor, theme};
 
 /// What the palette remembers while it is open.
@@ -86,15 +86,13 @@ fn list(editor: &mut Editor, ui: &mut egui::Ui, found: &[CommandId], moved: bool
         }
         for (index, id) in found.iter().enumerate() {
             let command = id.get();
-            let icon = match command.icon {
-                Some(icon) => icon.rich_text().color(theme::WEAK),
-                None => RichText::new("    "),
-            };
             let keys = command.keys.first().map_or_else(String::new, |k| ui.ctx().format_shortcut(k));
-            let button = Button::selectable(index == editor.palette.chosen, (icon, command.name.as_str()))
-                .min_size(vec2(ui.available_width(), 26.0))
-                .shortcut_text(RichText::new(keys).color(theme::FAINT));
+            let button =
+                Button::selectable(index == editor.palette.chosen, (RichText::new(ICON_ROOM), command.name.as_str()))
+                    .min_size(vec2(ui.available_width(), 26.0))
+                    .shortcut_text(RichText::new(keys).color(theme::FAINT));
             let response = ui.add_enabled(id.enabled(editor), button);
+            command.paint_icon(ui, response.rect, id.enabled(editor));
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("Run {}", command.name)));
             if index == editor.palette.chosen && moved {
                 response.scroll_to_me(None);

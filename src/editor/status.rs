@@ -13,6 +13,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             counts(editor, ui);
             if !picture.status.is_empty() {
+                ui.label(RichText::new("·").color(theme::RESTING));
                 ui.label(RichText::new(&picture.status).color(theme::WEAK));
             }
             if let Some(progress) = picture.progress {
@@ -53,7 +54,8 @@ fn left(editor: &mut Editor, ui: &mut Ui) {
         }
         return;
     }
-    let hint = editor.viewport.hint(&editor.bench);
+    let help = ui.ctx().data_mut(|d| d.remove_temp::<String>(super::commands::hovered_help()));
+    let hint = help.unwrap_or_else(|| editor.viewport.hint(&editor.bench));
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
 }
 

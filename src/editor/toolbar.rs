@@ -1,8 +1,8 @@
 //! The bar at the top: menus, then the buttons used most.
 
-use egui::{Button, MenuBar, Response, RichText, Ui, vec2};
+use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
 
-use super::commands::{self, CommandId, Menu};
+use super::commands::{self, CommandId, Icon, Menu};
 use super::dialogs::Intent;
 use super::{Editor, glyphs, theme};
 use crate::scene::ShapeKind;
@@ -28,7 +28,7 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        buttons(editor, ui, &["Undo", "Redo"], &mut chosen);
+        buttons(editor, ui, theme::TEXT, &["Undo", "Redo"], &mut chosen);
         divider(ui);
         for &kind in ShapeKind::ALL {
             if shape_button(ui, kind).clicked() {
@@ -36,13 +36,14 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             }
         }
         divider(ui);
-        buttons(editor, ui, &["Sun", "Point light", "Spot light", "Mesh…"], &mut chosen);
+        buttons(editor, ui, theme::LIGHT, &["Sun", "Point light", "Spot light"], &mut chosen);
+        buttons(editor, ui, theme::MESH, &["Mesh…"], &mut chosen);
         divider(ui);
-        buttons(editor, ui, &["Unite", "Intersect", "Subtract", "Toggle negative", "Group"], &mut chosen);
+        buttons(editor, ui, theme::GROUP, &["Unite", "Intersect", "Subtract", "Toggle negative", "Group"], &mut chosen);
         divider(ui);
-        buttons(editor, ui, &["Duplicate", "Delete"], &mut chosen);
+        buttons(editor, ui, theme::TEXT, &["Duplicate", "Delete"], &mut chosen);
         divider(ui);
-        buttons(editor, ui, &["Frame all", "Frame selected"], &mut chosen);
+        buttons(editor, ui, theme::TEXT, &["Frame all", "Frame selected"], &mut chosen);
     });
     if let Some(command) = chosen {
         command.run(editor, &ui.ctx().clone());
@@ -62,11 +63,14 @@ fn square(ui: &mut Ui, enabled: bool, button: Button<'_>, name: &str) -> Respons
     response
 }
 
-fn buttons(editor: &Editor, ui: &mut Ui, names: &[&str], chosen: &mut Option<CommandId>) {
+fn buttons(editor: &Editor, ui: &mut Ui, color: Color32, names: &[&str], chosen: &mut Option<CommandId>) {
     for name in names {
         let id = CommandId::named(name);
         let command = id.get();
-        let text = command.icon.map_or_else(|| RichText::new(*name), |icon| icon.rich_text().size(17.0));
+        let text = match command.icon {
+            Some(Icon::Material(icon)) => icon.rich_text().size(17.0).color(color),
+            _ => RichText::new(*name),
+        };
         let response = square(ui, id.enabled(editor), Button::new(text), name);
         let tooltip = match *name {
             "Undo" => with_step(command.tooltip(ui.ctx()), editor.bench.document.undo_label()),

@@ -193,12 +193,12 @@ impl Plan {
         let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, max_steps);
         let rounds = max_steps.div_ceil(steps);
         rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, specialised), |rect| {
-            let list = Work { list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
+            let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(specialised, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
                 let last_round = u32::from(round + 1 == rounds);
-                let work = Work { max_steps: steps, round, last_round, ..list };
+                let work = Work { round, last_round, ..list };
                 // Most rays have ended long before the last round.
                 self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.02 }));
             }

@@ -7,14 +7,14 @@ use egui_material_icons::icons::{
 };
 use glam::DQuat;
 
-use super::{Command, Menu};
+use super::{Command, Icon, Menu};
 use crate::editor::{Editor, insertion};
 use crate::scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, ShapeKind};
 
 pub(super) fn commands() -> Vec<Command> {
-    let shapes = ShapeKind::ALL
-        .iter()
-        .map(|&kind| Command::new(Menu::Add, None, kind.label(), kind.help(), move |e, _| insertion::shape(e, kind)));
+    let shapes = ShapeKind::ALL.iter().map(|&kind| {
+        Command::new(Menu::Add, Icon::Shape(kind), kind.label(), kind.help(), move |e, _| insertion::shape(e, kind))
+    });
     let mut all: Vec<_> = shapes.collect();
     all.extend([
         new(ICON_FOLDER, "Empty group", "A group without children; drag nodes into it", |e, _| {
@@ -37,7 +37,7 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
-    Command::new(Menu::Add, icon, name, help, run)
+    Command::new(Menu::Add, Icon::from(icon), name, help, run)
 }
 
 fn add_sun(editor: &mut Editor) {

@@ -8,7 +8,7 @@ use egui_material_icons::icons::{
     ICON_UNDO, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
 };
 
-use super::{Command, Menu};
+use super::{Command, Icon, Menu};
 use crate::document::Edit;
 use crate::editor::{Editor, selection};
 use crate::scene::Operator;
@@ -28,18 +28,18 @@ pub(super) fn commands() -> Vec<Command> {
 }
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
-    Command::new(Menu::Edit, icon, name, help, run).when(any)
+    Command::new(Menu::Edit, Icon::from(icon), name, help, run).when(any)
 }
 
 fn history() -> Vec<Command> {
     let shift_ctrl = CTRL.plus(Modifiers::SHIFT);
     vec![
-        Command::new(Menu::Edit, ICON_UNDO, "Undo", "Takes back the last change", |e, _| {
+        Command::new(Menu::Edit, Icon::from(ICON_UNDO), "Undo", "Takes back the last change", |e, _| {
             e.bench.document.undo();
         })
         .key(CTRL, Key::Z)
         .when(|e| e.bench.document.undo_label().is_some()),
-        Command::new(Menu::Edit, ICON_REDO, "Redo", "Does again what was taken back", |e, _| {
+        Command::new(Menu::Edit, Icon::from(ICON_REDO), "Redo", "Does again what was taken back", |e, _| {
             e.bench.document.redo();
         })
         .key(shift_ctrl, Key::Z)
@@ -105,9 +105,15 @@ fn roles() -> Vec<Command> {
 
 fn showing() -> Vec<Command> {
     vec![
-        Command::new(Menu::Edit, ICON_SELECT_ALL, "Select all", "Selects every node that is not locked", |e, _| {
-            selection::select_all(&mut e.bench);
-        })
+        Command::new(
+            Menu::Edit,
+            Icon::from(ICON_SELECT_ALL),
+            "Select all",
+            "Selects every node that is not locked",
+            |e, _| {
+                selection::select_all(&mut e.bench);
+            },
+        )
         .key(CTRL, Key::A)
         .group(),
         Command::new(
@@ -123,7 +129,7 @@ fn showing() -> Vec<Command> {
         .when(any),
         Command::new(
             Menu::Edit,
-            ICON_VISIBILITY_OFF,
+            Icon::from(ICON_VISIBILITY_OFF),
             "Toggle visible",
             "Hides the selection, or shows it again",
             |e, _| {
@@ -132,13 +138,19 @@ fn showing() -> Vec<Command> {
         )
         .key(Modifiers::NONE, Key::H)
         .when(any),
-        Command::new(Menu::Edit, ICON_VISIBILITY, "Show all", "Shows everything that is hidden", |e, _| {
+        Command::new(Menu::Edit, Icon::from(ICON_VISIBILITY), "Show all", "Shows everything that is hidden", |e, _| {
             selection::show_all(&mut e.bench);
         })
         .key(Modifiers::ALT, Key::H),
-        Command::new(Menu::Edit, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the picture", |e, _| {
-            selection::toggle_locked(&mut e.bench);
-        })
+        Command::new(
+            Menu::Edit,
+            Icon::from(ICON_LOCK),
+            "Toggle lock",
+            "Locked nodes are not picked in the picture",
+            |e, _| {
+                selection::toggle_locked(&mut e.bench);
+            },
+        )
         .key(Modifiers::NONE, Key::L)
         .when(any),
         Command::new(Menu::Edit, None, "Remove unused materials", "Removes materials that nothing wears", |e, _| {

@@ -4,12 +4,12 @@ use egui::{Context, Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_SAVE, ICON_SAVE_AS};
 
-use super::{Command, Menu};
+use super::{Command, Icon, Menu};
 use crate::editor::Editor;
 use crate::editor::dialogs::Intent;
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
-    Command::new(Menu::File, icon, name, help, run)
+    Command::new(Menu::File, Icon::from(icon), name, help, run)
 }
 
 pub(super) fn commands() -> Vec<Command> {

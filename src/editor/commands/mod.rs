@@ -11,7 +11,8 @@ use std::sync::LazyLock;
 use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Response, RichText, Ui};
 use egui_material_icons::MaterialIcon;
 
-use super::{Editor, theme};
+use super::{Editor, glyphs, theme};
+use crate::scene::ShapeKind;
 
 /// Where a command stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,6 +27,21 @@ pub enum Menu {
     View,
 }
 
+/// A picture of a command.
+#[derive(Clone, Copy, Debug)]
+pub enum Icon {
+    /// A sign of the icon font.
+    Material(MaterialIcon),
+    /// The silhouette of a shape.
+    Shape(ShapeKind),
+}
+
+impl From<MaterialIcon> for Icon {
+    fn from(icon: MaterialIcon) -> Self {
+        Self::Material(icon)
+    }
+}
+
 type Run = Box<dyn Fn(&mut Editor, &Context) + Send + Sync>;
 
 /// Something that the artist can order.
@@ -37,7 +53,7 @@ pub struct Command {
     /// Whether a line stands before it in its menu.
     pub starts_group: bool,
     /// Its picture.
-    pub icon: Option<MaterialIcon>,
+    pub icon: Option<Icon>,
     /// One sentence about what it does.
     pub help: String,
     /// Its keys; the first is shown.
@@ -58,7 +74,7 @@ static TABLE: LazyLock<Vec<Command>> = LazyLock::new(|| {
 impl Command {
     fn new(
         menu: Menu,
-        icon: impl Into<Option<MaterialIcon>>,
+        icon: impl Into<Option<Icon>>,
         name: impl Into<String>,
         help: impl Into<String>,
         run: impl Fn(&mut Editor, &Context) + Send + Sync + 'static,
@@ -195,17 +211,44 @@ pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
 
 fn entry(ui: &mut Ui, id: CommandId, enabled: bool) -> Response {
     let command = id.get();
-    let icon = match command.icon {
-        Some(icon) => icon.rich_text().size(theme::ICON_SIZE).color(theme::WEAK),
-        None => RichText::new("      "),
-    };
-    let mut button = Button::new((icon, command.name.as_str())).min_size(egui::vec2(190.0, 0.0));
+    let mut button = Button::new((RichText::new(ICON_ROOM), command.name.as_str())).min_size(egui::vec2(190.0, 0.0));
     if let Some(key) = command.keys.first() {
         button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
     }
-    let response = ui.add_enabled(enabled, button).on_hover_text(&command.help);
+    let response = ui.add_enabled(enabled, button);
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(command.name.clone()));
+    command.paint_icon(ui, response.rect, enabled);
+    if response.hovered() {
+        // Not as a tooltip: it would hide the next entries. The status bar shows it.
+        ui.ctx().data_mut(|d| d.insert_temp(hovered_help(), command.help.clone()));
+    }
     response
+}
+
+/// Room for an icon in front of a name.
+pub const ICON_ROOM: &str = "     ";
+
+/// Where the help of the hovered menu entry waits for the status bar.
+pub fn hovered_help() -> egui::Id {
+    egui::Id::unique("help of the hovered command")
+}
+
+impl Command {
+    /// Paints the icon at the left end of a menu entry.
+    pub fn paint_icon(&self, ui: &Ui, entry: egui::Rect, enabled: bool) {
+        let square = egui::Rect::from_center_size(entry.left_center() + egui::vec2(15.0, 0.0), egui::Vec2::splat(16.0));
+        let square = glyphs::centered(square, 16.0);
+        let dim = if enabled { 1.0 } else { 0.45 };
+        match self.icon {
+            Some(Icon::Material(icon)) => {
+                glyphs::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
+            }
+            Some(Icon::Shape(kind)) => {
+                glyphs::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
+            }
+            None => {}
+        }
+    }
 }
 
 #[cfg(test)]

@@ -6,12 +6,12 @@ use egui_material_icons::icons::{
     ICON_CENTER_FOCUS_STRONG, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA, ICON_SEARCH, ICON_SELECT,
 };
 
-use super::{Command, Menu};
+use super::{Command, Icon, Menu};
 use crate::editor::Editor;
 use crate::editor::navigation::Side;
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
-    Command::new(Menu::View, icon, name, help, run)
+    Command::new(Menu::View, Icon::from(icon), name, help, run)
 }
 
 pub(super) fn commands() -> Vec<Command> {
