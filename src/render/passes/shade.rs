@@ -2,6 +2,7 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 
+use crate::flat::truth::FILE_MATERIAL;
 use crate::flat::{FlatMaterial, FlatScene};
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
@@ -64,15 +65,12 @@ impl ShadePass {
     }
 }
 
-/// Shininess of a mesh that keeps its own materials.
-const OWN_SHININESS: f32 = 32.0;
-
 /// Emission and shininess of each mesh: of the material that stands for its own ones, where there is one.
 pub fn mesh_emissions(flat: &FlatScene) -> Vec<[f32; 4]> {
     let of = |material: &FlatMaterial| {
         let [r, g, b] = material.emission;
         [r, g, b, material.shininess]
     };
-    let own = [0.0, 0.0, 0.0, OWN_SHININESS];
+    let own = [0.0, 0.0, 0.0, FILE_MATERIAL.shininess as f32];
     flat.meshes.iter().map(|m| m.material.map_or(own, |i| of(&flat.materials[i as usize]))).collect()
 }
