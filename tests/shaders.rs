@@ -152,6 +152,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 specular,
                 owner,
                 overridden,
+                mirrored,
                 padding
             }
         ),
