@@ -6,6 +6,7 @@ mod broken_files;
 mod cli;
 mod contract;
 mod documents;
+mod drag;
 mod editor;
 mod files;
 mod golden;

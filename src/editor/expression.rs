@@ -118,7 +118,9 @@ impl Parser<'_> {
     }
 }
 
-const FUNCTIONS: [(&str, fn(f64) -> f64); 4] = [
+type Function = fn(f64) -> f64;
+
+const FUNCTIONS: [(&str, Function); 4] = [
     ("sqrt", f64::sqrt),
     ("sin", |v| v.to_radians().sin()),
     ("cos", |v| v.to_radians().cos()),

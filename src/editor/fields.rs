@@ -103,10 +103,10 @@ fn prefixed_number(
     }
     let changed = response.changed() && (edited != value || mixed);
     let mut answer = Answer { widget: response.id, value: changed.then_some(edited) };
-    if let Some(default) = field.default {
-        if wants_reset(ui, &response, default, field.limits.unit) {
-            answer.value = Some(default);
-        }
+    if let Some(default) = field.default
+        && wants_reset(ui, &response, default, field.limits.unit)
+    {
+        answer.value = Some(default);
     }
     if !field.help.is_empty() && !dragged {
         response.on_hover_text(field.help);

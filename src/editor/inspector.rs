@@ -34,10 +34,10 @@ impl Inspector {
 
     fn show_selection(&mut self, ui: &mut Ui, bench: &mut Workbench, active: Arc<Node>, all: Vec<Arc<Node>>) {
         header(ui, bench, &active, &all);
-        if all.iter().all(|n| n.has_field()) {
-            if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
-                inspector_kinds::role(ui, &mut sheet);
-            }
+        if all.iter().all(|n| n.has_field())
+            && let Some(mut sheet) = Sheet::new(bench, all.clone())
+        {
+            inspector_kinds::role(ui, &mut sheet);
         }
         if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
             self.transform.show(ui, &mut sheet);

@@ -88,8 +88,8 @@ impl Accuracy {
             ("depth error, 99th percentile, in footprints", self.depth_p99, MAX_DEPTH_P99),
             ("normal error, median, in degrees", self.normal_p50, MAX_NORMAL_P50),
         ];
-        // Not `value > limit`: an error that is no number is a fault too.
-        let beyond = checks.into_iter().filter(|(_, value, limit)| !(value <= limit));
+        // An error that is no number is a fault too.
+        let beyond = checks.into_iter().filter(|(_, value, limit)| value.is_nan() || value > limit);
         beyond.map(|(what, value, limit)| format!("{what}: {value}, allowed {limit}")).collect()
     }
 }

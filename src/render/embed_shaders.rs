@@ -1,5 +1,7 @@
 //! Build script: puts every file under `shaders/` into the program, so that it runs from any folder.
 
+#![allow(clippy::print_stdout, reason = "a build script speaks to cargo on standard output")]
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};

@@ -106,10 +106,12 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
             "unwrap" if next == "(" && !tested => {
                 report(word.line, "unwrap outside of tests; say why with expect".into())
             }
-            "fs" | "File" | "OpenOptions" if (in_path || word.text == "fs") && !tested => {
-                if !FILE_OWNERS.iter().any(|owner| path.starts_with(owner)) {
-                    report(word.line, "only files that own files touch the file system".into());
-                }
+            "fs" | "File" | "OpenOptions"
+                if (in_path || word.text == "fs")
+                    && !tested
+                    && !FILE_OWNERS.iter().any(|owner| path.starts_with(owner)) =>
+            {
+                report(word.line, "only files that own files touch the file system".into());
             }
             _ if NAMING.contains(&word.text) && is_vague(next) => {
                 report(word.line, format!("`{next}` is a name that says nothing"));
