@@ -58,7 +58,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
         let f = field(component.eye + axis * t);
         steps += 1u;
         let clear = f - spread * t;
-        if clear < CONE_CLEARANCE * view.footprint * t || steps >= CONE_STEPS {
+        if clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, work.max_steps) {
             break;
         }
         t += clear / (1.0 + spread);

@@ -18,7 +18,9 @@ struct Instance {
     owner: u32,
     // 1: `albedo` stands for the mesh's own colours.
     overridden: u32,
-    padding: vec2u,
+    // 1: the placement turns left into right, and so the order of a triangle's corners.
+    mirrored: u32,
+    padding: u32,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
@@ -69,7 +71,7 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
 }
 
 @fragment
-fn mesh_fragment(in: Varying) -> Written {
+fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     let texel = textureSample(base_color, base_sampler, in.uv).rgb;
     let t = length(in.position);
     if t < view.near || t > view.far {
@@ -77,8 +79,9 @@ fn mesh_fragment(in: Varying) -> Written {
     }
     let length_of_normal = length(in.normal);
     var normal = select(-in.position / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
-    // Both sides are shown, each facing the eye.
-    normal = select(normal, -normal, dot(normal, in.position) > 0.0);
+    // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
+    // point away though the triangle faces the eye.
+    normal = select(normal, -normal, front == (instance.mirrored == 1u));
     let albedo = select(in.color * texel, instance.albedo, instance.overridden == 1u);
     return Written(t, instance.owner, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
 }

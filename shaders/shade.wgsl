@@ -6,6 +6,8 @@
 #include "common/light.wgsl"
 
 @group(1) @binding(0) var<storage, read> lights: array<Light>;
+// Emission and shininess of each mesh.
+@group(1) @binding(1) var<storage, read> mesh_emissions: array<vec4f>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 @group(2) @binding(2) var diffuse_target: texture_2d<f32>;
@@ -13,9 +15,6 @@
 @group(2) @binding(4) var color_target: texture_storage_2d<rgba8unorm, write>;
 @group(2) @binding(5) var owner_target: texture_2d<u32>;
 @group(2) @binding(6) var leaf_target: texture_storage_2d<r32uint, write>;
-
-// Meshes do not emit, and have this highlight.
-const MESH_EMISSION: vec4f = vec4f(0.0, 0.0, 0.0, 32.0);
 
 #include "light/shade.wgsl"
 
@@ -35,7 +34,10 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {
     var color = shade_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let diffuse = textureLoad(diffuse_target, pixel, 0);
-        let emission = select(MESH_EMISSION, textureLoad(emission_target, pixel, 0), is_field);
+        var emission = textureLoad(emission_target, pixel, 0);
+        if !is_field {
+            emission = mesh_emissions[owner & ~MESH_BIT];
+        }
         color = shade_surface(
             diffuse.rgb,
             diffuse.a,

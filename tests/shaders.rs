@@ -4,7 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
-use isolith::render::kernel::{Evaluator, FILES, Features, Options, Structure, source};
+use isolith::render::kernel::{Evaluator, FILES, Features, Options, Skipping, Structure, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
 use isolith::render::{Instance, Overlay};
 use isolith::scene::ShapeKind;

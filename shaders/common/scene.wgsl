@@ -30,6 +30,7 @@ struct Component {
 }
 
 const GROUP: u32 = 0xffffu;
+const RUN: u32 = 0xfffeu;
 const LEAF_ROWS: u32 = 4u;
 
 @group(1) @binding(0) var<storage, read> nodes: array<FlatNode>;

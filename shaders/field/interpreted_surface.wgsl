@@ -30,11 +30,14 @@ fn surface(p: vec3f) -> Surface {
     while at < surface_end {
         let node = nodes[at];
         let joint = numbers[node.numbers];
-        if (node.code & 0xffffu) == GROUP {
+        let kind = node.code & 0xffffu;
+        if kind >= RUN {
             if !field_group_is_out_of_reach(node, joint, so_far.distance, p) {
-                surface_stack[depth] = so_far;
-                surface_group[depth] = at;
-                depth += 1u;
+                if kind == GROUP {
+                    surface_stack[depth] = so_far;
+                    surface_group[depth] = at;
+                    depth += 1u;
+                }
                 at += 1u;
                 continue;
             }

@@ -30,11 +30,14 @@ fn field(p: vec3f) -> f32 {
     while at < value_end {
         let node = nodes[at];
         let joint = numbers[node.numbers];
-        if (node.code & 0xffffu) == GROUP {
+        let kind = node.code & 0xffffu;
+        if kind >= RUN {
             if !field_group_is_out_of_reach(node, joint, so_far, p) {
-                value_stack[depth] = so_far;
-                value_group[depth] = at;
-                depth += 1u;
+                if kind == GROUP {
+                    value_stack[depth] = so_far;
+                    value_group[depth] = at;
+                    depth += 1u;
+                }
                 at += 1u;
                 continue;
             }

@@ -16,7 +16,7 @@ fn leaf_distance(node: FlatNode, joint: vec4f, p: vec3f) -> f32 {
     return shape_distance(node.code & 0xffffu, local, a, b) * joint.y;
 }
 
-// Whether the group at `node` cannot change the value `so_far`: its field is at least slope times the
+// Whether the group or run at `node` cannot change the value `so_far`: its field is at least slope times the
 // distance to its bounds, so beyond that the joint is exactly its first operand.
 fn field_group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec3f) -> bool {
     let center = numbers[node.numbers + 1u].xyz;

@@ -15,7 +15,9 @@ fn placed_moved(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
     return p + vec3f(x.w, y.w, z.w);
 }
 
-// The least that the field of a group can be: see `Row` on the CPU.
+// The least that the field of a group, or of each operand of a run, can be: see `Row` on the CPU.
+// Nothing is known of it within the bounds.
 fn placed_bounds(p: vec3f, joint: vec4f, center: vec4f, half: vec4f) -> f32 {
-    return joint.y * length(max(abs(p - center.xyz) - half.xyz, vec3f(0.0)));
+    let least = joint.y * length(max(abs(p - center.xyz) - half.xyz, vec3f(0.0)));
+    return select(-3e38, least, least > 0.0);
 }

@@ -7,14 +7,17 @@ use glam::{DAffine3, DVec3};
 use crate::geometry::{Aabb, Camera};
 use crate::scene::{Environment, Light, MaterialId, NodeId};
 
-/// Entry of the subtree-extent array: a group, or a leaf (one shape).
+/// Entry of the subtree-extent array: a group, a leaf (one shape), or a run.
+///
+/// A run stands before operands of the same group that follow each other and join in the same way. It
+/// has no value; it says where none of them can matter, so that all are skipped at once.
 ///
 /// Pre-order: a group is followed by its operands, and `index + extent` is the next sibling. The entry
 /// also says how its value joins what precedes it in its group, so that an evaluator needs no look back.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct FlatNode {
-    /// Bits 0–15: shape code, or [`FlatNode::GROUP`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
+    /// Bits 0–15: shape code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
     pub code: u32,
     /// Entries of this node and everything below it; 1 for a leaf.
     pub extent: u32,
@@ -27,10 +30,22 @@ pub struct FlatNode {
 impl FlatNode {
     /// The shape code that marks a group.
     pub const GROUP: u32 = 0xffff;
+    /// The shape code that marks a run.
+    pub const RUN: u32 = 0xfffe;
 
     /// Whether it is a group.
     pub fn is_group(&self) -> bool {
         self.code & 0xffff == Self::GROUP
+    }
+
+    /// Whether it is a run.
+    pub fn is_run(&self) -> bool {
+        self.code & 0xffff == Self::RUN
+    }
+
+    /// Whether it is a leaf.
+    pub fn is_leaf(&self) -> bool {
+        !self.is_group() && !self.is_run()
     }
 
     /// How it joins what precedes it.
@@ -65,14 +80,15 @@ pub enum Join {
 ///
 /// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies.
+/// slope 0 and finite dummies. A run has the same rows: the largest support of its operands, and bounds
+/// and slope that hold for the field of each of them.
 pub type Row = [f32; 4];
 
 /// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
 pub const ROW_ALIGNMENT: usize = 16;
 /// Rows of a leaf before its parameters.
 pub const LEAF_ROWS: usize = 4;
-/// Rows of a group.
+/// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
 
 /// A material as the GPU reads it.

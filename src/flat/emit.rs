@@ -18,10 +18,7 @@ pub(super) fn emit(
     let first = flat.nodes.len();
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
-    let mut stack = 0;
-    for operand in operands {
-        stack = stack.max(emit_operand(flat, operand, origin, material));
-    }
+    let stack = emit_fold(flat, operands, origin, material);
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
@@ -62,6 +59,74 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
 }
 
+/// Operands that follow each other and join alike get a run where there are this many.
+const LEAST_IN_ROW: usize = 10;
+/// A run holds at most about this many operands or runs.
+const RUN_LENGTH: usize = 6;
+
+/// Writes a fold, with runs before long rows of operands that join alike and have bounds. Returns how
+/// many accumulators have to be put aside within it.
+fn emit_fold(
+    flat: &mut FlatScene,
+    operands: &[Operand<'_>],
+    origin: DVec3,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+) -> u32 {
+    let alike = |a: &Operand<'_>, b: &Operand<'_>| {
+        let skippable = |o: &Operand<'_>| o.slope > 0.0 && matches!(o.join, Join::Union | Join::Difference);
+        a.join == b.join && skippable(a) && skippable(b)
+    };
+    let mut stack = 0;
+    for row in operands.chunk_by(alike) {
+        stack = stack.max(if row.len() >= LEAST_IN_ROW {
+            emit_runs(flat, row, origin, material)
+        } else {
+            row.iter().map(|operand| emit_operand(flat, operand, origin, material)).max().unwrap_or(0)
+        });
+    }
+    stack
+}
+
+/// Writes operands that join alike as runs, of runs where there are many.
+fn emit_runs(
+    flat: &mut FlatScene,
+    row: &[Operand<'_>],
+    origin: DVec3,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+) -> u32 {
+    let mut stack = 0;
+    for run in row.chunks(row.len().div_ceil(RUN_LENGTH).max(RUN_LENGTH)) {
+        let index = flat.nodes.len();
+        let numbers = flat.numbers.len() as u32;
+        let code = FlatNode::RUN | ((run[0].join as u32) << 16);
+        flat.ids.push(run[0].node.id);
+        flat.nodes.push(FlatNode { code, extent: 0, numbers, material: 0 });
+        let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.skip)).translated(-origin);
+        let slope = run.iter().map(|o| o.slope).fold(f64::INFINITY, f64::min);
+        let support = run.iter().map(|o| o.blend.support()).fold(0.0, f64::max);
+        flat.numbers.extend(bounding_rows(support as f32, slope, &bounds));
+        stack = stack.max(if run.len() > RUN_LENGTH {
+            emit_runs(flat, run, origin, material)
+        } else {
+            run.iter().map(|operand| emit_operand(flat, operand, origin, material)).max().unwrap_or(0)
+        });
+        flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
+    }
+    stack
+}
+
+/// The rows of a group or run. Rounding to f32 must never make the bounds smaller or the slope greater.
+fn bounding_rows(support: f32, slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
+    if slope <= 0.0 {
+        return [[support, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+    }
+    let (center, half) = (bounds.center(), bounds.half());
+    let half = (half + (half + center.abs()) * 1e-6).as_vec3();
+    let center = center.as_vec3();
+    let slope = (slope * (1.0 - 1e-6)) as f32;
+    [[support, slope, 0.0, 0.0], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
+}
+
 /// Returns how many accumulators have to be put aside within the operand.
 fn emit_operand(
     flat: &mut FlatScene,
@@ -93,19 +158,8 @@ fn emit_operand(
         }
         Value::Fold(inner) => {
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
-            let skippable = operand.slope > 0.0;
-            let skip = operand.skip.translated(-origin);
-            let (center, half) = if skippable { (skip.center(), skip.half()) } else { (DVec3::ZERO, DVec3::ZERO) };
-            // Rounding to f32 must never make the box smaller.
-            let half = half + (half + center.abs()) * 1e-6;
-            let slope = if skippable { (operand.slope * (1.0 - 1e-6)) as f32 } else { 0.0 };
-            flat.numbers.push([support, slope, 0.0, 0.0]);
-            flat.numbers.push([center.x as f32, center.y as f32, center.z as f32, 0.0]);
-            flat.numbers.push([half.x as f32, half.y as f32, half.z as f32, 0.0]);
-            let mut stack = 0;
-            for operand in inner {
-                stack = stack.max(emit_operand(flat, operand, origin, material));
-            }
+            flat.numbers.extend(bounding_rows(support, operand.slope, &operand.skip.translated(-origin)));
+            let stack = emit_fold(flat, inner, origin, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }

@@ -243,6 +243,7 @@ mod tests {
             let c = DVec3::splat(f64::from(i) / 100.0);
             assert!((shade_decode(shade_encode(c)) - c).length() < 1e-4);
         }
-        assert_eq!(shade_encode(DVec3::new(-1.0, 2.0, 0.0)), DVec3::new(0.0, 1.0, 0.0));
+        let clamped = shade_encode(DVec3::new(-1.0, 2.0, 0.0));
+        assert!((clamped - DVec3::Y).length() < 1e-12, "{clamped}");
     }
 }

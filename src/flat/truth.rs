@@ -105,8 +105,10 @@ impl View<'_> {
         let placed = &self.flat.meshes[index];
         let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
         let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
-        // Both sides are shown, each facing the eye.
-        let normal = if normal.dot(direction) > 0.0 { -normal } else { normal };
+        // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal
+        // may point away though the triangle faces the eye.
+        let face = self.meshes[index].as_ref().map_or(hit.normal, |mesh| mesh.face_normal(hit.triangle));
+        let normal = if (normal_from_local * face).dot(direction) > 0.0 { -normal } else { normal };
         let material = match (placed.material, &self.meshes[index]) {
             (Some(material), _) => (&self.flat.materials[material as usize]).into(),
             (None, Some(mesh)) => SurfaceMaterial { albedo: albedo(mesh, hit), ..FILE_MATERIAL },
@@ -118,7 +120,7 @@ impl View<'_> {
 
 /// What a mesh wears that keeps its file's colours.
 pub const FILE_MATERIAL: SurfaceMaterial =
-    SurfaceMaterial { albedo: DVec3::ONE, specular: 0.0, emission: DVec3::ZERO, shininess: 32.0 };
+    SurfaceMaterial { albedo: DVec3::ONE, specular: 0.2, emission: DVec3::ZERO, shininess: 32.0 };
 
 /// The mesh's own colour: that of the vertices times the texture.
 fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {

@@ -97,6 +97,13 @@ impl TriangleMesh {
         self.bvh.get_or_init(|| Bvh::build(self.triangle_count(), |triangle| self.corners(triangle)))
     }
 
+    /// The normal of the triangle itself, outwards; not of unit length, zero where the triangle has no area.
+    pub fn face_normal(&self, triangle: u32) -> DVec3 {
+        let corners = [0, 1, 2].map(|i| self.indices[triangle as usize * 3 + i] as usize);
+        let [a, b, c] = corners.map(|v| DVec3::from(self.positions[v].map(f64::from)));
+        (b - a).cross(c - a)
+    }
+
     fn normal_at(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
         let corners = self.vertices(triangle);
         let mixed: DVec3 = (0..3).map(|i| point(self.normals[corners[i]]) * weights[i]).sum();

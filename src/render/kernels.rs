@@ -3,7 +3,9 @@
 
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 
 use super::gpu::Gpu;
 use super::kernel::{Evaluator, Features, Options, ShaderError, Structure};
@@ -75,9 +77,11 @@ type Finished = (u128, Result<Kernel, String>);
 
 #[derive(Debug)]
 struct Worker {
-    orders: Sender<(u128, Structure)>,
+    orders: Option<Sender<(u128, Structure)>>,
     finished: Receiver<Finished>,
     waiting: usize,
+    is_unwanted: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Kernels {
@@ -207,7 +211,9 @@ impl Kernels {
         let worker = self.worker.get_or_insert_with(|| Worker::start(shared));
         worker.waiting += 1;
         // A worker that is gone leaves everything to the interpreter.
-        let _ = worker.orders.send((key, structure));
+        if let Some(orders) = &worker.orders {
+            let _ = orders.send((key, structure));
+        }
         None
     }
 
@@ -253,11 +259,16 @@ impl Worker {
     fn start(shared: Arc<Shared>) -> Self {
         let (orders, ordered) = channel::<(u128, Structure)>();
         let (finish, finished) = channel();
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let should_end = is_unwanted.clone();
         let work = move || {
             // A driver that computes on the processor compiles at the first dispatch, in the queue's own
             // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
             let warmer = if shared.gpu.is_software() { Warmer::new(shared.options).ok() } else { None };
             for (key, structure) in ordered {
+                if should_end.load(Ordering::Relaxed) {
+                    return;
+                }
                 if let Some(warmer) = &warmer {
                     warmer.warm(&structure);
                 }
@@ -267,8 +278,20 @@ impl Worker {
             }
         };
         // Without a thread the orders stay where they are, and the interpreter goes on.
-        let _ = std::thread::Builder::new().name("kernels".into()).spawn(work);
-        Self { orders, finished, waiting: 0 }
+        let thread = std::thread::Builder::new().name("kernels".into()).spawn(work).ok();
+        Self { orders: Some(orders), finished, waiting: 0, is_unwanted, thread }
+    }
+}
+
+/// Waits for the kernel that is being built: a driver that is compiling while the program ends crashes.
+impl Drop for Worker {
+    fn drop(&mut self) {
+        self.is_unwanted.store(true, Ordering::Relaxed);
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // A worker that has panicked has nothing left to do either.
+            let _ = thread.join();
+        }
     }
 }
 

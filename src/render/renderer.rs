@@ -8,14 +8,14 @@ use wgpu::BindGroup;
 
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
-use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError};
+use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Choice, Kernels, Method};
 use super::layouts::{Layouts, bind, window};
 use super::passes::farthest::FarthestPass;
 use super::passes::field::{FieldGroups, Lists};
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
-use super::passes::shade::ShadePass;
+use super::passes::shade::{ShadePass, mesh_emissions};
 use super::readback::{read_buffers, read_words};
 use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, plan};
 use super::targets::Targets;
@@ -102,6 +102,7 @@ pub struct Renderer {
     materials: Mirror,
     view: Mirror,
     lights: Mirror,
+    mesh_emissions: Mirror,
     work: Mirror,
     tiles: Mirror,
     tile_counts: Mirror,
@@ -135,7 +136,8 @@ impl Renderer {
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let options = Options { counting: false, skipping: !gpu.is_software() };
+        let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
+        let options = Options { counting: false, skipping };
         let storage = |label| Mirror::storage(device, label);
         let renderer = Self {
             kernels: Kernels::new(gpu, &layouts, options)?,
@@ -150,6 +152,7 @@ impl Renderer {
             materials: storage("materials"),
             view: Mirror::uniform(device, "view"),
             lights: storage("lights"),
+            mesh_emissions: storage("mesh emissions"),
             work: Mirror::uniform(device, "work"),
             tiles: storage("tiles"),
             tile_counts: Mirror::indirect(device, "tile counts"),
@@ -341,6 +344,7 @@ impl Renderer {
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
+            self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
             self.work.set(device, queue, &work),
             self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&vec![[0_u32, 1, 1, 0]; plan.lists as usize])),
@@ -364,7 +368,7 @@ impl Renderer {
             view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
             scene: bind(device, "scene", &self.layouts.scene, &scene),
             work: bind(device, "work", &self.layouts.work, &[work]),
-            lights: self.shade.bind_lights(device, self.lights.binding()),
+            lights: self.shade.bind_lights(device, [self.lights.binding(), self.mesh_emissions.binding()]),
             field: self.kernels.field().bind(device, targets, lists),
             farthest: self.farthest.bind(device, targets),
             shade: self.shade.bind(device, targets),

@@ -188,17 +188,18 @@ impl Plan {
         let component = &flat.components[index];
         let leaves = f64::from(component.count);
         let max_steps = if component.bounds.is_finite() { MAX_STEPS } else { MAX_STEPS_UNBOUNDED };
-        // The interpreter takes an iteration for each entry and one for each group that ends.
-        let per_evaluation = if specialised { 1 } else { 2 * component.count + 2 };
+        // The interpreter takes an iteration for each entry and one for each group that ends; a specialised
+        // kernel at most one for each group or run of at least four entries.
+        let per_evaluation = if specialised { 1 + component.count / 2 } else { 2 * component.count + 2 };
         let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, max_steps);
         let rounds = max_steps.div_ceil(steps);
         rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, specialised), |rect| {
-            let list = Work { list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
+            let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(specialised, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
                 let last_round = u32::from(round + 1 == rounds);
-                let work = Work { max_steps: steps, round, last_round, ..list };
+                let work = Work { round, last_round, ..list };
                 // Most rays have ended long before the last round.
                 self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.02 }));
             }

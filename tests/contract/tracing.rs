@@ -210,20 +210,3 @@ fn meshes_stand_among_fields() {
     }
     assert!(seen.iter().all(|n| *n > 100), "{seen:?}");
 }
-
-#[test]
-fn zz_speed() {
-    for (name, scene) in isolith::gallery::all() {
-        let flat = flatten(&scene, 0.0).unwrap();
-        let camera = flat.default_camera(&[], 1.0);
-        let now = std::time::Instant::now();
-        let t = truth(&flat, &[], &camera, [256, 256], &|_| {});
-        println!(
-            "{name}: {:?} ok {} components {} nodes {}",
-            now.elapsed(),
-            t.is_ok(),
-            flat.components.len(),
-            flat.nodes.len()
-        );
-    }
-}

@@ -207,7 +207,7 @@ fn the_shares_of_the_materials_sum_to_one() {
             assert!((shares.element_sum() - 1.0).abs() < 1e-12 && shares.min_element() >= 0.0, "{shares}");
             mixed += usize::from(shares.max_element() < 0.99);
             let leaf = flat.nodes[point.leaf as usize];
-            assert!(!leaf.is_group() && (component.first..component.first + component.count).contains(&point.leaf));
+            assert!(leaf.is_leaf() && (component.first..component.first + component.count).contains(&point.leaf));
         }
     });
     assert!(mixed > 100, "{mixed}");

@@ -56,7 +56,7 @@ fn replace_number(out: &mut Vec<u8>, text: std::ops::Range<usize>, random: &mut 
 fn check_sound(mesh: &TriangleMesh) {
     let vertices = mesh.positions.len();
     assert!(vertices == mesh.normals.len() && vertices == mesh.colors.len() && vertices == mesh.uvs.len());
-    assert!(!mesh.indices.is_empty() && mesh.indices.len() % 3 == 0);
+    assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
     assert!(mesh.indices.iter().all(|i| (*i as usize) < vertices));
     assert!(mesh.positions.iter().chain(&mesh.normals).chain(&mesh.colors).flatten().all(|c| c.is_finite()));
     assert!(mesh.uvs.iter().flatten().all(|c| c.is_finite()));

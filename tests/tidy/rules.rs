@@ -12,7 +12,7 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("flat", &["scene", "mesh", "geometry"]),
     ("render", &["flat", "scene", "mesh", "geometry"]),
     ("editor", &["document", "scene", "flat", "mesh", "geometry"]),
-    ("app", &["editor", "render", "document", "scene", "flat", "mesh", "geometry"]),
+    ("app", &["editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
     ("cli", &["app", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
 ];
 

@@ -19,11 +19,22 @@ pub enum Evaluator {
     Specialised(Structure),
 }
 
+/// How straight-line code leaves out a group or a run that is out of reach.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Skipping {
+    /// By `if`: free where a branch that no lane takes is not executed.
+    #[default]
+    Branches,
+    /// By a loop of at most one round: lavapipe executes the body of every `if`, but ends a loop that no
+    /// lane is in.
+    Loops,
+}
+
 /// What the kernels do beside drawing, and what they may assume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Options {
     /// Count steps and evaluations.
     pub counting: bool,
-    /// Branches around groups that are out of reach; pays where a branch not taken costs nothing.
-    pub skipping: bool,
+    /// How specialised kernels leave out what is out of reach.
+    pub skipping: Skipping,
 }

@@ -28,7 +28,7 @@ impl Features {
     pub fn of(flat: &FlatScene) -> Self {
         let mut used = vec![false; ShapeKind::ALL.len()];
         for node in &flat.nodes {
-            if !node.is_group() {
+            if node.is_leaf() {
                 used[(node.code & 0xffff) as usize] = true;
             }
         }

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use super::Options;
-use super::structure::{Entry, Structure};
+use super::structure::{Entry, EntryKind, Structure};
+use super::{Options, Skipping};
 use crate::flat::{Join, LEAF_ROWS};
+use crate::scene::ShapeKind;
 
 /// Which of the two folds is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -43,7 +44,8 @@ impl Writer<'_> {
         let rows = self.structure.rows();
         self.line(&format!("const ROW_COUNT: u32 = {rows}u;"));
         self.line("#include \"field/placed.wgsl\"");
-        let mut shapes: Vec<_> = self.structure.entries.iter().filter_map(|e| e.shape).collect();
+        let shape = |e: &Entry| if let EntryKind::Leaf(shape) = e.kind { Some(shape) } else { None };
+        let mut shapes: Vec<_> = self.structure.entries.iter().filter_map(shape).collect();
         shapes.sort_unstable();
         shapes.dedup();
         for shape in shapes {
@@ -76,45 +78,41 @@ impl Writer<'_> {
             ),
         }
         let mut row = 0;
-        // Groups under way: where each ends, its entry, its first row.
-        let mut open: Vec<(usize, Entry, usize)> = Vec::new();
+        // Groups and runs under way: where each ends, its entry, its first row, whether it may be skipped.
+        let mut open: Vec<(usize, Entry, usize, bool)> = Vec::new();
+        let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
-            let level = open.len();
-            if entry.shape.is_some() {
-                let value = self.leaf(at, entry, row);
+            if let EntryKind::Leaf(shape) = entry.kind {
+                let value = self.leaf(at, entry, shape, row);
                 self.join(level, entry, row, &value);
             } else {
-                let skipped = self.options.skipping
-                    && entry.bounded
-                    && entry.extent >= LEAST_SKIPPED
-                    && entry.join != Join::Intersection;
-                if skipped {
-                    self.open_branch(level, entry, row);
-                } else {
-                    // A block of its own, because the group after this one needs the same name.
-                    self.line("    {");
+                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
+                self.open_block(level, at, entry, row, skipped);
+                if entry.kind == EntryKind::Group {
+                    level += 1;
+                    let kind = if self.fold == Fold::Value { "f32" } else { "Surface" };
+                    self.line(&format!("    var s{level}: {kind};"));
                 }
-                let kind = if self.fold == Fold::Value { "f32" } else { "Surface" };
-                self.line(&format!("    var s{}: {kind};", level + 1));
-                open.push((at + entry.extent as usize, *entry, row));
+                open.push((at, *entry, row, skipped));
             }
             row += entry.rows();
-            while let Some((end, group, first)) = open.last().copied() {
-                if end != at + 1 {
+            while let Some((begin, group, first, skipped)) = open.last().copied() {
+                if begin + group.extent as usize != at + 1 {
                     break;
                 }
                 open.pop();
-                let level = open.len();
-                self.join(level, &group, first, &format!("s{}", level + 1));
-                self.line("    }");
+                if group.kind == EntryKind::Group {
+                    level -= 1;
+                    self.join(level, &group, first, &format!("s{}", level + 1));
+                }
+                self.close_block(level, begin, skipped);
             }
         }
         self.line("    return s0;\n}");
     }
 
     /// The value of a leaf whose rows begin at `row`.
-    fn leaf(&self, at: usize, entry: &Entry, row: usize) -> String {
-        let shape = entry.shape.expect("the caller has a leaf");
+    fn leaf(&self, at: usize, entry: &Entry, shape: ShapeKind, row: usize) -> String {
         let placed = if entry.moved { "placed_moved" } else { "placed" };
         let parameter = |i: usize| {
             if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
@@ -165,13 +163,35 @@ impl Writer<'_> {
         }
     }
 
-    /// `if` the group can change what stands so far.
-    fn open_branch(&mut self, level: usize, entry: &Entry, row: usize) {
-        let so_far = if self.fold == Fold::Value { format!("s{level}") } else { format!("s{level}.distance") };
+    /// A block that is entered only if what follows can change what stands so far. Every group has one
+    /// of its own in any case: the group after it needs the same name for its accumulator.
+    fn open_block(&mut self, level: usize, at: usize, entry: &Entry, row: usize, skipped: bool) {
+        if !skipped {
+            self.line("    {");
+            return;
+        }
+        let so_far = self.so_far(level);
         let bound = match entry.join {
             Join::Union => format!("{so_far} + q{row}.x"),
             _ => format!("q{row}.x - {so_far}"),
         };
-        self.line(&format!("    if placed_bounds(p, q{row}, q{}, q{}) < {bound} {{", row + 1, row + 2));
+        let reached = format!("placed_bounds(p, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
+        match self.options.skipping {
+            Skipping::Branches => self.line(&format!("    if {reached} {{")),
+            Skipping::Loops => self.line(&format!("    var once{at} = {reached};\n    while once{at} {{")),
+        }
+    }
+
+    fn close_block(&mut self, level: usize, at: usize, skipped: bool) {
+        if skipped && self.options.skipping == Skipping::Loops {
+            // Never true, but no compiler knows that: it would make the loop an `if` again.
+            let again = format!("    once{at} = {} < -1e37;", self.so_far(level));
+            self.line(&again);
+        }
+        self.line("    }");
+    }
+
+    fn so_far(&self, level: usize) -> String {
+        if self.fold == Fold::Value { format!("s{level}") } else { format!("s{level}.distance") }
     }
 }

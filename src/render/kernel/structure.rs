@@ -6,11 +6,26 @@ use crate::scene::ShapeKind;
 /// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
 pub const MAX_KERNEL_ROWS: u32 = 768;
 
+/// Most entries of a component that gets a kernel of its own: compiling grows faster than linearly, and
+/// beyond this the interpreter has made many pictures by the time the kernel is ready.
+pub const MAX_KERNEL_ENTRIES: u32 = 64;
+
+/// What an entry of the subtree-extent array is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum EntryKind {
+    /// A shape.
+    Leaf(ShapeKind),
+    /// Operands with an accumulator of their own.
+    Group,
+    /// Operands that may be skipped together.
+    Run,
+}
+
 /// One entry of the subtree-extent array, without its numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Entry {
-    /// The shape; `None` for a group.
-    pub shape: Option<ShapeKind>,
+    /// What it is.
+    pub kind: EntryKind,
     /// Entries of this one and all below.
     pub extent: u32,
     /// How it joins what precedes it.
@@ -21,14 +36,17 @@ pub struct Entry {
     pub moved: bool,
     /// Its field is the shape's, without a factor; leaves only.
     pub unscaled: bool,
-    /// Whether it may be skipped by its bounds; groups only.
+    /// Whether it may be skipped by its bounds; groups and runs only.
     pub bounded: bool,
 }
 
 impl Entry {
     /// Rows of numbers that it takes.
     pub fn rows(&self) -> usize {
-        self.shape.map_or(GROUP_ROWS, |shape| LEAF_ROWS + shape.rows())
+        match self.kind {
+            EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
+            EntryKind::Group | EntryKind::Run => GROUP_ROWS,
+        }
     }
 }
 
@@ -42,7 +60,7 @@ pub struct Structure {
 impl Structure {
     /// The structure of a component, or `None` where it is too large for a kernel.
     pub fn of(flat: &FlatScene, component: &Component) -> Option<Self> {
-        if component.rows > MAX_KERNEL_ROWS {
+        if !fits(component) {
             return None;
         }
         let range = component.first as usize..(component.first + component.count) as usize;
@@ -52,7 +70,7 @@ impl Structure {
     /// A key that equal structures share and different ones practically never (128 bits of FNV-1a), made
     /// without building the structure. `None` where it is too large for a kernel.
     pub fn key(flat: &FlatScene, component: &Component) -> Option<u128> {
-        if component.rows > MAX_KERNEL_ROWS {
+        if !fits(component) {
             return None;
         }
         let range = component.first as usize..(component.first + component.count) as usize;
@@ -61,8 +79,11 @@ impl Structure {
             let e = entry(flat, node);
             let kernel = e.kernel.map_or(0xff, u64::from);
             let flags = u64::from(e.moved) | (u64::from(e.unscaled) << 1) | (u64::from(e.bounded) << 2);
-            let shape = e.shape.map_or(0xffff, |s| s as u64);
-            let word = shape | ((e.join as u64) << 16) | (kernel << 20) | (flags << 28) | (u64::from(e.extent) << 32);
+            let word = u64::from(node.code & 0xffff)
+                | ((e.join as u64) << 16)
+                | (kernel << 20)
+                | (flags << 28)
+                | (u64::from(e.extent) << 32);
             hash = (hash ^ u128::from(word)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
         }
         Some(hash)
@@ -72,6 +93,10 @@ impl Structure {
     pub fn rows(&self) -> usize {
         self.entries.iter().map(Entry::rows).sum()
     }
+}
+
+fn fits(component: &Component) -> bool {
+    component.rows <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
 }
 
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
@@ -84,9 +109,13 @@ fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
         unit[i] = 1.0;
         rows[1 + i][..3] == unit
     };
-    let leaf = !node.is_group();
+    let leaf = node.is_leaf();
     Entry {
-        shape: leaf.then(|| ShapeKind::ALL[(node.code & 0xffff) as usize]),
+        kind: match node.code & 0xffff {
+            FlatNode::GROUP => EntryKind::Group,
+            FlatNode::RUN => EntryKind::Run,
+            shape => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
+        },
         extent: node.extent,
         join,
         kernel: blended.then_some(node.kernel() as u8),

@@ -8,6 +8,7 @@ use glam::{DAffine3, DVec3};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
+use crate::flat::truth::FILE_MATERIAL;
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::mesh::{Texture, TriangleMesh};
 use crate::render::buffers::Mirror;
@@ -54,12 +55,12 @@ pub struct Instance {
     pub owner: u32,
     /// 1: `albedo` stands for the mesh's own colours.
     pub overridden: u32,
+    /// 1: the placement turns left into right, and so the order of a triangle's corners.
+    pub mirrored: u32,
     /// Unused.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }
 
-/// Highlight of a mesh that keeps its own colours.
-const OWN_SPECULAR: f32 = 0.2;
 /// Dynamic offsets are multiples of this.
 const STRIDE: usize = 256;
 
@@ -257,10 +258,11 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
         normal_y: normal_row(1),
         normal_z: normal_row(2),
         albedo: material.map_or([1.0; 3], |m| m.albedo),
-        specular: material.map_or(OWN_SPECULAR, |m| m.specular),
+        specular: material.map_or(FILE_MATERIAL.specular as f32, |m| m.specular),
         owner: MESH_BIT | index as u32,
         overridden: u32::from(material.is_some()),
-        padding: [0; 2],
+        mirrored: u32::from(m.matrix3.determinant() < 0.0),
+        padding: 0,
     }
 }
 

@@ -2,6 +2,8 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 
+use crate::flat::truth::FILE_MATERIAL;
+use crate::flat::{FlatMaterial, FlatScene};
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
 use crate::render::targets::Targets;
@@ -18,7 +20,7 @@ impl ShadePass {
     /// Builds the kernel.
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
         let stage = ShaderStages::COMPUTE;
-        let lights = layout(device, "lights", &[entry(0, stage, read_storage())]);
+        let lights = layout(device, "lights", &[entry(0, stage, read_storage()), entry(1, stage, read_storage())]);
         let targets = layout(
             device,
             "shade targets",
@@ -52,13 +54,23 @@ impl ShadePass {
         bind(device, "shade targets", &self.targets, &resources)
     }
 
-    /// The bind group of the lights.
-    pub fn bind_lights(&self, device: &wgpu::Device, lights: wgpu::BindingResource<'_>) -> BindGroup {
-        bind(device, "lights", &self.lights, &[lights])
+    /// The bind group of the lights and of what [`mesh_emissions`] gives.
+    pub fn bind_lights(&self, device: &wgpu::Device, resources: [wgpu::BindingResource<'_>; 2]) -> BindGroup {
+        bind(device, "lights", &self.lights, &resources)
     }
 
     /// The kernel.
     pub fn pipeline(&self) -> &ComputePipeline {
         &self.pipeline
     }
+}
+
+/// Emission and shininess of each mesh: of the material that stands for its own ones, where there is one.
+pub fn mesh_emissions(flat: &FlatScene) -> Vec<[f32; 4]> {
+    let of = |material: &FlatMaterial| {
+        let [r, g, b] = material.emission;
+        [r, g, b, material.shininess]
+    };
+    let own = [0.0, 0.0, 0.0, FILE_MATERIAL.shininess as f32];
+    flat.meshes.iter().map(|m| m.material.map_or(own, |i| of(&flat.materials[i as usize]))).collect()
 }
