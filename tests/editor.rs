@@ -168,6 +168,35 @@ fn backspace_over_a_field_resets_it() {
 }
 
 #[test]
+fn a_colour_is_picked_by_dragging_and_by_typing() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ball");
+    let swatch = field(&harness, "Colour").rect().center();
+    click(&mut harness, swatch);
+    let square = harness.get_by_label("Saturation and brightness").rect();
+    pointer(&mut harness, square.center(), true);
+    harness.step();
+    for step in 1..=10 {
+        harness.event(Event::PointerMoved(square.center() + vec2(step as f32 * 6.0, 0.0)));
+        harness.step();
+    }
+    pointer(&mut harness, square.center() + vec2(60.0, 0.0), false);
+    harness.run();
+    let albedo = |h: &Harness<'_, Editor>| h.state().document().scene().materials()[0].albedo;
+    assert_ne!(albedo(&harness), scene.materials()[0].albedo);
+    let hex = field(&harness, "Hex").rect().center();
+    click(&mut harness, hex);
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("#00ff00".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(albedo(&harness), [0.0, 1.0, 0.0]);
+    assert_eq!(undo_all(&mut harness), 2);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
 fn renaming_in_the_tree() {
     let (scene, [_, _, cube, _]) = scene();
     let mut harness = open(scene);
