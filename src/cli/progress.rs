@@ -42,8 +42,9 @@ impl Progress {
 
     /// `share` of the task, 0 to 1, is done. False: stop.
     pub fn update(&mut self, share: f64) -> bool {
+        let share = share.clamp(0.0, 1.0);
         if let Some(bar) = &self.shown {
-            bar.set_position((share.clamp(0.0, 1.0) * 1000.0) as u64);
+            bar.set_position((share * 1000.0) as u64);
         } else if !self.quiet && self.last_line.elapsed() > LINE_EVERY {
             self.last_line = Instant::now();
             super::complain(&format!("{}: {:.0} %", self.task, share * 100.0));

@@ -48,6 +48,8 @@ pub struct Frame {
     keys: Vec<Option<u128>>,
     choices: Vec<Choice>,
     next: usize,
+    /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
+    pace: Pace,
     seconds_done: f64,
     seconds: f64,
     slot: Slot,
@@ -277,6 +279,7 @@ impl Renderer {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, camera.position);
         }
         Ok(Frame {
+            pace: self.pace,
             seconds: self.pace.seconds(plan.effort()),
             plan,
             keys,
@@ -310,7 +313,7 @@ impl Renderer {
                 end += 1;
             }
             let submitted = Instant::now();
-            frame.seconds_done += self.pace.seconds(effort);
+            frame.seconds_done += frame.pace.seconds(effort);
             self.submit(frame, first..end);
             self.gpu.wait()?;
             // The first dispatch of a kernel may include its compilation, which says nothing of its pace.

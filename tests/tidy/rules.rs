@@ -33,7 +33,7 @@ const FILE_OWNERS: &[&str] =
     &["src/scene/file", "src/mesh/", "src/document/recent", "src/document/store", "src/cli/", "src/gallery/write"];
 
 /// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
-const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind", "Group", "Object"];
+const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind"];
 
 /// Words behind which a name is given.
 const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const", "static", "let"];
