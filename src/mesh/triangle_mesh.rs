@@ -99,16 +99,14 @@ impl TriangleMesh {
 
     /// The normal of the triangle itself, outwards; not of unit length, zero where the triangle has no area.
     pub fn face_normal(&self, triangle: u32) -> DVec3 {
-        let corners = [0, 1, 2].map(|i| self.indices[triangle as usize * 3 + i] as usize);
-        let [a, b, c] = corners.map(|v| DVec3::from(self.positions[v].map(f64::from)));
+        let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)
     }
 
     fn normal_at(&self, triangle: u32, weights: [f64; 3]) -> DVec3 {
         let corners = self.vertices(triangle);
         let mixed: DVec3 = (0..3).map(|i| point(self.normals[corners[i]]) * weights[i]).sum();
-        let [a, b, c] = self.corners(triangle);
-        mixed.try_normalize().or_else(|| (b - a).cross(c - a).try_normalize()).unwrap_or(DVec3::Y)
+        mixed.try_normalize().or_else(|| self.face_normal(triangle).try_normalize()).unwrap_or(DVec3::Y)
     }
 
     fn vertices(&self, triangle: u32) -> [usize; 3] {

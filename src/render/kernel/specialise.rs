@@ -88,7 +88,7 @@ impl Writer<'_> {
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
                 self.open_block(level, at, entry, row, skipped);
-                if entry.kind == EntryKind::Group {
+                if entry.kind == EntryKind::Nested {
                     level += 1;
                     let kind = if self.fold == Fold::Value { "f32" } else { "Surface" };
                     self.line(&format!("    var s{level}: {kind};"));
@@ -101,7 +101,7 @@ impl Writer<'_> {
                     break;
                 }
                 open.pop();
-                if group.kind == EntryKind::Group {
+                if group.kind == EntryKind::Nested {
                     level -= 1;
                     self.join(level, &group, first, &format!("s{}", level + 1));
                 }

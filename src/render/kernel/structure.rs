@@ -16,7 +16,7 @@ pub enum EntryKind {
     /// A shape.
     Leaf(ShapeKind),
     /// Operands with an accumulator of their own.
-    Group,
+    Nested,
     /// Operands that may be skipped together.
     Run,
 }
@@ -45,7 +45,7 @@ impl Entry {
     pub fn rows(&self) -> usize {
         match self.kind {
             EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
-            EntryKind::Group | EntryKind::Run => GROUP_ROWS,
+            EntryKind::Nested | EntryKind::Run => GROUP_ROWS,
         }
     }
 }
@@ -112,7 +112,7 @@ fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
     let leaf = node.is_leaf();
     Entry {
         kind: match node.code & 0xffff {
-            FlatNode::GROUP => EntryKind::Group,
+            FlatNode::GROUP => EntryKind::Nested,
             FlatNode::RUN => EntryKind::Run,
             shape => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
         },
