@@ -32,7 +32,9 @@ pub(super) struct Canvas {
     wanted: Option<Wanted>,
     under_way: Option<(Frame, Instant)>,
     took: Duration,
-    /// The full picture waits for kernels that are being built.
+    /// The camera or a value is being dragged.
+    navigating: bool,
+    /// The full picture waits for the end of a drag, or for kernels that are being built.
     waiting: bool,
 }
 
@@ -55,6 +57,7 @@ impl Canvas {
             wanted: None,
             under_way: None,
             took: Duration::ZERO,
+            navigating: false,
             waiting: false,
         })
     }
@@ -86,7 +89,9 @@ impl Canvas {
     /// Brings the picture nearer to what the editor wants, in bounded time.
     pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
         self.renderer.gpu().check()?;
-        let view = editor.view();
+        let View { navigating, .. } = editor.view();
+        // Not part of what the picture depends on: letting go changes nothing in it.
+        let view = View { navigating: false, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
         let (flat, library) = editor.flat_and_meshes();
         let flat = flat.clone();
@@ -94,8 +99,14 @@ impl Canvas {
         let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
         let wanted = Wanted { view, flat, meshes: addresses, outline };
         let news = self.follow_kernels(editor, ctx);
-        if self.wanted.as_ref() != Some(&wanted) || (news && self.waiting) {
-            self.start(&wanted, &meshes)?;
+        let settled = self.navigating && !navigating;
+        self.navigating = navigating;
+        if self.wanted.as_ref() != Some(&wanted) || (self.waiting && (news || settled)) {
+            if self.differs_in_marks_only(&wanted) {
+                self.restyle(&wanted, &meshes)?;
+            } else {
+                self.start(&wanted, &meshes)?;
+            }
             self.wanted = Some(wanted);
         }
         if let Some((frame, started)) = &mut self.under_way {
@@ -112,6 +123,28 @@ impl Canvas {
             }
             ctx.request_repaint();
         }
+        Ok(())
+    }
+
+    /// Whether the full picture is there and only grid or outline are to change.
+    fn differs_in_marks_only(&self, wanted: &Wanted) -> bool {
+        let complete = self.shown == Some(Slot::Full) && self.under_way.is_none() && !self.waiting;
+        let marked_alike = |shown: &Wanted| {
+            let View { show_grid, show_outline, .. } = shown.view;
+            let view = View { show_grid, show_outline, ..wanted.view };
+            Wanted { view, outline: shown.outline.clone(), ..wanted.clone() }
+        };
+        complete && self.wanted.as_ref().is_some_and(|shown| *shown == marked_alike(shown))
+    }
+
+    /// Draws the marks anew over the picture that is there.
+    fn restyle(&mut self, wanted: &Wanted, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
+        let overlay = OverlaySettings { grid: wanted.view.show_grid, outline: wanted.outline.clone() };
+        let View { camera, size_px, .. } = wanted.view;
+        let mut frame = self.renderer.begin(Slot::Full, &wanted.flat, meshes, &camera, size_px, overlay)?;
+        frame.skip_to_shading();
+        self.renderer.advance(&mut frame, Duration::MAX)?;
+        self.show(Slot::Full);
         Ok(())
     }
 
@@ -143,7 +176,8 @@ impl Canvas {
             self.renderer.advance(&mut frame, Duration::MAX)?;
             self.show(Slot::Preview);
         }
-        self.waiting = full > WORTH_WAITING && self.renderer.kernels_building() > 0;
+        let kernels_pay = full > WORTH_WAITING && self.renderer.kernels_building() > 0;
+        self.waiting = full > AT_ONCE && (self.navigating || kernels_pay);
         if self.waiting {
             self.under_way = None;
             return Ok(());

@@ -268,7 +268,7 @@ impl Editor {
         let name = self.bench.document.title();
         let name = name.trim_end_matches(" *").to_owned();
         let mut answer = None;
-        let response = Modal::new(Id::unique("unsaved changes")).show(ctx, |ui| {
+        let response = Modal::new(Id::unique("unsaved changes")).frame(frame(ctx)).show(ctx, |ui| {
             ui.set_width(380.0);
             ui.add_space(4.0);
             ui.label(RichText::new(format!("Save the changes to “{name}”?")).heading().color(egui::Color32::WHITE));
@@ -309,7 +309,7 @@ impl Editor {
     fn show_path_field(&mut self, ctx: &Context) {
         let Some(field) = &mut self.dialogs.path_field else { return };
         let mut done = None;
-        let response = Modal::new(Id::unique("path")).show(ctx, |ui| {
+        let response = Modal::new(Id::unique("path")).frame(frame(ctx)).show(ctx, |ui| {
             ui.set_width(460.0);
             ui.label(RichText::new(field.purpose.title()).heading().color(egui::Color32::WHITE));
             ui.add_space(6.0);
@@ -358,6 +358,10 @@ impl Editor {
             self.intend(Intent::Quit, ctx);
         }
     }
+}
+
+fn frame(ctx: &Context) -> egui::Frame {
+    egui::Frame::window(&ctx.global_style()).inner_margin(18.0)
 }
 
 enum Answer {

@@ -2,7 +2,7 @@
 
 use egui::{Align, Color32, DragValue, Id, Key, Layout, Response, RichText, Ui, vec2};
 
-use super::{expression, theme};
+use super::{color_picker, expression, theme};
 use crate::scene::Limits;
 
 /// What stands around a number.
@@ -168,11 +168,9 @@ pub fn color(ui: &mut Ui, name: &str, linear: [f64; 3]) -> (Id, Option<[f64; 3]>
     let peak = linear.iter().copied().fold(1.0, f64::max);
     let mut shown = linear.map(|v| (v / peak) as f32);
     let before = shown;
-    ui.spacing_mut().interact_size.x = ui.available_width();
-    let response = ui.color_edit_button_rgb(&mut shown);
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
+    let (response, picked) = color_picker::button(ui, name, &mut shown);
     let id = response.id;
-    let changed = response.changed() && shown != before;
+    let changed = picked && shown != before;
     // Channels that the picker left alone keep their full precision.
     let mut value = linear;
     for c in 0..3 {

@@ -6,11 +6,12 @@
 //! | `workbench` | the document with gestures (one drag, one undo step) and messages |
 //! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, palette |
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
-//! | `sheet`, `fields` | fields bound to the selected nodes, and the widgets they are made of |
+//! | `sheet`, `fields`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 
 mod bounds;
+mod color_picker;
 mod commands;
 mod dialogs;
 mod expression;

@@ -6,19 +6,27 @@ use glam::DVec3;
 use super::navigation::Side;
 use super::viewport::Projection;
 use super::{Editor, bounds, glyphs, theme};
-use crate::scene::{NodeId, NodeKind};
+use crate::scene::{Node, NodeId, NodeKind};
 
 /// Boxes are painted for so many selected nodes at most.
 const MOST_BOXES: usize = 64;
 
-/// The oriented boxes of the selected nodes.
+/// Whether the renderer's outline says too little: the room of a group, and what is cut away or hidden.
+fn needs_box(node: &Node) -> bool {
+    match node.kind {
+        NodeKind::Group(_) => true,
+        NodeKind::Object(_) | NodeKind::Mesh(_) => node.negative || !node.visible,
+        NodeKind::Light(_) | NodeKind::Camera(_) => false,
+    }
+}
+
+/// The oriented boxes of the selected nodes that need them.
 pub fn selection_boxes(editor: &mut Editor, painter: &Painter, projection: &Projection) {
     let selection = editor.bench.document.selection().to_vec();
     let active = selection.last().copied();
     for id in selection.into_iter().rev().take(MOST_BOXES) {
         let scene = editor.bench.document.scene();
-        let is_marker = scene.node(id).is_some_and(|n| matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_)));
-        if is_marker {
+        if !scene.node(id).is_some_and(|n| needs_box(n)) {
             continue;
         }
         let Some((world_from_local, bounds)) = bounds::oriented(scene, &mut editor.meshes, id) else { continue };

@@ -14,8 +14,8 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     }
     let mean = (half.x + half.y + half.z) / 3.0;
     let side = (half.x + half.z) * 0.5;
-    // What is round at both ends cannot be flat: in a flat room it grows upwards.
-    let upright = half.y.max(mean);
+    // Of what stands along Y; something flat keeps more of its width than of its height.
+    let upright = side.min(half.y.max(0.6 * side));
     let shape = match kind {
         ShapeKind::Sphere => Shape::Sphere { radius: mean },
         ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half.to_array() },
@@ -30,13 +30,14 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
             Shape::CappedCone { bottom_radius: side, top_radius: 0.4 * side, height: 2.0 * half.y }
         }
         ShapeKind::RoundCone => {
-            let bottom_radius = side.min(upright);
+            let bottom_radius = upright;
             let top_radius = 0.5 * bottom_radius;
-            Shape::RoundCone { bottom_radius, top_radius, height: 2.0 * upright - bottom_radius - top_radius }
+            let height = (2.0 * half.y - bottom_radius - top_radius).max(0.0);
+            Shape::RoundCone { bottom_radius, top_radius, height }
         }
         ShapeKind::Capsule => {
-            let radius = side.min(upright);
-            let (center, reach) = (bounds.center(), DVec3::Y * (upright - radius));
+            let radius = upright;
+            let (center, reach) = (bounds.center(), DVec3::Y * (half.y - radius).max(0.0));
             Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius }
         }
         ShapeKind::Plane => Shape::Plane {},

@@ -64,6 +64,22 @@ impl Frame {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
     }
 
+    /// Whether a kernel is dispatched for the first time among these pieces.
+    fn uses_fresh_kernel(&self, pieces: std::ops::Range<usize>) -> bool {
+        let field = |p: &&Piece| matches!(p.stage, Stage::Cone | Stage::Trace | Stage::Surface);
+        let kernels =
+            self.plan.pieces[pieces].iter().filter(field).map(|p| (p, &self.choices[p.work.component as usize]));
+        // All of them, not only up to the first fresh one: each is marked.
+        kernels.fold(false, |fresh, (piece, choice)| choice.kernel.first_use(piece.stage as usize) | fresh)
+    }
+
+    /// Leaves out everything but light and overlay: for a picture of the same scene from the same place
+    /// that is complete in its slot already.
+    pub fn skip_to_shading(&mut self) {
+        let shading = self.plan.pieces.iter().position(|p| p.stage == Stage::Shade);
+        self.next = shading.unwrap_or(self.plan.pieces.len());
+    }
+
     /// Whether the picture is complete.
     pub fn is_done(&self) -> bool {
         self.next == self.plan.pieces.len()
@@ -300,7 +316,10 @@ impl Renderer {
             frame.seconds_done += frame.pace.seconds(effort);
             self.submit(frame, first..end);
             self.gpu.wait()?;
-            self.pace.learn(effort, submitted.elapsed());
+            // The first dispatch of a kernel may include its compilation, which says nothing of its pace.
+            if !frame.uses_fresh_kernel(first..end) {
+                self.pace.learn(effort, submitted.elapsed());
+            }
             frame.next = end;
             if frame.is_done() || start.elapsed() >= budget {
                 return Ok(());

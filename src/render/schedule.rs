@@ -121,7 +121,7 @@ impl Pace {
             return;
         }
         let ratio = (took.as_secs_f64() / expected).clamp(0.05, 20.0);
-        let gain = if ratio > 1.0 { 0.6 } else { 0.2 };
+        let gain = if ratio > 1.0 { 0.6 } else { 0.3 };
         let of_special = effort.specialised * self.specialised / expected;
         self.specialised *= 1.0 + (ratio - 1.0) * gain * of_special;
         self.interpreted *= 1.0 + (ratio - 1.0) * gain * (1.0 - of_special);

@@ -226,7 +226,7 @@ fn entry(ui: &mut Ui, id: CommandId, enabled: bool) -> Response {
 }
 
 /// Room for an icon in front of a name.
-pub const ICON_ROOM: &str = "     ";
+pub const ICON_ROOM: &str = "      ";
 
 /// Where the help of the hovered menu entry waits for the status bar.
 pub fn hovered_help() -> egui::Id {
@@ -236,7 +236,10 @@ pub fn hovered_help() -> egui::Id {
 impl Command {
     /// Paints the icon at the left end of a menu entry.
     pub fn paint_icon(&self, ui: &Ui, entry: egui::Rect, enabled: bool) {
-        let square = egui::Rect::from_center_size(entry.left_center() + egui::vec2(15.0, 0.0), egui::Vec2::splat(16.0));
+        let square = egui::Rect::from_center_size(
+            entry.left_center() + egui::vec2(ui.spacing().button_padding.x + 10.0, 0.0),
+            egui::Vec2::splat(16.0),
+        );
         let square = glyphs::centered(square, 16.0);
         let dim = if enabled { 1.0 } else { 0.45 };
         match self.icon {

@@ -1,6 +1,8 @@
 //! The passes that evaluate a component: `cone`, `trace`, `surface`. One kernel holds all three, built
 //! for one [`Evaluator`].
 
+use std::sync::atomic::{AtomicU32, Ordering};
+
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 
 use crate::render::kernel::{Evaluator, Options, ShaderError, source};
@@ -16,6 +18,16 @@ pub struct Kernel {
     pub trace: ComputePipeline,
     /// Normal, material and leaf of the hits.
     pub surface: ComputePipeline,
+    /// One bit for each stage that was dispatched.
+    used: AtomicU32,
+}
+
+impl Kernel {
+    /// Marks a stage as dispatched; true the first time.
+    pub fn first_use(&self, stage: usize) -> bool {
+        let bit = 1 << stage;
+        self.used.fetch_or(bit, Ordering::Relaxed) & bit == 0
+    }
 }
 
 /// Layouts of the targets of the three passes.
@@ -100,6 +112,7 @@ impl FieldLayouts {
             cone: pipeline("cone", "cone", &self.cone)?,
             trace: pipeline("trace", "trace", &self.trace)?,
             surface: pipeline("surface", "surface_pass", &self.surface)?,
+            used: AtomicU32::new(0),
         })
     }
 

@@ -1,0 +1,124 @@
+//! Looking, picking and moving in the picture; and what holds for the editor as a whole.
+
+use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui_kittest::kittest::Queryable;
+
+use super::{click, open, pointer, press, scene, select, undo_all};
+
+#[test]
+fn turning_and_clicking_in_the_picture() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    let rect = harness.get_by_label("Viewport").rect();
+    let before = harness.state().view().camera;
+    let start = rect.left_bottom() + vec2(60.0, -60.0);
+    pointer(&mut harness, start, true);
+    harness.step();
+    for step in 1..=8 {
+        harness.event(Event::PointerMoved(start + vec2(step as f32 * 10.0, 0.0)));
+        harness.step();
+        assert!(step < 3 || harness.state().view().navigating);
+    }
+    pointer(&mut harness, start + vec2(80.0, 0.0), false);
+    harness.run();
+    assert_ne!(harness.state().view().camera, before);
+    assert!(!harness.state().view().navigating);
+    assert_eq!(*harness.state().document().scene(), scene, "looking changes nothing");
+    click(&mut harness, rect.center());
+    assert_eq!(harness.state().document().selection().len(), 1, "something stands in the middle");
+    click(&mut harness, start);
+    assert!(harness.state().document().selection().is_empty(), "nothing in the corner");
+}
+
+#[test]
+fn an_arrow_moves_the_selection_in_one_step() {
+    let (scene, [.., ring]) = scene();
+    let mut harness = open(scene.clone());
+    select(&mut harness, "Ring");
+    press(&mut harness, Modifiers::NONE, Key::Num1);
+    let rect = harness.get_by_label("Viewport").rect();
+    let camera = harness.state().view().camera;
+    let size = harness.state().view().size_px.map(f64::from);
+    let (pixel, _) = camera.project(glam::DVec3::ZERO, size.into()).unwrap();
+    // On the arrow along X: to the right, seen from the front.
+    let start = rect.min + vec2(pixel.x as f32 + 50.0, pixel.y as f32);
+    pointer(&mut harness, start, true);
+    harness.step();
+    for step in 1..=20 {
+        harness.event(Event::PointerMoved(start + vec2(step as f32 * 4.0, 3.0)));
+        harness.step();
+    }
+    pointer(&mut harness, start + vec2(80.0, 3.0), false);
+    harness.run();
+    let moved = harness.state().document().scene().node(ring).unwrap().transform.translation;
+    assert!(moved.x > 0.05 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
+    let (now, _) = harness.state().view().camera.project(moved, size.into()).unwrap();
+    assert!((now.x - pixel.x - 80.0).abs() < 0.5, "the arrow stays under the pointer: {now} {pixel}");
+    assert_eq!(undo_all(&mut harness), 1);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn a_monkey_finds_no_panic_and_undo_leads_back() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = move |below: u64| {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        seed % below
+    };
+    const KEYS: [(Modifiers, Key); 16] = [
+        (Modifiers::NONE, Key::U),
+        (Modifiers::NONE, Key::I),
+        (Modifiers::NONE, Key::D),
+        (Modifiers::NONE, Key::N),
+        (Modifiers::NONE, Key::H),
+        (Modifiers::NONE, Key::X),
+        (Modifiers::SHIFT, Key::D),
+        (Modifiers::COMMAND, Key::G),
+        (Modifiers::COMMAND, Key::A),
+        (Modifiers::COMMAND, Key::Z),
+        (Modifiers::COMMAND, Key::Y),
+        (Modifiers::NONE, Key::F),
+        (Modifiers::NONE, Key::F2),
+        (Modifiers::NONE, Key::Escape),
+        (Modifiers::ALT, Key::ArrowUp),
+        (Modifiers::NONE, Key::Enter),
+    ];
+    for _ in 0..600 {
+        match random(3) {
+            0 => {
+                let (modifiers, key) = KEYS[random(KEYS.len() as u64) as usize];
+                harness.key_press_modifiers(modifiers, key);
+            }
+            which => {
+                // Below the menus: those could open files.
+                let pos = Pos2::new(random(1280) as f32, 40.0 + random(740) as f32);
+                pointer(&mut harness, pos, which == 1 && random(4) > 0);
+            }
+        }
+        harness.step();
+        if harness.state().document().scene().nodes().len() > 60 {
+            harness.state_mut().document_mut().undo();
+        }
+    }
+    harness.remove_cursor();
+    harness.run_ok();
+    harness.state().document().scene().assert_invariants();
+    undo_all(&mut harness);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn an_idle_editor_asks_for_no_frames() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    harness.run();
+    for _ in 0..3 {
+        harness.step();
+        let viewport = &harness.output().viewport_output[&egui::ViewportId::ROOT];
+        assert!(viewport.repaint_delay > std::time::Duration::from_secs(1), "{:?}", viewport.repaint_delay);
+    }
+}
