@@ -33,10 +33,10 @@ pub fn show(ui: &mut Ui, linear: &mut [f32; 3]) -> bool {
 
 fn remembered(ui: &Ui, id: Id, linear: [f32; 3]) -> HsvaGamma {
     let mut hsv = from_linear(linear);
-    if let Some((of, h, s)) = ui.data(|d| d.get_temp::<([f32; 3], f32, f32)>(id)) {
-        if of == linear {
-            (hsv.h, hsv.s) = (h, s);
-        }
+    if let Some((of, h, s)) = ui.data(|d| d.get_temp::<([f32; 3], f32, f32)>(id))
+        && of == linear
+    {
+        (hsv.h, hsv.s) = (h, s);
     }
     hsv
 }
