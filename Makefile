@@ -23,6 +23,7 @@ test: lint ## Check formatting and lints, then run every test
 	cargo test --lib --tests
 
 lint: setup ## Check formatting and lints only
+	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy
 	cargo fmt --check
 	cargo clippy --all-targets -- -D warnings
 
