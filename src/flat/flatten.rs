@@ -35,6 +35,11 @@ pub struct FlattenError {
 
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
+    flatten_with_cuts(scene, time).map(|(flat, _)| flat)
+}
+
+/// The same, and whether something is cut away from several components.
+pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, bool), FlattenError> {
     let mut flat = FlatScene {
         nodes: Vec::with_capacity(scene.nodes().len()),
         numbers: Vec::with_capacity(scene.nodes().len() * 6),
@@ -57,7 +62,7 @@ pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     for operands in &components.operands {
         add_component(&mut flat, &mut materials, operands)?;
     }
-    Ok(flat)
+    Ok((flat, components.has_cuts))
 }
 
 /// Index of materials in use, in the order of first use.

@@ -40,20 +40,37 @@ pub(super) enum Value<'a> {
 pub(super) struct Components<'a> {
     pub operands: Vec<Vec<Operand<'a>>>,
     pub warnings: Vec<Warning>,
+    /// Whether something at the top is cut away from what precedes it.
+    pub has_cuts: bool,
+}
+
+/// Whether a node is opened at the top: its children are components of their own.
+pub(super) fn is_opened(node: &Node) -> bool {
+    let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
+    !negative && group.operator == Operator::Union && group.blend.radius == 0.0
+}
+
+/// The fold of the component whose outermost node stands at `index`.
+pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_>>> {
+    let node: &Node = &scene.nodes()[index];
+    let parent = node.parent.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
+    let mut collector = Collector { scene, bystander: &mut |_, _| {}, warnings: Vec::new(), has_cuts: false };
+    collector.operand(index, &parent, node).map(begin_with)
 }
 
 /// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
 pub(super) fn collect<'a>(scene: &'a Scene, bystander: &mut dyn FnMut(&'a Node, &DAffine3)) -> Components<'a> {
-    let mut collector = Collector { scene, bystander, warnings: Vec::new() };
+    let mut collector = Collector { scene, bystander, warnings: Vec::new(), has_cuts: false };
     let mut components = Vec::new();
     collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut components);
-    Components { operands: components, warnings: collector.warnings }
+    Components { operands: components, warnings: collector.warnings, has_cuts: collector.has_cuts }
 }
 
 struct Collector<'a, 'b> {
     scene: &'a Scene,
     bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
     warnings: Vec<Warning>,
+    has_cuts: bool,
 }
 
 impl<'a> Collector<'a, '_> {
@@ -71,20 +88,16 @@ impl<'a> Collector<'a, '_> {
             if !node.visible {
                 continue;
             }
-            match &node.kind {
-                NodeKind::Group(Group { operator: Operator::Union, blend })
-                    if !node.negative && blend.radius == 0.0 =>
-                {
-                    self.split(first + 1..children.end, world * node.transform.to_affine(), out);
-                }
-                _ => {
-                    let Some(operand) = self.operand(first, &world, node) else { continue };
-                    if node.negative {
-                        self.cut(&mut out[start..], operand);
-                    } else {
-                        out.push(begin_with(operand));
-                    }
-                }
+            if is_opened(node) {
+                self.split(first + 1..children.end, world * node.transform.to_affine(), out);
+                continue;
+            }
+            let Some(operand) = self.operand(first, &world, node) else { continue };
+            if node.negative {
+                self.has_cuts = true;
+                self.cut(&mut out[start..], operand);
+            } else {
+                out.push(begin_with(operand));
             }
         }
     }
