@@ -32,6 +32,7 @@ fn drag(c: &mut Criterion) {
     let mut renderer = Renderer::new(&gpu).expect("a renderer on a device that answers");
     let flat = flatten(document.scene(), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 16.0 / 9.0);
+    ten_thousand::warm(&mut renderer, &flat, &camera, SIZE);
     let mut begin = |flat: &FlatScene| {
         renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
         renderer.kernels().built()

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::emit::emit;
-use super::operands::{Operand, collect, fold_bounds};
+use super::operands::{Found, Operand, collect, fold_bounds};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 
@@ -49,26 +49,36 @@ pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
         warnings: Vec::new(),
     };
     debug_assert!(time.is_finite(), "time is checked at the border");
-    let mut materials = Materials { scene, index: HashMap::new() };
-    let components = collect(scene, &mut |node, world_from_local| {
-        add_bystander(&mut flat, &mut materials, node, world_from_local);
+    let mut materials = Materials { scene, index: HashMap::new(), last: None };
+    let mut failure = None;
+    let warnings = collect(scene, &mut |found| match found {
+        Found::Bystander(node, world_from_local) => add_bystander(&mut flat, &mut materials, node, world_from_local),
+        Found::Component(operands) if failure.is_none() => {
+            failure = add_component(&mut flat, &mut materials, operands).err();
+        }
+        Found::Component(_) => {}
     });
-    flat.warnings = components.warnings;
-    for operands in &components.operands {
-        add_component(&mut flat, &mut materials, operands)?;
+    flat.warnings = warnings;
+    match failure {
+        Some(error) => Err(error),
+        None => Ok(flat),
     }
-    Ok(flat)
 }
 
 /// Index of materials in use, in the order of first use.
 struct Materials<'a> {
     scene: &'a Scene,
     index: HashMap<MaterialId, u32>,
+    /// The last one asked for: neighbours often wear the same.
+    last: Option<(MaterialId, u32)>,
 }
 
 impl Materials<'_> {
     fn resolve(&mut self, flat: &mut FlatScene, id: MaterialId) -> u32 {
-        *self.index.entry(id).or_insert_with(|| {
+        if let Some((_, index)) = self.last.filter(|(last, _)| *last == id) {
+            return index;
+        }
+        let index = *self.index.entry(id).or_insert_with(|| {
             let material = self.scene.material(id).expect("the scene holds every material that a node names");
             flat.materials.push(FlatMaterial {
                 albedo: material.albedo.map(|v| v as f32),
@@ -78,7 +88,9 @@ impl Materials<'_> {
             });
             flat.material_ids.push(id);
             flat.materials.len() as u32 - 1
-        })
+        });
+        self.last = Some((id, index));
+        index
     }
 }
 

@@ -36,31 +36,40 @@ pub(super) enum Value<'a> {
     Fold(Vec<Operand<'a>>),
 }
 
-/// The folds of all components, and what was noticed on the way.
-pub(super) struct Components<'a> {
-    pub operands: Vec<Vec<Operand<'a>>>,
-    pub warnings: Vec<Warning>,
+/// What is met on the way through a scene.
+pub(super) enum Found<'a, 'b> {
+    /// The fold of a component.
+    Component(&'b [Operand<'a>]),
+    /// A light, mesh or camera with its world transform.
+    Bystander(&'a Node, &'b DAffine3),
 }
 
-/// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
-pub(super) fn collect<'a>(scene: &'a Scene, bystander: &mut dyn FnMut(&'a Node, &DAffine3)) -> Components<'a> {
-    let mut collector = Collector { scene, bystander, warnings: Vec::new() };
-    let mut components = Vec::new();
-    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut components);
-    Components { operands: components, warnings: collector.warnings }
+/// Shows every component and every bystander to `visit`, and returns what was noticed on the way.
+///
+/// Components are not kept longer than needed: memory that is used again at once costs half as much as
+/// memory that the system has to give anew.
+pub(super) fn collect<'a>(scene: &'a Scene, visit: &mut dyn FnMut(Found<'a, '_>)) -> Vec<Warning> {
+    let mut collector = Collector { scene, visit, warnings: Vec::new() };
+    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, None);
+    collector.warnings
 }
 
 struct Collector<'a, 'b> {
     scene: &'a Scene,
-    bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
+    visit: &'b mut dyn FnMut(Found<'a, '_>),
     warnings: Vec<Warning>,
 }
 
 impl<'a> Collector<'a, '_> {
     /// The children in `range` are joined by hard union: each becomes a component, hard unions among
     /// them are opened. A negative child is cut from those before it that it can reach, since
-    /// (a ∪ b) − d = (a − d) ∪ (b − d) exactly.
-    fn split(&mut self, range: std::ops::Range<usize>, world: DAffine3, out: &mut Vec<Vec<Operand<'a>>>) {
+    /// (a ∪ b) − d = (a − d) ∪ (b − d) exactly. `held` has the components that something may still be
+    /// cut from.
+    fn split(&mut self, range: std::ops::Range<usize>, world: DAffine3, held: Option<&mut Vec<Vec<Operand<'a>>>>) {
+        let mut own = Vec::new();
+        let holding = held.is_some() || self.has_negative(range.clone());
+        let is_outermost = held.is_none();
+        let out = held.unwrap_or(&mut own);
         let start = out.len();
         let mut at = range.start;
         while at < range.end {
@@ -75,18 +84,38 @@ impl<'a> Collector<'a, '_> {
                 NodeKind::Group(Group { operator: Operator::Union, blend })
                     if !node.negative && blend.radius == 0.0 =>
                 {
-                    self.split(first + 1..children.end, world * node.transform.to_affine(), out);
+                    let inner = world * node.transform.to_affine();
+                    self.split(first + 1..children.end, inner, if holding { Some(&mut *out) } else { None });
                 }
                 _ => {
                     let Some(operand) = self.operand(first, &world, node) else { continue };
                     if node.negative {
                         self.cut(&mut out[start..], operand);
-                    } else {
+                    } else if holding {
                         out.push(begin_with(operand));
+                    } else {
+                        (self.visit)(Found::Component(&begin_with(operand)));
                     }
                 }
             }
         }
+        if is_outermost {
+            for component in out {
+                (self.visit)(Found::Component(component));
+            }
+        }
+    }
+
+    /// Whether one of the children in `range` is cut away from its siblings.
+    fn has_negative(&self, range: std::ops::Range<usize>) -> bool {
+        let mut at = range.start;
+        while at < range.end {
+            if self.scene.nodes()[at].negative {
+                return true;
+            }
+            at = self.scene.subtree(at).end;
+        }
+        false
     }
 
     fn cut(&mut self, components: &mut [Vec<Operand<'a>>], negative: Operand<'a>) {
@@ -128,7 +157,7 @@ impl<'a> Collector<'a, '_> {
                 }
             }
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => {
-                (self.bystander)(node, &world);
+                (self.visit)(Found::Bystander(node, &world));
                 None
             }
         }
