@@ -6,7 +6,7 @@ mod ten_thousand;
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use isolith::flat::{FlatScene, flatten};
+use isolith::flat::{FlatScene, Flattener, flatten};
 use isolith::render::{Gpu, OverlaySettings, Renderer, Slot};
 
 /// Size of the viewport in pixels.
@@ -30,25 +30,29 @@ fn drag(c: &mut Criterion) {
     let (mut document, dragged) = ten_thousand::document();
     let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
     let mut renderer = Renderer::new(&gpu).expect("a renderer on a device that answers");
-    let flat = flatten(document.scene(), 0.0).expect("within the limits");
-    let camera = flat.default_camera(&[], 16.0 / 9.0);
-    ten_thousand::warm(&mut renderer, &flat, &camera, SIZE);
+    let mut flattener = Flattener::default();
+    let mut shown = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = shown.default_camera(&[], 16.0 / 9.0);
+    ten_thousand::warm(&mut renderer, &shown, &camera, SIZE);
     let mut begin = |flat: &FlatScene| {
         renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
         renderer.kernels().built()
     };
-    let built = begin(&flat);
+    let built = begin(&shown);
     document.begin_gesture();
     let mut radius = 0.3;
     c.bench_function("drag at 10 000 nodes: edit, flatten, upload, plan", |b| {
         b.iter(|| {
             radius = if radius > 0.5 { 0.3 } else { radius + 0.001 };
             ten_thousand::drag(&mut document, dragged, radius);
-            let flat = flatten(document.scene(), 0.0).expect("within the limits");
+            // The arrays that are shown stay alive meanwhile, as in the editor.
+            let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
             assert_eq!(begin(&flat), built, "a drag built a kernel");
+            shown = flat;
         });
     });
     document.end_gesture();
+    drop(shown);
 }
 
 criterion_group!(benches, stations, drag);

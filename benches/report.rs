@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use isolith::flat::truth::truth;
-use isolith::flat::{Accuracy, flatten};
+use isolith::flat::{Accuracy, Flattener};
 use isolith::render::{Method, OverlaySettings, Slot};
 
 /// Width and height of the measured pictures, in pixels.
@@ -72,11 +72,12 @@ fn accuracy() -> String {
 fn drag() -> String {
     let (mut document, dragged) = ten_thousand::document();
     let renderer = &mut gpu::shared().renderer;
-    let flat = flatten(document.scene(), 0.0).expect("within the limits");
-    let camera = flat.default_camera(&[], 16.0 / 9.0);
+    let mut flattener = Flattener::default();
+    let mut shown = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = shown.default_camera(&[], 16.0 / 9.0);
     let size = [1280, 720];
     renderer.set_method(Method::Auto);
-    ten_thousand::warm(renderer, &flat, &camera, size);
+    ten_thousand::warm(renderer, &shown, &camera, size);
     let built = renderer.kernels().built();
     let mut rows: [(&str, Vec<Duration>); 4] =
         [("edit", vec![]), ("flatten", vec![]), ("upload and plan", vec![]), ("all", vec![])];
@@ -85,14 +86,17 @@ fn drag() -> String {
         let start = Instant::now();
         ten_thousand::drag(&mut document, dragged, 0.3 + 0.001 * i as f64);
         let edited = Instant::now();
-        let flat = flatten(document.scene(), 0.0).expect("within the limits");
+        // The arrays that are shown stay alive meanwhile, as in the editor.
+        let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
         let flattened = Instant::now();
         renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
         let begun = Instant::now();
+        shown = flat;
         let times = [edited - start, flattened - edited, begun - flattened, begun - start];
         rows.iter_mut().zip(times).for_each(|((_, all), time)| all.push(time));
     }
     document.end_gesture();
+    drop(shown);
     let mut out = format!("{} nodes, {REPEATS} frames.\n\n", document.scene().nodes().len());
     out += "| station | median ms |\n|---|--:|\n";
     for (name, mut times) in rows {

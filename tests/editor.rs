@@ -287,6 +287,32 @@ fn adding_grouping_and_duplicating() {
 }
 
 #[test]
+fn shift_and_ctrl_select_several_rows() {
+    let (scene, [group, ball, cube, ring]) = scene();
+    let mut harness = open(scene);
+    select(&mut harness, "Ball");
+    let click_with = |harness: &mut Harness<'_, Editor>, name: &str, modifiers: Modifiers| {
+        let pos = row(harness, name);
+        harness.event(Event::PointerMoved(pos));
+        for pressed in [true, false] {
+            let event = Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers };
+            harness.event_modifiers(event, modifiers);
+        }
+        harness.run();
+        harness.run_steps(40);
+        let mut ids = harness.state().document().selection().to_vec();
+        ids.sort();
+        ids
+    };
+    assert_eq!(click_with(&mut harness, "Ball", Modifiers::SHIFT), [ball]);
+    assert_eq!(click_with(&mut harness, "Ring", Modifiers::SHIFT), [ball, cube, ring]);
+    assert_eq!(click_with(&mut harness, "Cube", Modifiers::COMMAND), [ball, ring]);
+    assert_eq!(click_with(&mut harness, "Body", Modifiers::COMMAND), [group, ball, ring]);
+    assert_eq!(click_with(&mut harness, "Cube", Modifiers::NONE), [cube]);
+    assert_eq!(click_with(&mut harness, "Ball", Modifiers::SHIFT), [ball, cube]);
+}
+
+#[test]
 fn rows_are_dragged_into_groups() {
     let (scene, [group, _, _, ring]) = scene();
     let mut harness = open(scene.clone());

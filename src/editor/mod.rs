@@ -50,7 +50,7 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
-use crate::flat::{FlatMesh, FlatScene, flatten};
+use crate::flat::{FlatMesh, FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
@@ -113,7 +113,9 @@ pub struct Editor {
 }
 
 /// The flat scene of a revision of the document.
+#[derive(Default)]
 struct Flattened {
+    flattener: Flattener,
     scene: Arc<FlatScene>,
     revision: Option<u64>,
     problem: Option<String>,
@@ -121,19 +123,12 @@ struct Flattened {
     mesh_problem: Option<(NodeId, String)>,
 }
 
-impl Flattened {
-    fn empty() -> Self {
-        let flat = flatten(&Scene::new(), 0.0).expect("an empty scene is within every limit");
-        Self { scene: Arc::new(flat), revision: None, problem: None, mesh_problem: None }
-    }
-}
-
 impl Editor {
     /// An editor for the document.
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
             bench: Workbench::new(Document::new(Scene::new())),
-            flat: Flattened::empty(),
+            flat: Flattened::default(),
             meshes: MeshLibrary::new(None),
             navigation: Navigation::default(),
             viewport: viewport::Viewport::default(),
@@ -289,9 +284,9 @@ impl Editor {
             return;
         }
         self.flat.revision = Some(revision);
-        match flatten(self.bench.document.scene(), 0.0) {
+        match self.flat.flattener.flatten(self.bench.document.scene(), 0.0) {
             Ok(flat) => {
-                self.flat.scene = Arc::new(flat);
+                self.flat.scene = flat;
                 self.flat.problem = None;
             }
             Err(error) => self.flat.problem = Some(error.to_string()),

@@ -140,6 +140,8 @@ impl Outliner {
 
     fn act(&mut self, ui: &mut Ui, bench: &mut Workbench, scene: &Scene, action: Action<RowId>) {
         match action {
+            // The tree answers a Shift click on the row where the range begins with an empty selection.
+            Action::SetSelected(rows) if rows.is_empty() && ui.input(|i| i.modifiers.shift) => {}
             Action::SetSelected(rows) => {
                 let ids: Vec<_> = rows.into_iter().flatten().collect();
                 self.seen.clone_from(&ids);

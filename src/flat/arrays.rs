@@ -177,7 +177,7 @@ pub struct Warning {
 }
 
 /// The scene at one moment, as arrays.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlatScene {
     /// The subtree-extent arrays of all components, one after the other.
     pub nodes: Vec<FlatNode>,

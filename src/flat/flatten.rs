@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::emit::emit;
-use super::operands::{Found, Operand, collect, fold_bounds};
+use super::operands::{Operand, collect, fold_bounds};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 
@@ -35,6 +35,11 @@ pub struct FlattenError {
 
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
+    flatten_with_cuts(scene, time).map(|(flat, _)| flat)
+}
+
+/// The same, and whether something is cut away from several components.
+pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, bool), FlattenError> {
     let mut flat = FlatScene {
         nodes: Vec::with_capacity(scene.nodes().len()),
         numbers: Vec::with_capacity(scene.nodes().len() * 6),
@@ -49,36 +54,26 @@ pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
         warnings: Vec::new(),
     };
     debug_assert!(time.is_finite(), "time is checked at the border");
-    let mut materials = Materials { scene, index: HashMap::new(), last: None };
-    let mut failure = None;
-    let warnings = collect(scene, &mut |found| match found {
-        Found::Bystander(node, world_from_local) => add_bystander(&mut flat, &mut materials, node, world_from_local),
-        Found::Component(operands) if failure.is_none() => {
-            failure = add_component(&mut flat, &mut materials, operands).err();
-        }
-        Found::Component(_) => {}
+    let mut materials = Materials { scene, index: HashMap::new() };
+    let components = collect(scene, &mut |node, world_from_local| {
+        add_bystander(&mut flat, &mut materials, node, world_from_local);
     });
-    flat.warnings = warnings;
-    match failure {
-        Some(error) => Err(error),
-        None => Ok(flat),
+    flat.warnings = components.warnings;
+    for operands in &components.operands {
+        add_component(&mut flat, &mut materials, operands)?;
     }
+    Ok((flat, components.has_cuts))
 }
 
 /// Index of materials in use, in the order of first use.
 struct Materials<'a> {
     scene: &'a Scene,
     index: HashMap<MaterialId, u32>,
-    /// The last one asked for: neighbours often wear the same.
-    last: Option<(MaterialId, u32)>,
 }
 
 impl Materials<'_> {
     fn resolve(&mut self, flat: &mut FlatScene, id: MaterialId) -> u32 {
-        if let Some((_, index)) = self.last.filter(|(last, _)| *last == id) {
-            return index;
-        }
-        let index = *self.index.entry(id).or_insert_with(|| {
+        *self.index.entry(id).or_insert_with(|| {
             let material = self.scene.material(id).expect("the scene holds every material that a node names");
             flat.materials.push(FlatMaterial {
                 albedo: material.albedo.map(|v| v as f32),
@@ -88,9 +83,7 @@ impl Materials<'_> {
             });
             flat.material_ids.push(id);
             flat.materials.len() as u32 - 1
-        });
-        self.last = Some((id, index));
-        index
+        })
     }
 }
 

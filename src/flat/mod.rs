@@ -4,6 +4,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
 //! | `shade` | light on surfaces, twin of `shaders/light` |
@@ -24,6 +25,7 @@ pub mod mesh_rays;
 mod meshes;
 mod operands;
 pub mod pick;
+mod reflatten;
 pub mod shade;
 pub mod trace;
 pub mod truth;
@@ -34,4 +36,5 @@ pub use arrays::*;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten};
+pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};

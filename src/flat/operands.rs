@@ -36,40 +36,48 @@ pub(super) enum Value<'a> {
     Fold(Vec<Operand<'a>>),
 }
 
-/// What is met on the way through a scene.
-pub(super) enum Found<'a, 'b> {
-    /// The fold of a component.
-    Component(&'b [Operand<'a>]),
-    /// A light, mesh or camera with its world transform.
-    Bystander(&'a Node, &'b DAffine3),
+/// The folds of all components, and what was noticed on the way.
+pub(super) struct Components<'a> {
+    pub operands: Vec<Vec<Operand<'a>>>,
+    pub warnings: Vec<Warning>,
+    /// Whether something at the top is cut away from what precedes it.
+    pub has_cuts: bool,
 }
 
-/// Shows every component and every bystander to `visit`, and returns what was noticed on the way.
-///
-/// Components are not kept longer than needed: memory that is used again at once costs half as much as
-/// memory that the system has to give anew.
-pub(super) fn collect<'a>(scene: &'a Scene, visit: &mut dyn FnMut(Found<'a, '_>)) -> Vec<Warning> {
-    let mut collector = Collector { scene, visit, warnings: Vec::new() };
-    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, None);
-    collector.warnings
+/// Whether a node is opened at the top: its children are components of their own.
+pub(super) fn is_opened(node: &Node) -> bool {
+    let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
+    !negative && group.operator == Operator::Union && group.blend.radius == 0.0
+}
+
+/// The fold of the component whose outermost node stands at `index`.
+pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_>>> {
+    let node: &Node = &scene.nodes()[index];
+    let parent = node.parent.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
+    let mut collector = Collector { scene, bystander: &mut |_, _| {}, warnings: Vec::new(), has_cuts: false };
+    collector.operand(index, &parent, node).map(begin_with)
+}
+
+/// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
+pub(super) fn collect<'a>(scene: &'a Scene, bystander: &mut dyn FnMut(&'a Node, &DAffine3)) -> Components<'a> {
+    let mut collector = Collector { scene, bystander, warnings: Vec::new(), has_cuts: false };
+    let mut components = Vec::new();
+    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut components);
+    Components { operands: components, warnings: collector.warnings, has_cuts: collector.has_cuts }
 }
 
 struct Collector<'a, 'b> {
     scene: &'a Scene,
-    visit: &'b mut dyn FnMut(Found<'a, '_>),
+    bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
     warnings: Vec<Warning>,
+    has_cuts: bool,
 }
 
 impl<'a> Collector<'a, '_> {
     /// The children in `range` are joined by hard union: each becomes a component, hard unions among
     /// them are opened. A negative child is cut from those before it that it can reach, since
-    /// (a ∪ b) − d = (a − d) ∪ (b − d) exactly. `held` has the components that something may still be
-    /// cut from.
-    fn split(&mut self, range: std::ops::Range<usize>, world: DAffine3, held: Option<&mut Vec<Vec<Operand<'a>>>>) {
-        let mut own = Vec::new();
-        let holding = held.is_some() || self.has_negative(range.clone());
-        let is_outermost = held.is_none();
-        let out = held.unwrap_or(&mut own);
+    /// (a ∪ b) − d = (a − d) ∪ (b − d) exactly.
+    fn split(&mut self, range: std::ops::Range<usize>, world: DAffine3, out: &mut Vec<Vec<Operand<'a>>>) {
         let start = out.len();
         let mut at = range.start;
         while at < range.end {
@@ -80,42 +88,18 @@ impl<'a> Collector<'a, '_> {
             if !node.visible {
                 continue;
             }
-            match &node.kind {
-                NodeKind::Group(Group { operator: Operator::Union, blend })
-                    if !node.negative && blend.radius == 0.0 =>
-                {
-                    let inner = world * node.transform.to_affine();
-                    self.split(first + 1..children.end, inner, if holding { Some(&mut *out) } else { None });
-                }
-                _ => {
-                    let Some(operand) = self.operand(first, &world, node) else { continue };
-                    if node.negative {
-                        self.cut(&mut out[start..], operand);
-                    } else if holding {
-                        out.push(begin_with(operand));
-                    } else {
-                        (self.visit)(Found::Component(&begin_with(operand)));
-                    }
-                }
+            if is_opened(node) {
+                self.split(first + 1..children.end, world * node.transform.to_affine(), out);
+                continue;
+            }
+            let Some(operand) = self.operand(first, &world, node) else { continue };
+            if node.negative {
+                self.has_cuts = true;
+                self.cut(&mut out[start..], operand);
+            } else {
+                out.push(begin_with(operand));
             }
         }
-        if is_outermost {
-            for component in out {
-                (self.visit)(Found::Component(component));
-            }
-        }
-    }
-
-    /// Whether one of the children in `range` is cut away from its siblings.
-    fn has_negative(&self, range: std::ops::Range<usize>) -> bool {
-        let mut at = range.start;
-        while at < range.end {
-            if self.scene.nodes()[at].negative {
-                return true;
-            }
-            at = self.scene.subtree(at).end;
-        }
-        false
     }
 
     fn cut(&mut self, components: &mut [Vec<Operand<'a>>], negative: Operand<'a>) {
@@ -157,7 +141,7 @@ impl<'a> Collector<'a, '_> {
                 }
             }
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => {
-                (self.visit)(Found::Bystander(node, &world));
+                (self.bystander)(node, &world);
                 None
             }
         }

@@ -65,12 +65,12 @@ impl Mirror {
     /// Makes the buffer hold `bytes` (a multiple of 4). Uploads the range between the first and the
     /// last difference. Returns whether the buffer is another one, so that bind groups must be remade.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
-        let grown = bytes.len() as u64 > self.buffer.size();
-        if grown {
-            let size = bytes.len().next_power_of_two();
-            self.buffer = create(device, self.label, self.usage, size);
-            self.held.clear();
-        }
+        self.set_with_room(device, queue, bytes, 0)
+    }
+
+    /// The same, with at least `room` bytes behind `bytes`; what they are does not matter.
+    pub fn set_with_room(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8], room: usize) -> bool {
+        let grown = self.reserve(device, bytes.len() + room);
         let common = self.held.len().min(bytes.len());
         let same = common_prefix(&self.held[..common], &bytes[..common]);
         if same == bytes.len() {

@@ -5,10 +5,10 @@ use wgpu::ShaderStages;
 
 use super::buffers::Mirror;
 use super::gpu::Gpu;
-use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options, source};
+use super::kernel::{Evaluator, Options, source};
 use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
 use super::readback::read_words;
-use super::renderer::{RenderError, padded_rows};
+use super::renderer::{KERNEL_WINDOW, RenderError};
 use super::uniforms::GpuComponent;
 use crate::flat::{FlatScene, ROW_ALIGNMENT};
 
@@ -30,19 +30,19 @@ pub fn field(
     let pipeline = compute_pipeline(device, "probe", text, "probe_field", &[&own, &layouts.scene, &data]);
     let uploaded = |bytes: &[u8]| {
         let mut mirror = Mirror::rows(device, "probe");
-        mirror.set(device, queue, bytes);
+        mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW);
         mirror
     };
     let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
     let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
     let scene = [
         uploaded(bytemuck::cast_slice(&flat.nodes)),
-        uploaded(bytemuck::cast_slice(&padded_rows(flat))),
+        uploaded(bytemuck::cast_slice(&flat.numbers)),
         uploaded(bytemuck::cast_slice(&components)),
         uploaded(bytemuck::cast_slice(&flat.materials)),
     ];
     let mut bindings: Vec<_> = scene.iter().map(Mirror::binding).collect();
-    bindings.push(window(scene[1].buffer(), MAX_KERNEL_ROWS as usize * 16));
+    bindings.push(window(scene[1].buffer(), KERNEL_WINDOW));
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
     let groups = [

@@ -142,6 +142,9 @@ struct Groups {
 
 /// Dynamic offsets of `Work` are multiples of this.
 const WORK_STRIDE: usize = 256;
+/// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
+/// that the window on the last component does not end outside the buffer.
+pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
 /// Bytes of a tile in a list.
 const TILE_BYTES: usize = 8;
 /// Words that are counted for each component.
@@ -361,7 +364,7 @@ impl Renderer {
         }
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.numbers.set(device, queue, bytemuck::cast_slice(&padded_rows(flat))),
+            self.numbers.set_with_room(device, queue, bytemuck::cast_slice(&flat.numbers), KERNEL_WINDOW),
             self.components.set(device, queue, bytemuck::cast_slice(&components)),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
@@ -378,7 +381,7 @@ impl Renderer {
     fn bind_all(&self, targets: &Targets) -> Groups {
         let device = &self.gpu.device;
         let scene = [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::binding);
-        let own_rows = window(self.numbers.buffer(), MAX_KERNEL_ROWS as usize * size_of::<Row>());
+        let own_rows = window(self.numbers.buffer(), KERNEL_WINDOW);
         let scene: Vec<_> = scene.into_iter().chain([own_rows]).collect();
         let lists = Lists {
             tiles: self.tiles.buffer(),
@@ -473,13 +476,4 @@ impl Renderer {
             pass.dispatch_workgroups_indirect(self.tile_counts.buffer(), u64::from(piece.work.list) * 16);
         }
     }
-}
-
-/// The rows, with room behind them: a kernel's window on the rows of the last component must not end
-/// outside the buffer.
-pub(super) fn padded_rows(flat: &FlatScene) -> Vec<Row> {
-    let mut rows = Vec::with_capacity(flat.numbers.len() + MAX_KERNEL_ROWS as usize);
-    rows.extend_from_slice(&flat.numbers);
-    rows.resize(flat.numbers.len() + MAX_KERNEL_ROWS as usize, [0.0; 4]);
-    rows
 }

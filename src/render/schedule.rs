@@ -153,8 +153,9 @@ pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], specialised: &[bo
         plan.push(Stage::Farthest, whole.work(0), Effort::new(false, whole.pixels() * 0.05));
     }
     let mut surfaces = Vec::new();
+    let projection = Projection::new(camera, size);
     for index in front_to_back(flat, camera) {
-        let Some(rect) = Rect::around(&flat.components[index], camera, size) else { continue };
+        let Some(rect) = Rect::around(&flat.components[index], &projection, size) else { continue };
         plan.component(flat, index, rect, specialised[index], pace, &mut surfaces);
     }
     // Normals only of what is still seen when all components are there.
@@ -221,6 +222,35 @@ fn front_to_back(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
+/// From the world to pixels.
+struct Projection {
+    eye: DVec3,
+    forward: DVec3,
+    /// Pixels to the right per length at depth 1.
+    right: DVec3,
+    /// Pixels downwards per length at depth 1.
+    down: DVec3,
+    /// The middle of the picture.
+    center: DVec2,
+    /// What is nearer has no place in the picture.
+    near: f64,
+}
+
+impl Projection {
+    fn new(camera: &Camera, size: [u32; 2]) -> Self {
+        let center = DVec2::new(f64::from(size[0]), f64::from(size[1])) * 0.5;
+        let scale = center.y / camera.tan_half_fov();
+        Self {
+            eye: camera.position,
+            forward: camera.rotation * DVec3::NEG_Z,
+            right: camera.rotation * DVec3::X * scale,
+            down: camera.rotation * DVec3::NEG_Y * scale,
+            center,
+            near: (camera.near * 0.5).max(1e-12),
+        }
+    }
+}
+
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rect {
@@ -230,24 +260,23 @@ struct Rect {
 
 impl Rect {
     /// The pixels that the component's bounds may cover; `None` where it is out of view.
-    fn around(component: &Component, camera: &Camera, size: [u32; 2]) -> Option<Self> {
+    fn around(component: &Component, projection: &Projection, size: [u32; 2]) -> Option<Self> {
         let whole = Self { origin: [0, 0], end: size };
         if !component.bounds.is_finite() {
             return Some(whole);
         }
         let pixels = DVec2::new(f64::from(size[0]), f64::from(size[1]));
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let forward = camera.rotation * DVec3::NEG_Z;
         let mut behind = 0;
-        for corner in component.bounds.translated(component.origin).corners() {
-            if (corner - camera.position).dot(forward) < camera.near * 0.5 {
+        for corner in component.bounds.translated(component.origin - projection.eye).corners() {
+            let depth = corner.dot(projection.forward);
+            if depth < projection.near {
                 behind += 1;
                 continue;
             }
-            if let Some((p, _)) = camera.project(corner, pixels) {
-                low = low.min(p);
-                high = high.max(p);
-            }
+            let p = projection.center + DVec2::new(corner.dot(projection.right), corner.dot(projection.down)) / depth;
+            low = low.min(p);
+            high = high.max(p);
         }
         match behind {
             8 => return None,

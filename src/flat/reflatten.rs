@@ -1,0 +1,163 @@
+//! Flattening after a small change: only the component that the change is in is made anew.
+
+use std::sync::Arc;
+
+use super::arrays::FlatScene;
+use super::emit::emit;
+use super::flatten::{FlattenError, flatten_with_cuts};
+use super::operands::{component_of, fold_bounds, is_opened};
+use crate::scene::{Material, Node, NodeKind, Scene};
+
+/// Keeps the arrays of the last scene, and makes those of the next one from them where little has
+/// changed. Gives exactly what [`super::flatten`] gives.
+#[derive(Debug, Default)]
+pub struct Flattener {
+    last: Option<Last>,
+}
+
+#[derive(Debug)]
+struct Last {
+    nodes: Vec<Arc<Node>>,
+    materials: Vec<Arc<Material>>,
+    time: f64,
+    has_cuts: bool,
+    flat: Arc<FlatScene>,
+}
+
+/// More changed objects than this are not worth looking at one by one.
+const MOST_CHANGED: usize = 8;
+
+impl Flattener {
+    /// The arrays of `scene` at `time` seconds.
+    ///
+    /// # Errors
+    /// A limit is hit, see [`super::flatten`]; the next call starts from nothing.
+    pub fn flatten(&mut self, scene: &Scene, time: f64) -> Result<Arc<FlatScene>, FlattenError> {
+        if let Some(mut last) = self.last.take()
+            && last.update(scene, time)
+        {
+            let flat = last.flat.clone();
+            self.last = Some(last);
+            return Ok(flat);
+        }
+        let (flat, has_cuts) = flatten_with_cuts(scene, time)?;
+        let flat = Arc::new(flat);
+        self.last = Some(Last {
+            nodes: scene.nodes().to_vec(),
+            materials: scene.materials().to_vec(),
+            time,
+            has_cuts,
+            flat: flat.clone(),
+        });
+        Ok(flat)
+    }
+}
+
+impl Last {
+    /// Brings the arrays up to date; false where they have to be made anew.
+    fn update(&mut self, scene: &Scene, time: f64) -> bool {
+        // A cut reaches into other components.
+        if self.has_cuts || self.time != time || self.flat.environment != scene.environment {
+            return false;
+        }
+        let same = |a: &[Arc<Material>], b: &[Arc<Material>]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        if !same(&self.materials, scene.materials()) || self.nodes.len() != scene.nodes().len() {
+            return false;
+        }
+        let pairs = self.nodes.iter().zip(scene.nodes()).enumerate();
+        let changed: Vec<usize> =
+            pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b)).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
+        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(&self.nodes[*i], &scene.nodes()[*i])) {
+            return false;
+        }
+        for index in changed {
+            if !self.patch(scene, index) {
+                return false;
+            }
+            self.nodes[index] = scene.nodes()[index].clone();
+        }
+        true
+    }
+
+    /// Makes the component of the node at `index` anew, in its place.
+    fn patch(&mut self, scene: &Scene, index: usize) -> bool {
+        let Some(outermost) = outermost(scene, index) else { return false };
+        let id = scene.nodes()[index].id;
+        let Some(entry) = self.flat.ids.iter().position(|i| *i == id) else { return false };
+        let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
+        let old = self.flat.components[at].clone();
+        let Some(operands) = component_of(scene, outermost) else { return false };
+        if fold_bounds(&operands).bounds.is_empty() {
+            return false;
+        }
+        let mut scratch = FlatScene { environment: self.flat.environment, ..FlatScene::default() };
+        let mut known = true;
+        let new = emit(&mut scratch, &operands, &mut |_, id| {
+            let found = self.flat.material_ids.iter().position(|m| *m == id);
+            known &= found.is_some();
+            found.unwrap_or(0) as u32
+        });
+        if !known || (new.count, new.rows, new.stack) != (old.count, old.rows, old.stack) {
+            return false;
+        }
+        let flat = Arc::make_mut(&mut self.flat);
+        for node in &mut scratch.nodes {
+            node.numbers += old.numbers;
+        }
+        let range = |first: u32, count: u32| first as usize..(first + count) as usize;
+        flat.nodes[range(old.first, old.count)].copy_from_slice(&scratch.nodes);
+        flat.ids[range(old.first, old.count)].copy_from_slice(&scratch.ids);
+        flat.numbers[range(old.numbers, old.rows)].copy_from_slice(&scratch.numbers);
+        flat.components[at] = super::Component { first: old.first, numbers: old.numbers, ..new };
+        true
+    }
+}
+
+/// Whether only the values of an object differ, so that the arrays keep their form.
+fn is_small(old: &Node, new: &Node) -> bool {
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative);
+    let (NodeKind::Object(a), NodeKind::Object(b)) = (&old.kind, &new.kind) else { return false };
+    form(old) == form(new) && a.material == b.material
+}
+
+/// The node at the top of the component that the node at `index` is part of.
+fn outermost(scene: &Scene, index: usize) -> Option<usize> {
+    let mut path = vec![index];
+    let mut at = scene.nodes()[index].parent;
+    while let Some(id) = at {
+        let parent = scene.index_of(id)?;
+        path.push(parent);
+        at = scene.nodes()[parent].parent;
+    }
+    path.into_iter().rev().find(|i| !is_opened(&scene.nodes()[*i]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flat::flatten;
+    use crate::gallery;
+    use crate::scene::{ParamValue, Shape};
+
+    #[test]
+    fn a_changed_object_gives_the_same_arrays_as_a_fresh_start() {
+        for (name, mut scene) in gallery::all() {
+            let mut flattener = Flattener::default();
+            flattener.flatten(&scene, 0.0).unwrap();
+            for index in (0..scene.nodes().len()).step_by(5) {
+                let mut node = Node::clone(&scene.nodes()[index]);
+                node.transform.translation.x += 0.01;
+                if let NodeKind::Object(object) = &mut node.kind
+                    && let Shape::Sphere { radius } = object.shape
+                {
+                    object.shape.set_value(0, ParamValue::Scalar(radius * 1.1));
+                }
+                scene.replace(node).unwrap();
+                let again = flattener.flatten(&scene, 0.0).unwrap();
+                assert_eq!(*again, flatten(&scene, 0.0).unwrap(), "{name}, node {index}");
+            }
+        }
+    }
+}
