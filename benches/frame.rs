@@ -33,6 +33,7 @@ fn drag(c: &mut Criterion) {
     let mut flattener = Flattener::default();
     let mut shown = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = shown.default_camera(&[], 16.0 / 9.0);
+    ten_thousand::warm(&mut renderer, &shown, &camera, SIZE);
     let mut begin = |flat: &FlatScene| {
         renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
         renderer.kernels().built()

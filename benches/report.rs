@@ -76,7 +76,8 @@ fn drag() -> String {
     let mut shown = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = shown.default_camera(&[], 16.0 / 9.0);
     let size = [1280, 720];
-    renderer.begin(Slot::Full, &shown, &[], &camera, size, OverlaySettings::default()).expect("a frame");
+    renderer.set_method(Method::Auto);
+    ten_thousand::warm(renderer, &shown, &camera, size);
     let built = renderer.kernels().built();
     let mut rows: [(&str, Vec<Duration>); 4] =
         [("edit", vec![]), ("flatten", vec![]), ("upload and plan", vec![]), ("all", vec![])];

@@ -2,6 +2,9 @@
 
 use glam::DVec3;
 use isolith::document::{Document, Edit};
+use isolith::flat::FlatScene;
+use isolith::geometry::Camera;
+use isolith::render::{OverlaySettings, Renderer, Slot};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
 };
@@ -36,6 +39,17 @@ pub fn document() -> (Document, NodeId) {
         }
     }
     (Document::new(scene), dragged)
+}
+
+/// Begins frames until every kernel of the scene is built, as they are after a moment in the editor.
+pub fn warm(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u32; 2]) {
+    loop {
+        renderer.begin(Slot::Full, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
+        if renderer.kernels().building() == 0 {
+            return;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
 }
 
 /// The edit that one frame of a drag makes.
