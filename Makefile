@@ -46,7 +46,7 @@ setup:
 define SETUP
 PATH="$PATH:/sbin:/usr/sbin"
 if ! command -v cargo >/dev/null; then
-    echo "Rust is missing. Install it from https://rustup.rs, then run make again." >&2
+    echo "Rust is missing. Install it with rustup, then run make again." >&2
     exit 1
 fi
 if [ "$(uname -s)" != Linux ]; then

@@ -13,6 +13,7 @@ mod golden;
 mod gpu;
 mod meshes;
 mod random_scene;
+mod renderer;
 mod saving;
 mod shaders;
 mod tidy;

@@ -4,6 +4,7 @@ mod canvas;
 mod window;
 
 use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -13,6 +14,7 @@ use thiserror::Error;
 use crate::document::Document;
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
+use crate::render::Gpu;
 use window::Window;
 
 /// Why the window closed otherwise than by the artist's wish.
@@ -26,8 +28,13 @@ pub enum AppError {
     Lost(usize),
 }
 
-/// The editor between two windows: here while none is open.
-type Parked = Rc<RefCell<Option<Editor>>>;
+/// What outlives a window.
+#[derive(Clone)]
+struct Shared {
+    editor: Rc<RefCell<Editor>>,
+    /// The device of the window that is open or was last.
+    gpu: Rc<RefCell<Option<Gpu>>>,
+}
 
 /// What the window left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,10 +54,10 @@ pub fn run(document: Document) -> Result<(), AppError> {
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
     editor.set_recent(crate::document::RecentFiles::load());
-    let parked: Parked = Rc::new(RefCell::new(Some(editor)));
+    let shared = Shared { editor: Rc::new(RefCell::new(editor)), gpu: Rc::default() };
     let mut losses: Vec<Instant> = Vec::new();
     loop {
-        if open_window(&parked)? == Ending::Closed {
+        if open_window(&shared)? == Ending::Closed {
             return Ok(());
         }
         losses.retain(|at| at.elapsed() < Duration::from_secs(60));
@@ -58,25 +65,28 @@ pub fn run(document: Document) -> Result<(), AppError> {
         if losses.len() > MAX_LOSSES {
             return Err(AppError::Lost(losses.len()));
         }
-        if let Some(editor) = parked.borrow_mut().as_mut() {
-            editor.report(Message::warning("The graphics device was lost and has been opened again. Nothing is lost."));
-        }
+        let message = "The graphics device was lost and has been opened again. Nothing else is lost.";
+        shared.editor.borrow_mut().report(Message::warning(message));
     }
 }
 
-fn open_window(parked: &Parked) -> Result<Ending, AppError> {
-    let ending = Rc::new(RefCell::new(Ending::Closed));
-    let (for_window, its_ending) = (parked.clone(), ending.clone());
-    let result = eframe::run_native(
-        "isolith",
-        options(),
-        Box::new(move |context| Ok(Box::new(Window::new(context, for_window, its_ending)?))),
-    );
-    let ending = *ending.borrow();
-    match (result, ending) {
-        (_, Ending::DeviceLost) => Ok(ending),
-        (Ok(()), Ending::Closed) => Ok(ending),
-        (Err(error), Ending::Closed) => Err(AppError::Window(error.to_string())),
+fn open_window(shared: &Shared) -> Result<Ending, AppError> {
+    let for_window = shared.clone();
+    // Painting on a lost device panics in places. The editor is not part of what is torn then.
+    let result = catch_unwind(AssertUnwindSafe(|| {
+        eframe::run_native(
+            "isolith",
+            options(),
+            Box::new(move |context| Ok(Box::new(Window::new(context, for_window)?))),
+        )
+    }));
+    if shared.gpu.borrow().as_ref().is_some_and(Gpu::is_lost) {
+        return Ok(Ending::DeviceLost);
+    }
+    match result {
+        Ok(Ok(())) => Ok(Ending::Closed),
+        Ok(Err(error)) => Err(AppError::Window(error.to_string())),
+        Err(panic) => resume_unwind(panic),
     }
 }
 

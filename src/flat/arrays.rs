@@ -204,7 +204,7 @@ pub struct FlatScene {
 }
 
 /// Largest stack for which an evaluator exists, see [`Component::stack`].
-pub const MAX_STACK: u32 = 32;
+pub const MAX_STACK: u32 = 128;
 /// Most entries in one component: an invocation visits them seven times, twice each, for a normal and a
 /// material, and lavapipe ends every loop after 65 535 iterations.
 pub const MAX_COMPONENT_NODES: usize = 4_200;

@@ -80,6 +80,8 @@ impl Gpu {
 
     /// Whether the device is gone; a new one must be opened.
     pub fn is_lost(&self) -> bool {
+        // The loss is told of when the device is polled; an error of that shows in the health, too.
+        let _ = self.device.poll(wgpu::PollType::Poll);
         self.health.lost.load(Ordering::Acquire)
     }
 
