@@ -14,9 +14,10 @@ use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot};
 use crate::scene::NodeId;
 
 /// A picture that takes longer than this is made coarse first.
-const AT_ONCE: Duration = Duration::from_millis(40);
-/// Time given to the full picture in each frame of the window.
-const PER_FRAME: Duration = Duration::from_millis(24);
+const AT_ONCE: Duration = Duration::from_millis(60);
+/// Time given to the full picture in each frame of the window: on a software driver painting the window
+/// takes about as long itself, so less would mostly repaint.
+const PER_FRAME: Duration = Duration::from_millis(60);
 /// A full picture that takes longer than this waits for the kernels that are being built: they make it
 /// many times faster than the interpreter would.
 const WORTH_WAITING: Duration = Duration::from_millis(1500);
