@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
 use isolith::flat::{FlatScene, flatten};
-use isolith::render::kernel::{Evaluator, Features, Structure};
+use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
@@ -46,6 +46,12 @@ fn compare(flat: &FlatScene, component: usize, points: &[DVec3], values: &[f32])
 
 /// Compares every component of the scene at as many points as make 4 096 together.
 fn agree(what: &str, scene: &Scene, random: &mut Random) {
+    agree_skipping(what, scene, random, Skipping::Branches);
+}
+
+/// The same; specialised kernels skip what is out of reach in the given way.
+fn agree_skipping(what: &str, scene: &Scene, random: &mut Random, skipping: Skipping) {
+    let options = Options { skipping, ..Options::default() };
     let flat = flatten(scene, 0.0).unwrap();
     let share = POINTS.div_ceil(flat.components.len().max(1));
     for (index, component) in flat.components.iter().enumerate() {
@@ -53,7 +59,7 @@ fn agree(what: &str, scene: &Scene, random: &mut Random) {
         let mut evaluators = vec![Evaluator::Interpreted(Features::of(&flat))];
         evaluators.extend(Structure::of(&flat, component).map(Evaluator::Specialised));
         for evaluator in &evaluators {
-            let values = probe::field(&shared().gpu, &flat, index, &points, evaluator).unwrap();
+            let values = probe::field(&shared().gpu, &flat, index, &points, evaluator, options).unwrap();
             compare(&flat, index, &points, &values)
                 .unwrap_or_else(|e| panic!("{what}, {evaluator:?}: {e}\n{:?}", flat.numbers));
         }
@@ -106,6 +112,27 @@ fn random_trees_agree() {
     for seed in 100..112 {
         let scene = tree(seed, Recipe { blends: true, stretching: seed % 2 == 0 });
         agree(&format!("tree {seed}"), &scene, &mut Random::new(seed));
+    }
+}
+
+/// Long rows of operands are skipped run by run, at every place and in both ways to skip.
+#[test]
+fn runs_agree() {
+    for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Loops)] {
+        let mut random = Random::new(seed);
+        let mut scene = Scene::new();
+        let blend = Blend { kernel: BlendKernel::Quadratic, radius: 0.1 };
+        let group = Group { operator: Operator::Union, blend };
+        let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
+        for i in 0..45 {
+            let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
+            let node = object(kind.default_shape()).at(random.point(2.0)).scaled(DVec3::splat(0.5));
+            add(&mut scene, Some(parent), if i < 30 { node } else { node.negative() });
+        }
+        let flat = flatten(&scene, 0.0).unwrap();
+        assert!(flat.nodes.iter().filter(|n| n.is_run()).count() >= 6, "nothing is skipped here");
+        assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a kernel");
+        agree_skipping("runs", &scene, &mut random, skipping);
     }
 }
 

@@ -5,6 +5,7 @@ mod window;
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -15,6 +16,7 @@ use crate::document::Document;
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
 use crate::render::Gpu;
+use crate::scene::Scene;
 use window::Window;
 
 /// Why the window closed otherwise than by the artist's wish.
@@ -108,13 +110,15 @@ fn options() -> eframe::NativeOptions {
     }
 }
 
-/// The shipped scenes, for the File menu.
+/// The shipped scenes, for the File menu: from their files where the program is started beside them,
+/// because meshes are looked for beside the file.
 fn examples() -> Vec<Example> {
+    let open = |name: &str, scene: &Scene| match Path::new("scenes").join(name).with_extension("json") {
+        file if file.exists() => Document::open(&file).map_err(|error| error.to_string()),
+        _ => Ok(Document::new(scene.clone())),
+    };
     gallery::all()
         .into_iter()
-        .map(|(name, scene)| Example {
-            name: name.replace('-', " "),
-            open: Box::new(move || Ok(Document::new(scene.clone()))),
-        })
+        .map(|(name, scene)| Example { name: name.replace('-', " "), open: Box::new(move || open(name, &scene)) })
         .collect()
 }

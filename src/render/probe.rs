@@ -20,13 +20,14 @@ pub fn field(
     index: usize,
     points: &[DVec3],
     evaluator: &Evaluator,
+    options: Options,
 ) -> Result<Vec<f32>, RenderError> {
     let Gpu { device, queue, .. } = gpu;
     let stage = ShaderStages::COMPUTE;
     let layouts = Layouts::new(device);
     let own = layout(device, "probe", &[entry(0, stage, uniform(false))]);
     let data = layout(device, "probe data", &[entry(0, stage, read_storage()), entry(1, stage, write_storage())]);
-    let text = source("probe.wgsl", evaluator, Options::default())?;
+    let text = source("probe.wgsl", evaluator, options)?;
     let pipeline = compute_pipeline(device, "probe", text, "probe_field", &[&own, &layouts.scene, &data]);
     let uploaded = |bytes: &[u8]| {
         let mut mirror = Mirror::rows(device, "probe");
