@@ -309,7 +309,9 @@ impl Renderer {
             let mut end = first;
             while end < frame.plan.pieces.len() {
                 let more = effort + frame.plan.pieces[end].effort;
-                if end > first && self.pace.seconds(more) > DISPATCH_TARGET.as_secs_f64() {
+                // How long a later round takes nobody can foresee: it stands alone.
+                let alone = frame.plan.pieces[end].work.round > 0;
+                if end > first && (alone || self.pace.seconds(more) > DISPATCH_TARGET.as_secs_f64()) {
                     break;
                 }
                 effort = more;
@@ -319,8 +321,9 @@ impl Renderer {
             frame.seconds_done += frame.pace.seconds(effort);
             self.submit(frame, first..end);
             self.gpu.wait()?;
-            // The first dispatch of a kernel may include its compilation, which says nothing of its pace.
-            if !frame.uses_fresh_kernel(first..end) {
+            // The first dispatch of a kernel may include its compilation, and a later round marches an unknown
+            // few of its rays: neither says anything of the pace.
+            if !frame.uses_fresh_kernel(first..end) && frame.plan.pieces[first].work.round == 0 {
                 self.pace.learn(effort, submitted.elapsed());
             }
             frame.next = end;

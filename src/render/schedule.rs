@@ -15,7 +15,7 @@ use crate::geometry::Camera;
 /// Pixels along a side of a tile: a workgroup's.
 pub const TILE: u32 = 8;
 /// A dispatch is cut so that it is expected to take about this long; measured times scatter by a factor
-/// of two or three around that, so it stays below 50 ms.
+/// of two or three around that, so nearly all stay below 50 ms.
 pub const DISPATCH_TARGET: Duration = Duration::from_millis(16);
 /// Loop iterations that one invocation may do, with room below lavapipe's 65 535.
 pub const MAX_ITERATIONS: u32 = 60_000;
@@ -23,6 +23,10 @@ pub const MAX_ITERATIONS: u32 = 60_000;
 pub const MAX_STEPS: u32 = 4_096;
 /// Most steps of a ray through a component without bounds, towards the horizon.
 pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
+
+/// Steps of a ray in one dispatch over a component without bounds: towards the horizon thousands may be
+/// needed, which in one dispatch took two seconds.
+pub const STEPS_UNBOUNDED: u32 = 512;
 
 /// Which pass a piece of work belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -188,11 +192,12 @@ impl Plan {
     ) {
         let component = &flat.components[index];
         let leaves = f64::from(component.count);
-        let max_steps = if component.bounds.is_finite() { MAX_STEPS } else { MAX_STEPS_UNBOUNDED };
+        let (max_steps, at_once) =
+            if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
         // The interpreter takes an iteration for each entry and one for each group that ends; a specialised
         // kernel at most one for each group or run of at least four entries.
         let per_evaluation = if specialised { 1 + component.count / 2 } else { 2 * component.count + 2 };
-        let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, max_steps);
+        let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, at_once);
         let rounds = max_steps.div_ceil(steps);
         rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, specialised), |rect| {
             let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
