@@ -14,10 +14,42 @@
 // For each list the arguments of an indirect dispatch: tiles, 1, 1, evaluations made here.
 @group(2) @binding(2) var<storage, read_write> tile_counts: array<atomic<u32>>;
 
-// Steps before the cone leaves the rest to the rays.
+// Steps of a cone before it leaves the rest to the rays.
 const CONE_STEPS: u32 = 48u;
-// The cone stops where the surface may be nearer to its border than this, in footprints.
+// A cone stops where the surface may be nearer to its border than this, in footprints.
 const CONE_CLEARANCE: f32 = 0.25;
+// What stands for a quarter that needs no rays.
+const CONE_PASSED: f32 = 3e38;
+
+struct Cone {
+    axis: vec3f,
+    // The tangent of the angle to the farthest ray, and the cosine of that angle.
+    spread: f32,
+    cosine: f32,
+}
+
+// Around the rays through the centres of `side` by `side` pixels.
+fn cone_around(pixel: vec2u, side: u32) -> Cone {
+    let first = view_direction(pixel);
+    let last = view_direction(pixel + side - 1u);
+    let left = view_direction(pixel + vec2u(0u, side - 1u));
+    let right = view_direction(pixel + vec2u(side - 1u, 0u));
+    let axis = normalize(first + last + left + right);
+    let cosine = min(min(dot(axis, first), dot(axis, last)), min(dot(axis, left), dot(axis, right)));
+    return Cone(axis, sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine * 1.0001, cosine);
+}
+
+// Where any ray of the square may enter the component's half space.
+fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
+    let far = pixel + TILE - 1u;
+    return min(
+        min(bounds_half_space_entry(component, view_direction(pixel)), bounds_half_space_entry(component, view_direction(far))),
+        min(
+            bounds_half_space_entry(component, view_direction(vec2u(pixel.x, far.y))),
+            bounds_half_space_entry(component, view_direction(vec2u(far.x, pixel.y))),
+        ),
+    );
+}
 
 @compute @workgroup_size(64)
 fn cone(@builtin(global_invocation_id) id: vec3u) {
@@ -30,46 +62,61 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let component = components[work.component];
     field_begin(component);
 
-    // The axis, and the tangent of the angle to the farthest ray: rays go through pixel centres.
-    let first = view_direction(place * TILE);
-    let last = view_direction(place * TILE + TILE - 1u);
-    let left = view_direction(place * TILE + vec2u(0u, TILE - 1u));
-    let right = view_direction(place * TILE + vec2u(TILE - 1u, 0u));
-    let axis = normalize(first + last + left + right);
-    let least_cosine = min(min(dot(axis, first), dot(axis, last)), min(dot(axis, left), dot(axis, right)));
-    let spread = sqrt(max(1.0 - least_cosine * least_cosine, 0.0)) / least_cosine * 1.0001;
-
     // Where a ray of the cone can be inside: the box, grown by the cone's radius at its far end.
+    var cone = cone_around(place * TILE, TILE);
     let far_corner = max(abs(component.low - component.eye), abs(component.high - component.eye));
-    let interval = bounds_interval(component, axis, spread * min(length(far_corner), 1e9));
-    let entry = min(
-        min(bounds_half_space_entry(component, first), bounds_half_space_entry(component, last)),
-        min(bounds_half_space_entry(component, left), bounds_half_space_entry(component, right)),
-    );
-    // Distances along a ray are longer than along the axis, by at most this.
+    let interval = bounds_interval(component, cone.axis, cone.spread * min(length(far_corner), 1e9));
+    let entry = cone_half_space_entry(component, place * TILE);
+    // Distances along a ray are longer than along the axis, by at most the cosine.
     let farthest = textureLoad(farthest_target, place, 0).x;
     let exit = min(min(interval.y, view.far), farthest);
-    var t = max(max(interval.x, view.near), entry) * least_cosine;
+    var t = max(max(interval.x, view.near), entry) * cone.cosine;
     if t > exit {
         return;
     }
+    // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
+    // because the field is called from one place.
+    var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
+    var whole = t;
+    var quarter = 0u;
+    var of_tile = true;
     var steps = 0u;
-    loop {
-        let f = field(component.eye + axis * t);
+    var evaluations = 0u;
+    while quarter < 4u {
+        let f = field(component.eye + cone.axis * t);
         steps += 1u;
-        let clear = f - spread * t;
-        if clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, work.max_steps) {
-            break;
+        evaluations += 1u;
+        let clear = f - cone.spread * t;
+        let stopped = clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, work.max_steps / 5u + 1u);
+        let next = t + clear / (1.0 + cone.spread);
+        if !stopped && next <= exit {
+            t = next;
+            continue;
         }
-        t += clear / (1.0 + spread);
-        if t > exit {
-            break;
+        if of_tile {
+            if !stopped {
+                break;
+            }
+            of_tile = false;
+            whole = t * cone.cosine;
+        } else {
+            if stopped {
+                start[quarter] = t * cone.cosine;
+            }
+            quarter += 1u;
+        }
+        if quarter < 4u {
+            let corner = place * TILE + vec2u(quarter & 1u, quarter >> 1u) * (TILE / 2u);
+            cone = cone_around(corner, TILE / 2u);
+            t = whole;
+            steps = 0u;
         }
     }
-    cone_count(steps);
-    if t <= exit {
+    cone_count(evaluations);
+    let nearest = min(min(start[0], start[1]), min(start[2], start[3]));
+    if nearest < CONE_PASSED {
         let slot = atomicAdd(&tile_counts[work.list * 4u], 1u);
-        tiles[work.first_tile + slot] = Tile(place.x | (place.y << 16u), t);
+        tiles[work.first_tile + slot] = Tile(place.x | (place.y << 16u), start);
     }
 }
 

@@ -31,6 +31,8 @@ const LEAP: f32 = 1.0;
 const CREEP: f32 = 1e-3;
 // Longest creeping step: a chord shorter than this may be missed.
 const CREEP_LONGEST: f32 = 0.03;
+// How fast the expected slope of the field follows the one that was met, from 0 to 1.
+const ADAPTION: f32 = 0.6;
 
 var<workgroup> farthest: atomic<u32>;
 
@@ -42,22 +44,49 @@ struct March {
 }
 
 // From `start` to a hit, to beyond `exit`, or through `max_steps` evaluations.
+//
+// Steps are as long as the sphere around the next point is expected to touch the one around this (Ban and
+// Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023); where the two leave a gap, the step
+// is taken back to the first one's end.
 fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) -> March {
     let reach = length(component.eye);
     var t = start;
-    // The last point known to be outside with nothing before it, and its field.
+    // The last point known to be outside with nothing before it, its field, and how far it is free behind it.
     var safe = vec2f(start, 0.0);
+    var free = 0.0;
+    // The expected slope of the field along the ray.
+    var slope = -1.0;
+    var relaxed = false;
     var leaping = false;
     var may_leap = true;
     var creep = 0.0;
     // The nearest point known to be inside, and its field; NEVER until there is one.
     var inside = vec2f(NEVER, 0.0);
+    // Where a leap ended outside, and the field there; NEVER for none.
+    var ahead = vec2f(NEVER, 0.0);
     for (var step = 0u; step < work.max_steps; step += 1u) {
-        let f = field(component.eye + direction * t);
+        var f = field(component.eye + direction * t);
+        var advance = t - safe.x;
+        if relaxed && safe.y + abs(f) < advance {
+            relaxed = false;
+            slope = -1.0;
+            t = safe.x + free;
+            continue;
+        }
+        relaxed = false;
+        if f > 0.0 && t + f + CREEP_LONGEST * view.footprint * t >= ahead.x - ahead.y {
+            // The two spheres meet: the leap was right, and what it found counts.
+            safe = vec2f(t, f);
+            t = ahead.x;
+            f = ahead.y;
+            advance = t - safe.x;
+            may_leap = true;
+        }
+        ahead.x = NEVER;
         let footprint = view.footprint * t;
         let bracketed = inside.x < NEVER;
         // Fall of the field per distance since the last point; 0 at the first one.
-        let fall = select(0.0, (safe.y - f) / (t - safe.x), t > safe.x && safe.y > 0.0);
+        let fall = select(0.0, (safe.y - f) / advance, advance > 0.0 && safe.y > 0.0);
         if f < 0.0 || bracketed {
             // The sign has changed: close in by secants between the last point outside and the first
             // inside. After a leap the two may be footprints apart, too far for a single one.
@@ -76,24 +105,29 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
         if fall > STEEP && f < HIT * footprint {
             return March(t + f / fall, true, true, step + 1u);
         }
-        if leaping {
+        if leaping && safe.y + f + CREEP_LONGEST * footprint < advance {
             // No surface where the line led: go on from the sphere that was left too early.
             leaping = false;
             may_leap = false;
-            t = safe.x + safe.y;
-        } else {
-            let near = max(CREEP * footprint, SPACING * (t + reach));
-            let longest = max(near, CREEP_LONGEST * footprint);
-            creep = select(0.0, clamp(creep * 2.0, near, longest), f < near);
-            leaping = may_leap && fall > STEEP && f < LEAP * footprint && f > near;
-            may_leap = true;
-            safe = vec2f(t, f);
-            // A leap ends a little inside, where the sign tells.
-            t += select(max(f, creep), f / fall + 0.25 * HIT * footprint, leaping);
+            ahead = vec2f(t, f);
+            t = safe.x + free;
+            continue;
         }
-        if t > exit && !leaping {
+        let near = max(CREEP * footprint, SPACING * (t + reach));
+        let longest = max(near, CREEP_LONGEST * footprint);
+        creep = select(0.0, clamp(creep * 2.0, near, longest), f < near);
+        leaping = may_leap && fall > STEEP && f < LEAP * footprint && f > near;
+        may_leap = true;
+        slope = select(-1.0, mix(slope, -fall, ADAPTION), advance > 0.0);
+        safe = vec2f(t, f);
+        free = max(f, creep);
+        if t + free > exit && !leaping {
             return March(t, false, true, step + 1u);
         }
+        let wide = f * 2.0 / (1.0 - min(slope, 0.9));
+        relaxed = !leaping && wide > free * 1.01;
+        // A leap ends a little inside, where the sign tells.
+        t += select(select(free, wide, relaxed), f / fall + 0.25 * HIT * footprint, leaping);
     }
     return March(safe.x, false, false, work.max_steps);
 }
@@ -101,11 +135,10 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
 @compute @workgroup_size(8, 8)
 fn trace(
     @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_id) local: vec3u,
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = tiles[work.first_tile + group.x];
-    let pixel = tile_pixel(tile) + local.xy;
+    let pixel = tile_pixel(tile) + tile_place(lane);
     let component = components[work.component];
     field_begin(component);
     var depth = 0.0;
@@ -114,7 +147,7 @@ fn trace(
         let direction = view_direction(pixel);
         let interval = bounds_interval(component, direction, 0.0);
         let exit = min(min(interval.y, view.far), depth);
-        var start = max(max(interval.x, view.near), max(tile.start, bounds_half_space_entry(component, direction)));
+        var start = max(max(interval.x, view.near), max(tile.start[tile_quad(lane)], bounds_half_space_entry(component, direction)));
         if work.round > 0u {
             start = textureLoad(march_target, pixel).x;
             start = select(start, NEVER, start == MARCH_ENDED);

@@ -3,6 +3,7 @@
 //! The architecture is described in `src/README.md`.
 
 pub mod app;
+pub mod bench;
 pub mod cli;
 pub mod document;
 pub mod editor;

@@ -15,6 +15,16 @@ fn placed_moved(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
     return p + vec3f(x.w, y.w, z.w);
 }
 
+// Derivatives along the leaf's own axes, turned to those of the component.
+fn placed_gradient(d: vec4f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
+    return x.xyz * d.x + y.xyz * d.y + z.xyz * d.z;
+}
+
+// The same where the leaf is only moved.
+fn placed_gradient_moved(d: vec4f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
+    return d.xyz;
+}
+
 // The least that the field of a group, or of each operand of a run, can be: see `Row` on the CPU.
 // Nothing is known of it within the bounds.
 fn placed_bounds(p: vec3f, joint: vec4f, center: vec4f, half: vec4f) -> f32 {

@@ -5,7 +5,10 @@
 // Sorensen, "Computing a trust region step", 1983). The unknown is s = t + (least r)², so that no two
 // large numbers are subtracted. From the normal n at the point so found, n·p − |r n| is the distance
 // to the tangent plane of that normal: wrong only by the square of the error in n, for zero half axes too.
+// At the best n the gradient is n itself, so n takes no part in differentiation.
 // The half axes are sorted first; points on the planes of symmetry are moved off them by 1e-7.
+
+#include "sdf/held.wgsl"
 
 fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     var r = a.xyz;
@@ -13,10 +16,10 @@ fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     if r.x > r.y { r = r.yxz; q = q.yxz; }
     if r.y > r.z { r = r.xzy; q = q.xzy; }
     if r.x > r.y { r = r.yxz; q = q.yxz; }
-    let scale = max(max(r.z, max(q.x, max(q.y, q.z))), 1e-30);
+    let scale = held_f32(max(max(r.z, max(q.x, max(q.y, q.z))), 1e-30));
     r /= scale;
     q /= scale;
-    let off = max(q, vec3f(1e-7));
+    let off = held_vec3(max(q, vec3f(1e-7)));
     let gap = (r - r.x) * (r + r.x);
     let w = r * off;
     let least = max(max(w.x, max(w.y - gap.y, w.z - gap.z)), max(length(w) - gap.z, 1e-30));

@@ -3,6 +3,8 @@
 // In the positive octant: on the face where the plane's foot lies within it, else on the nearest edge
 // (idea: Quilez, "octahedron distance").
 
+#include "sdf/held.wgsl"
+
 fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let q = abs(p);
     let excess = q.x + q.y + q.z - a.x;
@@ -17,6 +19,7 @@ fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     } else if q.z == least {
         edge = q.xy;
     }
-    let t = clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x);
+    // The nearest point of the edge: where it moves along the edge, the distance does not follow it.
+    let t = held_f32(clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x));
     return length(vec3f(least, edge.x - a.x + t, edge.y - t));
 }

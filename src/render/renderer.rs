@@ -146,7 +146,7 @@ const WORK_STRIDE: usize = 256;
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
 /// Bytes of a tile in a list.
-const TILE_BYTES: usize = 8;
+const TILE_BYTES: usize = 20;
 /// Words that are counted for each component.
 const COUNTS: usize = 4;
 /// Invocations in a workgroup of the cone pass.
@@ -155,10 +155,14 @@ const CONE_GROUP: u32 = 64;
 impl Renderer {
     /// A renderer on `gpu`. Its interpreter knows no shape until a scene brings one.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
+        let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
+        Self::with_options(gpu, Options { counting: false, skipping })
+    }
+
+    /// The same with kernels of these options.
+    pub fn with_options(gpu: &Gpu, options: Options) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
-        let options = Options { counting: false, skipping };
         let storage = |label| Mirror::storage(device, label);
         let renderer = Self {
             kernels: Kernels::new(gpu, &layouts, options)?,
@@ -333,6 +337,15 @@ impl Renderer {
         }
     }
 
+    /// Works on the frame up to the first piece of `stage`, in one submission, and waits.
+    pub fn run_until(&mut self, frame: &mut Frame, stage: Stage) -> Result<(), RenderError> {
+        let rest = frame.next..frame.plan.pieces.len();
+        let end = rest.clone().find(|i| *i > rest.start && frame.plan.pieces[*i].stage == stage).unwrap_or(rest.end);
+        self.submit(frame, frame.next..end);
+        frame.next = end;
+        Ok(self.gpu.wait()?)
+    }
+
     /// The picture in a slot: complete once its frame is done, and another texture after a
     /// [`Renderer::begin`] of another size.
     pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
@@ -349,6 +362,14 @@ impl Renderer {
             reason: format!("{count} rays did not come to an end within the steps allowed; they show what lies behind"),
         });
         Ok(warnings.collect())
+    }
+
+    /// exp
+    pub fn counts(&self, frame: &Frame) -> Result<[u64; 4], RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
+        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * 4)?;
+        let sum = |w: &[u32], i: usize| w.chunks_exact(4).map(|c| u64::from(c[i])).sum::<u64>();
+        Ok([sum(&words, 1), sum(&words, 2), sum(&lists, 3), sum(&lists, 0)])
     }
 
     fn slot(&self, slot: Slot) -> &SlotState {

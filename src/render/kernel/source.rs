@@ -1,10 +1,12 @@
 //! WGSL source of each pass: includes resolved, and what depends on the evaluator generated.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 use thiserror::Error;
 
+use super::dual::{DUAL_PRELUDE, dual};
 use super::specialise::{Fold, specialise};
 use super::{Evaluator, Options};
 use crate::flat::{FlatScene, MAX_STACK};
@@ -67,6 +69,21 @@ impl Features {
         out.push_str("        default: { return 1e30; }\n    }\n}\n");
         out
     }
+
+    /// The generated file: the same choice of the gradients.
+    fn gradients_wgsl(&self) -> String {
+        let mut out = String::new();
+        for kind in &self.shapes {
+            writeln!(out, "{}", gradient_include(*kind)).expect("strings take all");
+        }
+        out.push_str("fn shape_gradient(shape: u32, p: vec3f, a: vec4f, b: vec4f) -> vec3f {\n    switch shape {\n");
+        for kind in &self.shapes {
+            writeln!(out, "        case {}u: {{ return dual_{}(p, a, b).xyz; }}", *kind as u32, kind.function())
+                .expect("strings take all");
+        }
+        out.push_str("        default: { return vec3f(0.0); }\n    }\n}\n");
+        out
+    }
 }
 
 /// Why a shader could not be put together.
@@ -85,6 +102,25 @@ pub enum ShaderError {
 /// The line that includes a shape's function.
 pub(super) fn shape_include(kind: ShapeKind) -> String {
     format!("#include \"sdf/{}.wgsl\"", kind.function().trim_start_matches("sdf_"))
+}
+
+/// The line that includes a shape's function together with its gradient.
+pub(super) fn gradient_include(kind: ShapeKind) -> String {
+    format!("#include \"generated/dual/{}.wgsl\"", kind.function())
+}
+
+/// A shape's function with its gradient; derived once, however many kernels hold it.
+fn gradient_wgsl(function: &str) -> Option<String> {
+    static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
+    let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = derived.get(function) {
+        return Some(text.clone());
+    }
+    let text = plain_source(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_")?)).ok()?;
+    // A shape without a derivative has no kernel; a test derives every one.
+    let dual = dual(&text, function).ok()?;
+    derived.insert(function.to_owned(), dual.clone());
+    Some(dual)
 }
 
 /// The whole source of the shader `entry`, each file included once, before its first user.
@@ -149,7 +185,12 @@ impl Resolver<'_> {
             ("generated/surface.wgsl", Evaluator::Specialised(structure)) => {
                 Some(specialise(structure, Fold::Surface, self.options))
             }
-            _ => None,
+            ("generated/gradients.wgsl", Evaluator::Interpreted(features)) => Some(features.gradients_wgsl()),
+            ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
+            _ => {
+                let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;
+                gradient_wgsl(function).map(|text| format!("#include \"generated/dual.wgsl\"\n{text}"))
+            }
         }
     }
 }

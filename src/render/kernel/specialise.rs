@@ -1,7 +1,6 @@
 //! Straight-line WGSL for a structure. Emits calls only: no formula of a distance stands here.
 
-use std::fmt::Write as _;
-
+use super::shares::shares;
 use super::structure::{Entry, EntryKind, Structure};
 use super::{Options, Skipping};
 use crate::flat::{Join, LEAF_ROWS};
@@ -12,7 +11,7 @@ use crate::scene::ShapeKind;
 pub enum Fold {
     /// `field`: the distance.
     Value,
-    /// `surface`: distance, leaf and material.
+    /// `surface`: distance, leaf, gradient and material.
     Surface,
 }
 
@@ -50,13 +49,18 @@ impl Writer<'_> {
         shapes.dedup();
         for shape in shapes {
             self.line(&super::source::shape_include(shape));
+            if self.fold == Fold::Surface {
+                self.line(&super::source::gradient_include(shape));
+            }
         }
         if self.fold == Fold::Surface {
             self.line("#include \"field/surface.wgsl\"");
             self.line("var<private> surface_first: u32;");
         }
-        // Copied once: a uniform read at each use costs several times as much on a processor.
-        for row in 0..rows {
+        // Copied once: a uniform read at each use costs several times as much on a processor. A surface is
+        // evaluated once only, and reads where it needs to.
+        let copied = if self.fold == Fold::Value { rows } else { 0 };
+        for row in 0..copied {
             self.line(&format!("var<private> q{row}: vec4f;"));
         }
         let begin = if self.fold == Fold::Value { "field_begin" } else { "surface_begin" };
@@ -64,34 +68,44 @@ impl Writer<'_> {
         if self.fold == Fold::Surface {
             self.line("    surface_first = component.first;");
         }
-        for row in 0..rows {
+        for row in 0..copied {
             self.line(&format!("    q{row} = rows[{row}u];"));
         }
         self.line("}");
     }
 
     fn body(&mut self) {
-        match self.fold {
-            Fold::Value => self.line("fn field(p: vec3f) -> f32 {\n    var s0 = 0.0;"),
-            Fold::Surface => self.line(
-                "fn surface(p: vec3f) -> Surface {\n    var s0 = Surface(0.0, 0u, vec3f(0.0), 0.0, vec3f(0.0), 1.0);",
-            ),
+        let surface = self.fold == Fold::Surface;
+        if surface {
+            self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
+            for row in 0..self.structure.rows() {
+                self.line(&format!("    let q{row} = rows[{row}u];"));
+            }
+            for (at, entry) in self.structure.entries.iter().enumerate() {
+                if entry.join != Join::First && entry.kind != EntryKind::Run {
+                    self.line(&format!("    var w{at} = 0.0;"));
+                }
+            }
+        } else {
+            self.line("fn field(p: vec3f) -> f32 {\n    var s0 = 0.0;");
         }
         let mut row = 0;
-        // Groups and runs under way: where each ends, its entry, its first row, whether it may be skipped.
+        // Groups and runs under way: where each begins, its entry, its first row, whether it may be skipped.
         let mut open: Vec<(usize, Entry, usize, bool)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
             if let EntryKind::Leaf(shape) = entry.kind {
-                let value = self.leaf(at, entry, shape, row);
-                self.join(level, entry, row, &value);
+                let value = self.leaf(entry, shape, row);
+                self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
                 self.open_block(level, at, entry, row, skipped);
                 if entry.kind == EntryKind::Nested {
                     level += 1;
-                    let kind = if self.fold == Fold::Value { "f32" } else { "Surface" };
-                    self.line(&format!("    var s{level}: {kind};"));
+                    self.line(&format!("    var s{level}: f32;"));
+                    if surface {
+                        self.line(&format!("    var l{level}: u32;"));
+                    }
                 }
                 open.push((at, *entry, row, skipped));
             }
@@ -103,63 +117,52 @@ impl Writer<'_> {
                 open.pop();
                 if group.kind == EntryKind::Nested {
                     level -= 1;
-                    self.join(level, &group, first, &format!("s{}", level + 1));
+                    let [value, leaf] = ["s", "l"].map(|name| format!("{name}{}", level + 1));
+                    self.join(level, begin, &group, first, &value, &leaf);
                 }
                 self.close_block(level, begin, skipped);
             }
         }
-        self.line("    return s0;\n}");
+        if surface {
+            let text = shares(self.structure, self.options.skipping);
+            self.line(&text);
+            self.line("    return Surface(s0, surface_first + l0, gradient, diffuse, emission);\n}");
+        } else {
+            self.line("    return s0;\n}");
+        }
     }
 
     /// The value of a leaf whose rows begin at `row`.
-    fn leaf(&self, at: usize, entry: &Entry, shape: ShapeKind, row: usize) -> String {
-        let placed = if entry.moved { "placed_moved" } else { "placed" };
-        let parameter = |i: usize| {
-            if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
-        };
-        let mut value = format!(
-            "{}({placed}(p, q{}, q{}, q{}), {}, {})",
-            shape.function(),
-            row + 1,
-            row + 2,
-            row + 3,
-            parameter(0),
-            parameter(1)
-        );
-        if !entry.unscaled {
-            write!(value, " * q{row}.y").expect("strings take all");
-        }
-        match self.fold {
-            Fold::Value => value,
-            Fold::Surface => format!("surface_leaf(surface_first + {at}u, {value})"),
-        }
+    fn leaf(&self, entry: &Entry, shape: ShapeKind, row: usize) -> String {
+        let value = format!("{}({})", shape.function(), arguments(entry, shape, row));
+        if entry.unscaled { value } else { format!("{value} * q{row}.y") }
     }
 
-    /// Joins `value` to the accumulator of this level.
-    fn join(&mut self, level: usize, entry: &Entry, row: usize, value: &str) {
+    /// Joins `value` to the accumulator of this level; `leaf` is the one that it comes from.
+    fn join(&mut self, level: usize, at: usize, entry: &Entry, row: usize, value: &str, leaf: &str) {
+        let surface = self.fold == Fold::Surface;
         let name = match entry.join {
             Join::First => {
                 self.line(&format!("    s{level} = {value};"));
+                if surface {
+                    self.line(&format!("    l{level} = {leaf};"));
+                }
                 return;
             }
             Join::Union => "union",
             Join::Intersection => "intersection",
             Join::Difference => "difference",
         };
-        let call = |a: &str, b: &str| match entry.kernel {
-            Some(kernel) => format!("op_{name}({a}, {b}, q{row}.x, {kernel}u)"),
-            None => format!("op_hard_{name}({a}, {b})"),
+        let joined = match entry.kernel {
+            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}.x, {kernel}u)"),
+            None => format!("op_hard_{name}(s{level}, {value})"),
         };
-        match self.fold {
-            Fold::Value => {
-                let joined = call(&format!("s{level}"), value);
-                self.line(&format!("    s{level} = {joined}.x;"));
-            }
-            Fold::Surface => {
-                let joined = call(&format!("s{level}.distance"), "operand.distance");
-                self.line(&format!("    {{ let operand = {value};"));
-                self.line(&format!("      s{level} = surface_join(s{level}, operand, {joined}); }}"));
-            }
+        if surface {
+            self.line(&format!("    {{ let joined = {joined};"));
+            self.line(&format!("      l{level} = select(l{level}, {leaf}, joined.y > 0.5);"));
+            self.line(&format!("      w{at} = joined.y; s{level} = joined.x; }}"));
+        } else {
+            self.line(&format!("    s{level} = {joined}.x;"));
         }
     }
 
@@ -170,10 +173,9 @@ impl Writer<'_> {
             self.line("    {");
             return;
         }
-        let so_far = self.so_far(level);
         let bound = match entry.join {
-            Join::Union => format!("{so_far} + q{row}.x"),
-            _ => format!("q{row}.x - {so_far}"),
+            Join::Union => format!("s{level} + q{row}.x"),
+            _ => format!("q{row}.x - s{level}"),
         };
         let reached = format!("placed_bounds(p, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         match self.options.skipping {
@@ -185,13 +187,18 @@ impl Writer<'_> {
     fn close_block(&mut self, level: usize, at: usize, skipped: bool) {
         if skipped && self.options.skipping == Skipping::Loops {
             // Never true, but no compiler knows that: it would make the loop an `if` again.
-            let again = format!("    once{at} = {} < -1e37;", self.so_far(level));
-            self.line(&again);
+            self.line(&format!("    once{at} = s{level} < -1e37;"));
         }
         self.line("    }");
     }
+}
 
-    fn so_far(&self, level: usize) -> String {
-        if self.fold == Fold::Value { format!("s{level}") } else { format!("s{level}.distance") }
-    }
+/// The point in the leaf's own space, and the parameters of its shape.
+pub(super) fn arguments(entry: &Entry, shape: ShapeKind, row: usize) -> String {
+    let placed = if entry.moved { "placed_moved" } else { "placed" };
+    let parameter = |i: usize| {
+        if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
+    };
+    let (a, b) = (parameter(0), parameter(1));
+    format!("{placed}(p, q{}, q{}, q{}), {a}, {b}", row + 1, row + 2, row + 3)
 }

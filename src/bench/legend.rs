@@ -1,0 +1,95 @@
+//! What colours and shapes mean, in a column beside the plane, and the words above it.
+
+use plotters::style::RGBColor;
+
+use super::axes::{INK, SOFT_INK};
+use super::canvas::{Failed, LEFT, Sheet, fitting};
+use super::marks::{RADIUS, cross, mark, ring};
+
+/// The line through what no other point beats.
+pub(super) const FRONTIER: RGBColor = RGBColor(0x9f, 0xc5, 0xe8);
+/// How wide that line is, in pixels.
+pub(super) const FRONTIER_WIDTH: f64 = 6.0;
+/// Dash and gap of the lines for bounds, in pixels.
+pub(super) const DASH: [f64; 2] = [9.0, 6.0];
+/// Dot and gap of the lines that guide the eye, in pixels.
+pub(super) const DOTS: [f64; 2] = [1.5, 3.5];
+
+/// Size of the letters of the title, in pixels.
+pub(super) const TITLE_EM: f64 = 23.0;
+/// Room for the title, in pixels.
+pub(super) const TITLE_WIDTH: f64 = 1056.0;
+
+const EM: f64 = 15.0;
+const LINE: f64 = 24.0;
+/// From the middle of a sign to its words.
+const GAP: f64 = 24.0;
+
+/// What stands before the words of an entry.
+pub(super) enum Sign<'a> {
+    /// A stroke in the colour of a method.
+    Stroke(RGBColor),
+    /// The shape of a quality.
+    Shape(&'a str),
+    /// The line through what no other point beats.
+    Frontier,
+    /// The ring around the default.
+    Ring,
+    /// The cross over what is wrong.
+    Cross,
+    /// A dashed line.
+    Dashed(RGBColor),
+    /// A dotted line.
+    Dotted(RGBColor),
+    /// Nothing: the words go on from the entry above.
+    More,
+}
+
+/// A group of entries below a heading.
+pub(super) struct Group<'a> {
+    /// What the entries are; empty for a gap without words.
+    pub heading: &'a str,
+    /// The signs and what they mean.
+    pub entries: Vec<(Sign<'a>, String)>,
+}
+
+/// Draws the groups from `at` downwards, into a column of this width.
+pub(super) fn legend(sheet: &Sheet<'_>, at: (f64, f64), width: f64, groups: &[Group<'_>]) -> Result<(), Failed> {
+    let (x, mut y) = at;
+    for group in groups.iter().filter(|group| !group.entries.is_empty()) {
+        if !group.heading.is_empty() {
+            sheet.text(group.heading, (x, y), EM, SOFT_INK, LEFT)?;
+            y += LINE;
+        }
+        for (sign, words) in &group.entries {
+            draw_sign(sheet, (x + 11.0, y), sign)?;
+            sheet.text(&fitting(words, EM, width - 11.0 - GAP), (x + 11.0 + GAP, y), EM, INK, LEFT)?;
+            y += LINE;
+        }
+        y += LINE * 0.6;
+    }
+    Ok(())
+}
+
+fn draw_sign(sheet: &Sheet<'_>, at: (f64, f64), sign: &Sign<'_>) -> Result<(), Failed> {
+    let ends = [(at.0 - 12.0, at.1), (at.0 + 12.0, at.1)];
+    match sign {
+        Sign::Stroke(color) => sheet.line(&ends, *color, 5.0),
+        Sign::Shape(quality) => mark(sheet, at, quality, SOFT_INK),
+        Sign::Frontier => {
+            sheet.line(&ends, FRONTIER, FRONTIER_WIDTH)?;
+            sheet.disc(at, RADIUS + 2.0, FRONTIER)
+        }
+        Sign::Ring => ring(sheet, at, INK),
+        Sign::Cross => cross(sheet, at),
+        Sign::Dashed(color) => sheet.dashed(ends, *color, 2.0, DASH),
+        Sign::Dotted(color) => sheet.dashed(ends, *color, 1.5, DOTS),
+        Sign::More => Ok(()),
+    }
+}
+
+/// The title of a chart and the line below it, cut at the edge of the chart.
+pub(super) fn title(sheet: &Sheet<'_>, title: &str, below: &str) -> Result<(), Failed> {
+    sheet.text(&fitting(title, TITLE_EM, TITLE_WIDTH), (22.0, 32.0), TITLE_EM, INK, LEFT)?;
+    sheet.text(&fitting(below, EM, TITLE_WIDTH), (22.0, 60.0), EM, SOFT_INK, LEFT)
+}

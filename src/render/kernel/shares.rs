@@ -1,0 +1,100 @@
+//! The second half of a specialised surface: what each leaf has its share in. The fold has left the weight
+//! of every joint in `w…`; gradient and material are the sums over the leaves of what they are there, each
+//! times the product of the weights on its way (reverse mode: a joint's weight is its derivative). So only
+//! leaves that the surface really follows are looked at, most often one.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use super::Skipping;
+use super::specialise::arguments;
+use super::structure::{Entry, EntryKind, Structure};
+use crate::flat::Join;
+
+/// The text that declares and sums `gradient`, `diffuse` and `emission`.
+pub fn shares(structure: &Structure, skipping: Skipping) -> String {
+    let rows = structure.entries.iter().scan(0, |row, entry| {
+        let first = *row;
+        *row += entry.rows();
+        Some(first)
+    });
+    let mut writer = Shares { structure, rows: rows.collect(), skipping, out: String::new() };
+    writer.out.push_str(
+        "    var gradient = vec3f(0.0);\n    var diffuse = vec4f(0.0);\n    var emission = vec4f(0.0);\n    \
+         var rest0 = 1.0;\n",
+    );
+    writer.siblings(0..structure.entries.len(), 0, 1.0);
+    writer.out
+}
+
+struct Shares<'a> {
+    structure: &'a Structure,
+    rows: Vec<usize>,
+    skipping: Skipping,
+    out: String,
+}
+
+impl Shares<'_> {
+    /// The operands in `range`, last first: each takes its weight of what those behind it have left. `sign`
+    /// is -1 in what is cut away.
+    fn siblings(&mut self, range: Range<usize>, level: usize, sign: f32) {
+        let mut operands = Vec::new();
+        let mut at = range.start;
+        while at < range.end {
+            let entry = &self.structure.entries[at];
+            if entry.kind == EntryKind::Run {
+                // Has no value of its own: its operands are siblings.
+                at += 1;
+                continue;
+            }
+            operands.push(at);
+            at += entry.extent as usize;
+        }
+        for at in operands.into_iter().rev() {
+            let entry = self.structure.entries[at];
+            let share = if entry.join == Join::First { format!("rest{level}") } else { format!("rest{level} * w{at}") };
+            self.line(&format!("    let share{at} = {share};"));
+            if entry.join != Join::First {
+                self.line(&format!("    rest{level} -= share{at};"));
+            }
+            let sign = if entry.join == Join::Difference { -sign } else { sign };
+            self.operand(at, &entry, level, sign);
+        }
+    }
+
+    /// One operand, left out where it has no share.
+    fn operand(&mut self, at: usize, entry: &Entry, level: usize, sign: f32) {
+        match self.skipping {
+            Skipping::Branches => self.line(&format!("    if share{at} > 0.0 {{")),
+            Skipping::Loops => self.line(&format!("    var has{at} = share{at} > 0.0;\n    while has{at} {{")),
+        }
+        if let EntryKind::Leaf(shape) = entry.kind {
+            let row = self.rows[at];
+            let moved = if entry.moved { "placed_gradient_moved" } else { "placed_gradient" };
+            let factor = if entry.unscaled { format!("{sign:?}") } else { format!("{sign:?} * q{row}.y") };
+            self.line(&format!(
+                "    gradient += share{at} * {factor} * {moved}(dual_{}({}), q{}, q{}, q{});",
+                shape.function(),
+                arguments(entry, shape, row),
+                row + 1,
+                row + 2,
+                row + 3
+            ));
+            self.line(&format!("    let material{at} = materials[nodes[surface_first + {at}u].material];"));
+            self.line(&format!("    diffuse += share{at} * vec4f(material{at}.albedo, material{at}.specular);"));
+            self.line(&format!("    emission += share{at} * vec4f(material{at}.emission, material{at}.shininess);"));
+        } else {
+            self.line(&format!("    var rest{} = share{at};", level + 1));
+            self.siblings(at + 1..at + entry.extent as usize, level + 1, sign);
+        }
+        if self.skipping == Skipping::Loops {
+            // Never true, but no compiler knows that: it would make the loop an `if` again.
+            self.line(&format!("    has{at} = s0 < -1e37;"));
+        }
+        self.line("    }");
+    }
+
+    fn line(&mut self, text: &str) {
+        writeln!(self.out, "{text}").expect("strings take all");
+    }
+}
