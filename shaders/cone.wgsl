@@ -77,8 +77,11 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
     // because the field is called from one place.
     var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
+    if !CONES {
+        start = array<f32, 4>(t, t, t, t);
+    }
     var whole = t;
-    var quarter = 0u;
+    var quarter = select(4u, 0u, CONES);
     var of_tile = true;
     var steps = 0u;
     var evaluations = 0u;

@@ -21,16 +21,16 @@
 const MARCH_ENDED: f32 = -1.0;
 // All lengths below are in footprints of a pixel at the place in question.
 // Where a straight approach at an angle that is not grazing is this near, its line is followed to the end.
-const HIT: f32 = 1e-3;
+const HIT: f32 = 1e-3 * FINENESS;
 // The least fall of the field per distance that is not grazing.
 const STEEP: f32 = 0.2;
 // Below this, a straight approach is tried to its end at once, and taken back if there is no surface.
 const LEAP: f32 = 1.0;
 // At grazing angles, steps shorter than this creep until they see the sign change: a ray that only
 // comes near is never taken for a hit.
-const CREEP: f32 = 1e-3;
+const CREEP: f32 = 1e-3 * FINENESS;
 // Longest creeping step: a chord shorter than this may be missed.
-const CREEP_LONGEST: f32 = 0.03;
+const CREEP_LONGEST: f32 = 0.03 * CREEP_SHARE;
 // How fast the expected slope of the field follows the one that was met, from 0 to 1.
 const ADAPTION: f32 = 0.6;
 

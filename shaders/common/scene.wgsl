@@ -24,9 +24,16 @@ struct Component {
     low: vec3f,
     end: u32,
     high: vec3f,
-    padding: u32,
+    // First of its rows.
+    numbers: u32,
     // Inside where dot(xyz, p) + w <= 0; all zero where there is none.
     half_space: vec4f,
+    // The grid of cells, for evaluators that use one: lower corner, side of a cell at the top, how many there
+    // are along each axis, where they stand in `lists`.
+    grid_low: vec3f,
+    grid_side: f32,
+    grid_counts: vec3u,
+    lists: u32,
 }
 
 const GROUP: u32 = 0xffffu;

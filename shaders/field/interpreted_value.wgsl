@@ -43,7 +43,7 @@ fn field(p: vec3f) -> f32 {
             }
             at += node.extent;
         } else {
-            so_far = join_value(node, joint.x, so_far, leaf_distance(node, joint, p));
+            so_far = join_value(node, joint.x, so_far, leaf_distance(kind, node.numbers, joint, p));
             at += 1u;
         }
         // Every group that ends here joins what stood before it.

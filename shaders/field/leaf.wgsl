@@ -5,15 +5,17 @@
 #include "sdf/op.wgsl"
 #include "generated/shapes.wgsl"
 
-// Distance from `p` (relative to the component's origin) to the leaf, safe to step by.
-fn leaf_distance(node: FlatNode, joint: vec4f, p: vec3f) -> f32 {
-    let x = numbers[node.numbers + 1u];
-    let y = numbers[node.numbers + 2u];
-    let z = numbers[node.numbers + 3u];
-    let local = vec3f(dot(x.xyz, p) + x.w, dot(y.xyz, p) + y.w, dot(z.xyz, p) + z.w);
-    let a = numbers[node.numbers + LEAF_ROWS];
-    let b = numbers[node.numbers + LEAF_ROWS + 1u];
-    return shape_distance(node.code & 0xffffu, local, a, b) * joint.y;
+// Where `p` (relative to the component's origin) stands in the leaf's own space; its rows begin at `row`.
+fn leaf_place(row: u32, p: vec3f) -> vec3f {
+    let x = numbers[row + 1u];
+    let y = numbers[row + 2u];
+    let z = numbers[row + 3u];
+    return vec3f(dot(x.xyz, p) + x.w, dot(y.xyz, p) + y.w, dot(z.xyz, p) + z.w);
+}
+
+// Distance from `p` to the leaf, safe to step by. `joint` is the first of its rows.
+fn leaf_distance(shape: u32, row: u32, joint: vec4f, p: vec3f) -> f32 {
+    return shape_distance(shape, leaf_place(row, p), row + LEAF_ROWS) * joint.y;
 }
 
 // Whether the group or run at `node` cannot change the value `so_far`: its field is at least slope times the
@@ -26,5 +28,5 @@ fn field_group_is_out_of_reach(node: FlatNode, joint: vec4f, so_far: f32, p: vec
     let out = (kind == JOIN_UNION && least >= so_far + joint.x)
         || (kind == JOIN_DIFFERENCE && least >= joint.x - so_far);
     // Within its bounds nothing is known of the group's field: it may be far below 0.
-    return out && least > 0.0;
+    return SKIPPING && out && least > 0.0;
 }

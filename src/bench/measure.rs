@@ -1,10 +1,44 @@
-//! Times of a frame on the device.
+//! One scene by one method: how long it takes, what it evaluates, how wrong it is. Only what finds the visible
+//! surface is measured (depth, normal, material), not light.
 
+use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use crate::flat::FlatScene;
+use thiserror::Error;
+
+use super::row::Row;
+use super::way::Way;
+use crate::flat::trace::TraceError;
+use crate::flat::truth::{Truth, truth};
+use crate::flat::{Accuracy, Buffers, FlatScene, FlattenError, flatten, flatten_whole};
 use crate::geometry::Camera;
-use crate::render::{Frame, OverlaySettings, RenderError, Renderer, Slot};
+use crate::mesh::{MeshLibrary, TriangleMesh};
+use crate::render::kernel::{Options, Quality};
+use crate::render::{Counts, Frame, Gpu, Method, OverlaySettings, RenderError, Renderer, Slot};
+use crate::scene::Scene;
+
+/// Why something could not be measured.
+#[derive(Debug, Error)]
+pub enum BenchError {
+    /// The scene is beyond a limit.
+    #[error(transparent)]
+    Scene(#[from] FlattenError),
+    /// The picture could not be made.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The truth could not be found.
+    #[error(transparent)]
+    Truth(#[from] TraceError),
+    /// A measurement is no number.
+    #[error(transparent)]
+    NotFinite(#[from] super::row::NotFinite),
+}
+
+/// Most runs of a measurement.
+const RUNS: usize = 7;
+/// Fewer where they take longer than this together.
+const ENOUGH: Duration = Duration::from_millis(1500);
 
 /// Time of all threads of the program so far.
 pub fn cpu_time() -> Duration {
@@ -12,22 +46,183 @@ pub fn cpu_time() -> Duration {
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// exp
-pub fn parts(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Vec<(Duration, Duration)>, RenderError> {
-    let mut out = vec![];
-    for _ in 0..3 {
-        let a = (cpu_time(), Instant::now());
-        let mut frame: Frame = renderer.begin(Slot::Full, flat, &[], camera, size, OverlaySettings::default())?;
-        let b = (cpu_time(), Instant::now());
-        renderer.run_until(&mut frame, crate::render::schedule::Stage::Surface)?;
-        let c = (cpu_time(), Instant::now());
-        renderer.run_until(&mut frame, crate::render::schedule::Stage::Shade)?;
-        let d = (cpu_time(), Instant::now());
-        renderer.run_until(&mut frame, crate::render::schedule::Stage::Mesh)?;
-        let e = (cpu_time(), Instant::now());
-        let n = renderer.counts(&frame)?.map(|v| v as f64 / f64::from(size[0] * size[1]));
-        if n[0] > 0.0 { eprintln!("march evals/px {:.3} rays/px {:.3} cone evals/px {:.3} tiles/px {:.4}", n[0], n[1], n[2], n[3]); }
-        out = vec![(b.0 - a.0, b.1 - a.1), (c.0 - b.0, c.1 - b.1), (d.0 - c.0, d.1 - c.1), (e.0 - d.0, e.1 - d.1)];
+/// A scene to measure.
+pub struct Subject {
+    /// Its name.
+    pub name: String,
+    /// The scene.
+    pub scene: Scene,
+    /// Its arrays.
+    pub flat: FlatScene,
+    /// Its meshes.
+    pub meshes: Vec<Option<Arc<TriangleMesh>>>,
+    /// Who looks.
+    pub camera: Camera,
+}
+
+impl Subject {
+    /// A scene as it is seen by itself in a square picture.
+    ///
+    /// # Errors
+    /// The scene is beyond a limit.
+    pub fn new(name: &str, scene: Scene, library: &mut MeshLibrary) -> Result<Self, BenchError> {
+        let flat = flatten(&scene, 0.0)?;
+        let (meshes, _) = flat.load_meshes(library);
+        let camera = flat.default_camera(&meshes, 1.0);
+        Ok(Self { name: name.to_owned(), scene, flat, meshes, camera })
     }
-    Ok(out)
+}
+
+/// The truth of each scene, found once.
+#[derive(Default)]
+pub struct Truths {
+    found: HashMap<(String, u32), Arc<Truth>>,
+}
+
+impl Truths {
+    /// The truth of `subject` at `size` pixels a side.
+    ///
+    /// # Errors
+    /// A ray has no end.
+    pub fn of(&mut self, subject: &Subject, size: u32) -> Result<Arc<Truth>, BenchError> {
+        let key = (subject.name.clone(), size);
+        if let Some(found) = self.found.get(&key) {
+            return Ok(found.clone());
+        }
+        let made = Arc::new(truth(&subject.flat, &subject.meshes, &subject.camera, [size, size], &|_| ())?);
+        self.found.insert(key, made.clone());
+        Ok(made)
+    }
+}
+
+/// Measures on one device.
+pub struct Bench {
+    gpu: Gpu,
+}
+
+/// What the runs of one renderer gave.
+struct Runs {
+    cpu: Vec<Duration>,
+    wall: Vec<Duration>,
+    buffers: Buffers,
+    counts: Counts,
+}
+
+impl Bench {
+    /// On this device.
+    pub fn new(gpu: Gpu) -> Self {
+        Self { gpu }
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Measures `subject` by `way`; errors against `truth`.
+    ///
+    /// # Errors
+    /// The scene is too large for this way, or the device fails.
+    pub fn measure(
+        &self,
+        subject: &Subject,
+        way: Way,
+        quality: Quality,
+        size: u32,
+        truth: &Truth,
+    ) -> Result<Row, BenchError> {
+        let whole = if way.is_whole() { Some(flatten_whole(&subject.scene, 0.0)?) } else { None };
+        let flat = whole.as_ref().unwrap_or(&subject.flat);
+        let timed = self.run(subject, flat, way, quality, size, false)?;
+        let counted = self.run(subject, flat, way, quality, size, true)?;
+        let error = Accuracy::against(&timed.buffers, truth, subject.camera.footprint(f64::from(size)));
+        let pixels = f64::from(size) * f64::from(size);
+        let Counts { steps, cone_steps, .. } = counted.counts;
+        // The limit counts only what it evaluates itself.
+        let cones = if way == Way::Limit { 0 } else { cone_steps };
+        let ms = |times: &[Duration]| times.iter().map(|t| t.as_secs_f64() * 1e3).collect::<Vec<_>>();
+        let (cpu, wall) = (ms(&timed.cpu), ms(&timed.wall));
+        let row = Row {
+            scene: subject.name.clone(),
+            nodes: subject.scene.nodes().len(),
+            method: way.name().to_owned(),
+            size,
+            cpu_ms: median(&cpu),
+            wall_ms: median(&wall),
+            steps_per_px: steps as f64 / pixels,
+            evals_per_px: (steps + cones) as f64 / pixels,
+            hit_miss_share: error.hit_miss_share(),
+            depth_p50: error.depth_p50,
+            depth_p99: error.depth_p99,
+            depth_max: error.depth_max,
+            normal_p50: error.normal_p50,
+            normal_p99: error.normal_p99,
+            quality: quality.name().to_owned(),
+            cpu_ms_spread: spread(&cpu),
+        };
+        row.check()?;
+        Ok(row)
+    }
+
+    fn run(
+        &self,
+        subject: &Subject,
+        flat: &FlatScene,
+        way: Way,
+        quality: Quality,
+        size: u32,
+        counting: bool,
+    ) -> Result<Runs, BenchError> {
+        let options = Options { quality, counting, ..Renderer::options(&self.gpu) };
+        let mut renderer = Renderer::with_options(&self.gpu, way.options(options))?;
+        renderer.set_method(way.method());
+        let begin = |renderer: &mut Renderer| {
+            let overlay = OverlaySettings::default();
+            let mut frame =
+                renderer.begin(Slot::Full, flat, &subject.meshes, &subject.camera, [size, size], overlay)?;
+            frame.skip_shading();
+            Ok::<_, RenderError>(frame)
+        };
+        // Kernels are built and the pace is learnt before anything counts.
+        let mut frame = begin(&mut renderer)?;
+        while way.method() == Method::Auto && renderer.kernels_building() > 0 {
+            std::thread::sleep(Duration::from_millis(5));
+            frame = begin(&mut renderer)?;
+        }
+        renderer.advance(&mut frame, Duration::MAX)?;
+        let started = Instant::now();
+        let (mut cpu, mut wall) = (Vec::new(), Vec::new());
+        while cpu.is_empty() || (!counting && cpu.len() < RUNS && started.elapsed() < ENOUGH) {
+            let (cpu_start, start);
+            let mut next: Frame;
+            if way == Way::Limit {
+                next = begin(&mut renderer)?;
+                renderer.advance(&mut next, Duration::MAX)?;
+                renderer.gpu().wait().map_err(RenderError::from)?;
+                renderer.forget_counts(&next);
+                (cpu_start, start) = (cpu_time(), Instant::now());
+                next = renderer.begin_limit(&next);
+            } else {
+                (cpu_start, start) = (cpu_time(), Instant::now());
+                next = begin(&mut renderer)?;
+            }
+            renderer.advance(&mut next, Duration::MAX)?;
+            cpu.push(cpu_time() - cpu_start);
+            wall.push(start.elapsed());
+            frame = next;
+        }
+        let counts = renderer.counts(&frame)?;
+        Ok(Runs { cpu, wall, buffers: renderer.read(&frame)?, counts })
+    }
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
+}
+
+fn spread(values: &[f64]) -> f64 {
+    let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick).unwrap_or(0.0));
+    high - low
 }

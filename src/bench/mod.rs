@@ -1,3 +1,32 @@
-//! Run time against error: every scene by every method, measured and drawn.
+//! Run time against error: every scene by every method, measured, as lines, tables and charts.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `measure` | one scene by one method: times, counts, errors |
+//! | `way` | the methods |
+//! | `row`, `table` | what was measured, as JSON, CSV and Markdown |
+//! | `chart`, `growth`, `frontier` | run time against error, run time against nodes |
+//! | `canvas`, `axes`, `legend`, `labels`, `marks` | what the charts are drawn with |
 
-pub mod measure;
+mod axes;
+mod canvas;
+mod chart;
+mod frontier;
+mod growth;
+mod labels;
+mod legend;
+mod marks;
+mod measure;
+mod row;
+#[cfg(test)]
+mod samples;
+mod table;
+mod way;
+
+pub use chart::time_against_error;
+pub use frontier::frontier;
+pub use growth::growth;
+pub use measure::{BenchError, Bench, Subject, Truths, cpu_time};
+pub use row::{NotFinite, Row};
+pub use table::{csv, markdown, noise};
+pub use way::Way;

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `render` | `isolith render`: a picture without a window |
 //! | `outputs` | buffers → files |
+//! | `bench` | `isolith bench`: run time against error |
 //! | `check` | `isolith check`: what a scene holds, what is wrong with it |
 //! | `progress` | the bar, and Ctrl-C |
 //! | `failure` | what can go wrong, with its exit code |
 
+mod bench;
 mod check;
 mod failure;
 mod outputs;
@@ -56,9 +58,9 @@ enum Command {
     /// Say what a scene file holds and what is wrong with it
     #[command(after_help = EXIT_CODES)]
     Check(check::CheckArguments),
-    /// exp
-    Exp { /// scenes
-        leaves: Vec<usize> },
+    /// Measure how long scenes take and how exact they are, by every method
+    #[command(after_help = EXIT_CODES)]
+    Bench(bench::BenchArguments),
     /// Print the JSON schema of scene files
     Schema,
     /// Write the example scenes into a folder
@@ -89,7 +91,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         None => open(arguments.scene.as_deref()),
         Some(Command::Render(arguments)) => render::render(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Exp { leaves }) => exp(&leaves),
+        Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
         Some(Command::Gallery { folder }) => write_gallery(&folder),
         Some(Command::Probe) => probe(),
@@ -119,27 +121,6 @@ fn open(scene: Option<&Path>) -> Result<(), Failure> {
 fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let set = |name: &str| variable(name).is_some_and(|value| !value.is_empty());
     !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY")
-}
-
-fn exp(leaves: &[usize]) -> Result<(), Failure> {
-    use crate::render::{Method, Renderer};
-    let gpu = Gpu::headless().map_err(|e| Failure::Graphics(e.to_string()))?;
-    for n in leaves {
-        let scene = crate::gallery::random(*n, 5);
-        let flat = crate::flat::flatten(&scene, 0.0).map_err(|e| Failure::Graphics(e.to_string()))?;
-        let camera = flat.default_camera(&[], 1.0);
-        for method in if std::env::var("INT").is_ok() { vec![Method::Interpreted, Method::Specialised] } else { vec![Method::Specialised] } {
-            let skipping = crate::render::kernel::Skipping::Loops;
-            let counting = std::env::var("COUNT").is_ok();
-            let mut r = Renderer::with_options(&gpu, crate::render::kernel::Options { counting, skipping }).map_err(|e| Failure::Graphics(e.to_string()))?;
-            r.set_method(method);
-            let t = std::time::Instant::now();
-            let parts = crate::bench::measure::parts(&mut r, &flat, &camera, [512, 512]).map_err(|e| Failure::Graphics(e.to_string()))?;
-            let txt: Vec<String> = parts.iter().map(|(c, w)| format!("{:.1}/{:.1}", c.as_secs_f64() * 1e3, w.as_secs_f64() * 1e3)).collect();
-            say(&format!("{n} {method:?} comps {} begin,trace,surface,shade cpu/wall ms: {} total {:?}", flat.components.len(), txt.join(" "), t.elapsed()))?;
-        }
-    }
-    Ok(())
 }
 
 fn write_gallery(folder: &Path) -> Result<(), Failure> {

@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::emit::emit;
-use super::operands::{Operand, collect, fold_bounds};
+use super::operands::{Operand, collect, fold_bounds, group_of};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 
@@ -36,6 +36,36 @@ pub struct FlattenError {
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     flatten_with_cuts(scene, time).map(|(flat, _)| flat)
+}
+
+/// The arrays with all components joined into one, as a renderer has them that knows of no components: what
+/// the benches compare with.
+pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
+    let mut flat = flatten(scene, time)?;
+    flat.nodes.clear();
+    flat.numbers.clear();
+    flat.ids.clear();
+    flat.components.clear();
+    let mut materials =
+        Materials { scene, index: flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect() };
+    let components = collect(scene, &mut |_, _| {});
+    let mut whole: Vec<Operand<'_>> = Vec::new();
+    for mut operands in components.operands {
+        let is_plain = operands[1..].iter().all(|o| o.join == Join::Union && o.blend.radius == 0.0);
+        if is_plain {
+            for operand in &mut operands {
+                operand.join = Join::Union;
+            }
+            whole.extend(operands);
+        } else {
+            whole.push(Operand { join: Join::Union, ..group_of(operands) });
+        }
+    }
+    if let Some(first) = whole.first_mut() {
+        first.join = Join::First;
+        add_component(&mut flat, &mut materials, &whole)?;
+    }
+    Ok(flat)
 }
 
 /// The same, and whether something is cut away from several components.

@@ -132,12 +132,7 @@ impl<'a> Collector<'a, '_> {
                 match fold.len() {
                     0 => None,
                     1 => fold.into_iter().next(),
-                    _ => {
-                        let Enclosure { bounds, skip, slope } = fold_bounds(&fold);
-                        let blend = Blend::HARD;
-                        let value = Value::Fold(fold);
-                        Some(Operand { node, outermost, join: Join::First, blend, bounds, skip, slope, value })
-                    }
+                    _ => Some(Operand { node, outermost, ..group_of(fold) }),
                 }
             }
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => {
@@ -187,6 +182,13 @@ impl<'a> Collector<'a, '_> {
             reason: "is negative but comes first in its group, so there is nothing to cut it from".into(),
         });
     }
+}
+
+/// A fold as one operand, named after its first one.
+pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
+    let Enclosure { bounds, skip, slope } = fold_bounds(&fold);
+    let Operand { node, outermost, .. } = fold[0];
+    Operand { node, outermost, join: Join::First, blend: Blend::HARD, bounds, skip, slope, value: Value::Fold(fold) }
 }
 
 /// A fold that starts with `operand`: a group's fold simply goes on.

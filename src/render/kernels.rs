@@ -12,18 +12,30 @@ use super::kernel::{Evaluator, Features, Options, ShaderError, Structure};
 use super::layouts::Layouts;
 use super::passes::field::{FieldLayouts, Kernel};
 use super::warm::Warmer;
-use crate::flat::FlatScene;
+use crate::flat::{Component, FlatScene};
 
 /// How components are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Specialised kernels where they are ready, built in the background; the interpreter until then.
+    /// Specialised kernels where they are ready, built in the background; until then, and for what is too large
+    /// for one, pruned lists, or the interpreter where there are none.
     #[default]
     Auto,
     /// The interpreter for everything.
     Interpreted,
+    /// Pruned lists where a component has them, the interpreter for the rest.
+    Pruned,
     /// Specialised kernels for everything that is not too large for one; waits until they are built.
     Specialised,
+    /// A kernel for each component with its numbers written into it, however large: what the benches compare with.
+    Generated,
+}
+
+impl Method {
+    /// Whether components get kernels of their own.
+    fn has_own_kernels(self) -> bool {
+        matches!(self, Self::Auto | Self::Specialised | Self::Generated)
+    }
 }
 
 /// Most specialised kernels that are kept; the least recently used go first.
@@ -34,6 +46,7 @@ pub const MAX_KERNELS: usize = 1024;
 pub struct Kernels {
     shared: Arc<Shared>,
     interpreter: Arc<Kernel>,
+    pruned: Option<Arc<Kernel>>,
     features: Features,
     specialised: HashMap<u128, Slot>,
     worker: Option<Worker>,
@@ -69,15 +82,26 @@ enum State {
 pub struct Choice {
     /// Its pipelines.
     pub kernel: Arc<Kernel>,
-    /// Whether it knows the component's structure.
-    pub specialised: bool,
+    /// How it goes about it.
+    pub walk: Walk,
+}
+
+/// How a kernel goes through a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Walk {
+    /// All entries of the subtree-extent array.
+    Entries,
+    /// The pruned list of a cell.
+    List,
+    /// Straight on: the code is the component's structure.
+    Straight,
 }
 
 type Finished = (u128, Result<Kernel, String>);
 
 #[derive(Debug)]
 struct Worker {
-    orders: Option<Sender<(u128, Structure)>>,
+    orders: Option<Sender<(u128, Evaluator)>>,
     finished: Receiver<Finished>,
     waiting: usize,
     is_unwanted: Arc<AtomicBool>,
@@ -95,6 +119,7 @@ impl Kernels {
         Ok(Self {
             shared,
             interpreter,
+            pruned: None,
             features,
             specialised: HashMap::new(),
             worker: None,
@@ -142,51 +167,64 @@ impl Kernels {
             let Some(Slot { state: State::Ready(kernel), .. }) = key.and_then(|k| self.specialised.get(&k)) else {
                 continue;
             };
-            *choice = Choice { kernel: kernel.clone(), specialised: true };
+            *choice = Choice { kernel: kernel.clone(), walk: Walk::Straight };
         }
     }
 
     /// The key of each component's structure; `None` where it gets no kernel of its own.
     pub fn keys(flat: &FlatScene, method: Method) -> Vec<Option<u128>> {
-        let key = |c| if method == Method::Interpreted { None } else { Structure::key(flat, c) };
+        let key = |c| match method {
+            Method::Generated => Some(Structure::baked_key(flat, c)),
+            _ if method.has_own_kernels() => Structure::key(flat, c),
+            _ => None,
+        };
         flat.components.iter().map(key).collect()
     }
 
-    /// The kernel for each component; `keys` from [`Kernels::keys`].
+    /// The kernel for each component; `keys` from [`Kernels::keys`], `has_lists` tells which components have pruned
+    /// lists.
     pub fn choose(
         &mut self,
         flat: &FlatScene,
         keys: &[Option<u128>],
         method: Method,
+        has_lists: &[bool],
     ) -> Result<Vec<Choice>, ShaderError> {
         self.collect();
         self.clock += 1;
         let mut choices = Vec::with_capacity(flat.components.len());
-        let mut needs_interpreter = false;
         for (component, key) in flat.components.iter().zip(keys) {
-            let ready = match *key {
+            choices.push(match *key {
                 None => None,
-                Some(key) => self.specialised(key, method, || Structure::of(flat, component)),
-            };
-            needs_interpreter |= ready.is_none();
-            choices.push(ready);
+                Some(key) => self.specialised(key, method, || match method {
+                    Method::Generated => Some(Evaluator::Generated(
+                        Structure::whole(flat, component),
+                        component_rows(flat, component),
+                    )),
+                    _ => Structure::of(flat, component).map(Evaluator::Specialised),
+                }),
+            });
         }
-        if needs_interpreter {
-            self.learn_features(flat)?;
+        let prunes = |i: usize| method != Method::Interpreted && has_lists.get(i) == Some(&true);
+        let open = |i: &usize| choices[*i].is_none();
+        let needs_lists = (0..choices.len()).filter(open).any(prunes);
+        if (0..choices.len()).any(|i| open(&i)) {
+            self.learn_features(flat, needs_lists)?;
         }
         self.forget_oldest();
-        let interpreted = Choice { kernel: self.interpreter.clone(), specialised: false };
-        Ok(choices
-            .into_iter()
-            .map(|ready| ready.map_or(interpreted.clone(), |kernel| Choice { kernel, specialised: true }))
-            .collect())
+        let walked = |i: usize| match &self.pruned {
+            Some(kernel) if prunes(i) => Choice { kernel: kernel.clone(), walk: Walk::List },
+            _ => Choice { kernel: self.interpreter.clone(), walk: Walk::Entries },
+        };
+        let ready = |kernel| Choice { kernel, walk: Walk::Straight };
+        Ok(choices.into_iter().enumerate().map(|(i, own)| own.map_or_else(|| walked(i), ready)).collect())
     }
 
     fn specialised(
         &mut self,
         key: u128,
         method: Method,
-        structure: impl FnOnce() -> Option<Structure>,
+        evaluator: impl FnOnce() -> Option<Evaluator>,
     ) -> Option<Arc<Kernel>> {
         if let Some(slot) = self.specialised.get_mut(&key) {
             slot.used = self.clock;
@@ -197,9 +235,9 @@ impl Kernels {
                 State::Building => {}
             }
         }
-        let structure = structure()?;
-        if method == Method::Specialised {
-            let result = build(&self.shared, &structure);
+        let evaluator = evaluator()?;
+        if method != Method::Auto {
+            let result = build(&self.shared, &evaluator);
             self.store(key, result);
             return match &self.specialised.get(&key)?.state {
                 State::Ready(kernel) => Some(kernel.clone()),
@@ -212,7 +250,7 @@ impl Kernels {
         worker.waiting += 1;
         // A worker that is gone leaves everything to the interpreter.
         if let Some(orders) = &worker.orders {
-            let _ = orders.send((key, structure));
+            let _ = orders.send((key, evaluator));
         }
         None
     }
@@ -229,15 +267,20 @@ impl Kernels {
         self.specialised.insert(key, Slot { state, used: self.clock });
     }
 
-    fn learn_features(&mut self, flat: &FlatScene) -> Result<(), ShaderError> {
+    /// Makes sure that the kernels that walk know all shapes of the scene.
+    fn learn_features(&mut self, flat: &FlatScene, needs_lists: bool) -> Result<(), ShaderError> {
         let wanted = Features::of(flat);
+        let Shared { gpu, layouts, field, options } = &*self.shared;
+        let build = |evaluator| field.build(&gpu.device, layouts, &evaluator, *options).map(Arc::new);
         if !self.features.covers(&wanted) {
             // Only ever more: going back and forth between scenes builds nothing twice.
-            let features = self.features.union(&wanted);
-            let evaluator = Evaluator::Interpreted(features.clone());
-            let Shared { gpu, layouts, field, options } = &*self.shared;
-            self.interpreter = Arc::new(field.build(&gpu.device, layouts, &evaluator, *options)?);
-            self.features = features;
+            self.features = self.features.union(&wanted);
+            self.interpreter = build(Evaluator::Interpreted(self.features.clone()))?;
+            self.pruned = None;
+            self.built += 1;
+        }
+        if needs_lists && self.pruned.is_none() {
+            self.pruned = Some(build(Evaluator::Pruned(self.features.clone()))?);
             self.built += 1;
         }
         Ok(())
@@ -257,7 +300,7 @@ impl Kernels {
 
 impl Worker {
     fn start(shared: Arc<Shared>) -> Self {
-        let (orders, ordered) = channel::<(u128, Structure)>();
+        let (orders, ordered) = channel::<(u128, Evaluator)>();
         let (finish, finished) = channel();
         let is_unwanted = Arc::new(AtomicBool::new(false));
         let should_end = is_unwanted.clone();
@@ -265,14 +308,14 @@ impl Worker {
             // A driver that computes on the processor compiles at the first dispatch, in the queue's own
             // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
             let warmer = if shared.gpu.is_software() { Warmer::new(shared.options).ok() } else { None };
-            for (key, structure) in ordered {
+            for (key, evaluator) in ordered {
                 if should_end.load(Ordering::Relaxed) {
                     return;
                 }
                 if let Some(warmer) = &warmer {
-                    warmer.warm(&structure);
+                    warmer.warm(&evaluator);
                 }
-                if finish.send((key, build(&shared, &structure))).is_err() {
+                if finish.send((key, build(&shared, &evaluator))).is_err() {
                     return;
                 }
             }
@@ -295,12 +338,17 @@ impl Drop for Worker {
     }
 }
 
+/// The component's numbers as bits.
+fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
+    let rows = component.numbers as usize..(component.numbers + component.rows) as usize;
+    flat.numbers[rows].iter().map(|row| row.map(f32::to_bits)).collect()
+}
+
 /// Builds a kernel; what the driver or the validation has against it comes back in words.
-fn build(shared: &Shared, structure: &Structure) -> Result<Kernel, String> {
+fn build(shared: &Shared, evaluator: &Evaluator) -> Result<Kernel, String> {
     let device = &shared.gpu.device;
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let evaluator = Evaluator::Specialised(structure.clone());
-    let built = shared.field.build(device, &shared.layouts, &evaluator, shared.options);
+    let built = shared.field.build(device, &shared.layouts, evaluator, shared.options);
     let complaint = pollster::block_on(scope.pop());
     match (built, complaint) {
         (Ok(kernel), None) => Ok(kernel),

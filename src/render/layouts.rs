@@ -8,8 +8,8 @@ use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 pub struct Layouts {
     /// Group 0: `View`.
     pub view: BindGroupLayout,
-    /// Group 1 of the field passes: nodes, numbers, components, materials, and the component's own rows
-    /// once more as a uniform at a dynamic offset.
+    /// Group 1 of the field passes: nodes, numbers, components, materials, the component's own rows once more
+    /// as a uniform at a dynamic offset, pruned lists.
     pub scene: BindGroupLayout,
     /// Group 3: `Work`, at a dynamic offset.
     pub work: BindGroupLayout,
@@ -24,8 +24,8 @@ impl Layouts {
             scene: layout(
                 device,
                 "scene",
-                &[0, 1, 2, 3, 4]
-                    .map(|b| entry(b, ShaderStages::COMPUTE, if b < 4 { read_storage() } else { uniform(true) })),
+                &[0, 1, 2, 3, 4, 5]
+                    .map(|b| entry(b, ShaderStages::COMPUTE, if b == 4 { uniform(true) } else { read_storage() })),
             ),
             work: layout(device, "work", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }

@@ -30,5 +30,5 @@ pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use kernels::{Kernels, Method};
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
-pub use renderer::{Frame, RenderError, Renderer, Slot};
+pub use renderer::{Counts, Frame, RenderError, Renderer, Slot};
 pub use targets::BACKGROUND;

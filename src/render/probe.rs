@@ -10,7 +10,7 @@ use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storag
 use super::readback::read_words;
 use super::renderer::{KERNEL_WINDOW, RenderError};
 use super::uniforms::GpuComponent;
-use crate::flat::{FlatScene, ROW_ALIGNMENT};
+use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT};
 
 /// The field of the component of this index at `points` (relative to its origin), by the same source as
 /// the passes.
@@ -35,15 +35,20 @@ pub fn field(
         mirror
     };
     let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
-    let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
+    let tree = matches!(evaluator, Evaluator::Pruned(_)).then(|| CellTree::build(flat, &flat.components[index]));
+    let mut components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
+    if let Some(tree) = &tree {
+        components[index] = components[index].with_grid(tree, 0);
+    }
     let scene = [
         uploaded(bytemuck::cast_slice(&flat.nodes)),
         uploaded(bytemuck::cast_slice(&flat.numbers)),
         uploaded(bytemuck::cast_slice(&components)),
         uploaded(bytemuck::cast_slice(&flat.materials)),
+        uploaded(tree.as_ref().map_or(&[], |tree| bytemuck::cast_slice(&tree.words))),
     ];
     let mut bindings: Vec<_> = scene.iter().map(Mirror::binding).collect();
-    bindings.push(window(scene[1].buffer(), KERNEL_WINDOW));
+    bindings.insert(4, window(scene[1].buffer(), KERNEL_WINDOW));
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
     let groups = [

@@ -9,7 +9,7 @@ use wgpu::BindGroup;
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
-use super::kernels::{Choice, Kernels, Method};
+use super::kernels::{Choice, Kernels, Method, Walk};
 use super::layouts::{Layouts, bind, window};
 use super::passes::farthest::FarthestPass;
 use super::passes::field::{FieldGroups, Lists};
@@ -17,10 +17,10 @@ use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::{ShadePass, mesh_emissions};
 use super::readback::{read_buffers, read_words};
-use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, plan};
+use super::schedule::{DISPATCH_TARGET, Effort, Evaluation, Pace, Piece, Plan, Stage, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
-use crate::flat::{Buffers, FlatScene, Row, Warning, gpu_lights};
+use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, Row, Warning, gpu_lights};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
@@ -41,8 +41,32 @@ pub enum RenderError {
     Cancelled,
 }
 
+/// What kernels that count have counted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Evaluations of fields by rays.
+    pub steps: u64,
+    /// Rays that were marched, once for each component that they meet.
+    pub rays: u64,
+    /// Evaluations of fields by cones.
+    pub cone_steps: u64,
+    /// Tiles that the cones have left, of all components.
+    pub tiles: u64,
+    /// Evaluations by rays and cones, for each component.
+    pub of_components: Vec<u64>,
+}
+
+/// The pieces of work as the device reads them, at offsets of [`WORK_STRIDE`].
+fn work_bytes(plan: &Plan) -> Vec<u8> {
+    let mut work = vec![0_u8; plan.pieces.len() * WORK_STRIDE];
+    for (slot, piece) in work.chunks_exact_mut(WORK_STRIDE).zip(&plan.pieces) {
+        slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
+    }
+    work
+}
+
 /// A frame under way.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Frame {
     plan: Plan,
     keys: Vec<Option<u128>>,
@@ -78,6 +102,12 @@ impl Frame {
     pub fn skip_to_shading(&mut self) {
         let shading = self.plan.pieces.iter().position(|p| p.stage == Stage::Shade);
         self.next = shading.unwrap_or(self.plan.pieces.len());
+    }
+
+    /// Leaves out light and overlay: depth, normals and materials are all that is wanted.
+    pub fn skip_shading(&mut self) {
+        self.plan.pieces.retain(|piece| piece.stage != Stage::Shade);
+        self.overlay = OverlaySettings::default();
     }
 
     /// Whether the picture is complete.
@@ -116,6 +146,8 @@ pub struct Renderer {
     overlay: OverlayPass,
     nodes: Mirror,
     numbers: Mirror,
+    lists: Mirror,
+    pruner: Pruner,
     components: Mirror,
     materials: Mirror,
     view: Mirror,
@@ -140,6 +172,14 @@ struct Groups {
     shade: BindGroup,
 }
 
+/// What [`Renderer::choose`] finds, beside the components.
+struct Chosen {
+    keys: Vec<Option<u128>>,
+    choices: Vec<Choice>,
+    evaluations: Vec<Evaluation>,
+    trees: Vec<Option<Arc<CellTree>>>,
+}
+
 /// Dynamic offsets of `Work` are multiples of this.
 const WORK_STRIDE: usize = 256;
 /// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
@@ -155,8 +195,13 @@ const CONE_GROUP: u32 = 64;
 impl Renderer {
     /// A renderer on `gpu`. Its interpreter knows no shape until a scene brings one.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
+        Self::with_options(gpu, Self::options(gpu))
+    }
+
+    /// What kernels do on this device when nobody asks for something else.
+    pub fn options(gpu: &Gpu) -> Options {
         let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
-        Self::with_options(gpu, Options { counting: false, skipping })
+        Options { skipping, ..Options::default() }
     }
 
     /// The same with kernels of these options.
@@ -173,6 +218,8 @@ impl Renderer {
             overlay: OverlayPass::new(device, &layouts)?,
             nodes: storage("nodes"),
             numbers: Mirror::rows(device, "numbers"),
+            lists: storage("lists"),
+            pruner: Pruner::default(),
             components: storage("components"),
             materials: storage("materials"),
             view: Mirror::uniform(device, "view"),
@@ -213,15 +260,13 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::uploaded).iter().sum()
+        [&self.nodes, &self.numbers, &self.lists, &self.components, &self.materials].map(Mirror::uploaded).iter().sum()
     }
 
     /// How long a whole frame is expected to take.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        let keys = Kernels::keys(flat, self.method);
-        let choices = self.kernels.choose(flat, &keys, self.method)?;
-        let specialised: Vec<bool> = choices.iter().map(|c| c.specialised).collect();
-        let plan = plan(flat, camera, size, &specialised, &self.pace);
+        let Chosen { evaluations, .. } = self.choose(flat)?;
+        let plan = plan(flat, camera, size, &evaluations, &self.pace);
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
 
@@ -261,16 +306,14 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        let keys = Kernels::keys(flat, self.method);
-        let choices = self.kernels.choose(flat, &keys, self.method)?;
+        let Chosen { keys, choices, evaluations, trees } = self.choose(flat)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
-        let specialised: Vec<bool> = choices.iter().map(|c| c.specialised).collect();
-        let plan = plan(flat, camera, size, &specialised, &self.pace);
-        if self.upload(flat, camera, size, &plan) {
+        let plan = plan(flat, camera, size, &evaluations, &self.pace);
+        if self.upload(flat, &trees, camera, size, &plan) {
             for state in self.slots.iter_mut().flatten() {
                 state.groups = None;
             }
@@ -337,13 +380,58 @@ impl Renderer {
         }
     }
 
-    /// Works on the frame up to the first piece of `stage`, in one submission, and waits.
-    pub fn run_until(&mut self, frame: &mut Frame, stage: Stage) -> Result<(), RenderError> {
-        let rest = frame.next..frame.plan.pieces.len();
-        let end = rest.clone().find(|i| *i > rest.start && frame.plan.pieces[*i].stage == stage).unwrap_or(rest.end);
-        self.submit(frame, frame.next..end);
-        frame.next = end;
-        Ok(self.gpu.wait()?)
+    /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
+    /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
+    pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
+        let confirm = |piece: &Piece| {
+            let work = Work { round: 1, last_round: 1, max_steps: 1, ..piece.work };
+            match piece.stage {
+                Stage::Trace if piece.work.round == 0 => Some(Piece { work, ..*piece }),
+                Stage::Surface | Stage::Shade => Some(*piece),
+                _ => None,
+            }
+        };
+        let mut plan = frame.plan.clone();
+        plan.pieces = plan.pieces.iter().filter_map(confirm).collect();
+        let Gpu { device, queue, .. } = &self.gpu;
+        self.work.set(device, queue, &work_bytes(&plan));
+        let targets = &self.slot(frame.slot).targets;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let size = targets.depth.texture.size();
+        let (from, to) = (targets.depth.texture.as_image_copy(), targets.march.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, size);
+        queue.submit([encoder.finish()]);
+        let seconds = frame.pace.seconds(plan.effort());
+        Frame { plan, next: 0, seconds_done: 0.0, seconds, overlay: OverlaySettings::default(), ..frame.clone() }
+    }
+
+    /// Sets what a frame has counted to nothing.
+    pub fn forget_counts(&mut self, frame: &Frame) {
+        let Gpu { device, queue, .. } = &self.gpu;
+        self.march_counts.reset(device, queue, &vec![0; frame.origins.len() * COUNTS * 4]);
+    }
+
+    /// What a frame has counted, with kernels that count.
+    pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
+        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * COUNTS)?;
+        let sum = |words: &[u32], i: usize| words.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
+        let mut of_components: Vec<u64> = words.chunks_exact(COUNTS).map(|c| u64::from(c[1])).collect();
+        for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
+            of_components[piece.work.component as usize] += u64::from(lists[piece.work.list as usize * COUNTS + 3]);
+        }
+        Ok(Counts {
+            steps: sum(&words, 1),
+            rays: sum(&words, 2),
+            cone_steps: sum(&lists, 3),
+            tiles: sum(&lists, 0),
+            of_components,
+        })
+    }
+
+    /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
+    pub fn read(&self, frame: &Frame) -> Result<Buffers, RenderError> {
+        Ok(read_buffers(&self.gpu, &self.slot(frame.slot).targets)?)
     }
 
     /// The picture in a slot: complete once its frame is done, and another texture after a
@@ -364,37 +452,52 @@ impl Renderer {
         Ok(warnings.collect())
     }
 
-    /// exp
-    pub fn counts(&self, frame: &Frame) -> Result<[u64; 4], RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
-        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * 4)?;
-        let sum = |w: &[u32], i: usize| w.chunks_exact(4).map(|c| u64::from(c[i])).sum::<u64>();
-        Ok([sum(&words, 1), sum(&words, 2), sum(&lists, 3), sum(&lists, 0)])
-    }
-
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
     }
 
+    /// Kernels, and what they need to know, for each component.
+    fn choose(&mut self, flat: &FlatScene) -> Result<Chosen, RenderError> {
+        let keys = Kernels::keys(flat, self.method);
+        // Lists are made only for what no specialised kernel is to draw.
+        let wanted: Vec<bool> =
+            keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
+        let trees = self.pruner.trees(flat, &wanted);
+        let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
+        let choices = self.kernels.choose(flat, &keys, self.method, &has_lists)?;
+        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice.walk {
+            Walk::Straight => Evaluation::of_straight(component),
+            Walk::Entries => Evaluation::of_entries(component),
+            Walk::List => tree.as_ref().map_or(Evaluation::of_entries(component), |tree| Evaluation::of_lists(tree)),
+        };
+        let evaluations = flat.components.iter().zip(&choices).zip(&trees).map(evaluation).collect();
+        Ok(Chosen { keys, choices, evaluations, trees })
+    }
+
     /// Returns whether a buffer was replaced.
-    fn upload(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &Plan) -> bool {
+    fn upload(&mut self, flat: &FlatScene, trees: &[Option<Arc<CellTree>>], camera: &Camera, size: [u32; 2], plan: &Plan) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
-        let components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, camera.position)).collect();
+        let mut lists: Vec<[u32; 2]> = Vec::new();
+        let mut placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
+            let gpu = GpuComponent::new(component, camera.position);
+            let Some(tree) = tree else { return gpu };
+            let at = lists.len() as u32;
+            lists.extend_from_slice(&tree.words);
+            gpu.with_grid(tree, at)
+        };
+        let components: Vec<_> = flat.components.iter().zip(trees).map(&mut placed).collect();
         let lights = gpu_lights(flat, camera);
         let view = View::new(camera, size, flat, lights.len() as u32);
-        let mut work = vec![0_u8; plan.pieces.len() * WORK_STRIDE];
-        for (slot, piece) in work.chunks_exact_mut(WORK_STRIDE).zip(&plan.pieces) {
-            slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
-        }
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
             self.numbers.set_with_room(device, queue, bytemuck::cast_slice(&flat.numbers), KERNEL_WINDOW),
+            self.lists.set(device, queue, bytemuck::cast_slice(&lists)),
             self.components.set(device, queue, bytemuck::cast_slice(&components)),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
-            self.work.set(device, queue, &work),
+            self.work.set(device, queue, &work_bytes(plan)),
             self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&vec![[0_u32, 1, 1, 0]; plan.lists as usize])),
             self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
@@ -406,7 +509,7 @@ impl Renderer {
         let device = &self.gpu.device;
         let scene = [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::binding);
         let own_rows = window(self.numbers.buffer(), KERNEL_WINDOW);
-        let scene: Vec<_> = scene.into_iter().chain([own_rows]).collect();
+        let scene: Vec<_> = scene.into_iter().chain([own_rows, self.lists.binding()]).collect();
         let lists = Lists {
             tiles: self.tiles.buffer(),
             tile_counts: self.tile_counts.buffer(),

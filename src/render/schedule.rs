@@ -9,7 +9,7 @@ use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3};
 
 use super::uniforms::Work;
-use crate::flat::{Component, FlatScene};
+use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
 
 /// Pixels along a side of a tile: a workgroup's.
@@ -132,6 +132,27 @@ impl Pace {
     }
 }
 
+impl Evaluation {
+    /// Of a component that is walked through, entry by entry.
+    pub fn of_entries(component: &Component) -> Self {
+        // For each entry an iteration, one for the choice of its shape, one for a group that ends.
+        Self { straight: false, iterations: 4 * component.count + 2, leaves: f64::from(component.count) }
+    }
+
+    /// Of straight-line code for a component: at most an iteration for each group or run of at least four
+    /// entries, and for each leaf where its share is looked at.
+    pub fn of_straight(component: &Component) -> Self {
+        Self { straight: true, iterations: 2 + 2 * component.count, leaves: f64::from(component.count) }
+    }
+
+    /// Of a component with pruned lists.
+    pub fn of_lists(tree: &CellTree) -> Self {
+        // Two iterations find the cell.
+        let [mean, longest] = [tree.mean_length(), f64::from(tree.longest())];
+        Self { straight: false, iterations: 4 * longest as u32 + 8, leaves: mean + 2.0 }
+    }
+}
+
 /// All dispatches of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Plan {
@@ -148,8 +169,19 @@ const CONE_EVALUATIONS: f64 = 0.2;
 const TRACE_EVALUATIONS: f64 = 4.0;
 const SURFACE_EVALUATIONS: f64 = 3.0;
 
-/// Plans a frame. `specialised` tells for each component whether its kernel is.
-pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], specialised: &[bool], pace: &Pace) -> Plan {
+/// What evaluating a component means for its kernel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Evaluation {
+    /// Whether the kernel is straight-line code.
+    pub straight: bool,
+    /// Most loop iterations of one evaluation.
+    pub iterations: u32,
+    /// Leaves that one evaluation visits, about.
+    pub leaves: f64,
+}
+
+/// Plans a frame. `evaluations` stand beside the components.
+pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], evaluations: &[Evaluation], pace: &Pace) -> Plan {
     let whole = Rect { origin: [0, 0], end: size };
     let mut plan = Plan::default();
     plan.push(Stage::Mesh, whole.work(0), Effort::default());
@@ -160,7 +192,7 @@ pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], specialised: &[bo
     let projection = Projection::new(camera, size);
     for index in front_to_back(flat, camera) {
         let Some(rect) = Rect::around(&flat.components[index], &projection, size) else { continue };
-        plan.component(flat, index, rect, specialised[index], pace, &mut surfaces);
+        plan.component(flat, index, rect, evaluations[index], pace, &mut surfaces);
     }
     // Normals only of what is still seen when all components are there.
     plan.pieces.append(&mut surfaces);
@@ -186,22 +218,19 @@ impl Plan {
         flat: &FlatScene,
         index: usize,
         rect: Rect,
-        specialised: bool,
+        evaluation: Evaluation,
         pace: &Pace,
         surfaces: &mut Vec<Piece>,
     ) {
         let component = &flat.components[index];
-        let leaves = f64::from(component.count);
+        let Evaluation { straight, iterations, leaves } = evaluation;
         let (max_steps, at_once) =
             if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
-        // The interpreter takes an iteration for each entry and one for each group that ends; a specialised
-        // kernel at most one for each group or run of at least four entries.
-        let per_evaluation = if specialised { 1 + component.count / 2 } else { 2 * component.count + 2 };
-        let steps = (MAX_ITERATIONS / per_evaluation).clamp(1, at_once);
+        let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
         let rounds = max_steps.div_ceil(steps);
-        rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, specialised), |rect| {
+        rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, straight), |rect| {
             let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
-            let effort = |evaluations: f64| Effort::new(specialised, rect.pixels() * leaves * evaluations);
+            let effort = |evaluations: f64| Effort::new(straight, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
                 let last_round = u32::from(round + 1 == rounds);

@@ -69,7 +69,7 @@ impl Targets {
             size,
             depth: target("depth", TextureFormat::R32Float, both),
             owner: target("owner", TextureFormat::R32Uint, both),
-            march: target("march", TextureFormat::R32Float, compute),
+            march: target("march", TextureFormat::R32Float, compute | TextureUsages::COPY_DST),
             farthest: Target::new(device, "farthest", tiles, TextureFormat::R32Float, both),
             normal: target("normal", TextureFormat::Rgba32Float, both),
             diffuse: target("diffuse", TextureFormat::Rgba16Float, both),

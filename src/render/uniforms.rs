@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::flat::{Component, FlatScene};
+use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
 
 /// Who looks, from where. One a frame.
@@ -74,10 +74,18 @@ pub struct GpuComponent {
     pub end: u32,
     /// Upper corner of the bounds, relative to the origin.
     pub high: [f32; 3],
-    /// Unused.
-    pub padding: u32,
+    /// First of its rows.
+    pub numbers: u32,
     /// See [`Component::half_space`]; all zero for none.
     pub half_space: [f32; 4],
+    /// Lower corner of its grid of cells; all zero where there is none.
+    pub grid_low: [f32; 3],
+    /// Side of a cell at the top.
+    pub grid_side: f32,
+    /// Cells at the top along each axis.
+    pub grid_counts: [u32; 3],
+    /// Where the cells begin in the buffer of lists.
+    pub lists: u32,
 }
 
 /// Where bounds without end are said to end: far beyond any camera, near enough for f32 arithmetic.
@@ -96,9 +104,21 @@ impl GpuComponent {
             low: clamp(bounds.min.as_vec3()),
             end: component.first + component.count,
             high: clamp(bounds.max.as_vec3()),
-            padding: 0,
+            numbers: component.numbers,
             half_space: component.half_space.unwrap_or_default().map(|v| v as f32),
+            grid_low: [0.0; 3],
+            grid_side: 0.0,
+            grid_counts: [0; 3],
+            lists: 0,
         }
+    }
+}
+
+impl GpuComponent {
+    /// The same with a grid of cells that stands at `lists` in the buffer of lists.
+    pub fn with_grid(self, tree: &CellTree, lists: u32) -> Self {
+        let (grid_low, grid_side) = (tree.low.as_vec3().to_array(), tree.side as f32);
+        Self { grid_low, grid_side, grid_counts: tree.counts, lists, ..self }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::buffers::Mirror;
 use super::gpu::{Gpu, GpuError};
-use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options, Structure};
+use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options};
 use super::layouts::{Layouts, bind, window};
 use super::passes::field::{FieldGroups, FieldLayouts, Lists};
 use super::targets::Targets;
@@ -42,6 +42,7 @@ impl Warmer {
             small.binding(),
             small.binding(),
             window(rows.buffer(), MAX_KERNEL_ROWS as usize * 16),
+            small.binding(),
         ];
         Ok(Self {
             view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<View>())]),
@@ -55,11 +56,10 @@ impl Warmer {
         })
     }
 
-    /// Compiles the kernel of `structure` by dispatching it over nothing. Failures show up again where
+    /// Compiles the kernel of `evaluator` by dispatching it over nothing. Failures show up again where
     /// the kernel is built for use.
-    pub fn warm(&self, structure: &Structure) {
-        let evaluator = Evaluator::Specialised(structure.clone());
-        let Ok(kernel) = self.field.build(&self.gpu.device, &self.layouts, &evaluator, self.options) else { return };
+    pub fn warm(&self, evaluator: &Evaluator) {
+        let Ok(kernel) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else { return };
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -11,9 +11,10 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("gallery", &["scene", "geometry"]),
     ("flat", &["scene", "mesh", "geometry"]),
     ("render", &["flat", "scene", "mesh", "geometry"]),
+    ("bench", &["render", "flat", "scene", "mesh", "geometry"]),
     ("editor", &["document", "scene", "flat", "mesh", "geometry"]),
     ("app", &["editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
-    ("cli", &["app", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
+    ("cli", &["app", "bench", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
 ];
 
 /// Crates that only some modules may name. A crate also stands for those whose name it starts.
@@ -24,6 +25,8 @@ const CRATES: &[(&str, &[&str])] = &[
     ("rfd", &["editor", "app"]),
     ("gltf", &["mesh"]),
     ("clap", &["cli"]),
+    ("plotters", &["bench"]),
+    ("ab_glyph", &["bench"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];

@@ -17,11 +17,16 @@ pub use structure::{MAX_KERNEL_ROWS, Structure};
 pub enum Evaluator {
     /// Walks the subtree-extent array.
     Interpreted(Features),
+    /// Walks, in each cell of space, the list of what can matter there.
+    Pruned(Features),
     /// Straight-line code for every component of this structure.
     Specialised(Structure),
+    /// Straight-line code for one component, with its numbers (bits of f32) written into it: what the benches
+    /// compare with. Every changed value would compile another one.
+    Generated(Structure, Vec<[u32; 4]>),
 }
 
-/// How straight-line code leaves out a group or a run that is out of reach.
+/// How code leaves out what cannot matter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Skipping {
     /// By `if`: free where a branch that no lane takes is not executed.
@@ -30,13 +35,60 @@ pub enum Skipping {
     /// By a loop of at most one round: lavapipe executes the body of every `if`, but ends a loop that no
     /// lane is in.
     Loops,
+    /// Not at all: every node at every step, as the benches' baselines do it.
+    Never,
+}
+
+/// How near a march comes to the surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Quality {
+    /// A tenth of a pixel's footprint.
+    Draft,
+    /// A thousandth.
+    #[default]
+    Default,
+    /// A hundred thousandth.
+    Fine,
+}
+
+impl Quality {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Draft, Self::Default, Self::Fine];
+
+    /// Its name, as reports write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Draft => "draft",
+            Self::Default => "default",
+            Self::Fine => "fine",
+        }
+    }
+
+    /// Tolerances of the march relative to the default's.
+    fn fineness(self) -> f32 {
+        match self {
+            Self::Draft => 100.0,
+            Self::Default => 1.0,
+            Self::Fine => 0.01,
+        }
+    }
 }
 
 /// What the kernels do beside drawing, and what they may assume.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Options {
     /// Count steps and evaluations.
     pub counting: bool,
-    /// How specialised kernels leave out what is out of reach.
+    /// How kernels leave out what is out of reach.
     pub skipping: Skipping,
+    /// Whether cones around tiles go before the rays.
+    pub cones: bool,
+    /// How near a march comes to the surface.
+    pub quality: Quality,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { counting: false, skipping: Skipping::default(), cones: true, quality: Quality::default() }
+    }
 }

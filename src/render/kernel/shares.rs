@@ -65,7 +65,7 @@ impl Shares<'_> {
     /// One operand, left out where it has no share.
     fn operand(&mut self, at: usize, entry: &Entry, level: usize, sign: f32) {
         match self.skipping {
-            Skipping::Branches => self.line(&format!("    if share{at} > 0.0 {{")),
+            Skipping::Branches | Skipping::Never => self.line(&format!("    if share{at} > 0.0 {{")),
             Skipping::Loops => self.line(&format!("    var has{at} = share{at} > 0.0;\n    while has{at} {{")),
         }
         if let EntryKind::Leaf(shape) = entry.kind {

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::dual::{DUAL_PRELUDE, dual};
 use super::specialise::{Fold, specialise};
-use super::{Evaluator, Options};
+use super::{Evaluator, Options, Skipping};
 use crate::flat::{FlatScene, MAX_STACK};
 use crate::scene::ShapeKind;
 
@@ -54,36 +54,68 @@ impl Features {
         Self { shapes: self.shapes.union(&other.shapes).copied().collect(), stack: self.stack.max(other.stack) }
     }
 
-    /// The generated file: the choice of the shape by its code.
-    fn shapes_wgsl(&self) -> String {
+    /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
+    /// `row` on.
+    fn shapes_wgsl(&self, skipping: Skipping) -> String {
         let mut out = String::new();
         for kind in &self.shapes {
             writeln!(out, "{}", shape_include(*kind)).expect("strings take all");
         }
         writeln!(out, "const STACK_SIZE: u32 = {}u;", self.stack).expect("strings take all");
-        out.push_str("fn shape_distance(shape: u32, p: vec3f, a: vec4f, b: vec4f) -> f32 {\n    switch shape {\n");
-        for kind in &self.shapes {
-            writeln!(out, "        case {}u: {{ return {}(p, a, b); }}", *kind as u32, kind.function())
-                .expect("strings take all");
-        }
-        out.push_str("        default: { return 1e30; }\n    }\n}\n");
+        let call = |kind: ShapeKind| format!("{}({})", kind.function(), read_rows(kind));
+        self.choice(&mut out, "shape_distance", "f32", "1e30", skipping, &call);
         out
     }
 
     /// The generated file: the same choice of the gradients.
-    fn gradients_wgsl(&self) -> String {
+    fn gradients_wgsl(&self, skipping: Skipping) -> String {
         let mut out = String::new();
         for kind in &self.shapes {
             writeln!(out, "{}", gradient_include(*kind)).expect("strings take all");
         }
-        out.push_str("fn shape_gradient(shape: u32, p: vec3f, a: vec4f, b: vec4f) -> vec3f {\n    switch shape {\n");
-        for kind in &self.shapes {
-            writeln!(out, "        case {}u: {{ return dual_{}(p, a, b).xyz; }}", *kind as u32, kind.function())
-                .expect("strings take all");
-        }
-        out.push_str("        default: { return vec3f(0.0); }\n    }\n}\n");
+        let call = |kind: ShapeKind| format!("dual_{}({})", kind.function(), read_rows(kind));
+        self.choice(&mut out, "shape_gradient", "vec4f", "vec4f(0.0)", skipping, &call);
         out
     }
+
+    /// A function that calls what belongs to the shape. lavapipe executes every arm of a `switch`, but ends a
+    /// loop that no lane is in, so there each arm is a loop of at most one round.
+    fn choice(
+        &self,
+        out: &mut String,
+        name: &str,
+        result: &str,
+        nothing: &str,
+        skipping: Skipping,
+        call: &dyn Fn(ShapeKind) -> String,
+    ) {
+        let mut line = |text: &str| {
+            out.push_str(text);
+            out.push('\n');
+        };
+        line(&format!("fn {name}(shape: u32, p: vec3f, row: u32) -> {result} {{"));
+        if skipping == Skipping::Loops {
+            line(&format!("    var value = {nothing};"));
+            for kind in &self.shapes {
+                let code = *kind as u32;
+                line(&format!("    var is{code} = shape == {code}u;"));
+                line(&format!("    while is{code} {{ value = {}; is{code} = p.x > 3e38; }}", call(*kind)));
+            }
+            line("    return value;\n}");
+            return;
+        }
+        line("    switch shape {");
+        for kind in &self.shapes {
+            line(&format!("        case {}u: {{ return {}; }}", *kind as u32, call(*kind)));
+        }
+        line(&format!("        default: {{ return {nothing}; }}\n    }}\n}}"));
+    }
+}
+
+/// The arguments of a shape's function, its parameters read from their rows.
+fn read_rows(kind: ShapeKind) -> String {
+    let row = |i: usize| if i < kind.rows() { format!("numbers[row + {i}u]") } else { "vec4f(0.0)".to_owned() };
+    format!("p, {}, {}", row(0), row(1))
 }
 
 /// Why a shader could not be put together.
@@ -126,7 +158,17 @@ fn gradient_wgsl(function: &str) -> Option<String> {
 /// The whole source of the shader `entry`, each file included once, before its first user.
 pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
-    writeln!(resolver.out, "const COUNTING: bool = {};", options.counting).expect("strings take all");
+    let fineness = options.quality.fineness();
+    write!(
+        resolver.out,
+        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst FINENESS: f32 = \
+         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\n",
+        options.counting,
+        options.cones,
+        options.skipping != Skipping::Never,
+        fineness.sqrt()
+    )
+    .expect("strings take all");
     resolver.include(entry, entry)?;
     Ok(resolver.out)
 }
@@ -171,21 +213,20 @@ impl Resolver<'_> {
 
     /// Files that do not exist: the evaluator decides what is in them.
     fn generated(&self, name: &str) -> Option<String> {
+        use Evaluator::{Generated, Interpreted, Pruned, Specialised};
+        let include = |file: &str| Some(format!("#include \"field/{file}.wgsl\""));
+        let special = |structure, rows, fold| Some(specialise(structure, rows, fold, self.options));
         match (name, self.evaluator) {
-            ("generated/value.wgsl", Evaluator::Interpreted(_)) => {
-                Some("#include \"field/interpreted_value.wgsl\"".to_owned())
-            }
-            ("generated/surface.wgsl", Evaluator::Interpreted(_)) => {
-                Some("#include \"field/interpreted_surface.wgsl\"".to_owned())
-            }
-            ("generated/shapes.wgsl", Evaluator::Interpreted(features)) => Some(features.shapes_wgsl()),
-            ("generated/value.wgsl", Evaluator::Specialised(structure)) => {
-                Some(specialise(structure, Fold::Value, self.options))
-            }
-            ("generated/surface.wgsl", Evaluator::Specialised(structure)) => {
-                Some(specialise(structure, Fold::Surface, self.options))
-            }
-            ("generated/gradients.wgsl", Evaluator::Interpreted(features)) => Some(features.gradients_wgsl()),
+            ("generated/value.wgsl", Interpreted(_)) => include("interpreted_value"),
+            ("generated/surface.wgsl", Interpreted(_)) => include("interpreted_surface"),
+            ("generated/value.wgsl", Pruned(_)) => include("pruned_value"),
+            ("generated/surface.wgsl", Pruned(_)) => include("pruned_surface"),
+            ("generated/value.wgsl", Specialised(structure)) => special(structure, None, Fold::Value),
+            ("generated/surface.wgsl", Specialised(structure)) => special(structure, None, Fold::Surface),
+            ("generated/value.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Value),
+            ("generated/surface.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Surface),
+            ("generated/shapes.wgsl", Interpreted(f) | Pruned(f)) => Some(f.shapes_wgsl(self.options.skipping)),
+            ("generated/gradients.wgsl", Interpreted(f) | Pruned(f)) => Some(f.gradients_wgsl(self.options.skipping)),
             ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
             _ => {
                 let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;

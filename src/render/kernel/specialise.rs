@@ -18,9 +18,9 @@ pub enum Fold {
 /// Groups of fewer entries are not worth a branch.
 const LEAST_SKIPPED: u32 = 4;
 
-/// The generated file for one fold over `structure`.
-pub fn specialise(structure: &Structure, fold: Fold, options: Options) -> String {
-    let mut writer = Writer { structure, fold, options, out: String::new() };
+/// The generated file for one fold over `structure`; with `baked` rows they are written into it, as bits.
+pub fn specialise(structure: &Structure, baked: Option<&Vec<[u32; 4]>>, fold: Fold, options: Options) -> String {
+    let mut writer = Writer { structure, baked, fold, options, out: String::new() };
     writer.head();
     writer.body();
     writer.out
@@ -28,6 +28,7 @@ pub fn specialise(structure: &Structure, fold: Fold, options: Options) -> String
 
 struct Writer<'a> {
     structure: &'a Structure,
+    baked: Option<&'a Vec<[u32; 4]>>,
     fold: Fold,
     options: Options,
     out: String,
@@ -41,7 +42,7 @@ impl Writer<'_> {
 
     fn head(&mut self) {
         let rows = self.structure.rows();
-        self.line(&format!("const ROW_COUNT: u32 = {rows}u;"));
+        self.line(&format!("const ROW_COUNT: u32 = {}u;", if self.baked.is_some() { 1 } else { rows }));
         self.line("#include \"field/placed.wgsl\"");
         let shape = |e: &Entry| if let EntryKind::Leaf(shape) = e.kind { Some(shape) } else { None };
         let mut shapes: Vec<_> = self.structure.entries.iter().filter_map(shape).collect();
@@ -59,7 +60,11 @@ impl Writer<'_> {
         }
         // Copied once: a uniform read at each use costs several times as much on a processor. A surface is
         // evaluated once only, and reads where it needs to.
-        let copied = if self.fold == Fold::Value { rows } else { 0 };
+        let copied = if self.fold == Fold::Value && self.baked.is_none() { rows } else { 0 };
+        for (row, bits) in self.baked.into_iter().flatten().enumerate() {
+            let [x, y, z, w] = bits.map(f32::from_bits);
+            self.line(&format!("const q{row} = vec4f({x:?}, {y:?}, {z:?}, {w:?});"));
+        }
         for row in 0..copied {
             self.line(&format!("var<private> q{row}: vec4f;"));
         }
@@ -78,7 +83,7 @@ impl Writer<'_> {
         let surface = self.fold == Fold::Surface;
         if surface {
             self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
-            for row in 0..self.structure.rows() {
+            for row in 0..if self.baked.is_some() { 0 } else { self.structure.rows() } {
                 self.line(&format!("    let q{row} = rows[{row}u];"));
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
@@ -99,6 +104,7 @@ impl Writer<'_> {
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
+                let skipped = skipped && self.options.skipping != Skipping::Never;
                 self.open_block(level, at, entry, row, skipped);
                 if entry.kind == EntryKind::Nested {
                     level += 1;
@@ -179,7 +185,7 @@ impl Writer<'_> {
         };
         let reached = format!("placed_bounds(p, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         match self.options.skipping {
-            Skipping::Branches => self.line(&format!("    if {reached} {{")),
+            Skipping::Branches | Skipping::Never => self.line(&format!("    if {reached} {{")),
             Skipping::Loops => self.line(&format!("    var once{at} = {reached};\n    while once{at} {{")),
         }
     }

@@ -60,11 +60,13 @@ pub struct Structure {
 impl Structure {
     /// The structure of a component, or `None` where it is too large for a kernel.
     pub fn of(flat: &FlatScene, component: &Component) -> Option<Self> {
-        if !fits(component) {
-            return None;
-        }
+        fits(component).then(|| Self::whole(flat, component))
+    }
+
+    /// The structure of a component of any size.
+    pub fn whole(flat: &FlatScene, component: &Component) -> Self {
         let range = component.first as usize..(component.first + component.count) as usize;
-        Some(Self { entries: flat.nodes[range].iter().map(|node| entry(flat, node)).collect() })
+        Self { entries: flat.nodes[range].iter().map(|node| entry(flat, node)).collect() }
     }
 
     /// A key that equal structures share and different ones practically never (128 bits of FNV-1a), made
@@ -74,7 +76,7 @@ impl Structure {
             return None;
         }
         let range = component.first as usize..(component.first + component.count) as usize;
-        let mut hash: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+        let mut hash = FNV_START;
         for node in &flat.nodes[range] {
             let e = entry(flat, node);
             let kernel = e.kernel.map_or(0xff, u64::from);
@@ -84,9 +86,17 @@ impl Structure {
                 | (kernel << 20)
                 | (flags << 28)
                 | (u64::from(e.extent) << 32);
-            hash = (hash ^ u128::from(word)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b);
+            hash = (hash ^ u128::from(word)).wrapping_mul(FNV_PRIME);
         }
         Some(hash)
+    }
+
+    /// A key of everything about a component of any size, its numbers too.
+    pub fn baked_key(flat: &FlatScene, component: &Component) -> u128 {
+        let range = |first: u32, count: u32| first as usize..(first + count) as usize;
+        let codes = flat.nodes[range(component.first, component.count)].iter().map(|node| node.code);
+        let numbers = flat.numbers[range(component.numbers, component.rows)].iter().flatten().map(|v| v.to_bits());
+        codes.chain(numbers).fold(FNV_START, |hash, word| (hash ^ u128::from(word)).wrapping_mul(FNV_PRIME))
     }
 
     /// Rows of numbers of a component of this structure.
@@ -94,6 +104,10 @@ impl Structure {
         self.entries.iter().map(Entry::rows).sum()
     }
 }
+
+/// FNV-1a of 128 bits.
+const FNV_START: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
+const FNV_PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
 
 fn fits(component: &Component) -> bool {
     component.rows <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES

@@ -1,0 +1,54 @@
+// Surfaces joined one after the other, for evaluators that walk lists. Gradient and material are mixed by
+// the weight of the joint, which is its derivative.
+
+#include "field/leaf.wgsl"
+#include "field/surface.wgsl"
+#include "generated/gradients.wgsl"
+
+// A group that has ended, `so_far`, joins what stood before it.
+fn joined_surface(join: u32, kernel: u32, support: f32, before: Surface, so_far: Surface) -> Surface {
+    if join == JOIN_FIRST {
+        return so_far;
+    }
+    let joined = op_join(join, before.distance, so_far.distance, support, kernel);
+    let w = joined.y;
+    return Surface(
+        joined.x,
+        select(before.leaf, so_far.leaf, w > 0.5),
+        before.gradient * (1.0 - w) + so_far.gradient * select(w, -w, join == JOIN_DIFFERENCE),
+        mix(before.diffuse, so_far.diffuse, w),
+        mix(before.emission, so_far.emission, w),
+    );
+}
+
+// The leaf at the entry `at`, whose rows begin at `row`, joins. Gradient and material are looked up only where
+// the surface follows the leaf.
+fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, before: Surface, p: vec3f) -> Surface {
+    let joint = numbers[row];
+    let distance = leaf_distance(shape, row, joint, p);
+    var joined = vec2f(distance, 1.0);
+    if join != JOIN_FIRST {
+        joined = op_join(join, before.distance, distance, joint.x, kernel);
+    }
+    let w = joined.y;
+    var so_far = before;
+    so_far.distance = joined.x;
+    so_far.leaf = select(before.leaf, at, w > 0.5);
+    // A loop of at most one round: lavapipe executes the body of every `if`.
+    var follows = w > 0.0;
+    while follows {
+        let m = materials[nodes[at].material];
+        let gradient = leaf_gradient(shape, row, joint, p) * select(w, -w, join == JOIN_DIFFERENCE);
+        so_far.gradient = before.gradient * (1.0 - w) + gradient;
+        so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
+        so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
+        follows = so_far.distance < -1e37;
+    }
+    return so_far;
+}
+
+// The derivatives of a leaf's distance along the component's axes.
+fn leaf_gradient(shape: u32, row: u32, joint: vec4f, p: vec3f) -> vec3f {
+    let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * joint.y;
+    return numbers[row + 1u].xyz * d.x + numbers[row + 2u].xyz * d.y + numbers[row + 3u].xyz * d.z;
+}

@@ -1,0 +1,48 @@
+// The field of a component by pruned lists. Twin of `flat::prune::pruned_field`.
+
+#include "field/leaf.wgsl"
+#include "field/pruned.wgsl"
+
+var<private> value_stack: array<f32, STACK_SIZE>;
+
+// Chooses the component. Before any call of `field`.
+fn field_begin(component: Component) {
+    pruned_component = component;
+}
+
+// The field at `p`, relative to the component's origin; a bound of it in cells where no surface is.
+fn field(p: vec3f) -> f32 {
+    pruned_find(p);
+    var so_far = pruned_bound;
+    var depth = 0u;
+    for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {
+        let token = lists[at];
+        let op = (token.x >> 8u) & 3u;
+        var join = (token.x >> 10u) & 3u;
+        let kernel = (token.x >> 12u) & 3u;
+        let row = pruned_component.numbers + token.y;
+        let joint = numbers[row];
+        var before = so_far;
+        // Loops of at most one round: lavapipe executes the body of every `if`.
+        var is_leaf = op == TOKEN_LEAF;
+        while is_leaf {
+            so_far = leaf_distance(token.x & 0xffu, row, joint, p);
+            is_leaf = so_far < -1e37;
+        }
+        if op == TOKEN_BEGIN {
+            value_stack[depth] = so_far;
+            depth += 1u;
+            join = JOIN_FIRST;
+        }
+        if op == TOKEN_END {
+            depth -= 1u;
+            before = value_stack[depth];
+        }
+        if op == TOKEN_NEGATE {
+            so_far = -so_far;
+            join = JOIN_FIRST;
+        }
+        so_far = select(op_join(join, before, so_far, joint.x, kernel).x, so_far, join == JOIN_FIRST);
+    }
+    return so_far;
+}

@@ -1,0 +1,160 @@
+//! `isolith bench`: run time against error, for scenes by methods by qualities.
+
+use std::path::{Path, PathBuf};
+
+use image::{ImageFormat, RgbImage};
+
+use super::failure::Failure;
+use super::progress::{Interrupts, Progress};
+use super::{complain, say};
+use crate::bench::{Bench, BenchError, Row, Subject, Truths, Way, csv, growth, markdown, noise, time_against_error};
+use crate::gallery;
+use crate::mesh::MeshLibrary;
+use crate::render::Gpu;
+use crate::render::driver::loop_iterations;
+use crate::render::kernel::Quality;
+use crate::scene::file;
+
+/// Smallest and largest side of a measured picture, in pixels.
+const SIDES: std::ops::RangeInclusive<u32> = 16..=4096;
+/// Leaves of the scenes that show how time grows with nodes: eight times as many each time.
+const GROWTH_LEAVES: [usize; 5] = [8, 32, 128, 1024, 8192];
+/// Seed of these scenes.
+const GROWTH_SEED: u64 = 5;
+
+/// Arguments of `isolith bench`.
+#[derive(Debug, clap::Args)]
+pub struct BenchArguments {
+    /// Scene files; without any, the example scenes
+    scenes: Vec<PathBuf>,
+    /// Methods, separated by commas: thesis, generated, interpreted, pruned, specialised, limit, auto
+    #[arg(long, value_delimiter = ',', default_values_t = [Way::Interpreted, Way::Pruned, Way::Specialised, Way::Limit, Way::Auto].map(|w| w.name().to_owned()))]
+    methods: Vec<String>,
+    /// Qualities, separated by commas: draft, default, fine
+    #[arg(long, value_delimiter = ',', default_values_t = ["default".to_owned()])]
+    qualities: Vec<String>,
+    /// Width and height of the pictures in pixels
+    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(i64::from(*SIDES.start())..=i64::from(*SIDES.end())))]
+    size: u32,
+    /// Measure random scenes of 10 to 10 000 nodes instead, and draw how time grows
+    #[arg(long, conflicts_with = "scenes")]
+    growth: bool,
+    /// Write tables (bench.md, bench.csv) and charts (SCENE.png) into this folder
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Print one JSON object a line instead of the tables
+    #[arg(long)]
+    json: bool,
+}
+
+/// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
+/// and left out.
+pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
+    let ways: Vec<Way> = parsed(&arguments.methods, |name| name.parse())?;
+    let qualities: Vec<Quality> = parsed(&arguments.qualities, |name| {
+        let found = Quality::ALL.into_iter().find(|quality| quality.name() == name);
+        found.ok_or_else(|| format!("{name} is none of draft, default, fine"))
+    })?;
+    let subjects = subjects(arguments)?;
+    let gpu = Gpu::headless()?;
+    loop_iterations(&gpu)?;
+    let bench = Bench::new(gpu);
+    let mut truths = Truths::default();
+    let mut rows: Vec<Row> = Vec::new();
+    let mut progress = Progress::start("measuring", arguments.json, Interrupts::StopTheTask);
+    let all = (subjects.len() * ways.len() * qualities.len()).max(1);
+    let mut done = 0;
+    for subject in &subjects {
+        let truth = truths.of(subject, arguments.size).map_err(failed)?;
+        for (way, quality) in ways.iter().flat_map(|way| qualities.iter().map(move |quality| (*way, *quality))) {
+            if !progress.update(done as f64 / all as f64) {
+                return Err(Failure::Cancelled);
+            }
+            done += 1;
+            match bench.measure(subject, way, quality, arguments.size, &truth) {
+                Ok(row) => {
+                    if arguments.json {
+                        say(&row.to_json_line())?;
+                    }
+                    rows.push(row);
+                }
+                Err(BenchError::Scene(error)) => complain(&format!("left out: {}: {}: {error}", subject.name, way.name())),
+                Err(error) => return Err(failed(error)),
+            }
+        }
+    }
+    progress.finish();
+    if !arguments.json {
+        say(&markdown(&rows))?;
+    }
+    for line in noise(&rows) {
+        complain(&format!("noise: {line}"));
+    }
+    arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &bench, &rows, arguments.growth))
+}
+
+fn parsed<T>(names: &[String], parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Failure> {
+    names.iter().map(|name| parse(name.trim()).map_err(Failure::Usage)).collect()
+}
+
+fn failed(error: BenchError) -> Failure {
+    match error {
+        BenchError::Render(error) => error.into(),
+        error => Failure::Other(error.to_string()),
+    }
+}
+
+fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
+    if arguments.growth {
+        let random = |leaves: &usize| {
+            let scene = gallery::random(*leaves, GROWTH_SEED);
+            let name = format!("random-{}", scene.nodes().len());
+            Subject::new(&name, scene, &mut MeshLibrary::new(None)).map_err(failed)
+        };
+        return GROWTH_LEAVES.iter().map(random).collect();
+    }
+    if arguments.scenes.is_empty() {
+        let examples = Path::new("scenes");
+        let mut library = MeshLibrary::new(examples.is_dir().then(|| examples.to_path_buf()));
+        let all = gallery::all().into_iter();
+        return all.map(|(name, scene)| Subject::new(name, scene, &mut library).map_err(failed)).collect();
+    }
+    let load = |path: &PathBuf| {
+        let scene = file::load(path).map_err(Failure::Scene)?;
+        let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+        let mut library = MeshLibrary::new(path.parent().map(Path::to_path_buf));
+        Subject::new(&name, scene, &mut library).map_err(|error| match error {
+            BenchError::Scene(error) => Failure::beyond_limit(path, &error),
+            error => failed(error),
+        })
+    };
+    arguments.scenes.iter().map(load).collect()
+}
+
+fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), Failure> {
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |error: std::io::Error| Failure::Write { path, reason: error.to_string() }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    let info = &bench.gpu().info;
+    let heading = format!("On {} ({}).\n\n", info.name, info.driver_info);
+    for (name, text) in [("bench.md", heading + &markdown(rows)), ("bench.csv", csv(rows))] {
+        let path = folder.join(name);
+        std::fs::write(&path, text).map_err(failed(&path))?;
+    }
+    let chart = |name: &str, picture: RgbImage| {
+        let path = folder.join(format!("{name}.png"));
+        picture.save_with_format(&path, ImageFormat::Png).map_err(|error| Failure::Write {
+            path: path.clone(),
+            reason: error.to_string(),
+        })
+    };
+    if grown {
+        chart("growth", growth(rows))?;
+    }
+    for of_scene in rows.chunk_by(|a, b| a.scene == b.scene) {
+        chart(&of_scene[0].scene, time_against_error(of_scene))?;
+    }
+    Ok(())
+}
