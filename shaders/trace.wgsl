@@ -15,6 +15,11 @@
 // The farthest depth in each tile.
 @group(2) @binding(3) var farthest_target: texture_storage_2d<r32float, write>;
 @group(2) @binding(4) var<storage, read> tiles: array<Tile>;
+// For each list how many rays have not ended in the first round, then their pixels: column and row, 16 bits each,
+// with room for 64 for each tile.
+@group(2) @binding(6) var<storage, read_write> rays: array<atomic<u32>>;
+// For each list the arguments of an indirect dispatch over these: groups of 64, 1, 1. Written in the first round.
+@group(2) @binding(7) var<storage, read_write> ray_counts: array<atomic<u32>>;
 // For each component: rays that had not ended after the last round, evaluations, rays marched, unused.
 @group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
 
@@ -138,11 +143,18 @@ fn trace(
     @builtin(local_invocation_index) lane: u32,
 ) {
     let tile = tiles[work.first_tile + group.x];
-    let pixel = tile_pixel(tile) + tile_place(lane);
+    var pixel = tile_pixel(tile) + tile_place(lane);
+    var exists = view_contains(pixel);
+    if work.packed == 1u {
+        let at = group.x * 64u + lane;
+        exists = at < atomicLoad(&rays[trace_rays()]);
+        let ray = atomicLoad(&rays[trace_rays() + 1u + at]);
+        pixel = select(vec2u(0u), vec2u(ray & 0xffffu, ray >> 16u), exists);
+    }
     let component = components[work.component];
     field_begin(component);
     var depth = 0.0;
-    if view_contains(pixel) {
+    if exists {
         depth = textureLoad(depth_target, pixel).x;
         let direction = view_direction(pixel);
         let interval = bounds_interval(component, direction, 0.0);
@@ -161,15 +173,15 @@ fn trace(
             textureStore(depth_target, pixel, vec4f(depth));
             textureStore(owner_target, pixel, vec4u(work.component));
         }
-        if work.last_round == 0u {
-            textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
-        } else if !marched.ended {
-            atomicAdd(&march_counts[work.component * 4u], 1u);
-        }
+        trace_leave(pixel, marched);
         if COUNTING {
             atomicAdd(&march_counts[work.component * 4u + 1u], marched.evaluations);
             atomicAdd(&march_counts[work.component * 4u + 2u], select(0u, 1u, marched.evaluations > 0u));
         }
+    }
+    if work.packed == 1u {
+        // What was found by single rays only makes tiles nearer: their farthest depths stay true.
+        return;
     }
     // Depths are positive, so their bits are in order.
     atomicMax(&farthest, bitcast<u32>(depth));
@@ -177,4 +189,27 @@ fn trace(
     if lane == 0u {
         textureStore(farthest_target, tile_pixel(tile) / TILE, vec4f(bitcast<f32>(atomicLoad(&farthest))));
     }
+}
+
+// What has not ended is left for the next round, or counted after the last one.
+fn trace_leave(pixel: vec2u, marched: March) {
+    if work.last_round == 1u {
+        if !marched.ended {
+            atomicAdd(&march_counts[work.component * 4u], 1u);
+        }
+        return;
+    }
+    if work.round > 0u {
+        textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
+    } else if !marched.ended {
+        textureStore(march_target, pixel, vec4f(marched.t));
+        let at = atomicAdd(&rays[trace_rays()], 1u);
+        atomicMax(&ray_counts[work.list * 4u], at / 64u + 1u);
+        atomicStore(&rays[trace_rays() + 1u + at], pixel.x | (pixel.y << 16u));
+    }
+}
+
+// Where the list's rays stand in `rays`.
+fn trace_rays() -> u32 {
+    return work.first_tile * 64u + work.list;
 }

@@ -16,7 +16,9 @@ struct Work {
     list: u32,
     // Where its tiles start in `tiles`.
     first_tile: u32,
-    padding: vec2u,
+    // 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
+    packed: u32,
+    padding: u32,
 }
 
 @group(3) @binding(0) var<uniform> work: Work;

@@ -17,7 +17,7 @@ use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::{ShadePass, mesh_emissions};
 use super::readback::{read_buffers, read_words};
-use super::schedule::{DISPATCH_TARGET, Effort, Evaluation, Pace, Piece, Plan, Stage, plan};
+use super::schedule::{DISPATCH_TARGET, Effort, Evaluation, Pace, Piece, Plan, Stage, TILE, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
 use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, Row, Warning, gpu_lights};
@@ -156,6 +156,9 @@ pub struct Renderer {
     work: Mirror,
     tiles: Mirror,
     tile_counts: Mirror,
+    rays: Mirror,
+    ray_counts: Mirror,
+    nothing: Mirror,
     march_counts: Mirror,
     slots: [Option<SlotState>; 2],
     pace: Pace,
@@ -228,6 +231,9 @@ impl Renderer {
             work: Mirror::uniform(device, "work"),
             tiles: storage("tiles"),
             tile_counts: Mirror::indirect(device, "tile counts"),
+            rays: storage("rays"),
+            nothing: storage("nothing"),
+            ray_counts: Mirror::indirect(device, "ray counts"),
             march_counts: Mirror::read_back(device, "march counts"),
             slots: [None, None],
             pace: Pace::new(gpu.is_software()),
@@ -384,7 +390,7 @@ impl Renderer {
     /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
     pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
         let confirm = |piece: &Piece| {
-            let work = Work { round: 1, last_round: 1, max_steps: 1, ..piece.work };
+            let work = Work { round: 1, last_round: 1, max_steps: 1, packed: 0, ..piece.work };
             match piece.stage {
                 Stage::Trace if piece.work.round == 0 => Some(Piece { work, ..*piece }),
                 Stage::Surface | Stage::Shade => Some(*piece),
@@ -477,6 +483,7 @@ impl Renderer {
     /// Returns whether a buffer was replaced.
     fn upload(&mut self, flat: &FlatScene, trees: &[Option<Arc<CellTree>>], camera: &Camera, size: [u32; 2], plan: &Plan) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
+        let nothing = vec![[0_u32, 1, 1, 0]; plan.lists as usize];
         let mut lists: Vec<[u32; 2]> = Vec::new();
         let mut placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, camera.position);
@@ -499,7 +506,9 @@ impl Renderer {
             self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
             self.work.set(device, queue, &work_bytes(plan)),
             self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
-            self.tile_counts.reset(device, queue, bytemuck::cast_slice(&vec![[0_u32, 1, 1, 0]; plan.lists as usize])),
+            self.rays.reserve(device, (plan.tiles * TILE * TILE + plan.lists) as usize * 4),
+            self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
+            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
         ];
         uploads.contains(&true)
@@ -513,6 +522,9 @@ impl Renderer {
         let lists = Lists {
             tiles: self.tiles.buffer(),
             tile_counts: self.tile_counts.buffer(),
+            rays: self.rays.buffer(),
+            ray_counts: self.ray_counts.buffer(),
+            nothing: self.nothing.buffer(),
             march_counts: self.march_counts.buffer(),
         };
         let work = window(self.work.buffer(), size_of::<Work>());
@@ -536,6 +548,8 @@ impl Renderer {
         let mut at = range.start;
         while at < range.end {
             if pieces[at].stage == Stage::Mesh {
+                // No ray is left over yet.
+                encoder.clear_buffer(self.rays.buffer(), 0, None);
                 self.mesh.record(&mut encoder, targets, &groups.view);
                 at += 1;
                 continue;
@@ -589,6 +603,7 @@ impl Renderer {
         let kernel = &frame.choices[component].kernel;
         let (pipeline, targets) = match piece.stage {
             Stage::Cone => (&kernel.cone, &groups.field.cone),
+            Stage::Trace if piece.work.packed == 1 => (&kernel.trace, &groups.field.packed),
             Stage::Trace => (&kernel.trace, &groups.field.trace),
             Stage::Surface => (&kernel.surface, &groups.field.surface),
             Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
@@ -600,7 +615,8 @@ impl Renderer {
             let [x, y] = piece.tiles();
             pass.dispatch_workgroups((x * y).div_ceil(CONE_GROUP), 1, 1);
         } else {
-            pass.dispatch_workgroups_indirect(self.tile_counts.buffer(), u64::from(piece.work.list) * 16);
+            let counts = if piece.work.packed == 1 { &self.ray_counts } else { &self.tile_counts };
+            pass.dispatch_workgroups_indirect(counts.buffer(), u64::from(piece.work.list) * 16);
         }
     }
 }

@@ -24,6 +24,12 @@ pub const MAX_STEPS: u32 = 4_096;
 /// Most steps of a ray through a component without bounds, towards the horizon.
 pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 
+/// Steps of a ray in the first round, after which those that have not ended are packed side by side: most have, and
+/// where they have not it is single rays along an outline, for which all others in their group would wait.
+pub const FIRST_STEPS: u32 = 10;
+/// Components over fewer tiles are marched in one round: packing costs a dispatch.
+pub const LEAST_PACKED_TILES: u32 = 24;
+
 /// Steps of a ray in one dispatch over a component without bounds: towards the horizon thousands may be
 /// needed, which in one dispatch took two seconds.
 pub const STEPS_UNBOUNDED: u32 = 512;
@@ -227,16 +233,18 @@ impl Plan {
         let (max_steps, at_once) =
             if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
         let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
-        let rounds = max_steps.div_ceil(steps);
+        let first_steps = if rect.tiles() >= LEAST_PACKED_TILES { steps.min(FIRST_STEPS) } else { steps };
+        let rounds = 1 + (max_steps - first_steps.min(max_steps)).div_ceil(steps);
         rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, straight), |rect| {
             let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(straight, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
                 let last_round = u32::from(round + 1 == rounds);
-                let work = Work { round, last_round, ..list };
+                let max_steps = if round == 0 { first_steps } else { steps };
+                let work = Work { round, last_round, max_steps, packed: u32::from(round > 0), ..list };
                 // Most rays have ended long before the last round.
-                self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.02 }));
+                self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.1 }));
             }
             surfaces.push(Piece { stage: Stage::Surface, work: list, effort: effort(SURFACE_EVALUATIONS) });
             self.lists += 1;

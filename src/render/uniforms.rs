@@ -142,6 +142,8 @@ pub struct Work {
     pub list: u32,
     /// Where these tiles start.
     pub first_tile: u32,
+    /// 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
+    pub packed: u32,
     /// Unused.
-    pub padding: [u32; 2],
+    pub padding: u32,
 }

@@ -35,7 +35,15 @@ impl Warmer {
         };
         let rows = zeros(MAX_KERNEL_ROWS as usize * 16);
         let small = zeros(1024);
-        let lists = Lists { tiles: small.buffer(), tile_counts: rows.buffer(), march_counts: rows.buffer() };
+        let counts = [(); 4].map(|()| zeros(1024));
+        let lists = Lists {
+            tiles: small.buffer(),
+            tile_counts: rows.buffer(),
+            march_counts: counts[0].buffer(),
+            rays: counts[1].buffer(),
+            ray_counts: counts[2].buffer(),
+            nothing: counts[3].buffer(),
+        };
         let scene = [
             small.binding(),
             small.binding(),

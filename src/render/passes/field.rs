@@ -45,6 +45,8 @@ pub struct FieldGroups {
     pub cone: BindGroup,
     /// Of [`Kernel::trace`].
     pub trace: BindGroup,
+    /// The same where the rays that are left are dispatched: what says how many must not be written then.
+    pub packed: BindGroup,
     /// Of [`Kernel::surface`].
     pub surface: BindGroup,
 }
@@ -56,6 +58,12 @@ pub struct Lists<'a> {
     pub tiles: &'a wgpu::Buffer,
     /// For each list the arguments of its indirect dispatch.
     pub tile_counts: &'a wgpu::Buffer,
+    /// Pixels whose march goes on, list after list.
+    pub rays: &'a wgpu::Buffer,
+    /// For each list the arguments of its indirect dispatch over these.
+    pub ray_counts: &'a wgpu::Buffer,
+    /// Any other buffer.
+    pub nothing: &'a wgpu::Buffer,
     /// For each component, what was counted.
     pub march_counts: &'a wgpu::Buffer,
 }
@@ -74,6 +82,8 @@ impl FieldLayouts {
             read_write_texture(TextureFormat::R32Float),
             write_texture(TextureFormat::R32Float),
             read_storage(),
+            write_storage(),
+            write_storage(),
             write_storage(),
         ];
         let surface = [
@@ -128,7 +138,11 @@ impl FieldLayouts {
             texture(&targets.farthest.view),
             lists.tiles.as_entire_binding(),
             lists.march_counts.as_entire_binding(),
+            lists.rays.as_entire_binding(),
+            lists.ray_counts.as_entire_binding(),
         ];
+        let mut packed = trace.clone();
+        packed[7] = lists.nothing.as_entire_binding();
         let surface = [
             texture(&targets.depth.view),
             texture(&targets.owner.view),
@@ -141,6 +155,7 @@ impl FieldLayouts {
         FieldGroups {
             cone: bind(device, "cone targets", &self.cone, &cone),
             trace: bind(device, "trace targets", &self.trace, &trace),
+            packed: bind(device, "trace targets", &self.trace, &packed),
             surface: bind(device, "surface targets", &self.surface, &surface),
         }
     }
