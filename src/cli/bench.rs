@@ -39,6 +39,9 @@ pub struct BenchArguments {
     /// Measure random scenes of 10 to 10 000 nodes instead, and draw how time grows
     #[arg(long, conflicts_with = "scenes")]
     growth: bool,
+    /// Measure large blends instead: 256 and 2 000 leaves in one union, blended and hard, 186 boxes, 1 001 spheres
+    #[arg(long, conflicts_with_all = ["scenes", "growth"])]
+    blends: bool,
     /// Write tables (bench.md, bench.csv) and charts (SCENE.png) into this folder
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -112,6 +115,19 @@ fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
             Subject::new(&name, scene, &mut MeshLibrary::new(None)).map_err(failed)
         };
         return GROWTH_LEAVES.iter().map(random).collect();
+    }
+    if arguments.blends {
+        let crowd = |leaves, is_blended| gallery::crowd(leaves, is_blended, GROWTH_SEED);
+        let all = [
+            ("hard-256", crowd(256, false)),
+            ("blend-256", crowd(256, true)),
+            ("hard-2000", crowd(2000, false)),
+            ("blend-2000", crowd(2000, true)),
+            ("boxes-186", gallery::boxes(186, GROWTH_SEED)),
+            ("spheres-1001", gallery::spheres(GROWTH_SEED)),
+        ];
+        let subject = |(name, scene)| Subject::new(name, scene, &mut MeshLibrary::new(None)).map_err(failed);
+        return all.into_iter().map(subject).collect();
     }
     if arguments.scenes.is_empty() {
         let examples = Path::new("scenes");

@@ -10,7 +10,7 @@
 //! | `shade` | light on surfaces, twin of `shaders/light` |
 //! | `truth` | the whole picture by `twin`, `trace` and `shade` |
 //! | `pick` | which node a ray hits |
-//! | `mesh_rays` | rays against the meshes |
+//! | `prune` | which entries of a large component matter where |
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
@@ -37,6 +37,6 @@ pub use arrays::*;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};
-pub use prune::{CellTree, Pruner};
+pub use prune::*;
 pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};

@@ -6,6 +6,7 @@
 mod blend_kernels;
 mod boolean_operations;
 mod chess_pawn;
+mod crowds;
 mod deep_tree;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
@@ -17,6 +18,7 @@ use std::path::{Path, PathBuf};
 
 use crate::scene::{Scene, file};
 
+pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;
 
 /// The scene that opens first.

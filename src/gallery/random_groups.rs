@@ -72,17 +72,21 @@ fn cells(groups: usize) -> [usize; 3] {
 }
 
 fn light_and_frame(stage: &mut Stage, cells: [usize; 3]) {
+    overview(stage, DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.85)));
+}
+
+/// Three lights, and a camera that sees a box of this half extent around the origin.
+pub(super) fn overview(stage: &mut Stage, half: DVec3) {
     stage.sun("Key", [-0.6, 0.8, 0.8], [1.0, 0.95, 0.88], 1.0);
     stage.sun("Fill", [1.0, 0.2, 0.4], [0.65, 0.80, 1.0], 0.32);
     stage.sun("Rim", [0.3, 0.5, -1.0], [1.0, 0.9, 0.8], 0.6);
-    let half = DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.85));
     let direction = DVec3::new(-0.42, 0.38, 1.0).normalize();
     let position = direction * half.length() * 2.55;
     stage.camera(position.to_array(), [0.0; 3], 36.0);
 }
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
-struct SplitMix(u64);
+pub(super) struct SplitMix(pub(super) u64);
 
 impl SplitMix {
     fn next(&mut self) -> u64 {
@@ -94,21 +98,21 @@ impl SplitMix {
     }
 
     /// Uniform in [0, 1).
-    fn unit(&mut self) -> f64 {
+    pub(super) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Uniform between the two, with three decimals: a file is for reading too.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         ((low + (high - low) * self.unit()) * 1e3).round() / 1e3
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    pub(super) fn below(&mut self, count: usize) -> usize {
         ((self.unit() * count as f64) as usize).min(count - 1)
     }
 
     /// A rotation, every orientation equally likely: a direction of four numbers out of the unit ball.
-    fn rotation(&mut self) -> DQuat {
+    pub(super) fn rotation(&mut self) -> DQuat {
         loop {
             let q = [0; 4].map(|_| self.between(-1.0, 1.0));
             let length_squared: f64 = q.iter().map(|c| c * c).sum();

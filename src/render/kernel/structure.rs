@@ -8,7 +8,7 @@ pub const MAX_KERNEL_ROWS: u32 = 768;
 
 /// Most entries of a component that gets a kernel of its own: compiling grows faster than linearly, and
 /// beyond this the interpreter has made many pictures by the time the kernel is ready.
-pub const MAX_KERNEL_ENTRIES: u32 = 64;
+pub const MAX_KERNEL_ENTRIES: u32 = 128;
 
 /// What an entry of the subtree-extent array is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

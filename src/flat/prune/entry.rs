@@ -1,0 +1,149 @@
+//! A component's entries as numbers to evaluate with: in f64, ready to use, one beside the other.
+
+use glam::{DAffine3, DMat3, DVec3};
+
+use crate::flat::twin::shape_distance;
+use crate::flat::{Component, FlatScene, LEAF_ROWS, Row};
+use crate::geometry::{Aabb, singular_values};
+use crate::scene::{ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+
+/// A leaf, evaluated exactly as the twin does it.
+#[derive(Clone, Copy)]
+pub(super) struct Leaf {
+    kind: ShapeKind,
+    rows: [(DVec3, f64); 3],
+    scale: f64,
+    parameters: [f64; SHAPE_FLOATS],
+}
+
+impl Leaf {
+    /// The leaf of shape code `shape` whose rows `numbers` begins with.
+    pub fn read(shape: u32, numbers: &[Row]) -> Self {
+        let kind = ShapeKind::ALL[shape as usize];
+        let rows = [1, 2, 3].map(|i| {
+            let [x, y, z, shift] = numbers[i].map(f64::from);
+            (DVec3::new(x, y, z), shift)
+        });
+        let mut parameters = [0.0; SHAPE_FLOATS];
+        for row in 0..kind.rows() {
+            parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
+        }
+        Self { kind, rows, scale: numbers[0][1].into(), parameters }
+    }
+
+    /// Its field at `p`, in metres.
+    pub fn distance(&self, p: DVec3) -> f64 {
+        let local = self.rows.map(|(row, shift)| row.dot(p) + shift);
+        shape_distance(self.kind, local, &self.parameters) * self.scale
+    }
+
+    /// How large its coordinates get, in metres: what rounding in f32 is relative to.
+    fn size(&self) -> f64 {
+        let greatest = self.parameters.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        (self.rows.iter().fold(greatest, |most, (_, shift)| most.max(shift.abs()))) * self.scale
+    }
+
+    fn ball(&self) -> Ball {
+        let bounds = shape(self.kind, &self.parameters).bounds();
+        let local_from_component = DAffine3 {
+            matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
+            translation: self.rows.map(|(_, shift)| shift).into(),
+        };
+        let center = local_from_component.inverse().transform_point3(bounds.center());
+        let (least, _) = singular_values(&local_from_component.matrix3);
+        Ball::new(center, least * self.scale, bounds.half().length() * self.scale)
+    }
+}
+
+/// The shape of these packed parameters, see [`Shape::packed`].
+fn shape(kind: ShapeKind, packed: &[f64; SHAPE_FLOATS]) -> Shape {
+    let mut shape = kind.default_shape();
+    let mut at = 0;
+    for (index, value) in shape.values().into_iter().enumerate() {
+        let value = match value {
+            ParamValue::Scalar(_) => ParamValue::Scalar(packed[at]),
+            ParamValue::Vector(_) => ParamValue::Vector(DVec3::from_slice(&packed[at..at + 3])),
+        };
+        at += if matches!(value, ParamValue::Scalar(_)) { 1 } else { 3 };
+        shape.set_value(index, value);
+    }
+    shape
+}
+
+/// Around an entry: its field at p is at least `slope` |p − `center`| − `reach`.
+#[derive(Clone, Copy)]
+pub(super) struct Ball {
+    center: DVec3,
+    slope_squared: f64,
+    reach: f64,
+}
+
+impl Ball {
+    /// Says nothing.
+    const NONE: Self = Self { center: DVec3::ZERO, slope_squared: 0.0, reach: f64::INFINITY };
+    /// What is given away so that rounding never makes the bound too large.
+    const SLACK: f64 = 1e-6;
+
+    fn new(center: DVec3, slope: f64, reach: f64) -> Self {
+        if !(center.is_finite() && slope > 0.0 && slope.is_finite() && reach.is_finite()) {
+            return Self::NONE;
+        }
+        let slope = slope.min(1.0) * (1.0 - Self::SLACK);
+        let reach = reach * (1.0 + Self::SLACK) + center.length() * Self::SLACK;
+        Self { center, slope_squared: slope * slope, reach }
+    }
+
+    /// Whether the field at `p` is certainly at least `value`; without a square root, since this is
+    /// asked far more often than any distance is computed.
+    #[inline]
+    pub fn is_beyond(&self, p: DVec3, value: f64) -> bool {
+        let way = value + self.reach;
+        way <= 0.0 || self.slope_squared * p.distance_squared(self.center) >= way * way
+    }
+}
+
+/// All entries of a component; what does not apply to an entry is filled with something harmless.
+pub(super) struct Entries {
+    /// The leaves; a plane where there is none.
+    pub leaves: Vec<Leaf>,
+    /// Around leaves and groups.
+    pub balls: Vec<Ball>,
+    /// Supports of the joints, in metres.
+    pub supports: Vec<f64>,
+    /// How large coordinates get in the component, in metres, rounded up to a power of two so that
+    /// edits rarely change it.
+    pub size: f64,
+}
+
+impl Entries {
+    /// Those of `component`.
+    pub fn new(flat: &FlatScene, component: &Component) -> Self {
+        let count = component.count as usize;
+        let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters: [0.0; 8] };
+        let mut entries =
+            Self { leaves: vec![none; count], balls: vec![Ball::NONE; count], supports: vec![0.0; count], size: 0.0 };
+        let mut size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
+        for (index, node) in flat.nodes[component.first as usize..][..count].iter().enumerate() {
+            let numbers = &flat.numbers[node.numbers as usize..];
+            entries.supports[index] = numbers[0][0].into();
+            if node.is_leaf() {
+                let leaf = Leaf::read(node.code & 0xffff, numbers);
+                size = size.max(leaf.size());
+                entries.balls[index] = leaf.ball();
+                entries.leaves[index] = leaf;
+            } else if node.is_group() {
+                entries.balls[index] = group_ball(numbers);
+            }
+        }
+        entries.size = size.max(f64::MIN_POSITIVE).log2().ceil().exp2();
+        entries
+    }
+}
+
+/// From the bounds that stand in a group's rows, see [`Row`].
+fn group_ball(numbers: &[Row]) -> Ball {
+    let slope = f64::from(numbers[0][1]);
+    let [center, half] = [1, 2].map(|row| DVec3::from_slice(&numbers[row].map(f64::from)));
+    let bounds = Aabb::from_center_half(center, half);
+    Ball::new(center, slope, slope * bounds.half().length())
+}

@@ -1,0 +1,197 @@
+//! A list at one point: its value there, and the shorter list that has the same value around the point.
+
+use glam::DVec3;
+
+use super::entry::Entries;
+use super::token::{Token, TokenOp};
+use crate::flat::twin::op_join;
+use crate::flat::{Component, FlatScene, Join};
+
+/// A token on its way from a cell to its children.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Step {
+    pub token: Token,
+    /// Where a group begins: how many steps after this one it ends. It stays when lists are moved.
+    pub span: u32,
+}
+
+/// The component as it stands, without its runs.
+pub(super) fn whole(flat: &FlatScene, component: &Component) -> Vec<Step> {
+    let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
+    let mut steps = Vec::with_capacity(nodes.len() * 2);
+    // Groups that are open: the entry behind them, where they begin, and how they end.
+    let mut open: Vec<(usize, usize, Token)> = Vec::new();
+    for index in 0..=nodes.len() {
+        while let Some((end, begin, token)) = open.pop_if(|(end, ..)| *end <= index) {
+            debug_assert!(end <= index, "groups end where their entries do");
+            close(&mut steps, begin, token);
+        }
+        let Some(node) = nodes.get(index) else { break };
+        let token = |op| Token::new(op, node, index as u32, node.numbers - component.numbers);
+        if node.is_leaf() {
+            steps.push(Step { token: token(TokenOp::Leaf), span: 0 });
+        } else if node.is_group() && node.join() != Join::First as u32 {
+            open.push((index + node.extent as usize, steps.len(), token(TokenOp::End)));
+            steps.push(Step { token: token(TokenOp::Begin), span: 0 });
+        }
+    }
+    steps
+}
+
+fn close(steps: &mut Vec<Step>, begin: usize, end: Token) {
+    steps[begin].span = (steps.len() - begin) as u32;
+    steps.push(Step { token: end, span: 0 });
+}
+
+/// Which operands of a joint matter around a point.
+enum Keep {
+    First,
+    Second,
+    Both,
+}
+
+impl Keep {
+    /// `far` is how much farther apart than in the hard operator the operands must be.
+    fn of(join: u32, a: f64, b: f64, far: f64) -> Self {
+        const UNION: u32 = Join::Union as u32;
+        const INTERSECTION: u32 = Join::Intersection as u32;
+        let lead = match join {
+            UNION => b - a,
+            INTERSECTION => a - b,
+            _ => a + b,
+        };
+        match () {
+            () if lead >= far => Self::First,
+            () if -lead >= far => Self::Second,
+            () => Self::Both,
+        }
+    }
+}
+
+/// An accumulator that was put aside: its value, where it and the group begin in the new list.
+struct Frame {
+    value: f64,
+    start: usize,
+    begin: usize,
+}
+
+/// What [`Pruning::run`] works with; kept so that nothing is allocated for a cell.
+#[derive(Default)]
+pub(super) struct Pruning {
+    frames: Vec<Frame>,
+}
+
+impl Pruning {
+    /// The value of `steps` at `p`, and in `out` those of them that matter where no operand's field
+    /// differs from its value at `p` by more than `reach` / 2.
+    pub fn run(&mut self, steps: &[Step], entries: &Entries, p: DVec3, reach: f64, out: &mut Vec<Step>) -> f64 {
+        out.clear();
+        self.frames.clear();
+        let (mut value, mut start) = (0.0, 0);
+        let mut at = 0;
+        while let Some(step) = steps.get(at) {
+            let token = step.token;
+            at += 1;
+            match token.op() {
+                TokenOp::Leaf => {
+                    let entry = token.entry();
+                    if token.join() == Join::First as u32 {
+                        value = entries.leaves[entry].distance(p);
+                        start = out.len();
+                        out.push(*step);
+                    } else if !is_out_of_reach(token, entries, p, value, reach) {
+                        let b = entries.leaves[entry].distance(p);
+                        value = join_leaf(token, entries, [value, b], reach, start, out);
+                    }
+                }
+                TokenOp::Begin if is_out_of_reach(token, entries, p, value, reach) => at += step.span as usize,
+                TokenOp::Begin => {
+                    self.frames.push(Frame { value, start, begin: out.len() });
+                    out.push(*step);
+                    start = out.len();
+                }
+                TokenOp::End => {
+                    let frame = self.frames.pop().expect("every group that ends has begun");
+                    value = join_group(token, entries, value, &frame, reach, out);
+                    start = frame.start;
+                }
+                TokenOp::Negate => {
+                    value = -value;
+                    negate(token, start, out);
+                }
+            }
+        }
+        value
+    }
+}
+
+/// Whether an operand is certainly too far off to join what stands so far, told by the ball around it.
+#[inline]
+fn is_out_of_reach(token: Token, entries: &Entries, p: DVec3, value: f64, reach: f64) -> bool {
+    const UNION: u32 = Join::Union as u32;
+    const DIFFERENCE: u32 = Join::Difference as u32;
+    let far = entries.supports[token.entry()] + reach;
+    match token.join() {
+        UNION => entries.balls[token.entry()].is_beyond(p, value + far),
+        DIFFERENCE => entries.balls[token.entry()].is_beyond(p, far - value),
+        _ => false,
+    }
+}
+
+/// Joins the leaf `b` to the accumulator `a`, which begins at `start`.
+fn join_leaf(token: Token, entries: &Entries, [a, b]: [f64; 2], reach: f64, start: usize, out: &mut Vec<Step>) -> f64 {
+    let support = entries.supports[token.entry()];
+    match Keep::of(token.join(), a, b, support + reach) {
+        Keep::First => return a,
+        Keep::Second => {
+            out.truncate(start);
+            out.push(Step { token: token.as_first(), span: 0 });
+            if token.join() != Join::Difference as u32 {
+                return b;
+            }
+            negate(token, start, out);
+            return -b;
+        }
+        Keep::Both => out.push(Step { token, span: 0 }),
+    }
+    op_join(token.join(), a, b, support, token.kernel()).value
+}
+
+/// Joins the group that ends, whose value is `b`, to what was put aside when it began.
+fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64, out: &mut Vec<Step>) -> f64 {
+    let support = entries.supports[token.entry()];
+    match Keep::of(token.join(), frame.value, b, support + reach) {
+        Keep::First => {
+            out.truncate(frame.begin);
+            return frame.value;
+        }
+        Keep::Second => {
+            out.drain(frame.start..=frame.begin);
+            if token.join() != Join::Difference as u32 {
+                return b;
+            }
+            negate(token, frame.start, out);
+            return -b;
+        }
+        Keep::Both => {}
+    }
+    // One leaf is all that is left of the group: it can be joined itself, where its own number for the
+    // support is the group's.
+    match out[frame.begin + 1..] {
+        [leaf] if entries.supports[leaf.token.entry()] == support => {
+            out.truncate(frame.begin);
+            out.push(Step { token: leaf.token.joined_as(token), span: 0 });
+        }
+        _ => close(out, frame.begin, token),
+    }
+    op_join(token.join(), frame.value, b, support, token.kernel()).value
+}
+
+/// Changes the sign of the accumulator that begins at `start`; twice is not at all.
+fn negate(token: Token, start: usize, out: &mut Vec<Step>) {
+    if out.len() > start && out.last().is_some_and(|last| last.token.op() == TokenOp::Negate) {
+        out.pop();
+    } else {
+        out.push(Step { token: token.with_op(TokenOp::Negate), span: 0 });
+    }
+}

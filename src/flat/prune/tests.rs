@@ -1,0 +1,314 @@
+//! The lists against the twin, which skips nothing.
+
+use std::sync::Arc;
+
+use glam::{DQuat, DVec3};
+
+use super::*;
+use crate::flat::{FlatNode, Join, flatten, twin};
+use crate::scene::{
+    Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+};
+
+/// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    fn below(&mut self, count: usize) -> usize {
+        (self.bits() % count as u64) as usize
+    }
+
+    fn once_in(&mut self, count: usize) -> bool {
+        self.below(count) == 0
+    }
+
+    fn point(&mut self, low: DVec3, high: DVec3) -> DVec3 {
+        DVec3::new(self.between(low.x, high.x), self.between(low.y, high.y), self.between(low.z, high.z))
+    }
+
+    fn shape(&mut self) -> Shape {
+        ShapeKind::ALL[self.below(ShapeKind::ALL.len())].default_shape()
+    }
+
+    fn group(&mut self, most_radius: f64) -> NodeKind {
+        let operator = if self.once_in(2) { Operator::Union } else { Operator::ALL[self.below(3)] };
+        let radius = if self.once_in(3) { 0.0 } else { self.between(0.0, most_radius) };
+        NodeKind::Group(Group { operator, blend: Blend { kernel: BlendKernel::ALL[self.below(3)], radius } })
+    }
+}
+
+const MATERIAL: MaterialId = MaterialId(1);
+
+fn empty_scene() -> Scene {
+    let mut scene = Scene::new();
+    if scene.material(MATERIAL).is_none() {
+        scene.insert_material(Material::new(MATERIAL, "Grey", [0.5; 3])).unwrap();
+    }
+    scene
+}
+
+fn add(scene: &mut Scene, parent: Option<NodeId>, node: Node) -> NodeId {
+    scene.insert(parent, usize::MAX, node).unwrap()
+}
+
+fn object(shape: Shape) -> Node {
+    Node::new("", NodeKind::Object(Object { shape, material: MATERIAL }))
+}
+
+/// One component of nested groups with every operator, kernel and shape, cut, scaled and turned leaves,
+/// and rows long enough for runs.
+fn random_tree(seed: u64, count: usize) -> Scene {
+    let random = &mut Random(seed);
+    let mut scene = empty_scene();
+    let blend = Blend { kernel: BlendKernel::ALL[random.below(3)], radius: 0.1 };
+    let root = NodeKind::Group(Group { operator: Operator::Union, blend });
+    let mut groups = vec![add(&mut scene, None, Node::new("", root))];
+    add(&mut scene, Some(groups[0]), object(Shape::Sphere { radius: 0.5 }));
+    while scene.nodes().len() < count {
+        let parent = if random.once_in(3) { groups[0] } else { groups[random.below(groups.len())] };
+        let place = random.point(DVec3::splat(-1.5), DVec3::splat(1.5));
+        let turned = DQuat::from_euler(glam::EulerRot::XYZ, random.between(0.0, 6.0), random.between(0.0, 6.0), 0.0);
+        let size = random.between(0.2, 0.6);
+        let scale = if random.once_in(4) { DVec3::new(size, 1.5 * size, 0.7 * size) } else { DVec3::splat(size) };
+        let mut node = if random.once_in(5) {
+            Node::new("", random.group(0.3)).at(0.5 * place)
+        } else {
+            let shape = random.shape();
+            // A half space would leave nothing bounded, or nothing.
+            object(if matches!(shape, Shape::Plane {}) { Shape::Sphere { radius: 0.6 } } else { shape })
+                .at(place)
+                .rotated(turned)
+                .scaled(scale)
+        };
+        let is_group = !matches!(node.kind, NodeKind::Object(_));
+        node.negative = random.once_in(5);
+        let id = add(&mut scene, Some(parent), node);
+        if is_group {
+            add(&mut scene, Some(id), object(random.shape()).at(place).scaled(DVec3::splat(0.8)));
+            groups.push(id);
+        }
+    }
+    scene
+}
+
+/// The same kind of leaf over and over in one blended union, `spread` metres wide.
+fn crowd(seed: u64, count: usize, spread: f64, radius: f64) -> Scene {
+    let random = &mut Random(seed);
+    let mut scene = empty_scene();
+    let blend = Blend { kernel: BlendKernel::Circular, radius };
+    let root = add(&mut scene, None, Node::new("", NodeKind::Group(Group { operator: Operator::Union, blend })));
+    for _ in 0..count {
+        let place = random.point(DVec3::splat(-0.5 * spread), DVec3::splat(0.5 * spread));
+        add(&mut scene, Some(root), object(Shape::Sphere { radius: random.between(0.1, 0.2) }).at(place));
+    }
+    scene
+}
+
+/// How often the lists were right and wrong about random points: as the field, as bounds.
+#[derive(Debug, Default)]
+struct Verdict {
+    lists: usize,
+    bounds: usize,
+    wrong: usize,
+}
+
+fn verdict(flat: &FlatScene, tree: &CellTree, points: usize) -> Verdict {
+    let component = &flat.components[0];
+    let high = tree.low + tree.side * DVec3::from(tree.counts.map(f64::from));
+    let (mut random, mut verdict) = (Random(77), Verdict::default());
+    for _ in 0..points {
+        let p = random.point(tree.low - 0.1 * tree.side, high + 0.1 * tree.side);
+        let truth = twin::field(flat, component, p);
+        let pruned = pruned_field(flat, component, tree, p);
+        let right = match tree.list_at(p) {
+            Cell::List(_) => {
+                verdict.lists += 1;
+                (pruned - truth).abs() <= 1e-9 * truth.abs().max(1.0)
+            }
+            Cell::Empty { .. } => {
+                verdict.bounds += 1;
+                pruned * truth > 0.0 && pruned.abs() <= truth.abs()
+            }
+            // A bound of the way to the bounds, which fields of intersections know nothing of.
+            Cell::Outside => truth > 0.0 && pruned > 0.0 && pruned <= component.bounds.distance(p) + 1e-12,
+        };
+        verdict.wrong += usize::from(!right);
+    }
+    verdict
+}
+
+#[test]
+fn lists_have_the_value_of_the_whole_component() {
+    let (mut built, mut lists, mut bounds) = (0, 0, 0);
+    for seed in 0..40 {
+        let flat = flatten(&random_tree(seed, 30 + 3 * seed as usize), 0.0).unwrap();
+        if flat.components.is_empty() || !is_pruned(&flat.components[0]) {
+            continue;
+        }
+        let tree = CellTree::build(&flat, &flat.components[0]);
+        let verdict = verdict(&flat, &tree, 400);
+        assert_eq!(verdict.wrong, 0, "seed {seed}: {verdict:?}");
+        built += 1;
+        lists += verdict.lists;
+        bounds += verdict.bounds;
+    }
+    assert!(built >= 20 && lists > 1000 && bounds > 1000, "{built} {lists} {bounds}");
+}
+
+#[test]
+fn runs_are_passed_over_and_lists_are_short() {
+    let flat = flatten(&crowd(3, 200, 3.0, 0.1), 0.0).unwrap();
+    assert!(flat.nodes.iter().any(FlatNode::is_run));
+    let tree = CellTree::build(&flat, &flat.components[0]);
+    let verdict = verdict(&flat, &tree, 2000);
+    assert_eq!(verdict.wrong, 0, "{verdict:?}");
+    let longest = lists(&tree).into_iter().map(<[_]>::len).max().unwrap();
+    assert!(longest <= 24, "{longest}");
+}
+
+/// Every list of a tree.
+fn lists(tree: &CellTree) -> Vec<&[[u32; 2]]> {
+    let mut found = Vec::new();
+    let mut cells: Vec<usize> = (0..tree.counts.iter().product::<u32>() as usize).collect();
+    while let Some(cell) = cells.pop() {
+        let [first, second] = tree.words[cell];
+        let offset = (first & OFFSET_MASK) as usize;
+        match first >> CELL_SHIFT {
+            CELL_LIST => found.push(&tree.words[offset..offset + second as usize]),
+            CELL_REFINED => cells.extend(offset..offset + BLOCK_CELLS),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn every_list_can_be_walked_within_the_stack_of_its_component() {
+    for seed in 0..12 {
+        let flat = flatten(&random_tree(seed, 80), 0.0).unwrap();
+        let Some(component) = flat.components.first().filter(|c| is_pruned(c)) else { continue };
+        for list in lists(&CellTree::build(&flat, component)) {
+            let (mut aside, mut most) = (0_u32, 0);
+            let mut fresh = true;
+            for token in list.iter().map(|words| Token(*words)) {
+                assert!(token.entry() < component.count as usize && token.row() < component.rows as usize);
+                match token.op() {
+                    TokenOp::Leaf => assert_eq!(token.join() == Join::First as u32, fresh, "seed {seed}"),
+                    TokenOp::Begin => aside += 1,
+                    TokenOp::End => aside -= 1,
+                    TokenOp::Negate => assert!(!fresh),
+                }
+                fresh = token.op() == TokenOp::Begin;
+                most = most.max(aside);
+            }
+            assert!(aside == 0 && most <= component.stack && !list.is_empty() && !fresh);
+        }
+    }
+}
+
+/// Moves and resizes a node a little, or changes how a group joins.
+fn edit(scene: &mut Scene, random: &mut Random) {
+    let index = random.below(scene.nodes().len());
+    let mut node = Node::clone(&scene.nodes()[index]);
+    node.transform.translation += random.point(DVec3::splat(-0.1), DVec3::splat(0.1));
+    match &mut node.kind {
+        NodeKind::Group(group) if random.once_in(2) => group.blend.radius *= random.between(0.5, 1.5),
+        NodeKind::Object(object) if random.once_in(3) => object.shape = random.shape(),
+        _ => {}
+    }
+    scene.replace(node).unwrap();
+}
+
+#[test]
+fn what_an_edit_reached_is_made_anew_and_all_else_is_as_in_a_fresh_tree() {
+    let mut compared = 0;
+    for seed in 0..8 {
+        let mut scene = if seed < 4 { random_tree(seed, 60) } else { crowd(seed, 100, 2.0, 0.15) };
+        let (mut pruner, mut random) = (Pruner::default(), Random(seed + 100));
+        pruner.lists(&flatten(&scene, 0.0).unwrap());
+        for step in 0..6 {
+            edit(&mut scene, &mut random);
+            let flat = flatten(&scene, 0.0).unwrap();
+            let lists = pruner.lists(&flat);
+            for (component, tree) in flat.components.iter().zip(&lists.trees) {
+                let Some(tree) = tree else { continue };
+                assert!(**tree == CellTree::build(&flat, component), "seed {seed}, step {step}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 20);
+}
+
+#[test]
+fn an_unchanged_component_keeps_its_tree() {
+    let mut scene = crowd(1, 60, 2.0, 0.1);
+    // Far from the first, so that neither is moved by what happens to the other.
+    let blend = Blend { kernel: BlendKernel::Cubic, radius: 0.1 };
+    let other = Node::new("", NodeKind::Group(Group { operator: Operator::Union, blend })).at(DVec3::splat(9.0));
+    let other = add(&mut scene, None, other);
+    for i in 0..40 {
+        add(&mut scene, Some(other), object(Shape::Sphere { radius: 0.2 }).at(DVec3::X * 0.1 * f64::from(i)));
+    }
+    let mut pruner = Pruner::default();
+    let before = pruner.lists(&flatten(&scene, 0.0).unwrap());
+    assert!(Arc::ptr_eq(&before, &pruner.lists(&flatten(&scene, 0.0).unwrap())));
+    let last = scene.nodes().len() - 20;
+    let mut node = Node::clone(&scene.nodes()[last]);
+    node.transform.translation.y += 0.01;
+    scene.replace(node).unwrap();
+    let after = pruner.lists(&flatten(&scene, 0.0).unwrap());
+    let same = |i: usize| Arc::ptr_eq(before.trees[i].as_ref().unwrap(), after.trees[i].as_ref().unwrap());
+    assert_eq!([same(0), same(1)], [true, false]);
+}
+
+#[test]
+fn lists_for_a_narrower_blend_are_caught() {
+    let wide = flatten(&crowd(5, 100, 1.6, 0.3), 0.0).unwrap();
+    let mut narrow = wide.clone();
+    for node in &narrow.nodes {
+        narrow.numbers[node.numbers as usize][0] *= 0.2;
+    }
+    let [right, wrong] = [&wide, &narrow].map(|flat| CellTree::build(flat, &flat.components[0]));
+    assert_eq!(verdict(&wide, &right, 2000).wrong, 0);
+    assert!(verdict(&wide, &wrong, 2000).wrong > 20);
+}
+
+/// How many random points in random cubes have another value by the list made for the cube, if it is made
+/// for `share` of how far operands can come closer to each other there.
+fn wrong_in_cubes(share: f64) -> usize {
+    let flat = flatten(&random_tree(7, 80), 0.0).unwrap();
+    let component = &flat.components[0];
+    let (whole, entries) = (program::whole(&flat, component), entry::Entries::new(&flat, component));
+    let (mut pruning, mut random, mut list, mut wrong) = (program::Pruning::default(), Random(8), Vec::new(), 0);
+    for _ in 0..300 {
+        let (center, half) = (random.point(DVec3::splat(-1.5), DVec3::splat(1.5)), random.between(0.01, 0.3));
+        let reach = share * (2.0 * half * 3.0_f64.sqrt() + 1e-6);
+        pruning.run(&whole, &entries, center, reach, &mut list);
+        let tokens: Vec<_> = list.iter().map(|step| step.token.0).collect();
+        for _ in 0..10 {
+            let p = random.point(center - half, center + half);
+            let (pruned, truth) = (field::fold(&flat, component, &tokens, p), twin::field(&flat, component, p));
+            wrong += usize::from((pruned - truth).abs() > 1e-9);
+        }
+    }
+    wrong
+}
+
+#[test]
+fn lists_for_smaller_cells_are_caught() {
+    assert_eq!(wrong_in_cubes(1.0), 0);
+    assert!(wrong_in_cubes(0.25) > 20);
+}

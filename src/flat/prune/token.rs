@@ -1,0 +1,94 @@
+//! The words of a list. An interpreter holds an accumulator and walks them in order.
+
+use crate::flat::{FlatNode, Join};
+
+/// What a token tells the interpreter to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum TokenOp {
+    /// Join the distance of a leaf to the accumulator; [`Join::First`] replaces it.
+    Leaf,
+    /// A group begins: put the accumulator aside.
+    Begin,
+    /// It ends: join what was put aside (as a) with the accumulator (as b), as the group joins.
+    End,
+    /// Change the accumulator's sign: of a difference only what is cut away is left.
+    Negate,
+}
+
+/// A token: two words.
+///
+/// First word: bits 0–7 the shape's code (of no meaning unless a leaf), 8–9 the [`TokenOp`], 10–11 the [`Join`]
+/// (the group's for both of its ends), 12–13 the blend kernel, 14–31 the entry, counted from the
+/// component's first. Second word: the entry's first row, counted from the component's first; the
+/// support of the joint stands there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Token(pub [u32; 2]);
+
+/// Most entries of a component that has lists: what a token can name.
+pub const MAX_PRUNED_ENTRIES: u32 = 1 << (32 - ENTRY_SHIFT);
+
+const OP_SHIFT: u32 = 8;
+const JOIN_SHIFT: u32 = 10;
+const KERNEL_SHIFT: u32 = 12;
+const ENTRY_SHIFT: u32 = 14;
+
+impl Token {
+    /// The token of `node`, which is the component's entry `entry` with its first row at `row`.
+    pub(super) fn new(op: TokenOp, node: &FlatNode, entry: u32, row: u32) -> Self {
+        let joint = (node.join() << JOIN_SHIFT) | (node.kernel() << KERNEL_SHIFT);
+        Self([(node.code & 0xff) | ((op as u32) << OP_SHIFT) | joint | (entry << ENTRY_SHIFT), row])
+    }
+
+    /// The same token for another thing to do.
+    pub(super) fn with_op(self, op: TokenOp) -> Self {
+        Self([(self.0[0] & !(3 << OP_SHIFT)) | ((op as u32) << OP_SHIFT), self.0[1]])
+    }
+
+    /// The same leaf as the start of an accumulator.
+    pub(super) fn as_first(self) -> Self {
+        const _: () = assert!(Join::First as u32 == 0);
+        Self([self.0[0] & !(3 << JOIN_SHIFT), self.0[1]])
+    }
+
+    /// The same leaf, joined as `other` is.
+    pub(super) fn joined_as(self, other: Self) -> Self {
+        let joint = (3 << JOIN_SHIFT) | (3 << KERNEL_SHIFT);
+        Self([(self.0[0] & !joint) | (other.0[0] & joint), self.0[1]])
+    }
+
+    /// What to do.
+    pub fn op(self) -> TokenOp {
+        match (self.0[0] >> OP_SHIFT) & 3 {
+            0 => TokenOp::Leaf,
+            1 => TokenOp::Begin,
+            2 => TokenOp::End,
+            _ => TokenOp::Negate,
+        }
+    }
+
+    /// The shape's code; leaves only.
+    pub fn shape(self) -> u32 {
+        self.0[0] & 0xff
+    }
+
+    /// The joint's [`Join`] as a number.
+    pub fn join(self) -> u32 {
+        (self.0[0] >> JOIN_SHIFT) & 3
+    }
+
+    /// The joint's kernel, as a number of [`crate::scene::BlendKernel::ALL`].
+    pub fn kernel(self) -> u32 {
+        (self.0[0] >> KERNEL_SHIFT) & 3
+    }
+
+    /// The entry, counted from the component's first.
+    pub fn entry(self) -> usize {
+        (self.0[0] >> ENTRY_SHIFT) as usize
+    }
+
+    /// The entry's first row, counted from the component's first.
+    pub fn row(self) -> usize {
+        self.0[1] as usize
+    }
+}
