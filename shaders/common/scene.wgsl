@@ -41,6 +41,15 @@ const RUN: u32 = 0xfffeu;
 const LEAF_ROWS: u32 = 4u;
 
 @group(1) @binding(0) var<storage, read> nodes: array<FlatNode>;
-@group(1) @binding(1) var<storage, read> numbers: array<vec4f>;
+// Rows of numbers, as a texture: lavapipe reads a texel at a place that is not constant several times as fast as
+// four words of a buffer.
+@group(1) @binding(1) var numbers: texture_2d<f32>;
 @group(1) @binding(2) var<storage, read> components: array<Component>;
 @group(1) @binding(3) var<storage, read> materials: array<FlatMaterial>;
+
+// Rows and words stand in textures of this width, line after line.
+const LINE: u32 = 4096u;
+
+fn scene_row(at: u32) -> vec4f {
+    return textureLoad(numbers, vec2u(at % LINE, at / LINE), 0);
+}

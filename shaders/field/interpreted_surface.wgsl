@@ -21,7 +21,7 @@ fn surface(p: vec3f) -> Surface {
     var at = surface_first;
     while at < surface_end {
         let node = nodes[at];
-        let joint = numbers[node.numbers];
+        let joint = scene_row(node.numbers);
         let kind = node.code & 0xffffu;
         if kind >= RUN {
             if !field_group_is_out_of_reach(node, joint, so_far.distance, p) {
@@ -44,7 +44,7 @@ fn surface(p: vec3f) -> Surface {
                 break;
             }
             depth -= 1u;
-            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, numbers[group.numbers].x, surface_stack[depth], so_far);
+            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers).x, surface_stack[depth], so_far);
         }
     }
     return so_far;

@@ -29,7 +29,7 @@ fn field(p: vec3f) -> f32 {
     var at = value_first;
     while at < value_end {
         let node = nodes[at];
-        let joint = numbers[node.numbers];
+        let joint = scene_row(node.numbers);
         let kind = node.code & 0xffffu;
         if kind >= RUN {
             if !field_group_is_out_of_reach(node, joint, so_far, p) {
@@ -53,7 +53,7 @@ fn field(p: vec3f) -> f32 {
                 break;
             }
             depth -= 1u;
-            so_far = join_value(group, numbers[group.numbers].x, value_stack[depth], so_far);
+            so_far = join_value(group, scene_row(group.numbers).x, value_stack[depth], so_far);
         }
     }
     return so_far;

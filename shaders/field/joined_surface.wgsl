@@ -24,7 +24,7 @@ fn joined_surface(join: u32, kernel: u32, support: f32, before: Surface, so_far:
 // The leaf at the entry `at`, whose rows begin at `row`, joins. Gradient and material are looked up only where
 // the surface follows the leaf.
 fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, before: Surface, p: vec3f) -> Surface {
-    let joint = numbers[row];
+    let joint = scene_row(row);
     let distance = leaf_distance(shape, row, joint, p);
     var joined = vec2f(distance, 1.0);
     if join != JOIN_FIRST {
@@ -50,5 +50,5 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
 // The derivatives of a leaf's distance along the component's axes.
 fn leaf_gradient(shape: u32, row: u32, joint: vec4f, p: vec3f) -> vec3f {
     let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * joint.y;
-    return numbers[row + 1u].xyz * d.x + numbers[row + 2u].xyz * d.y + numbers[row + 3u].xyz * d.z;
+    return scene_row(row + 1u).xyz * d.x + scene_row(row + 2u).xyz * d.y + scene_row(row + 3u).xyz * d.z;
 }

@@ -1,7 +1,11 @@
 // Cells with pruned lists: in each cell only what can matter there. Twin of `flat::prune`.
 
-// Cells, then tokens; see `CellTree` on the CPU.
-@group(1) @binding(5) var<storage, read> lists: array<vec2u>;
+// Cells, then tokens, two words each; see `CellTree` on the CPU.
+@group(1) @binding(5) var lists: texture_2d<u32>;
+
+fn pruned_word(at: u32) -> vec2u {
+    return textureLoad(lists, vec2u(at % LINE, at / LINE), 0).xy;
+}
 
 const TOKEN_LEAF: u32 = 0u;
 const TOKEN_BEGIN: u32 = 1u;
@@ -27,12 +31,12 @@ fn pruned_find(p: vec3f) {
     let top = min(vec3u(clamp(q / side, vec3f(0.0), vec3f(8.0))), grid.grid_counts - 1u);
     var index = (top.z * grid.grid_counts.y + top.y) * grid.grid_counts.x + top.x;
     var low = vec3f(top) * side;
-    var cell = lists[grid.lists + index];
+    var cell = pruned_word(grid.lists + index);
     while (cell.x >> 30u) == CELL_REFINED && beyond == 0.0 {
         side *= 0.25;
         let child = min(vec3u(clamp((q - low) / side, vec3f(0.0), vec3f(8.0))), vec3u(3u));
         low += vec3f(child) * side;
-        cell = lists[grid.lists + (cell.x & 0x3fffffffu) + child.x + child.y * 4u + child.z * 16u];
+        cell = pruned_word(grid.lists + (cell.x & 0x3fffffffu) + child.x + child.y * 4u + child.z * 16u);
     }
     let kind = cell.x >> 30u;
     let bound = bitcast<f32>(cell.y);

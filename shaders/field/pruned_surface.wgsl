@@ -15,7 +15,7 @@ fn surface(p: vec3f) -> Surface {
     var so_far = Surface(pruned_bound, pruned_component.first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
     var depth = 0u;
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {
-        let token = lists[at];
+        let token = pruned_word(at);
         let op = (token.x >> 8u) & 3u;
         let join = (token.x >> 10u) & 3u;
         let kernel = (token.x >> 12u) & 3u;
@@ -32,7 +32,7 @@ fn surface(p: vec3f) -> Surface {
         }
         if op == TOKEN_END {
             depth -= 1u;
-            so_far = joined_surface(join, kernel, numbers[row].x, surface_stack[depth], so_far);
+            so_far = joined_surface(join, kernel, scene_row(row).x, surface_stack[depth], so_far);
         }
         if op == TOKEN_NEGATE {
             so_far.distance = -so_far.distance;

@@ -16,12 +16,12 @@ fn field(p: vec3f) -> f32 {
     var so_far = pruned_bound;
     var depth = 0u;
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {
-        let token = lists[at];
+        let token = pruned_word(at);
         let op = (token.x >> 8u) & 3u;
         var join = (token.x >> 10u) & 3u;
         let kernel = (token.x >> 12u) & 3u;
         let row = pruned_component.numbers + token.y;
-        let joint = numbers[row];
+        let joint = scene_row(row);
         var before = so_far;
         // Loops of at most one round: lavapipe executes the body of every `if`.
         var is_leaf = op == TOKEN_LEAF;

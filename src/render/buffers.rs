@@ -102,6 +102,113 @@ impl Mirror {
     }
 }
 
+/// A texture of rows that holds what the CPU says, line after line, with a copy of it.
+#[derive(Debug)]
+pub struct TextureMirror {
+    label: &'static str,
+    format: wgpu::TextureFormat,
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    held: Vec<u8>,
+    uploaded: u64,
+}
+
+impl TextureMirror {
+    /// Texels in a line; `LINE` in `shaders/common/scene.wgsl`.
+    pub const LINE: usize = 4096;
+
+    /// Of texels of this format.
+    pub fn new(device: &wgpu::Device, label: &'static str, format: wgpu::TextureFormat) -> Self {
+        let (texture, view) = create_lines(device, label, format, 1);
+        Self { label, format, texture, view, held: Vec::new(), uploaded: 0 }
+    }
+
+    /// Most bytes that a device can hold.
+    pub fn most_bytes(&self, device: &wgpu::Device) -> usize {
+        device.limits().max_texture_dimension_2d as usize * Self::LINE * self.texel()
+    }
+
+    /// Makes the texture hold `bytes`, whole texels. Uploads what lies between the first and the last difference:
+    /// a part of one line, or whole lines. Returns whether the texture is another one.
+    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        let (texel, line) = (self.texel(), self.texel() * Self::LINE);
+        let lines = bytes.len().div_ceil(line).max(1);
+        let grown = lines as u32 > self.texture.height();
+        if grown {
+            (self.texture, self.view) = create_lines(device, self.label, self.format, lines.next_power_of_two() as u32);
+            self.held.clear();
+        }
+        let common = self.held.len().min(bytes.len());
+        let same = common_prefix(&self.held[..common], &bytes[..common]);
+        if same == bytes.len() {
+            self.held.truncate(bytes.len());
+            return grown;
+        }
+        let tail = if self.held.len() == bytes.len() { common_suffix(&self.held[same..], &bytes[same..]) } else { 0 };
+        let (from, to) = (same / texel * texel, (bytes.len() - tail).next_multiple_of(texel));
+        if from / line == (to - 1) / line {
+            self.write(queue, &bytes[from..to], from / texel, to - from);
+        } else {
+            let (first, last) = (from / line * line, (to.next_multiple_of(line)).min(bytes.len()));
+            let whole = (last - first) / line * line;
+            self.write(queue, &bytes[first..first + whole], first / texel, line);
+            self.write(queue, &bytes[first + whole..last], (first + whole) / texel, last - first - whole);
+        }
+        self.held.resize(bytes.len(), 0);
+        self.held[same..].copy_from_slice(&bytes[same..]);
+        grown
+    }
+
+    /// Writes lines of `width` bytes from the texel `at` on.
+    fn write(&mut self, queue: &wgpu::Queue, bytes: &[u8], at: usize, width: usize) {
+        if bytes.is_empty() {
+            return;
+        }
+        let rows = (bytes.len() / width) as u32;
+        let origin = wgpu::Origin3d { x: (at % Self::LINE) as u32, y: (at / Self::LINE) as u32, z: 0 };
+        let target = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width as u32), rows_per_image: Some(rows) };
+        let size = wgpu::Extent3d { width: (width / self.texel()) as u32, height: rows, depth_or_array_layers: 1 };
+        queue.write_texture(target, bytes, layout, size);
+        self.uploaded += bytes.len() as u64;
+    }
+
+    fn texel(&self) -> usize {
+        self.format.block_copy_size(None).expect("a format of colours") as usize
+    }
+
+    /// The texture, whole.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(&self.view)
+    }
+
+    /// Bytes uploaded so far.
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+}
+
+fn create_lines(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    lines: u32,
+) -> (wgpu::Texture, wgpu::TextureView) {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: TextureMirror::LINE as u32, height: lines, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    (texture, view)
+}
+
 fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: usize) -> wgpu::Buffer {
     device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),

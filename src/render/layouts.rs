@@ -24,8 +24,11 @@ impl Layouts {
             scene: layout(
                 device,
                 "scene",
-                &[0, 1, 2, 3, 4, 5]
-                    .map(|b| entry(b, ShaderStages::COMPUTE, if b == 4 { uniform(true) } else { read_storage() })),
+                &[read_storage(), read_texture(false), read_storage(), read_storage(), uniform(true), read_texture(true)]
+                    .iter()
+                    .enumerate()
+                    .map(|(b, ty)| entry(b as u32, ShaderStages::COMPUTE, *ty))
+                    .collect::<Vec<_>>(),
             ),
             work: layout(device, "work", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }

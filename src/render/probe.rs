@@ -3,12 +3,12 @@
 use glam::DVec3;
 use wgpu::ShaderStages;
 
-use super::buffers::Mirror;
+use super::buffers::{Mirror, TextureMirror};
 use super::gpu::Gpu;
 use super::kernel::{Evaluator, Options, source};
 use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
 use super::readback::read_words;
-use super::renderer::{KERNEL_WINDOW, RenderError};
+use super::renderer::{KERNEL_WINDOW, LISTS_FORMAT, NUMBERS_FORMAT, RenderError};
 use super::uniforms::GpuComponent;
 use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT};
 
@@ -42,13 +42,18 @@ pub fn field(
     }
     let scene = [
         uploaded(bytemuck::cast_slice(&flat.nodes)),
-        uploaded(bytemuck::cast_slice(&flat.numbers)),
         uploaded(bytemuck::cast_slice(&components)),
         uploaded(bytemuck::cast_slice(&flat.materials)),
-        uploaded(tree.as_ref().map_or(&[], |tree| bytemuck::cast_slice(&tree.words))),
+        uploaded(bytemuck::cast_slice(&flat.numbers)),
     ];
-    let mut bindings: Vec<_> = scene.iter().map(Mirror::binding).collect();
-    bindings.insert(4, window(scene[1].buffer(), KERNEL_WINDOW));
+    let mut numbers = TextureMirror::new(device, "numbers", NUMBERS_FORMAT);
+    numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers));
+    let mut lists = TextureMirror::new(device, "lists", LISTS_FORMAT);
+    lists.set(device, queue, tree.as_ref().map_or(&[], |tree| bytemuck::cast_slice(&tree.words)));
+    let [nodes, components, materials, rows] = scene.each_ref().map(Mirror::binding);
+    let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
+    drop(rows);
+    let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
     let groups = [

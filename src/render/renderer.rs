@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 use wgpu::BindGroup;
 
-use super::buffers::Mirror;
+use super::buffers::{Mirror, TextureMirror};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Choice, Kernels, Method, Walk};
@@ -145,8 +145,10 @@ pub struct Renderer {
     mesh: MeshPass,
     overlay: OverlayPass,
     nodes: Mirror,
-    numbers: Mirror,
-    lists: Mirror,
+    numbers: TextureMirror,
+    /// The same numbers once more, for the windows of specialised kernels.
+    rows: Mirror,
+    lists: TextureMirror,
     pruner: Pruner,
     components: Mirror,
     materials: Mirror,
@@ -188,6 +190,10 @@ const WORK_STRIDE: usize = 256;
 /// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
+/// Of the texture of rows.
+pub(super) const NUMBERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
+/// Of the texture of pruned lists.
+pub(super) const LISTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of a tile in a list.
 const TILE_BYTES: usize = 20;
 /// Words that are counted for each component.
@@ -220,8 +226,9 @@ impl Renderer {
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
             nodes: storage("nodes"),
-            numbers: Mirror::rows(device, "numbers"),
-            lists: storage("lists"),
+            numbers: TextureMirror::new(device, "numbers", NUMBERS_FORMAT),
+            rows: Mirror::uniform(device, "rows"),
+            lists: TextureMirror::new(device, "lists", LISTS_FORMAT),
             pruner: Pruner::default(),
             components: storage("components"),
             materials: storage("materials"),
@@ -266,7 +273,8 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        [&self.nodes, &self.numbers, &self.lists, &self.components, &self.materials].map(Mirror::uploaded).iter().sum()
+        let buffers = [&self.nodes, &self.rows, &self.components, &self.materials].map(Mirror::uploaded);
+        buffers.iter().sum::<u64>() + self.numbers.uploaded() + self.lists.uploaded()
     }
 
     /// How long a whole frame is expected to take.
@@ -497,7 +505,8 @@ impl Renderer {
         let view = View::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.numbers.set_with_room(device, queue, bytemuck::cast_slice(&flat.numbers), KERNEL_WINDOW),
+            self.rows.set_with_room(device, queue, bytemuck::cast_slice(&flat.numbers), KERNEL_WINDOW),
+            self.numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers)),
             self.lists.set(device, queue, bytemuck::cast_slice(&lists)),
             self.components.set(device, queue, bytemuck::cast_slice(&components)),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
@@ -516,9 +525,14 @@ impl Renderer {
 
     fn bind_all(&self, targets: &Targets) -> Groups {
         let device = &self.gpu.device;
-        let scene = [&self.nodes, &self.numbers, &self.components, &self.materials].map(Mirror::binding);
-        let own_rows = window(self.numbers.buffer(), KERNEL_WINDOW);
-        let scene: Vec<_> = scene.into_iter().chain([own_rows, self.lists.binding()]).collect();
+        let scene = [
+            self.nodes.binding(),
+            self.numbers.binding(),
+            self.components.binding(),
+            self.materials.binding(),
+            window(self.rows.buffer(), KERNEL_WINDOW),
+            self.lists.binding(),
+        ];
         let lists = Lists {
             tiles: self.tiles.buffer(),
             tile_counts: self.tile_counts.buffer(),

@@ -1,10 +1,11 @@
 //! Has a driver compile kernels before they are needed, on a device of its own.
 
-use super::buffers::Mirror;
+use super::buffers::{Mirror, TextureMirror};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options};
 use super::layouts::{Layouts, bind, window};
 use super::passes::field::{FieldGroups, FieldLayouts, Lists};
+use super::renderer::{LISTS_FORMAT, NUMBERS_FORMAT};
 use super::targets::Targets;
 use super::uniforms::{View, Work};
 
@@ -44,13 +45,15 @@ impl Warmer {
             ray_counts: counts[2].buffer(),
             nothing: counts[3].buffer(),
         };
+        let [numbers, lists_texture] =
+            [("numbers", NUMBERS_FORMAT), ("lists", LISTS_FORMAT)].map(|(l, f)| TextureMirror::new(device, l, f));
         let scene = [
             small.binding(),
-            small.binding(),
+            numbers.binding(),
             small.binding(),
             small.binding(),
             window(rows.buffer(), MAX_KERNEL_ROWS as usize * 16),
-            small.binding(),
+            lists_texture.binding(),
         ];
         Ok(Self {
             view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<View>())]),

@@ -114,7 +114,7 @@ impl Features {
 
 /// The arguments of a shape's function, its parameters read from their rows.
 fn read_rows(kind: ShapeKind) -> String {
-    let row = |i: usize| if i < kind.rows() { format!("numbers[row + {i}u]") } else { "vec4f(0.0)".to_owned() };
+    let row = |i: usize| if i < kind.rows() { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
     format!("p, {}, {}", row(0), row(1))
 }
 
