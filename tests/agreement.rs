@@ -3,7 +3,8 @@
 
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
-use isolith::flat::{FlatScene, flatten};
+use isolith::flat::{CellTree, FlatScene, flatten, pruned_field};
+use isolith::gallery;
 use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
@@ -133,6 +134,30 @@ fn runs_agree() {
         assert!(flat.nodes.iter().filter(|n| n.is_run()).count() >= 6, "nothing is skipped here");
         assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a kernel");
         agree_skipping("runs", &scene, &mut random, skipping);
+    }
+}
+
+/// Pruned lists: every component that can have them, against the twin of the same lists. A point near the border of
+/// two cells may fall to either.
+#[test]
+fn pruned_lists_agree() {
+    const NEAR: f64 = 1e-5;
+    let crowds = [gallery::crowd(60, true, 3), gallery::crowd(200, true, 4), gallery::boxes(40, 5)];
+    for (scene, seed) in crowds.iter().zip(1..) {
+        let flat = flatten(scene, 0.0).unwrap();
+        let tree = CellTree::build(&flat, &flat.components[0]);
+        let points = points(&mut Random::new(seed), POINTS);
+        let evaluator = Evaluator::Pruned(Features::of(&flat));
+        for skipping in [Skipping::Branches, Skipping::Loops] {
+            let options = Options { skipping, ..Options::default() };
+            let values = probe::field(&shared().gpu, &flat, 0, &points, &evaluator, options).unwrap();
+            for (p, gpu) in points.iter().zip(values) {
+                let around = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+                let cpu = around.map(|d| pruned_field(&flat, &flat.components[0], &tree, *p + d * NEAR));
+                let agrees = |cpu: &f64| (f64::from(gpu) - cpu).abs() <= 1e-4 * (1.0 + cpu.abs());
+                assert!(cpu.iter().any(agrees), "crowd {seed}: at {p} the GPU says {gpu}, the CPU {cpu:?}");
+            }
+        }
     }
 }
 

@@ -12,6 +12,7 @@ mod files;
 mod golden;
 mod gpu;
 mod meshes;
+mod methods;
 mod random_scene;
 mod renderer;
 mod saving;

@@ -25,8 +25,10 @@ fn evaluators() -> Vec<Evaluator> {
     structures.sort();
     structures.dedup();
     let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
-    let interpreted = alone.chain([Features::all()]).map(Evaluator::Interpreted);
-    interpreted.chain(structures.into_iter().map(Evaluator::Specialised)).collect()
+    let walked: Vec<_> = alone.chain([Features::all()]).collect();
+    let interpreted = walked.iter().cloned().map(Evaluator::Interpreted);
+    let pruned = walked.iter().cloned().map(Evaluator::Pruned);
+    interpreted.chain(pruned).chain(structures.into_iter().map(Evaluator::Specialised)).collect()
 }
 
 /// Every file of a pass with the interpreter for everything, then with a specialised kernel.
@@ -34,8 +36,10 @@ fn sources() -> Vec<(&'static str, String)> {
     let everything = Evaluator::Interpreted(Features::all());
     let special =
         evaluators().into_iter().find(|e| matches!(e, Evaluator::Specialised(_))).expect("scenes have structures");
+    let pruned = Evaluator::Pruned(Features::all());
     let text = |pass, evaluator| source(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
-    passes().flat_map(|pass| [(pass, text(pass, &everything)), (pass, text(pass, &special))]).collect()
+    let all = [everything, pruned, special];
+    passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
 }
 
 /// The module that a source makes, or what is wrong with it.
@@ -49,7 +53,7 @@ fn validate(source: &str) -> Result<naga::Module, String> {
 #[test]
 fn every_pass_is_valid_with_every_evaluator() {
     let choices = evaluators();
-    let options = [Options::default(), Options { counting: true, skipping: Skipping::Loops }];
+    let options = [Options::default(), Options { counting: true, skipping: Skipping::Loops, ..Options::default() }];
     let mut count = 0;
     for pass in passes() {
         for evaluator in &choices {
@@ -134,12 +138,28 @@ fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
         flat_node(),
         layout!("FlatMaterial" = FlatMaterial { albedo, specular, emission, shininess }),
-        layout!("Component" = GpuComponent { eye, first, low, end, high, padding, half_space }),
+        layout!(
+            "Component" = GpuComponent {
+                eye,
+                first,
+                low,
+                end,
+                high,
+                numbers,
+                half_space,
+                grid_low,
+                grid_side,
+                grid_counts,
+                lists
+            }
+        ),
         layout!(
             "View" =
                 View { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
         ),
-        layout!("Work" = Work { origin, end, component, max_steps, round, last_round, list, first_tile, padding }),
+        layout!(
+            "Work" = Work { origin, end, component, max_steps, round, last_round, list, first_tile, packed, padding }
+        ),
         layout!(
             "Instance" = Instance {
                 eye_from_local_x,

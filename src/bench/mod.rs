@@ -26,7 +26,7 @@ mod way;
 pub use chart::time_against_error;
 pub use frontier::frontier;
 pub use growth::growth;
-pub use measure::{BenchError, Bench, Subject, Truths, cpu_time};
+pub use measure::{Bench, BenchError, Subject, Truths, cpu_time};
 pub use row::{NotFinite, Row};
 pub use table::{csv, markdown, noise};
 pub use way::Way;

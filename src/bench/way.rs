@@ -26,15 +26,8 @@ pub enum Way {
 
 impl Way {
     /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::Thesis,
-        Self::Generated,
-        Self::Interpreted,
-        Self::Pruned,
-        Self::Specialised,
-        Self::Limit,
-        Self::Auto,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::Thesis, Self::Generated, Self::Interpreted, Self::Pruned, Self::Specialised, Self::Limit, Self::Auto];
 
     /// Its name, as the command line and reports write it.
     pub fn name(self) -> &'static str {

@@ -81,7 +81,9 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
                     }
                     rows.push(row);
                 }
-                Err(BenchError::Scene(error)) => complain(&format!("left out: {}: {}: {error}", subject.name, way.name())),
+                Err(BenchError::Scene(error)) => {
+                    complain(&format!("left out: {}: {}: {error}", subject.name, way.name()))
+                }
                 Err(error) => return Err(failed(error)),
             }
         }
@@ -161,10 +163,9 @@ fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), 
     }
     let chart = |name: &str, picture: RgbImage| {
         let path = folder.join(format!("{name}.png"));
-        picture.save_with_format(&path, ImageFormat::Png).map_err(|error| Failure::Write {
-            path: path.clone(),
-            reason: error.to_string(),
-        })
+        picture
+            .save_with_format(&path, ImageFormat::Png)
+            .map_err(|error| Failure::Write { path: path.clone(), reason: error.to_string() })
     };
     if grown {
         chart("growth", growth(rows))?;

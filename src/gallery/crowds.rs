@@ -21,7 +21,10 @@ pub fn crowd(leaves: usize, is_blended: bool, seed: u64) -> Scene {
     for _ in 0..leaves {
         let (name, shape) = match random.below(3) {
             0 => ("Sphere", sphere(random.between(0.14, 0.32))),
-            1 => ("Box", cuboid(random.between(0.22, 0.62), random.between(0.22, 0.62), random.between(0.22, 0.62), 0.04)),
+            1 => (
+                "Box",
+                cuboid(random.between(0.22, 0.62), random.between(0.22, 0.62), random.between(0.22, 0.62), 0.04),
+            ),
             _ => ("Torus", torus(random.between(0.18, 0.34), random.between(0.05, 0.12))),
         };
         let place = DVec3::from([0; 3].map(|_| random.between(-reach, reach)));

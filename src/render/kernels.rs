@@ -197,10 +197,9 @@ impl Kernels {
             choices.push(match *key {
                 None => None,
                 Some(key) => self.specialised(key, method, || match method {
-                    Method::Generated => Some(Evaluator::Generated(
-                        Structure::whole(flat, component),
-                        component_rows(flat, component),
-                    )),
+                    Method::Generated => {
+                        Some(Evaluator::Generated(Structure::whole(flat, component), component_rows(flat, component)))
+                    }
                     _ => Structure::of(flat, component).map(Evaluator::Specialised),
                 }),
             });

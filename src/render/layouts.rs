@@ -24,11 +24,18 @@ impl Layouts {
             scene: layout(
                 device,
                 "scene",
-                &[read_storage(), read_texture(false), read_storage(), read_storage(), uniform(true), read_texture(true)]
-                    .iter()
-                    .enumerate()
-                    .map(|(b, ty)| entry(b as u32, ShaderStages::COMPUTE, *ty))
-                    .collect::<Vec<_>>(),
+                &[
+                    read_storage(),
+                    read_texture(false),
+                    read_storage(),
+                    read_storage(),
+                    uniform(true),
+                    read_texture(true),
+                ]
+                .iter()
+                .enumerate()
+                .map(|(b, ty)| entry(b as u32, ShaderStages::COMPUTE, *ty))
+                .collect::<Vec<_>>(),
             ),
             work: layout(device, "work", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }

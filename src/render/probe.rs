@@ -50,9 +50,8 @@ pub fn field(
     numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers));
     let mut lists = TextureMirror::new(device, "lists", LISTS_FORMAT);
     lists.set(device, queue, tree.as_ref().map_or(&[], |tree| bytemuck::cast_slice(&tree.words)));
-    let [nodes, components, materials, rows] = scene.each_ref().map(Mirror::binding);
+    let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
     let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
-    drop(rows);
     let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));

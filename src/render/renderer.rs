@@ -474,12 +474,22 @@ impl Renderer {
     fn choose(&mut self, flat: &FlatScene) -> Result<Chosen, RenderError> {
         let keys = Kernels::keys(flat, self.method);
         // Lists are made only for what no specialised kernel is to draw.
-        let wanted: Vec<bool> =
-            keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
-        let trees = self.pruner.trees(flat, &wanted);
+        let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
+        let mut trees = self.pruner.trees(flat, &wanted);
+        // What has no room on the device is walked without lists.
+        let mut room = self.lists.most_bytes(&self.gpu.device) / size_of::<[u32; 2]>();
+        for tree in &mut trees {
+            let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
+            match room.checked_sub(needed) {
+                Some(left) => room = left,
+                None => *tree = None,
+            }
+        }
         let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
         let choices = self.kernels.choose(flat, &keys, self.method, &has_lists)?;
-        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice.walk {
+        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice
+            .walk
+        {
             Walk::Straight => Evaluation::of_straight(component),
             Walk::Entries => Evaluation::of_entries(component),
             Walk::List => tree.as_ref().map_or(Evaluation::of_entries(component), |tree| Evaluation::of_lists(tree)),
@@ -489,7 +499,14 @@ impl Renderer {
     }
 
     /// Returns whether a buffer was replaced.
-    fn upload(&mut self, flat: &FlatScene, trees: &[Option<Arc<CellTree>>], camera: &Camera, size: [u32; 2], plan: &Plan) -> bool {
+    fn upload(
+        &mut self,
+        flat: &FlatScene,
+        trees: &[Option<Arc<CellTree>>],
+        camera: &Camera,
+        size: [u32; 2],
+        plan: &Plan,
+    ) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
         let nothing = vec![[0_u32, 1, 1, 0]; plan.lists as usize];
         let mut lists: Vec<[u32; 2]> = Vec::new();

@@ -154,7 +154,7 @@ impl Evaluation {
     /// Of a component with pruned lists.
     pub fn of_lists(tree: &CellTree) -> Self {
         // Two iterations find the cell.
-        Self { straight: false, iterations: 4 * tree.longest() as u32 + 8, leaves: tree.mean_length() as f64 + 2.0 }
+        Self { straight: false, iterations: 4 * tree.longest() + 8, leaves: tree.mean_length() + 2.0 }
     }
 }
 
