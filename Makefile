@@ -27,9 +27,12 @@ lint: setup ## Check formatting and lints only
 	cargo fmt --check
 	cargo clippy --all-targets -- -D warnings
 
-bench: setup ## Measure speed and accuracy; the accuracy table also goes into benches/README.md
+bench: setup ## Measure speed and accuracy; tables go into benches/README.md, charts into target/bench
 	cargo bench --bench frame
 	cargo bench --bench report
+	cargo run --release -- bench --output target/bench
+	cargo run --release -- bench --growth --methods pruned,specialised,auto --output target/bench
+	cargo run --release -- bench --blends --methods auto --output target/bench
 
 golden: setup ## Accept the pictures of all scenes as they are rendered now
 	ISOLITH_ACCEPT_GOLDEN=1 cargo test --test tests -- golden::

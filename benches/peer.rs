@@ -19,6 +19,7 @@ use fidget::jit::JitShape;
 use fidget::raster::voxel::{EvalConfig, Image, RenderConfig, RenderSize, render};
 use fidget::render::{CancelToken, ThreadPool, TileSizes};
 use glam::{DAffine3, DMat3, DVec3};
+use isolith::bench::cpu_time;
 use isolith::flat::{BACKGROUND_DEPTH, Buffers, FlatNode, FlatScene, Join, LEAF_ROWS};
 use isolith::geometry::{Aabb, Camera};
 use isolith::scene::ShapeKind;
@@ -33,12 +34,6 @@ pub const TUNED_TILES: [usize; 3] = [128, 32, 8];
 
 /// Voxels left free before and behind the scene: in the first two the peer does not tell depths apart.
 const MARGIN: f64 = 4.0;
-
-/// Time of all threads of the program so far.
-pub fn cpu_time() -> Duration {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
-    Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
-}
 
 /// What the peer drew.
 pub struct PeerPicture {

@@ -1,8 +1,9 @@
-//! How exact every scene's picture is, and what a drag costs: as tables, printed and written into
-//! `benches/README.md` between their marks.
+//! How exact every scene's picture is, what a drag costs, and how another library does: as tables, printed and
+//! written into `benches/README.md` between their marks. Names of tables choose among them.
 
 #[path = "../tests/gpu.rs"]
 mod gpu;
+mod peer;
 mod ten_thousand;
 
 use std::fmt::Write as _;
@@ -10,8 +11,11 @@ use std::io::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use isolith::bench::{Bench, Subject, Truths, Way};
 use isolith::flat::truth::truth;
 use isolith::flat::{Accuracy, Flattener};
+use isolith::mesh::MeshLibrary;
+use isolith::render::kernel::Quality;
 use isolith::render::{Method, OverlaySettings, Slot};
 
 /// Width and height of the measured pictures, in pixels.
@@ -22,7 +26,11 @@ const REPEATS: usize = 101;
 fn main() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/README.md");
     let mut text = std::fs::read_to_string(&path).expect("benches/README.md is part of the source");
-    for (mark, table) in [("accuracy", accuracy()), ("drag", drag())] {
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
+    let tables: [(&str, fn() -> String); 3] = [("accuracy", accuracy), ("drag", drag), ("peer", peer)];
+    let wanted = |mark: &str| chosen.is_empty() || chosen.iter().any(|name| name == mark);
+    for (mark, table) in tables.into_iter().filter(|(mark, _)| wanted(mark)) {
+        let table = table();
         writeln!(std::io::stdout(), "{table}").expect("standard output takes text");
         text = replaced(&text, mark, &table);
     }
@@ -65,6 +73,53 @@ fn accuracy() -> String {
             a.normal_p99,
         )
         .expect("strings take all");
+    }
+    out
+}
+
+/// Width and height of the pictures that are compared with the peer's, in pixels.
+const PEER_SIDE: u32 = 512;
+/// Voxels along the peer's columns: its error halves where they double, until it is that of a tenth of a footprint.
+const PEER_DEPTHS: [u32; 3] = [512, 2048, 8192];
+/// How often the peer draws; the quickest counts.
+const PEER_REPEATS: usize = 3;
+
+/// The peer beside the editor's own way, in one run: times of all threads.
+fn peer() -> String {
+    let mut out = String::from("| scene | by | voxels | CPU ms | build ms | depth p99 | normal p50 | ratio |\n");
+    out += "|---|---|--:|--:|--:|--:|--:|--:|\n";
+    let bench = Bench::new(gpu::shared().gpu.clone());
+    let scenes = [("3 blended", isolith::gallery::random(3, 5)), ("random-37", isolith::gallery::random(32, 5))];
+    let more = [("random-145", isolith::gallery::random(128, 5)), ("random-577", isolith::gallery::random(512, 5))];
+    for (name, scene) in scenes.into_iter().chain(more) {
+        let subject = Subject::new(name, scene, &mut MeshLibrary::new(None)).unwrap_or_else(|error| panic!("{error}"));
+        let truth = Truths::default().of(&subject, PEER_SIDE).unwrap_or_else(|error| panic!("{error}"));
+        let row = bench.measure(&subject, Way::Auto, Quality::Default, PEER_SIDE, &truth);
+        let row = row.unwrap_or_else(|error| panic!("{name}: {error}"));
+        writeln!(
+            out,
+            "| {name} | isolith | – | {:.0} | – | {:.5} | {:.4} | 1 |",
+            row.cpu_ms, row.depth_p99, row.normal_p50
+        )
+        .expect("strings take all");
+        let peer = peer::Peer::new(&subject.flat, &subject.camera).expect("a scene that the peer can express");
+        for depth in PEER_DEPTHS {
+            let tiles = [&peer::DEFAULT_TILES, &peer::TUNED_TILES];
+            let pictures =
+                tiles.iter().flat_map(|tiles| (0..PEER_REPEATS).map(|_| peer.render(PEER_SIDE, depth, *tiles)));
+            let best = pictures.min_by_key(|picture| picture.cpu).expect("it draws more than once");
+            let footprint = subject.camera.footprint(f64::from(PEER_SIDE));
+            let error = Accuracy::against(&best.buffers(PEER_SIDE), &truth, footprint);
+            let (ms, build) = (best.cpu.as_secs_f64() * 1e3, peer.build.as_secs_f64() * 1e3);
+            writeln!(
+                out,
+                "| {name} | fidget | {depth} | {ms:.0} | {build:.1} | {:.5} | {:.4} | {:.1} |",
+                error.depth_p99,
+                error.normal_p50,
+                ms / row.cpu_ms
+            )
+            .expect("strings take all");
+        }
     }
     out
 }

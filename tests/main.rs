@@ -5,6 +5,7 @@ mod agreement;
 mod broken_files;
 mod cli;
 mod contract;
+mod counts;
 mod documents;
 mod drag;
 mod editor;

@@ -14,7 +14,7 @@ const TOKEN_NEGATE: u32 = 3u;
 const CELL_EMPTY: u32 = 0u;
 const CELL_REFINED: u32 = 2u;
 // How far the grid reaches beyond the bounds, in sides of a cell at the top: a little less, so that f32 may round.
-const GRID_MARGIN: f32 = 0.18;
+const GRID_MARGIN: f32 = 0.1818;
 
 var<private> pruned_component: Component;
 var<private> pruned_list: vec2u;

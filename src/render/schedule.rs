@@ -232,6 +232,7 @@ impl Plan {
         let (max_steps, at_once) =
             if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
         let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
+        // By the whole component, so that pictures do not depend on how work is cut.
         let first_steps = if rect.tiles() >= LEAST_PACKED_TILES { steps.min(FIRST_STEPS) } else { steps };
         let rounds = 1 + (max_steps - first_steps.min(max_steps)).div_ceil(steps);
         rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, straight), |rect| {

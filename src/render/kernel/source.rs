@@ -56,59 +56,36 @@ impl Features {
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
     /// `row` on.
-    fn shapes_wgsl(&self, skipping: Skipping) -> String {
+    fn shapes_wgsl(&self) -> String {
         let mut out = String::new();
         for kind in &self.shapes {
             writeln!(out, "{}", shape_include(*kind)).expect("strings take all");
         }
         writeln!(out, "const STACK_SIZE: u32 = {}u;", self.stack).expect("strings take all");
         let call = |kind: ShapeKind| format!("{}({})", kind.function(), read_rows(kind));
-        self.choice(&mut out, "shape_distance", "f32", "1e30", skipping, &call);
+        self.choice(&mut out, "shape_distance", ["f32", "1e30"], &call);
         out
     }
 
     /// The generated file: the same choice of the gradients.
-    fn gradients_wgsl(&self, skipping: Skipping) -> String {
+    fn gradients_wgsl(&self) -> String {
         let mut out = String::new();
         for kind in &self.shapes {
             writeln!(out, "{}", gradient_include(*kind)).expect("strings take all");
         }
         let call = |kind: ShapeKind| format!("dual_{}({})", kind.function(), read_rows(kind));
-        self.choice(&mut out, "shape_gradient", "vec4f", "vec4f(0.0)", skipping, &call);
+        self.choice(&mut out, "shape_gradient", ["vec4f", "vec4f(0.0)"], &call);
         out
     }
 
-    /// A function that calls what belongs to the shape. lavapipe executes every arm of a `switch`, but ends a
-    /// loop that no lane is in, so there each arm is a loop of at most one round.
-    fn choice(
-        &self,
-        out: &mut String,
-        name: &str,
-        result: &str,
-        nothing: &str,
-        skipping: Skipping,
-        call: &dyn Fn(ShapeKind) -> String,
-    ) {
-        let mut line = |text: &str| {
-            out.push_str(text);
-            out.push('\n');
-        };
-        line(&format!("fn {name}(shape: u32, p: vec3f, row: u32) -> {result} {{"));
-        if skipping == Skipping::Loops {
-            line(&format!("    var value = {nothing};"));
-            for kind in &self.shapes {
-                let code = *kind as u32;
-                line(&format!("    var is{code} = shape == {code}u;"));
-                line(&format!("    while is{code} {{ value = {}; is{code} = p.x > 3e38; }}", call(*kind)));
-            }
-            line("    return value;\n}");
-            return;
-        }
-        line("    switch shape {");
+    /// A function that calls what belongs to the shape.
+    fn choice(&self, out: &mut String, name: &str, [result, nothing]: [&str; 2], call: &dyn Fn(ShapeKind) -> String) {
+        writeln!(out, "fn {name}(shape: u32, p: vec3f, row: u32) -> {result} {{\n    switch shape {{")
+            .expect("strings take all");
         for kind in &self.shapes {
-            line(&format!("        case {}u: {{ return {}; }}", *kind as u32, call(*kind)));
+            writeln!(out, "        case {}u: {{ return {}; }}", *kind as u32, call(*kind)).expect("strings take all");
         }
-        line(&format!("        default: {{ return {nothing}; }}\n    }}\n}}"));
+        writeln!(out, "        default: {{ return {nothing}; }}\n    }}\n}}").expect("strings take all");
     }
 }
 
@@ -225,8 +202,8 @@ impl Resolver<'_> {
             ("generated/surface.wgsl", Specialised(structure)) => special(structure, None, Fold::Surface),
             ("generated/value.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Value),
             ("generated/surface.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Surface),
-            ("generated/shapes.wgsl", Interpreted(f) | Pruned(f)) => Some(f.shapes_wgsl(self.options.skipping)),
-            ("generated/gradients.wgsl", Interpreted(f) | Pruned(f)) => Some(f.gradients_wgsl(self.options.skipping)),
+            ("generated/shapes.wgsl", Interpreted(f) | Pruned(f)) => Some(f.shapes_wgsl()),
+            ("generated/gradients.wgsl", Interpreted(f) | Pruned(f)) => Some(f.gradients_wgsl()),
             ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
             _ => {
                 let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;

@@ -1,0 +1,76 @@
+//! What is evaluated, counted on the device: exact numbers, so they are gates.
+
+use glam::DVec3;
+use isolith::gallery;
+use isolith::geometry::Camera;
+use isolith::render::kernel::Options;
+use isolith::render::{Counts, Method, OverlaySettings, Renderer, Slot};
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+
+use crate::gpu::{Subject, shared};
+
+/// Width and height of the pictures, in pixels.
+const SIDE: u32 = 128;
+
+/// What drawing the subject counts.
+fn count(subject: &Subject, options: impl Fn(Options) -> Options) -> Counts {
+    let gpu = shared().gpu.clone();
+    let options = options(Options { counting: true, ..Renderer::options(&gpu) });
+    let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
+    renderer.set_method(Method::Pruned);
+    let overlay = OverlaySettings::default();
+    let mut frame = renderer
+        .begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], overlay)
+        .expect("a frame");
+    renderer.advance(&mut frame, std::time::Duration::MAX).expect("a picture");
+    renderer.counts(&frame).expect("counts")
+}
+
+fn object(shape: Shape, at: DVec3) -> Node {
+    Node::new("object", NodeKind::Object(Object { shape, material: MaterialId(1) })).at(at)
+}
+
+#[test]
+fn what_is_hidden_or_out_of_view_costs_nothing() {
+    let mut scene = Scene::new();
+    let wall = Shape::Box { size: [6.0, 6.0, 0.5], rounding: 0.0 };
+    let ball = Shape::Sphere { radius: 0.5 };
+    for node in [
+        object(wall, DVec3::ZERO),
+        object(ball, DVec3::new(0.0, 0.0, -3.0)),
+        object(ball, DVec3::new(0.0, 0.0, 12.0)),
+        object(ball, DVec3::new(0.5, 0.0, 1.0)),
+    ] {
+        scene.insert(None, usize::MAX, node).expect("the scene has room");
+    }
+    let mut subject = Subject::new("wall", &scene, None);
+    subject.camera = Camera::looking_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, 0.6);
+    let counts = count(&subject, |options| options);
+    assert_eq!(subject.flat.components.len(), 4);
+    let [wall, hidden, behind_the_eye, seen] = counts.of_components[..] else { panic!("{counts:?}") };
+    assert!(wall > 0 && seen > 0, "{counts:?}");
+    assert_eq!([hidden, behind_the_eye], [0, 0]);
+}
+
+/// Evaluations of fields per pixel, by rays and cones.
+fn per_pixel(counts: &Counts) -> f64 {
+    (counts.steps + counts.cone_steps) as f64 / f64::from(SIDE * SIDE)
+}
+
+#[test]
+fn no_more_is_evaluated_than_was_once_reached() {
+    let scenes =
+        [gallery::random(32, 2), gallery::random(128, 2), gallery::crowd(100, true, 2), gallery::crowd(400, true, 2)];
+    let reached = scenes.map(|scene| per_pixel(&count(&Subject::new("random", &scene, None), |options| options)));
+    assert!((0..4).all(|i| reached[i] <= MOST[i]), "{reached:?} evaluations per pixel, {MOST:?} allowed");
+}
+
+#[test]
+fn without_cones_more_is_evaluated() {
+    let subject = Subject::new("random", &gallery::random(32, 2), None);
+    let [with, without] = [true, false].map(|cones| per_pixel(&count(&subject, |o| Options { cones, ..o })));
+    assert!(without > 1.5 * with, "{without} without cones, {with} with them");
+}
+
+/// Evaluations per pixel that are allowed: those of 2026-11, with a twentieth of room for drivers that round otherwise.
+const MOST: [f64; 4] = [4.35, 5.95, 5.3, 9.3];
