@@ -12,7 +12,7 @@
 //! camera only is not counted in the time of a frame, and neither is the conversion of voxels to distances.
 
 use std::ops::Range;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use fidget::context::Tree;
 use fidget::jit::JitShape;
@@ -43,8 +43,6 @@ pub struct PeerPicture {
     pub normal: Vec<[f32; 3]>,
     /// Time of all threads for the frame.
     pub cpu: Duration,
-    /// Time on the clock for the frame.
-    pub wall: Duration,
 }
 
 impl PeerPicture {
@@ -83,18 +81,11 @@ impl Peer {
         let shape = self.shape.clone().try_into().expect("the expression has no other variables than the point");
         let tile_sizes = Some(TileSizes::new(tiles).expect("every tile is divided by the next"));
         let eval = EvalConfig { tile_sizes, threads: Some(&self.threads), cancel: CancelToken::new() };
-        let (cpu, wall) = (cpu_time(), Instant::now());
+        let start = cpu_time();
         let image = render(shape, &view.config(), &eval).expect("nobody cancels it");
-        let (cpu, wall) = (cpu_time() - cpu, wall.elapsed());
+        let cpu = cpu_time() - start;
         let (depth, normal) = view.converted(&image);
-        PeerPicture { depth, normal, cpu, wall }
-    }
-
-    /// Width of a voxel along the middle ray, in pixel footprints: nearest and farthest. Depths are exact to half.
-    pub fn voxel(&self, size: u32, depth: u32) -> [f64; 2] {
-        let view = View::new(&self.camera, &self.range, size, depth);
-        let footprint = self.camera.footprint(f64::from(size));
-        [self.range.start, self.range.end].map(|at| at * view.w[1] / footprint)
+        PeerPicture { depth, normal, cpu }
     }
 }
 

@@ -27,10 +27,15 @@ fn main() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/README.md");
     let mut text = std::fs::read_to_string(&path).expect("benches/README.md is part of the source");
     let chosen: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with('-')).collect();
-    let tables: [(&str, fn() -> String); 3] = [("accuracy", accuracy), ("drag", drag), ("peer", peer)];
-    let wanted = |mark: &str| chosen.is_empty() || chosen.iter().any(|name| name == mark);
-    for (mark, table) in tables.into_iter().filter(|(mark, _)| wanted(mark)) {
-        let table = table();
+    for mark in ["accuracy", "drag", "peer"] {
+        if !chosen.is_empty() && chosen.iter().all(|name| name != mark) {
+            continue;
+        }
+        let table = match mark {
+            "accuracy" => accuracy(),
+            "drag" => drag(),
+            _ => peer(),
+        };
         writeln!(std::io::stdout(), "{table}").expect("standard output takes text");
         text = replaced(&text, mark, &table);
     }

@@ -15,8 +15,8 @@
 // The farthest depth in each tile.
 @group(2) @binding(3) var farthest_target: texture_storage_2d<r32float, write>;
 @group(2) @binding(4) var<storage, read> tiles: array<Tile>;
-// For each list how many rays have not ended in the first round, then their pixels: column and row, 16 bits each,
-// with room for 64 for each tile.
+// For each list how many rays have not ended in the first round; then the pixels of those of the list under way,
+// column and row, 16 bits each.
 @group(2) @binding(6) var<storage, read_write> rays: array<atomic<u32>>;
 // For each list the arguments of an indirect dispatch over these: groups of 64, 1, 1. Written in the first round.
 @group(2) @binding(7) var<storage, read_write> ray_counts: array<atomic<u32>>;
@@ -147,8 +147,8 @@ fn trace(
     var exists = view_contains(pixel);
     if work.packed == 1u {
         let at = group.x * 64u + lane;
-        exists = at < atomicLoad(&rays[trace_rays()]);
-        let ray = atomicLoad(&rays[trace_rays() + 1u + at]);
+        exists = at < atomicLoad(&rays[work.list]);
+        let ray = atomicLoad(&rays[work.rays + at]);
         pixel = select(vec2u(0u), vec2u(ray & 0xffffu, ray >> 16u), exists);
     }
     let component = components[work.component];
@@ -203,13 +203,8 @@ fn trace_leave(pixel: vec2u, marched: March) {
         textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
     } else if !marched.ended {
         textureStore(march_target, pixel, vec4f(marched.t));
-        let at = atomicAdd(&rays[trace_rays()], 1u);
+        let at = atomicAdd(&rays[work.list], 1u);
         atomicMax(&ray_counts[work.list * 4u], at / 64u + 1u);
-        atomicStore(&rays[trace_rays() + 1u + at], pixel.x | (pixel.y << 16u));
+        atomicStore(&rays[work.rays + at], pixel.x | (pixel.y << 16u));
     }
-}
-
-// Where the list's rays stand in `rays`.
-fn trace_rays() -> u32 {
-    return work.first_tile * 64u + work.list;
 }

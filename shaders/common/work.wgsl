@@ -18,7 +18,8 @@ struct Work {
     first_tile: u32,
     // 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
     packed: u32,
-    padding: u32,
+    // Where the rays that are left stand in `rays`.
+    rays: u32,
 }
 
 @group(3) @binding(0) var<uniform> work: Work;

@@ -38,7 +38,7 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
     var follows = w > 0.0;
     while follows {
         let m = materials[nodes[at].material];
-        let gradient = leaf_gradient(shape, row, joint, p) * select(w, -w, join == JOIN_DIFFERENCE);
+        let gradient = joined_surface_gradient(shape, row, joint, p) * select(w, -w, join == JOIN_DIFFERENCE);
         so_far.gradient = before.gradient * (1.0 - w) + gradient;
         so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
         so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
@@ -48,7 +48,7 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
 }
 
 // The derivatives of a leaf's distance along the component's axes.
-fn leaf_gradient(shape: u32, row: u32, joint: vec4f, p: vec3f) -> vec3f {
+fn joined_surface_gradient(shape: u32, row: u32, joint: vec4f, p: vec3f) -> vec3f {
     let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * joint.y;
     return scene_row(row + 1u).xyz * d.x + scene_row(row + 2u).xyz * d.y + scene_row(row + 3u).xyz * d.z;
 }

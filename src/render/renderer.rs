@@ -1,5 +1,9 @@
 //! The renderer: takes a flat scene and a camera, delivers a picture, in pieces that can be waited for.
 
+mod choice;
+mod frame;
+mod measure;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -9,20 +13,24 @@ use wgpu::BindGroup;
 use super::buffers::{Mirror, TextureMirror};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
-use super::kernels::{Choice, Kernels, Method, Walk};
+use super::kernels::{Kernels, Method};
 use super::layouts::{Layouts, bind, window};
 use super::passes::farthest::FarthestPass;
 use super::passes::field::{FieldGroups, Lists};
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::{ShadePass, mesh_emissions};
-use super::readback::{read_buffers, read_words};
-use super::schedule::{DISPATCH_TARGET, Effort, Evaluation, Pace, Piece, Plan, Stage, TILE, plan};
+use super::readback::read_buffers;
+use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, TILE, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
 use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, Row, Warning, gpu_lights};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
+
+use choice::Chosen;
+pub use frame::Frame;
+pub use measure::Counts;
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -41,21 +49,6 @@ pub enum RenderError {
     Cancelled,
 }
 
-/// What kernels that count have counted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Evaluations of fields by rays.
-    pub steps: u64,
-    /// Rays that were marched, once for each component that they meet.
-    pub rays: u64,
-    /// Evaluations of fields by cones.
-    pub cone_steps: u64,
-    /// Tiles that the cones have left, of all components.
-    pub tiles: u64,
-    /// Evaluations by rays and cones, for each component.
-    pub of_components: Vec<u64>,
-}
-
 /// The pieces of work as the device reads them, at offsets of [`WORK_STRIDE`].
 fn work_bytes(plan: &Plan) -> Vec<u8> {
     let mut work = vec![0_u8; plan.pieces.len() * WORK_STRIDE];
@@ -63,57 +56,6 @@ fn work_bytes(plan: &Plan) -> Vec<u8> {
         slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
     }
     work
-}
-
-/// A frame under way.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    plan: Plan,
-    keys: Vec<Option<u128>>,
-    choices: Vec<Choice>,
-    next: usize,
-    /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
-    pace: Pace,
-    seconds_done: f64,
-    seconds: f64,
-    slot: Slot,
-    overlay: OverlaySettings,
-    rows: Vec<u32>,
-    origins: Vec<crate::scene::NodeId>,
-}
-
-impl Frame {
-    /// Share that is done, from 0 to 1.
-    pub fn progress(&self) -> f32 {
-        if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
-    }
-
-    /// Whether a kernel is dispatched for the first time among these pieces.
-    fn uses_fresh_kernel(&self, pieces: std::ops::Range<usize>) -> bool {
-        let field = |p: &&Piece| matches!(p.stage, Stage::Cone | Stage::Trace | Stage::Surface);
-        let kernels =
-            self.plan.pieces[pieces].iter().filter(field).map(|p| (p, &self.choices[p.work.component as usize]));
-        // All of them, not only up to the first fresh one: each is marked.
-        kernels.fold(false, |fresh, (piece, choice)| choice.kernel.first_use(piece.stage as usize) | fresh)
-    }
-
-    /// Leaves out everything but light and overlay: for a picture of the same scene from the same place
-    /// that is complete in its slot already.
-    pub fn skip_to_shading(&mut self) {
-        let shading = self.plan.pieces.iter().position(|p| p.stage == Stage::Shade);
-        self.next = shading.unwrap_or(self.plan.pieces.len());
-    }
-
-    /// Leaves out light and overlay: depth, normals and materials are all that is wanted.
-    pub fn skip_shading(&mut self) {
-        self.plan.pieces.retain(|piece| piece.stage != Stage::Shade);
-        self.overlay = OverlaySettings::default();
-    }
-
-    /// Whether the picture is complete.
-    pub fn is_done(&self) -> bool {
-        self.next == self.plan.pieces.len()
-    }
 }
 
 /// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
@@ -175,14 +117,6 @@ struct Groups {
     field: FieldGroups,
     farthest: BindGroup,
     shade: BindGroup,
-}
-
-/// What [`Renderer::choose`] finds, beside the components.
-struct Chosen {
-    keys: Vec<Option<u128>>,
-    choices: Vec<Choice>,
-    evaluations: Vec<Evaluation>,
-    trees: Vec<Option<Arc<CellTree>>>,
 }
 
 /// Dynamic offsets of `Work` are multiples of this.
@@ -394,108 +328,14 @@ impl Renderer {
         }
     }
 
-    /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
-    /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
-    pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
-        let confirm = |piece: &Piece| {
-            let work = Work { round: 1, last_round: 1, max_steps: 1, packed: 0, ..piece.work };
-            match piece.stage {
-                Stage::Trace if piece.work.round == 0 => Some(Piece { work, ..*piece }),
-                Stage::Surface | Stage::Shade => Some(*piece),
-                _ => None,
-            }
-        };
-        let mut plan = frame.plan.clone();
-        plan.pieces = plan.pieces.iter().filter_map(confirm).collect();
-        let Gpu { device, queue, .. } = &self.gpu;
-        self.work.set(device, queue, &work_bytes(&plan));
-        let targets = &self.slot(frame.slot).targets;
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        let size = targets.depth.texture.size();
-        let (from, to) = (targets.depth.texture.as_image_copy(), targets.march.texture.as_image_copy());
-        encoder.copy_texture_to_texture(from, to, size);
-        queue.submit([encoder.finish()]);
-        let seconds = frame.pace.seconds(plan.effort());
-        Frame { plan, next: 0, seconds_done: 0.0, seconds, overlay: OverlaySettings::default(), ..frame.clone() }
-    }
-
-    /// Sets what a frame has counted to nothing.
-    pub fn forget_counts(&mut self, frame: &Frame) {
-        let Gpu { device, queue, .. } = &self.gpu;
-        self.march_counts.reset(device, queue, &vec![0; frame.origins.len() * COUNTS * 4]);
-    }
-
-    /// What a frame has counted, with kernels that count.
-    pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
-        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * COUNTS)?;
-        let sum = |words: &[u32], i: usize| words.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
-        let mut of_components: Vec<u64> = words.chunks_exact(COUNTS).map(|c| u64::from(c[1])).collect();
-        for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
-            of_components[piece.work.component as usize] += u64::from(lists[piece.work.list as usize * COUNTS + 3]);
-        }
-        Ok(Counts {
-            steps: sum(&words, 1),
-            rays: sum(&words, 2),
-            cone_steps: sum(&lists, 3),
-            tiles: sum(&lists, 0),
-            of_components,
-        })
-    }
-
-    /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
-    pub fn read(&self, frame: &Frame) -> Result<Buffers, RenderError> {
-        Ok(read_buffers(&self.gpu, &self.slot(frame.slot).targets)?)
-    }
-
     /// The picture in a slot: complete once its frame is done, and another texture after a
     /// [`Renderer::begin`] of another size.
     pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
         self.slots[slot as usize].as_ref().map(|s| (&s.targets.color.view, s.targets.size))
     }
 
-    /// Which components had rays that did not come to an end within the steps allowed.
-    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
-        let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
-        let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
-            node: *id,
-            name: String::new(),
-            reason: format!("{count} rays did not come to an end within the steps allowed; they show what lies behind"),
-        });
-        Ok(warnings.collect())
-    }
-
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
-    }
-
-    /// Kernels, and what they need to know, for each component.
-    fn choose(&mut self, flat: &FlatScene) -> Result<Chosen, RenderError> {
-        let keys = Kernels::keys(flat, self.method);
-        // Lists are made only for what no specialised kernel is to draw.
-        let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
-        let mut trees = self.pruner.trees(flat, &wanted);
-        // What has no room on the device is walked without lists.
-        let mut room = self.lists.most_bytes(&self.gpu.device) / size_of::<[u32; 2]>();
-        for tree in &mut trees {
-            let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
-            match room.checked_sub(needed) {
-                Some(left) => room = left,
-                None => *tree = None,
-            }
-        }
-        let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
-        let choices = self.kernels.choose(flat, &keys, self.method, &has_lists)?;
-        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice
-            .walk
-        {
-            Walk::Straight => Evaluation::of_straight(component),
-            Walk::Entries => Evaluation::of_entries(component),
-            Walk::List => tree.as_ref().map_or(Evaluation::of_entries(component), |tree| Evaluation::of_lists(tree)),
-        };
-        let evaluations = flat.components.iter().zip(&choices).zip(&trees).map(evaluation).collect();
-        Ok(Chosen { keys, choices, evaluations, trees })
     }
 
     /// Returns whether a buffer was replaced.
@@ -532,7 +372,7 @@ impl Renderer {
             self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
             self.work.set(device, queue, &work_bytes(plan)),
             self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
-            self.rays.reserve(device, (plan.tiles * TILE * TILE + plan.lists) as usize * 4),
+            self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
@@ -580,7 +420,7 @@ impl Renderer {
         while at < range.end {
             if pieces[at].stage == Stage::Mesh {
                 // No ray is left over yet.
-                encoder.clear_buffer(self.rays.buffer(), 0, None);
+                encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
                 self.mesh.record(&mut encoder, targets, &groups.view);
                 at += 1;
                 continue;

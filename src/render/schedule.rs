@@ -27,6 +27,8 @@ pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 /// Steps of a ray in the first round, after which those that have not ended are packed side by side: most have, and
 /// where they have not it is single rays along an outline, for which all others in their group would wait.
 pub const FIRST_STEPS: u32 = 10;
+/// Most pixels of one piece of a component: as many rays may be left.
+const MOST_PIXELS: f64 = 1048576.0;
 /// Components over fewer tiles are marched in one round: packing costs a dispatch.
 pub const LEAST_PACKED_TILES: u32 = 24;
 
@@ -167,6 +169,8 @@ pub struct Plan {
     pub lists: u32,
     /// Tiles in all lists together, if none is dropped.
     pub tiles: u32,
+    /// Tiles in the longest list, if none is dropped.
+    pub longest: u32,
 }
 
 /// Expected evaluations of a component per pixel of its outline: measured on the shipped scenes.
@@ -199,6 +203,9 @@ pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], evaluations: &[Ev
         let Some(rect) = Rect::around(&flat.components[index], &projection, size) else { continue };
         plan.component(flat, index, rect, evaluations[index], pace, &mut surfaces);
     }
+    // The rays that are left stand behind how many they are; one list after the other uses the same place.
+    let rays = plan.lists;
+    plan.pieces.iter_mut().for_each(|piece| piece.work.rays = rays);
     // Normals only of what is still seen when all components are there.
     plan.pieces.append(&mut surfaces);
     let per_pixel = 0.3 + 0.2 * flat.lights.len() as f64;
@@ -235,7 +242,9 @@ impl Plan {
         // By the whole component, so that pictures do not depend on how work is cut.
         let first_steps = if rect.tiles() >= LEAST_PACKED_TILES { steps.min(FIRST_STEPS) } else { steps };
         let rounds = 1 + (max_steps - first_steps.min(max_steps)).div_ceil(steps);
-        rect.cut(leaves * TRACE_EVALUATIONS, pace.effort_in(DISPATCH_TARGET, straight), |rect| {
+        let per_pixel = leaves * TRACE_EVALUATIONS;
+        let most = pace.effort_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
+        rect.cut(per_pixel, most, |rect| {
             let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(straight, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
@@ -249,6 +258,7 @@ impl Plan {
             surfaces.push(Piece { stage: Stage::Surface, work: list, effort: effort(SURFACE_EVALUATIONS) });
             self.lists += 1;
             self.tiles += rect.tiles();
+            self.longest = self.longest.max(rect.tiles());
         });
     }
 }

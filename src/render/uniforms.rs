@@ -144,6 +144,6 @@ pub struct Work {
     pub first_tile: u32,
     /// 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
     pub packed: u32,
-    /// Unused.
-    pub padding: u32,
+    /// Where the rays that are left stand in the buffer of rays.
+    pub rays: u32,
 }

@@ -95,7 +95,11 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
         }
     }
     let module = module_of(path);
-    let tests = test_ranges(&words);
+    let mut tests = test_ranges(&words);
+    if path.ends_with("/tests.rs") || path.contains("/tests/") {
+        // A file of tests beside what it tests.
+        tests.push(0..words.len());
+    }
     for (i, word) in words.iter().enumerate() {
         let next = words.get(i + 1).map_or("", |w| w.text);
         let in_path = next == ":" && words.get(i + 2).is_some_and(|w| w.text == ":");

@@ -1,0 +1,92 @@
+//! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
+
+use super::{COUNTS, Frame, RenderError, Renderer, work_bytes};
+use crate::flat::{Buffers, Warning};
+use crate::render::gpu::Gpu;
+use crate::render::passes::overlay::OverlaySettings;
+use crate::render::readback::{read_buffers, read_words};
+use crate::render::schedule::{Piece, Stage};
+use crate::render::uniforms::Work;
+
+/// What kernels that count have counted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Evaluations of fields by rays.
+    pub steps: u64,
+    /// Rays that were marched, once for each component that they meet.
+    pub rays: u64,
+    /// Evaluations of fields by cones.
+    pub cone_steps: u64,
+    /// Tiles that the cones have left, of all components.
+    pub tiles: u64,
+    /// Evaluations by rays and cones, for each component.
+    pub of_components: Vec<u64>,
+}
+
+impl Renderer {
+    /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
+    /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
+    pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
+        let confirm = |piece: &Piece| {
+            let work = Work { round: 1, last_round: 1, max_steps: 1, packed: 0, ..piece.work };
+            match piece.stage {
+                Stage::Trace if piece.work.round == 0 => Some(Piece { work, ..*piece }),
+                Stage::Surface | Stage::Shade => Some(*piece),
+                _ => None,
+            }
+        };
+        let mut plan = frame.plan.clone();
+        plan.pieces = plan.pieces.iter().filter_map(confirm).collect();
+        let Gpu { device, queue, .. } = &self.gpu;
+        self.work.set(device, queue, &work_bytes(&plan));
+        let targets = &self.slot(frame.slot).targets;
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let size = targets.depth.texture.size();
+        let (from, to) = (targets.depth.texture.as_image_copy(), targets.march.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, size);
+        queue.submit([encoder.finish()]);
+        let seconds = frame.pace.seconds(plan.effort());
+        Frame { plan, next: 0, seconds_done: 0.0, seconds, overlay: OverlaySettings::default(), ..frame.clone() }
+    }
+
+    /// Sets what a frame has counted to nothing.
+    pub fn forget_counts(&mut self, frame: &Frame) {
+        let Gpu { device, queue, .. } = &self.gpu;
+        self.march_counts.reset(device, queue, &vec![0; frame.origins.len() * COUNTS * 4]);
+    }
+
+    /// What a frame has counted, with kernels that count.
+    pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
+        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * COUNTS)?;
+        let sum = |words: &[u32], i: usize| words.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
+        let mut of_components: Vec<u64> = words.chunks_exact(COUNTS).map(|c| u64::from(c[1])).collect();
+        for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
+            of_components[piece.work.component as usize] += u64::from(lists[piece.work.list as usize * COUNTS + 3]);
+        }
+        Ok(Counts {
+            steps: sum(&words, 1),
+            rays: sum(&words, 2),
+            cone_steps: sum(&lists, 3),
+            tiles: sum(&lists, 0),
+            of_components,
+        })
+    }
+
+    /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
+    pub fn read(&self, frame: &Frame) -> Result<Buffers, RenderError> {
+        Ok(read_buffers(&self.gpu, &self.slot(frame.slot).targets)?)
+    }
+
+    /// Which components had rays that did not come to an end within the steps allowed.
+    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
+        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
+        let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
+        let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
+            node: *id,
+            name: String::new(),
+            reason: format!("{count} rays did not come to an end within the steps allowed; they show what lies behind"),
+        });
+        Ok(warnings.collect())
+    }
+}
