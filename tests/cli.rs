@@ -334,3 +334,35 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
     assert_eq!(status.code(), Some(130));
     assert_eq!(place.names(), ["scene.json"]);
 }
+
+#[test]
+fn bench_measures_every_method_and_writes_tables_and_charts() {
+    let place = Place::new();
+    let methods = "thesis,generated,interpreted,pruned,specialised,limit,auto";
+    let run = place.run(&["bench", "scene.json", "--methods", methods, "--size", "32", "--json", "--output", "report"]);
+    run.succeeded();
+    let rows: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
+    let of = |row: &Value, key: &str| row[key].as_str().map(str::to_owned);
+    let measured: Vec<_> = rows.iter().filter_map(|row| of(row, "method")).collect();
+    assert_eq!(measured.join(","), methods);
+    for row in &rows {
+        for key in ["cpu_ms", "wall_ms", "steps_per_px", "evals_per_px", "hit_miss_share", "depth_p99", "normal_p99"] {
+            assert!(row[key].as_f64().is_some_and(|v| v >= 0.0), "{key} of {row}");
+        }
+        assert_eq!(row["hit_miss_share"].as_f64(), Some(0.0), "{row}");
+    }
+    for name in ["bench.md", "bench.csv"] {
+        let text = std::fs::read_to_string(place.path("report").join(name)).expect("a table");
+        assert!(text.contains("interpreted") && text.contains("auto"), "{name}");
+    }
+    assert!(open(&place.path("report").join("scene.png")).dimensions().0 > 800);
+}
+
+#[test]
+fn bench_refuses_what_it_does_not_know() {
+    let place = Place::new();
+    place.run(&["bench", "scene.json", "--methods", "fastest"]).failed(2, &["fastest", "thesis, generated"]);
+    place.run(&["bench", "scene.json", "--qualities", "best"]).failed(2, &["best", "draft, default, fine"]);
+    place.run(&["bench", "scene.json", "--size", "5"]).failed(2, &["16..=4096"]);
+    place.run(&["bench", "missing.json"]).failed(3, &["missing.json"]);
+}
