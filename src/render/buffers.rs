@@ -71,18 +71,9 @@ impl Mirror {
     /// The same, with at least `room` bytes behind `bytes`; what they are does not matter.
     pub fn set_with_room(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8], room: usize) -> bool {
         let grown = self.reserve(device, bytes.len() + room);
-        let common = self.held.len().min(bytes.len());
-        let same = common_prefix(&self.held[..common], &bytes[..common]);
-        if same == bytes.len() {
-            self.held.truncate(bytes.len());
-            return grown;
-        }
-        let tail = if self.held.len() == bytes.len() { common_suffix(&self.held[same..], &bytes[same..]) } else { 0 };
-        let (from, to) = (same & !3, (bytes.len() - tail).next_multiple_of(4));
+        let Some((from, to)) = take_over(&mut self.held, bytes, 4) else { return grown };
         queue.write_buffer(&self.buffer, from as u64, &bytes[from..to]);
         self.uploaded += (to - from) as u64;
-        self.held.resize(bytes.len(), 0);
-        self.held[from..].copy_from_slice(&bytes[from..]);
         grown
     }
 
@@ -138,14 +129,7 @@ impl TextureMirror {
             (self.texture, self.view) = create_lines(device, self.label, self.format, lines.next_power_of_two() as u32);
             self.held.clear();
         }
-        let common = self.held.len().min(bytes.len());
-        let same = common_prefix(&self.held[..common], &bytes[..common]);
-        if same == bytes.len() {
-            self.held.truncate(bytes.len());
-            return grown;
-        }
-        let tail = if self.held.len() == bytes.len() { common_suffix(&self.held[same..], &bytes[same..]) } else { 0 };
-        let (from, to) = (same / texel * texel, (bytes.len() - tail).next_multiple_of(texel));
+        let Some((from, to)) = take_over(&mut self.held, bytes, texel) else { return grown };
         if from / line == (to - 1) / line {
             self.write(queue, &bytes[from..to], from / texel, to - from);
         } else {
@@ -154,8 +138,6 @@ impl TextureMirror {
             self.write(queue, &bytes[first..first + whole], first / texel, line);
             self.write(queue, &bytes[first + whole..last], (first + whole) / texel, last - first - whole);
         }
-        self.held.resize(bytes.len(), 0);
-        self.held[same..].copy_from_slice(&bytes[same..]);
         grown
     }
 
@@ -216,6 +198,21 @@ fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u
         usage,
         mapped_at_creation: false,
     })
+}
+
+/// Makes `held` what `bytes` is. Returns the range that differed, in whole units of `unit` bytes; `None` where nothing
+/// has to be uploaded.
+fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<(usize, usize)> {
+    let common = held.len().min(bytes.len());
+    let same = common_prefix(&held[..common], &bytes[..common]);
+    if same == bytes.len() {
+        held.truncate(bytes.len());
+        return None;
+    }
+    let tail = if held.len() == bytes.len() { common_suffix(&held[same..], &bytes[same..]) } else { 0 };
+    held.resize(bytes.len(), 0);
+    held[same..].copy_from_slice(&bytes[same..]);
+    Some((same / unit * unit, (bytes.len() - tail).next_multiple_of(unit)))
 }
 
 /// Length of the common beginning. Compares blocks, which is as fast as memory.

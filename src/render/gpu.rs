@@ -134,8 +134,6 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         max_texture_dimension_2d: offered.max_texture_dimension_2d,
         max_buffer_size: offered.max_buffer_size,
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
-        // The march has nine: five of the scene, four lists and counts of its own.
-        max_storage_buffers_per_shader_stage: 9,
         ..wgpu::Limits::default()
     };
     wgpu::DeviceDescriptor { label: Some("isolith"), required_limits, ..Default::default() }
