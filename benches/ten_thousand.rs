@@ -45,7 +45,7 @@ pub fn document() -> (Document, NodeId) {
 pub fn warm(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u32; 2]) {
     loop {
         renderer.begin(Slot::Full, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
-        if renderer.kernels().building() == 0 {
+        if !renderer.is_preparing() {
             return;
         }
         std::thread::sleep(std::time::Duration::from_millis(20));

@@ -21,6 +21,8 @@ const PER_FRAME: Duration = Duration::from_millis(60);
 /// A full picture that takes longer than this waits for the kernels that are being built: they make it
 /// many times faster than the interpreter would.
 const WORTH_WAITING: Duration = Duration::from_millis(1500);
+/// The same for pruned lists, which are made sooner: some 200 ms in most scenes.
+const LISTS_WORTH_WAITING: Duration = Duration::from_millis(300);
 /// Pixels of the window to a side of a coarse pixel, at most.
 const COARSEST: u32 = 8;
 
@@ -35,7 +37,7 @@ pub(super) struct Canvas {
     took: Duration,
     /// The camera or a value is being dragged.
     navigating: bool,
-    /// The full picture waits for the end of a drag, or for kernels that are being built.
+    /// The full picture waits for the end of a drag, or for kernels or lists that are being made.
     waiting: bool,
 }
 
@@ -149,11 +151,16 @@ impl Canvas {
         Ok(())
     }
 
-    /// Kernels that are being built are waited for without hurry; those that failed are told of.
+    /// Kernels and lists that are being made are waited for without hurry; kernels that failed are told of.
     /// True when another one has become ready.
     fn follow_kernels(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
+        let lists = self.renderer.pruner();
+        let mut news = lists.collect();
+        if lists.building() > 0 {
+            ctx.request_repaint_after(Duration::from_millis(30));
+        }
         let kernels = self.renderer.kernels();
-        let news = kernels.collect();
+        news |= kernels.collect();
         for failure in kernels.take_failures() {
             editor.report(Message::warning(failure));
         }
@@ -178,7 +185,8 @@ impl Canvas {
             self.show(Slot::Preview);
         }
         let kernels_pay = full > WORTH_WAITING && self.renderer.kernels_building() > 0;
-        self.waiting = full > AT_ONCE && (self.navigating || kernels_pay);
+        let lists_pay = full > LISTS_WORTH_WAITING && self.renderer.pruner().building() > 0;
+        self.waiting = full > AT_ONCE && (self.navigating || kernels_pay || lists_pay);
         if self.waiting {
             self.under_way = None;
             return Ok(());

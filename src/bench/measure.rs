@@ -183,9 +183,9 @@ impl Bench {
             frame.skip_shading();
             Ok::<_, RenderError>(frame)
         };
-        // Kernels are built and the pace is learnt before anything counts.
+        // Kernels and lists are built and the pace is learnt before anything counts.
         let mut frame = begin(&mut renderer)?;
-        while way.method() == Method::Auto && renderer.kernels_building() > 0 {
+        while way.method() == Method::Auto && renderer.is_preparing() {
             std::thread::sleep(Duration::from_millis(5));
             frame = begin(&mut renderer)?;
         }

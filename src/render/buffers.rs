@@ -1,5 +1,7 @@
 //! Buffers that hold what the CPU says and upload only what has changed.
 
+use std::ops::Range;
+
 /// A GPU buffer with a copy of what it holds.
 #[derive(Debug)]
 pub struct Mirror {
@@ -65,16 +67,26 @@ impl Mirror {
     /// Makes the buffer hold `bytes` (a multiple of 4). Uploads the range between the first and the
     /// last difference. Returns whether the buffer is another one, so that bind groups must be remade.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
-        self.set_with_room(device, queue, bytes, 0)
+        self.set_with_room(device, queue, bytes, 0, 4).0
     }
 
-    /// The same, with at least `room` bytes behind `bytes`; what they are does not matter.
-    pub fn set_with_room(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8], room: usize) -> bool {
+    /// The same, with at least `room` bytes behind `bytes`; what they are does not matter. Also returns what has
+    /// changed, in whole units of `unit` bytes.
+    pub fn set_with_room(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        bytes: &[u8],
+        room: usize,
+        unit: usize,
+    ) -> (bool, Option<Range<usize>>) {
         let grown = self.reserve(device, bytes.len() + room);
-        let Some((from, to)) = take_over(&mut self.held, bytes, 4) else { return grown };
-        queue.write_buffer(&self.buffer, from as u64, &bytes[from..to]);
-        self.uploaded += (to - from) as u64;
-        grown
+        let changed = take_over(&mut self.held, bytes, unit);
+        if let Some(range) = &changed {
+            queue.write_buffer(&self.buffer, range.start as u64, &bytes[range.clone()]);
+            self.uploaded += range.len() as u64;
+        }
+        (grown, changed)
     }
 
     /// The buffer, whole.
@@ -93,25 +105,24 @@ impl Mirror {
     }
 }
 
-/// A texture of rows that holds what the CPU says, line after line, with a copy of it.
+/// A texture of rows that holds what the CPU says, line after line.
 #[derive(Debug)]
-pub struct TextureMirror {
+pub struct RowTexture {
     label: &'static str,
     format: wgpu::TextureFormat,
     texture: wgpu::Texture,
     view: wgpu::TextureView,
-    held: Vec<u8>,
     uploaded: u64,
 }
 
-impl TextureMirror {
+impl RowTexture {
     /// Texels in a line; `LINE` in `shaders/common/scene.wgsl`.
     pub const LINE: usize = 4096;
 
     /// Of texels of this format.
     pub fn new(device: &wgpu::Device, label: &'static str, format: wgpu::TextureFormat) -> Self {
         let (texture, view) = create_lines(device, label, format, 1);
-        Self { label, format, texture, view, held: Vec::new(), uploaded: 0 }
+        Self { label, format, texture, view, uploaded: 0 }
     }
 
     /// Most bytes that a device can hold.
@@ -119,34 +130,35 @@ impl TextureMirror {
         device.limits().max_texture_dimension_2d as usize * Self::LINE * self.texel()
     }
 
-    /// Makes the texture hold `bytes`, whole texels. Uploads what lies between the first and the last difference:
-    /// a part of one line, or whole lines. Returns whether the texture is another one.
-    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
-        let (texel, line) = (self.texel(), self.texel() * Self::LINE);
-        let lines = bytes.len().div_ceil(line).max(1);
-        let grown = lines as u32 > self.texture.height();
+    /// Makes room for `bytes`. Where that takes another texture nothing stands in it, and the answer is true.
+    pub fn reserve(&mut self, device: &wgpu::Device, bytes: usize) -> bool {
+        let lines = bytes.div_ceil(self.texel() * Self::LINE).max(1) as u32;
+        let grown = lines > self.texture.height();
         if grown {
-            (self.texture, self.view) = create_lines(device, self.label, self.format, lines.next_power_of_two() as u32);
-            self.held.clear();
-        }
-        let Some((from, to)) = take_over(&mut self.held, bytes, texel) else { return grown };
-        if from / line == (to - 1) / line {
-            self.write(queue, &bytes[from..to], from / texel, to - from);
-        } else {
-            let (first, last) = (from / line * line, (to.next_multiple_of(line)).min(bytes.len()));
-            let whole = (last - first) / line * line;
-            self.write(queue, &bytes[first..first + whole], first / texel, line);
-            self.write(queue, &bytes[first + whole..last], (first + whole) / texel, last - first - whole);
+            let lines = lines.next_power_of_two().min(device.limits().max_texture_dimension_2d);
+            (self.texture, self.view) = create_lines(device, self.label, self.format, lines);
         }
         grown
     }
 
-    /// Writes lines of `width` bytes from the texel `at` on.
-    fn write(&mut self, queue: &wgpu::Queue, bytes: &[u8], at: usize, width: usize) {
+    /// Writes whole texels, the first at the byte `at`: the end of a line, whole lines, the beginning of one.
+    pub fn write(&mut self, queue: &wgpu::Queue, at: usize, bytes: &[u8]) {
+        let line = self.texel() * Self::LINE;
+        let head = (at.next_multiple_of(line) - at).min(bytes.len());
+        let whole = (bytes.len() - head) / line * line;
+        for (from, to, width) in
+            [(0, head, head), (head, head + whole, line), (head + whole, bytes.len(), bytes.len() - head - whole)]
+        {
+            self.write_lines(queue, at + from, &bytes[from..to], width);
+        }
+    }
+
+    /// Writes lines of `width` bytes.
+    fn write_lines(&mut self, queue: &wgpu::Queue, at: usize, bytes: &[u8], width: usize) {
         if bytes.is_empty() {
             return;
         }
-        let rows = (bytes.len() / width) as u32;
+        let (at, rows) = (at / self.texel(), (bytes.len() / width) as u32);
         let origin = wgpu::Origin3d { x: (at % Self::LINE) as u32, y: (at / Self::LINE) as u32, z: 0 };
         let target = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
         let layout =
@@ -156,7 +168,8 @@ impl TextureMirror {
         self.uploaded += bytes.len() as u64;
     }
 
-    fn texel(&self) -> usize {
+    /// Bytes of a texel.
+    pub fn texel(&self) -> usize {
         self.format.block_copy_size(None).expect("a format of colours") as usize
     }
 
@@ -179,7 +192,7 @@ fn create_lines(
 ) -> (wgpu::Texture, wgpu::TextureView) {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
-        size: wgpu::Extent3d { width: TextureMirror::LINE as u32, height: lines, depth_or_array_layers: 1 },
+        size: wgpu::Extent3d { width: RowTexture::LINE as u32, height: lines, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -202,7 +215,7 @@ fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u
 
 /// Makes `held` what `bytes` is. Returns the range that differed, in whole units of `unit` bytes; `None` where nothing
 /// has to be uploaded.
-fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<(usize, usize)> {
+fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<Range<usize>> {
     let common = held.len().min(bytes.len());
     let same = common_prefix(&held[..common], &bytes[..common]);
     if same == bytes.len() {
@@ -212,7 +225,7 @@ fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<(usize, us
     let tail = if held.len() == bytes.len() { common_suffix(&held[same..], &bytes[same..]) } else { 0 };
     held.resize(bytes.len(), 0);
     held[same..].copy_from_slice(&bytes[same..]);
-    Some((same / unit * unit, (bytes.len() - tail).next_multiple_of(unit)))
+    Some(same / unit * unit..(bytes.len() - tail).next_multiple_of(unit))
 }
 
 /// Length of the common beginning. Compares blocks, which is as fast as memory.

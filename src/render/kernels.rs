@@ -9,6 +9,7 @@ use std::thread::JoinHandle;
 
 use super::gpu::Gpu;
 use super::kernel::{Evaluator, Features, Options, ShaderError, Structure};
+use super::keys::{Forms, Key};
 use super::layouts::Layouts;
 use super::passes::field::{FieldLayouts, Kernel};
 use super::warm::Warmer;
@@ -17,25 +18,18 @@ use crate::flat::{Component, FlatScene};
 /// How components are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Specialised kernels where they are ready, built in the background; until then, and for what is too large
-    /// for one, pruned lists, or the interpreter where there are none.
+    /// Specialised kernels for what is not too large for one, pruned lists for the rest; both are made in the
+    /// background, and the interpreter draws until they are ready.
     #[default]
     Auto,
     /// The interpreter for everything.
     Interpreted,
-    /// Pruned lists where a component has them, the interpreter for the rest.
+    /// Pruned lists where a component has them, the interpreter for the rest; waits until they are made.
     Pruned,
     /// Specialised kernels for everything that is not too large for one; waits until they are built.
     Specialised,
     /// A kernel for each component with its numbers written into it, however large: what the benches compare with.
     Generated,
-}
-
-impl Method {
-    /// Whether components get kernels of their own.
-    fn has_own_kernels(self) -> bool {
-        matches!(self, Self::Auto | Self::Specialised | Self::Generated)
-    }
 }
 
 /// Most specialised kernels that are kept; the least recently used go first.
@@ -48,6 +42,7 @@ pub struct Kernels {
     interpreter: Arc<Kernel>,
     pruned: Option<Arc<Kernel>>,
     features: Features,
+    forms: Forms,
     specialised: HashMap<u128, Slot>,
     worker: Option<Worker>,
     clock: u64,
@@ -121,6 +116,7 @@ impl Kernels {
             interpreter,
             pruned: None,
             features,
+            forms: Forms::default(),
             specialised: HashMap::new(),
             worker: None,
             clock: 0,
@@ -162,46 +158,41 @@ impl Kernels {
     }
 
     /// Kernels that have become ready since `choices` were made, put in their place.
-    pub fn refresh(&mut self, flat_keys: &[Option<u128>], choices: &mut [Choice]) {
-        for (key, choice) in flat_keys.iter().zip(choices) {
-            let Some(Slot { state: State::Ready(kernel), .. }) = key.and_then(|k| self.specialised.get(&k)) else {
+    pub fn refresh(&mut self, keys: &[Option<Key>], choices: &mut [Choice]) {
+        for (key, choice) in keys.iter().zip(choices) {
+            let Some(Slot { state: State::Ready(kernel), .. }) = key.and_then(|k| self.specialised.get(&k.bits)) else {
                 continue;
             };
             *choice = Choice { kernel: kernel.clone(), walk: Walk::Straight };
         }
     }
 
-    /// The key of each component's structure; `None` where it gets no kernel of its own.
-    pub fn keys(flat: &FlatScene, method: Method) -> Vec<Option<u128>> {
-        let key = |c| match method {
-            Method::Generated => Some(Structure::baked_key(flat, c)),
-            _ if method.has_own_kernels() => Structure::key(flat, c),
-            _ => None,
-        };
-        flat.components.iter().map(key).collect()
+    /// What each component's kernel is for; `None` where it gets none.
+    pub fn keys(&mut self, flat: &FlatScene, method: Method) -> Vec<Option<Key>> {
+        self.forms.keys(flat, method)
     }
 
     /// The kernel for each component; `keys` from [`Kernels::keys`], `has_lists` tells which components have pruned
-    /// lists.
+    /// lists. Those that come first in `order` have their kernels ordered first.
     pub fn choose(
         &mut self,
         flat: &FlatScene,
-        keys: &[Option<u128>],
+        keys: &[Option<Key>],
         method: Method,
         has_lists: &[bool],
+        order: &[usize],
     ) -> Result<Vec<Choice>, ShaderError> {
         self.collect();
         self.clock += 1;
-        let mut choices = Vec::with_capacity(flat.components.len());
-        for (component, key) in flat.components.iter().zip(keys) {
-            choices.push(match *key {
-                None => None,
-                Some(key) => self.specialised(key, method, || match method {
-                    Method::Generated => {
-                        Some(Evaluator::Generated(Structure::whole(flat, component), component_rows(flat, component)))
-                    }
-                    _ => Structure::of(flat, component).map(Evaluator::Specialised),
-                }),
+        let mut choices = vec![None; flat.components.len()];
+        for (index, key) in order.iter().filter_map(|i| Some((*i, keys[*i]?))) {
+            let component = &flat.components[index];
+            choices[index] = self.specialised(key.bits, method, || match (method, key.form) {
+                (Method::Generated, _) => {
+                    Some(Evaluator::Generated(Structure::whole(flat, component), component_rows(flat, component)))
+                }
+                (_, Some(shapes)) => Structure::form(flat, component, shapes).map(Evaluator::Specialised),
+                _ => Structure::of(flat, component).map(Evaluator::Specialised),
             });
         }
         let prunes = |i: usize| method != Method::Interpreted && has_lists.get(i) == Some(&true);

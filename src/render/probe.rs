@@ -3,7 +3,7 @@
 use glam::DVec3;
 use wgpu::ShaderStages;
 
-use super::buffers::{Mirror, TextureMirror};
+use super::buffers::{Mirror, RowTexture};
 use super::gpu::Gpu;
 use super::kernel::{Evaluator, Options, source};
 use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
@@ -31,7 +31,7 @@ pub fn field(
     let pipeline = compute_pipeline(device, "probe", text, "probe_field", &[&own, &layouts.scene, &data]);
     let uploaded = |bytes: &[u8]| {
         let mut mirror = Mirror::rows(device, "probe");
-        mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW);
+        mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW, 4);
         mirror
     };
     let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
@@ -46,10 +46,15 @@ pub fn field(
         uploaded(bytemuck::cast_slice(&flat.materials)),
         uploaded(bytemuck::cast_slice(&flat.numbers)),
     ];
-    let mut numbers = TextureMirror::new(device, "numbers", NUMBERS_FORMAT);
-    numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers));
-    let mut lists = TextureMirror::new(device, "lists", LISTS_FORMAT);
-    lists.set(device, queue, tree.as_ref().map_or(&[], |tree| bytemuck::cast_slice(&tree.words)));
+    let texture = |label, format, bytes: &[u8]| {
+        let mut texture = RowTexture::new(device, label, format);
+        texture.reserve(device, bytes.len());
+        texture.write(queue, 0, bytes);
+        texture
+    };
+    let numbers = texture("numbers", NUMBERS_FORMAT, bytemuck::cast_slice(&flat.numbers));
+    let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
+    let lists = texture("lists", LISTS_FORMAT, words);
     let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
     let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
     let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];

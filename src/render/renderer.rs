@@ -10,11 +10,13 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 use wgpu::BindGroup;
 
-use super::buffers::{Mirror, TextureMirror};
+use super::buffers::{Mirror, RowTexture};
 use super::gpu::{Gpu, GpuError};
-use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
+use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping, form_rows};
 use super::kernels::{Kernels, Method};
+use super::keys::Key;
 use super::layouts::{Layouts, bind, window};
+use super::list_texture::ListTexture;
 use super::passes::farthest::FarthestPass;
 use super::passes::field::{FieldGroups, Lists};
 use super::passes::mesh::MeshPass;
@@ -24,7 +26,7 @@ use super::readback::read_buffers;
 use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, TILE, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
-use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, Row, Warning, gpu_lights};
+use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, ROW_ALIGNMENT, Row, Warning, gpu_lights};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
@@ -58,6 +60,22 @@ fn work_bytes(plan: &Plan) -> Vec<u8> {
     work
 }
 
+/// The rows of components whose kernels are for forms, and where those of each begin, in bytes. As much room as a window
+/// takes is behind the last.
+fn form_windows(flat: &FlatScene, keys: &[Option<Key>]) -> (Vec<Option<u32>>, Vec<u8>) {
+    let mut rows: Vec<Row> = Vec::new();
+    let window = |(component, key): (&Component, &Option<Key>)| {
+        key.and_then(|key| key.form)?;
+        rows.resize(rows.len().next_multiple_of(ROW_ALIGNMENT), [0.0; 4]);
+        let first = rows.len();
+        form_rows(flat, component, &mut rows);
+        Some((first * size_of::<Row>()) as u32)
+    };
+    let windows = flat.components.iter().zip(keys).map(window).collect();
+    rows.resize(rows.len() + MAX_KERNEL_ROWS as usize, [0.0; 4]);
+    (windows, bytemuck::cast_slice(&rows).to_vec())
+}
+
 /// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
@@ -87,10 +105,13 @@ pub struct Renderer {
     mesh: MeshPass,
     overlay: OverlayPass,
     nodes: Mirror,
-    numbers: TextureMirror,
-    /// The same numbers once more, for the windows of specialised kernels.
+    /// For the windows of specialised kernels.
     rows: Mirror,
-    lists: TextureMirror,
+    /// For those of kernels for forms.
+    form_rows: Mirror,
+    /// The same numbers once more, for kernels that walk.
+    numbers: RowTexture,
+    lists: ListTexture,
     pruner: Pruner,
     components: Mirror,
     materials: Mirror,
@@ -112,6 +133,8 @@ pub struct Renderer {
 struct Groups {
     view: BindGroup,
     scene: BindGroup,
+    /// The same with the rows of forms.
+    forms: BindGroup,
     work: BindGroup,
     lights: BindGroup,
     field: FieldGroups,
@@ -160,9 +183,10 @@ impl Renderer {
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
             nodes: storage("nodes"),
-            numbers: TextureMirror::new(device, "numbers", NUMBERS_FORMAT),
             rows: Mirror::uniform(device, "rows"),
-            lists: TextureMirror::new(device, "lists", LISTS_FORMAT),
+            form_rows: Mirror::uniform(device, "rows of forms"),
+            numbers: RowTexture::new(device, "numbers", NUMBERS_FORMAT),
+            lists: ListTexture::new(device),
             pruner: Pruner::default(),
             components: storage("components"),
             materials: storage("materials"),
@@ -195,6 +219,16 @@ impl Renderer {
         self.kernels.building()
     }
 
+    /// Whether kernels or pruned lists are being made: pictures are right without them, and faster with them.
+    pub fn is_preparing(&self) -> bool {
+        self.kernels.building() > 0 || self.pruner.building() > 0
+    }
+
+    /// The pruned lists.
+    pub fn pruner(&mut self) -> &mut Pruner {
+        &mut self.pruner
+    }
+
     /// The kernels.
     pub fn kernels(&mut self) -> &mut Kernels {
         &mut self.kernels
@@ -207,13 +241,13 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        let buffers = [&self.nodes, &self.rows, &self.components, &self.materials].map(Mirror::uploaded);
+        let buffers = [&self.nodes, &self.rows, &self.form_rows, &self.components, &self.materials].map(Mirror::uploaded);
         buffers.iter().sum::<u64>() + self.numbers.uploaded() + self.lists.uploaded()
     }
 
     /// How long a whole frame is expected to take.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        let Chosen { evaluations, .. } = self.choose(flat)?;
+        let Chosen { evaluations, .. } = self.choose(flat, camera)?;
         let plan = plan(flat, camera, size, &evaluations, &self.pace);
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
@@ -254,14 +288,16 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        let Chosen { keys, choices, evaluations, trees } = self.choose(flat)?;
+        let Chosen { keys, choices, evaluations, trees } = self.choose(flat, camera)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
         let plan = plan(flat, camera, size, &evaluations, &self.pace);
-        if self.upload(flat, &trees, camera, size, &plan) {
+        let (form_rows, forms) = form_windows(flat, &keys);
+        let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
+        if self.upload(flat, &trees, camera, size, &plan) || forms_are_new {
             for state in self.slots.iter_mut().flatten() {
                 state.groups = None;
             }
@@ -286,6 +322,7 @@ impl Renderer {
             seconds_done: 0.0,
             slot,
             overlay,
+            form_rows,
             rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
         })
@@ -349,22 +386,24 @@ impl Renderer {
     ) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
         let nothing = vec![[0_u32, 1, 1, 0]; plan.lists as usize];
-        let mut lists: Vec<[u32; 2]> = Vec::new();
-        let mut placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
+        let mut is_new = self.lists.hold(device, queue, trees);
+        let placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, camera.position);
-            let Some(tree) = tree else { return gpu };
-            let at = lists.len() as u32;
-            lists.extend_from_slice(&tree.words);
-            gpu.with_grid(tree, at)
+            let place = tree.as_ref().and_then(|tree| Some((tree, self.lists.place(tree)?)));
+            place.map_or(gpu, |(tree, at)| gpu.with_grid(tree, at))
         };
-        let components: Vec<_> = flat.components.iter().zip(trees).map(&mut placed).collect();
+        let components: Vec<_> = flat.components.iter().zip(trees).map(placed).collect();
+        let numbers: &[u8] = bytemuck::cast_slice(&flat.numbers);
+        let (rows_are_new, changed) = self.rows.set_with_room(device, queue, numbers, KERNEL_WINDOW, size_of::<Row>());
+        let texture_is_new = self.numbers.reserve(device, numbers.len());
+        if let Some(range) = if texture_is_new { Some(0..numbers.len()) } else { changed } {
+            self.numbers.write(queue, range.start, &numbers[range]);
+        }
+        is_new |= rows_are_new || texture_is_new;
         let lights = gpu_lights(flat, camera);
         let view = View::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.rows.set_with_room(device, queue, bytemuck::cast_slice(&flat.numbers), KERNEL_WINDOW),
-            self.numbers.set(device, queue, bytemuck::cast_slice(&flat.numbers)),
-            self.lists.set(device, queue, bytemuck::cast_slice(&lists)),
             self.components.set(device, queue, bytemuck::cast_slice(&components)),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
@@ -377,19 +416,22 @@ impl Renderer {
             self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
         ];
-        uploads.contains(&true)
+        is_new || uploads.contains(&true)
     }
 
     fn bind_all(&self, targets: &Targets) -> Groups {
         let device = &self.gpu.device;
-        let scene = [
-            self.nodes.binding(),
-            self.numbers.binding(),
-            self.components.binding(),
-            self.materials.binding(),
-            window(self.rows.buffer(), KERNEL_WINDOW),
-            self.lists.binding(),
-        ];
+        let [scene, forms] = [&self.rows, &self.form_rows].map(|rows| {
+            let resources = [
+                self.nodes.binding(),
+                self.numbers.binding(),
+                self.components.binding(),
+                self.materials.binding(),
+                window(rows.buffer(), KERNEL_WINDOW),
+                self.lists.binding(),
+            ];
+            bind(device, "scene", &self.layouts.scene, &resources)
+        });
         let lists = Lists {
             tiles: self.tiles.buffer(),
             tile_counts: self.tile_counts.buffer(),
@@ -401,7 +443,8 @@ impl Renderer {
         let work = window(self.work.buffer(), size_of::<Work>());
         Groups {
             view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
-            scene: bind(device, "scene", &self.layouts.scene, &scene),
+            scene,
+            forms,
             work: bind(device, "work", &self.layouts.work, &[work]),
             lights: self.shade.bind_lights(device, [self.lights.binding(), self.mesh_emissions.binding()]),
             field: self.kernels.field().bind(device, targets, lists),
@@ -480,7 +523,10 @@ impl Renderer {
             Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
         };
         pass.set_pipeline(pipeline);
-        pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]);
+        match frame.form_window(component) {
+            Some(window) => pass.set_bind_group(1, &groups.forms, &[window]),
+            None => pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]),
+        }
         pass.set_bind_group(2, targets, &[]);
         if piece.stage == Stage::Cone {
             let [x, y] = piece.tiles();

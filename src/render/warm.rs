@@ -1,6 +1,6 @@
 //! Has a driver compile kernels before they are needed, on a device of its own.
 
-use super::buffers::{Mirror, TextureMirror};
+use super::buffers::{Mirror, RowTexture};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options};
 use super::layouts::{Layouts, bind, window};
@@ -46,7 +46,7 @@ impl Warmer {
             nothing: counts[3].buffer(),
         };
         let [numbers, lists_texture] =
-            [("numbers", NUMBERS_FORMAT), ("lists", LISTS_FORMAT)].map(|(l, f)| TextureMirror::new(device, l, f));
+            [("numbers", NUMBERS_FORMAT), ("lists", LISTS_FORMAT)].map(|(l, f)| RowTexture::new(device, l, f));
         let scene = [
             small.binding(),
             numbers.binding(),

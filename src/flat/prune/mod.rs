@@ -15,22 +15,26 @@
 //! | `part` | everything in one top cell |
 //! | `build` | the grid of a component, and its parts as one array |
 //! | `field` | the field by the lists: twin of the shader |
-//! | `pruner` | trees kept between frames, made anew only where an edit reached |
+//! | `kept` | one component's tree and what it was made from: made anew only where an edit reached |
+//! | `pruner` | trees kept between frames |
+//! | `worker` | makes them beside the frames |
 
 mod build;
 mod entry;
 mod field;
+mod kept;
 mod part;
 mod program;
 mod pruner;
 #[cfg(test)]
 mod tests;
 mod token;
+mod worker;
 
 use glam::DVec3;
 
 pub use field::pruned_field;
-pub use pruner::{Lists, Pruner};
+pub use pruner::Pruner;
 pub use token::{MAX_PRUNED_ENTRIES, Token, TokenOp};
 
 use super::{Component, FlatScene};

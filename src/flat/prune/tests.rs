@@ -1,6 +1,7 @@
 //! The lists against the twin, which skips nothing.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use glam::{DQuat, DVec3};
 
@@ -178,6 +179,13 @@ fn runs_are_passed_over_and_lists_are_short() {
     assert!(longest <= 24, "{longest}");
 }
 
+/// Longer than any tree takes.
+const TOO_LONG: Duration = Duration::from_secs(100);
+
+fn trees(pruner: &mut Pruner, flat: &FlatScene) -> Vec<Option<Arc<CellTree>>> {
+    pruner.trees(flat, &vec![true; flat.components.len()])
+}
+
 /// Every list of a tree.
 fn lists(tree: &CellTree) -> Vec<&[[u32; 2]]> {
     let mut found = Vec::new();
@@ -237,12 +245,11 @@ fn what_an_edit_reached_is_made_anew_and_all_else_is_as_in_a_fresh_tree() {
     for seed in 0..8 {
         let mut scene = if seed < 4 { random_tree(seed, 60) } else { crowd(seed, 100, 2.0, 0.15) };
         let (mut pruner, mut random) = (Pruner::default(), Random(seed + 100));
-        pruner.lists(&flatten(&scene, 0.0).unwrap());
+        trees(&mut pruner, &flatten(&scene, 0.0).unwrap());
         for step in 0..6 {
             edit(&mut scene, &mut random);
             let flat = flatten(&scene, 0.0).unwrap();
-            let lists = pruner.lists(&flat);
-            for (component, tree) in flat.components.iter().zip(&lists.trees) {
+            for (component, tree) in flat.components.iter().zip(&trees(&mut pruner, &flat)) {
                 let Some(tree) = tree else { continue };
                 assert!(**tree == CellTree::build(&flat, component), "seed {seed}, step {step}");
                 compared += 1;
@@ -263,15 +270,45 @@ fn an_unchanged_component_keeps_its_tree() {
         add(&mut scene, Some(other), object(Shape::Sphere { radius: 0.2 }).at(DVec3::X * 0.1 * f64::from(i)));
     }
     let mut pruner = Pruner::default();
-    let before = pruner.lists(&flatten(&scene, 0.0).unwrap());
-    assert!(Arc::ptr_eq(&before, &pruner.lists(&flatten(&scene, 0.0).unwrap())));
+    let same = |a: &[Option<Arc<CellTree>>], b: &[Option<Arc<CellTree>>], i: usize| {
+        Arc::ptr_eq(a[i].as_ref().unwrap(), b[i].as_ref().unwrap())
+    };
+    let before = trees(&mut pruner, &flatten(&scene, 0.0).unwrap());
+    let again = trees(&mut pruner, &flatten(&scene, 0.0).unwrap());
+    assert_eq!([0, 1].map(|i| same(&before, &again, i)), [true, true]);
     let last = scene.nodes().len() - 20;
     let mut node = Node::clone(&scene.nodes()[last]);
     node.transform.translation.y += 0.01;
     scene.replace(node).unwrap();
-    let after = pruner.lists(&flatten(&scene, 0.0).unwrap());
-    let same = |i: usize| Arc::ptr_eq(before.trees[i].as_ref().unwrap(), after.trees[i].as_ref().unwrap());
-    assert_eq!([same(0), same(1)], [true, false]);
+    let after = trees(&mut pruner, &flatten(&scene, 0.0).unwrap());
+    assert_eq!([0, 1].map(|i| same(&before, &after, i)), [true, false]);
+}
+
+#[test]
+fn trees_made_beside_the_frames_are_never_those_of_an_older_scene() {
+    let mut scene = crowd(3, 120, 2.0, 0.15);
+    let (mut pruner, mut random) = (Pruner::default(), Random(9));
+    let flat = flatten(&scene, 0.0).unwrap();
+    let all = vec![true; flat.components.len()];
+    assert_eq!(pruner.trees_so_far(&flat, &all, Duration::ZERO), [None], "nothing is there yet, and nobody waits");
+    let mut given = 0;
+    for step in 0..30 {
+        if step % 3 == 0 {
+            edit(&mut scene, &mut random);
+        }
+        let flat = flatten(&scene, 0.0).unwrap();
+        // Now at once, now after a while in which the worker may have come to any point.
+        std::thread::sleep(Duration::from_millis(step % 7));
+        let most = if step % 5 == 4 { TOO_LONG } else { Duration::ZERO };
+        for tree in pruner.trees_so_far(&flat, &all, most).into_iter().flatten() {
+            assert!(*tree == CellTree::build(&flat, &flat.components[0]), "step {step}");
+            given += 1;
+        }
+    }
+    assert!(given > 6, "{given}");
+    let flat = flatten(&scene, 0.0).unwrap();
+    let tree = trees(&mut pruner, &flat).remove(0).unwrap();
+    assert!(*tree == CellTree::build(&flat, &flat.components[0]) && pruner.building() == 0);
 }
 
 #[test]

@@ -10,7 +10,7 @@ mod specialise;
 mod structure;
 
 pub use source::{FILES, Features, ShaderError, plain_source, source};
-pub use structure::{MAX_KERNEL_ROWS, Structure};
+pub use structure::{MAX_KERNEL_ROWS, ShapeSet, Structure, form_rows};
 
 /// A way to evaluate components; decides the source of the kernels.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -19,7 +19,7 @@ pub enum Evaluator {
     Interpreted(Features),
     /// Walks, in each cell of space, the list of what can matter there.
     Pruned(Features),
-    /// Straight-line code for every component of this structure.
+    /// Straight-line code for every component of this structure, or of this form.
     Specialised(Structure),
     /// Straight-line code for one component, with its numbers (bits of f32) written into it: what the benches
     /// compare with. Every changed value would compile another one.

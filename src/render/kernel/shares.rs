@@ -7,9 +7,10 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use super::Skipping;
-use super::specialise::arguments;
+use super::specialise::{any_of, arguments};
 use super::structure::{Entry, EntryKind, Structure};
 use crate::flat::Join;
+use crate::scene::ShapeKind;
 
 /// The text that declares and sums `gradient`, `diffuse` and `emission`.
 pub fn shares(structure: &Structure, skipping: Skipping) -> String {
@@ -68,14 +69,23 @@ impl Shares<'_> {
             Skipping::Branches | Skipping::Never => self.line(&format!("    if share{at} > 0.0 {{")),
             Skipping::Loops => self.line(&format!("    var has{at} = share{at} > 0.0;\n    while has{at} {{")),
         }
-        if let EntryKind::Leaf(shape) = entry.kind {
-            let row = self.rows[at];
+        let row = self.rows[at];
+        let gradient = match entry.kind {
+            EntryKind::Leaf(shape) => Some(format!("dual_{}({})", shape.function(), arguments(entry, shape, row))),
+            EntryKind::AnyLeaf(shapes) => {
+                self.line(&format!("    var g{at} = vec4f(0.0);"));
+                let call = |kind: ShapeKind| format!("dual_{}({})", kind.function(), arguments(entry, kind, row));
+                let text = any_of(shapes, at, row, "g", &call, self.skipping);
+                self.line(&text);
+                Some(format!("g{at}"))
+            }
+            EntryKind::Nested | EntryKind::Run => None,
+        };
+        if let Some(gradient) = gradient {
             let moved = if entry.moved { "placed_gradient_moved" } else { "placed_gradient" };
             let factor = if entry.unscaled { format!("{sign:?}") } else { format!("{sign:?} * q{row}.y") };
             self.line(&format!(
-                "    gradient += share{at} * {factor} * {moved}(dual_{}({}), q{}, q{}, q{});",
-                shape.function(),
-                arguments(entry, shape, row),
+                "    gradient += share{at} * {factor} * {moved}({gradient}, q{}, q{}, q{});",
                 row + 1,
                 row + 2,
                 row + 3

@@ -1,7 +1,7 @@
 //! Straight-line WGSL for a structure. Emits calls only: no formula of a distance stands here.
 
 use super::shares::shares;
-use super::structure::{Entry, EntryKind, Structure};
+use super::structure::{Entry, EntryKind, ShapeSet, Structure};
 use super::{Options, Skipping};
 use crate::flat::{Join, LEAF_ROWS};
 use crate::scene::ShapeKind;
@@ -44,11 +44,12 @@ impl Writer<'_> {
         let rows = self.structure.rows();
         self.line(&format!("const ROW_COUNT: u32 = {}u;", if self.baked.is_some() { 1 } else { rows }));
         self.line("#include \"field/placed.wgsl\"");
-        let shape = |e: &Entry| if let EntryKind::Leaf(shape) = e.kind { Some(shape) } else { None };
-        let mut shapes: Vec<_> = self.structure.entries.iter().filter_map(shape).collect();
-        shapes.sort_unstable();
-        shapes.dedup();
-        for shape in shapes {
+        let shapes = |e: &Entry| match e.kind {
+            EntryKind::Leaf(shape) => 1 << shape as u32,
+            EntryKind::AnyLeaf(shapes) => shapes.0,
+            EntryKind::Nested | EntryKind::Run => 0,
+        };
+        for shape in ShapeSet(self.structure.entries.iter().fold(0, |all, e| all | shapes(e))).shapes() {
             self.line(&super::source::shape_include(shape));
             if self.fold == Fold::Surface {
                 self.line(&super::source::gradient_include(shape));
@@ -102,6 +103,12 @@ impl Writer<'_> {
             if let EntryKind::Leaf(shape) = entry.kind {
                 let value = self.leaf(entry, shape, row);
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
+            } else if let EntryKind::AnyLeaf(shapes) = entry.kind {
+                self.line(&format!("    var d{at} = 0.0;"));
+                let call = |kind: ShapeKind| format!("{}({})", kind.function(), arguments(entry, kind, row));
+                let text = any_of(shapes, at, row, "d", &call, self.options.skipping);
+                self.line(&text);
+                self.join(level, at, entry, row, &format!("d{at} * q{row}.y"), &format!("{at}u"));
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
                 let skipped = skipped && self.options.skipping != Skipping::Never;
@@ -197,6 +204,32 @@ impl Writer<'_> {
         }
         self.line("    }");
     }
+}
+
+/// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row. For lavapipe by loops of at most one
+/// round, see [`Skipping`].
+pub(super) fn any_of(
+    shapes: ShapeSet,
+    at: usize,
+    row: usize,
+    name: &str,
+    call: &dyn Fn(ShapeKind) -> String,
+    skipping: Skipping,
+) -> String {
+    let mut out = String::new();
+    for kind in shapes.shapes() {
+        let (code, value) = (kind as u32, call(kind));
+        let is_it = format!("q{row}.z == {code}.0");
+        out += &match skipping {
+            Skipping::Branches | Skipping::Never => format!("    if {is_it} {{ {name}{at} = {value}; }}\n"),
+            // Ended by what no compiler knows: it would make the loop an `if` again.
+            Skipping::Loops => format!(
+                "    var is_{name}{at}_{code} = {is_it};\n    while is_{name}{at}_{code} {{ {name}{at} = {value}; \
+                 is_{name}{at}_{code} = s0 < -1e37; }}\n"
+            ),
+        };
+    }
+    out
 }
 
 /// The point in the leaf's own space, and the parameters of its shape.

@@ -1,7 +1,7 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use crate::flat::{Component, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS};
-use crate::scene::ShapeKind;
+use crate::flat::{Component, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, Row};
+use crate::scene::{SHAPE_FLOATS, ShapeKind};
 
 /// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
 pub const MAX_KERNEL_ROWS: u32 = 768;
@@ -15,10 +15,23 @@ pub const MAX_KERNEL_ENTRIES: u32 = 128;
 pub enum EntryKind {
     /// A shape.
     Leaf(ShapeKind),
+    /// One of these shapes: which one stands in its rows, see [`form_rows`].
+    AnyLeaf(ShapeSet),
     /// Operands with an accumulator of their own.
     Nested,
     /// Operands that may be skipped together.
     Run,
+}
+
+/// Shapes, a bit for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ShapeSet(pub u32);
+
+impl ShapeSet {
+    /// The shapes, in order.
+    pub fn shapes(self) -> impl Iterator<Item = ShapeKind> {
+        ShapeKind::ALL.iter().copied().filter(move |kind| self.0 >> *kind as u32 & 1 == 1)
+    }
 }
 
 /// One entry of the subtree-extent array, without its numbers.
@@ -45,6 +58,7 @@ impl Entry {
     pub fn rows(&self) -> usize {
         match self.kind {
             EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
+            EntryKind::AnyLeaf(_) => FORM_LEAF_ROWS,
             EntryKind::Nested | EntryKind::Run => GROUP_ROWS,
         }
     }
@@ -91,6 +105,43 @@ impl Structure {
         Some(hash)
     }
 
+    /// The form of a component: its structure with leaves that may be any of these shapes, placed anyhow. Many
+    /// structures have one form, and one kernel. `None` where it is too large for one.
+    pub fn form(flat: &FlatScene, component: &Component, shapes: ShapeSet) -> Option<Self> {
+        let mut structure = Self::of(flat, component)?;
+        for entry in &mut structure.entries {
+            if let EntryKind::Leaf(_) = entry.kind {
+                *entry = Entry { kind: EntryKind::AnyLeaf(shapes), moved: false, unscaled: false, ..*entry };
+            }
+        }
+        Some(structure)
+    }
+
+    /// A key of the form, and the shapes that the component uses.
+    pub fn form_key(flat: &FlatScene, component: &Component) -> Option<(u128, ShapeSet)> {
+        if !fits(component) {
+            return None;
+        }
+        let range = component.first as usize..(component.first + component.count) as usize;
+        let (mut hash, mut shapes) = (FNV_START, ShapeSet::default());
+        for node in &flat.nodes[range] {
+            let e = entry(flat, node);
+            let kind = match e.kind {
+                EntryKind::Leaf(shape) => {
+                    shapes.0 |= 1 << shape as u32;
+                    0
+                }
+                EntryKind::AnyLeaf(_) => 0,
+                EntryKind::Nested => 1,
+                EntryKind::Run => 2,
+            };
+            let kernel = e.kernel.map_or(0xff, u64::from);
+            let word = kind | ((e.join as u64) << 16) | (kernel << 20) | (u64::from(e.bounded) << 28);
+            hash = (hash ^ u128::from(word | (u64::from(e.extent) << 32))).wrapping_mul(FNV_PRIME);
+        }
+        Some((hash, shapes))
+    }
+
     /// A key of everything about a component of any size, its numbers too.
     pub fn baked_key(flat: &FlatScene, component: &Component) -> u128 {
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
@@ -102,6 +153,25 @@ impl Structure {
     /// Rows of numbers of a component of this structure.
     pub fn rows(&self) -> usize {
         self.entries.iter().map(Entry::rows).sum()
+    }
+}
+
+/// Rows of a leaf in a form: room for the parameters of any shape.
+const FORM_LEAF_ROWS: usize = LEAF_ROWS + SHAPE_FLOATS / 4;
+
+/// Appends the rows of a component as a kernel for its form reads them: every leaf takes as many, and the third number
+/// of its first row is the code of its shape.
+pub fn form_rows(flat: &FlatScene, component: &Component, out: &mut Vec<Row>) {
+    for node in &flat.nodes[component.first as usize..][..component.count as usize] {
+        let (rows, first) = (&flat.numbers[node.numbers as usize..], out.len());
+        if !node.is_leaf() {
+            out.extend_from_slice(&rows[..GROUP_ROWS]);
+            continue;
+        }
+        let code = node.code & 0xffff;
+        out.extend_from_slice(&rows[..LEAF_ROWS + ShapeKind::ALL[code as usize].rows()]);
+        out.resize(first + FORM_LEAF_ROWS, [0.0; 4]);
+        out[first][2] = code as f32;
     }
 }
 

@@ -1,29 +1,39 @@
 //! Which kernel draws which component, and with which lists.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use super::{RenderError, Renderer};
 use crate::flat::{CellTree, Component, FlatScene};
-use crate::render::kernels::{Choice, Kernels, Method, Walk};
+use crate::geometry::Camera;
+use crate::render::kernels::{Choice, Method, Walk};
+use crate::render::keys::Key;
 use crate::render::schedule::Evaluation;
 
 /// What [`Renderer::choose`] finds, beside the components.
 pub(super) struct Chosen {
-    pub(super) keys: Vec<Option<u128>>,
+    pub(super) keys: Vec<Option<Key>>,
     pub(super) choices: Vec<Choice>,
     pub(super) evaluations: Vec<Evaluation>,
     pub(super) trees: Vec<Option<Arc<CellTree>>>,
 }
 
+/// Lists that are expected within this time are waited for: walking without them would cost more. Others come
+/// with a later frame.
+const LISTS_AT_ONCE: Duration = Duration::from_millis(25);
+
 impl Renderer {
     /// Kernels, and what they need to know, for each component.
-    pub(super) fn choose(&mut self, flat: &FlatScene) -> Result<Chosen, RenderError> {
-        let keys = Kernels::keys(flat, self.method);
+    pub(super) fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
+        let keys = self.kernels.keys(flat, self.method);
         // Lists are made only for what no specialised kernel is to draw.
         let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
-        let mut trees = self.pruner.trees(flat, &wanted);
+        let mut trees = match self.method {
+            Method::Auto => self.pruner.trees_so_far(flat, &wanted, LISTS_AT_ONCE),
+            _ => self.pruner.trees(flat, &wanted),
+        };
         // What has no room on the device is walked without lists.
-        let mut room = self.lists.most_bytes(&self.gpu.device) / size_of::<[u32; 2]>();
+        let mut room = self.lists.most_words(&self.gpu.device);
         for tree in &mut trees {
             let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
             match room.checked_sub(needed) {
@@ -32,7 +42,7 @@ impl Renderer {
             }
         }
         let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
-        let choices = self.kernels.choose(flat, &keys, self.method, &has_lists)?;
+        let choices = self.kernels.choose(flat, &keys, self.method, &has_lists, &largest_first(flat, camera))?;
         let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice
             .walk
         {
@@ -43,4 +53,15 @@ impl Renderer {
         let evaluations = flat.components.iter().zip(&choices).zip(&trees).map(evaluation).collect();
         Ok(Chosen { keys, choices, evaluations, trees })
     }
+}
+
+/// Components in the order of how large they are seen.
+fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
+    let size = |c: &Component| {
+        let way = c.bounds.distance(camera.position - c.origin);
+        c.bounds.half().max_element() / way.max(camera.near)
+    };
+    let mut order: Vec<(f64, usize)> = flat.components.iter().map(size).zip(0..).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0));
+    order.into_iter().map(|(_, i)| i).collect()
 }

@@ -1,7 +1,8 @@
 //! A picture under way: what is still to be done, by which kernels.
 
 use super::Slot;
-use crate::render::kernels::Choice;
+use crate::render::kernels::{Choice, Walk};
+use crate::render::keys::Key;
 use crate::render::passes::overlay::OverlaySettings;
 use crate::render::schedule::{Pace, Piece, Plan, Stage};
 
@@ -9,7 +10,7 @@ use crate::render::schedule::{Pace, Piece, Plan, Stage};
 #[derive(Clone, Debug)]
 pub struct Frame {
     pub(super) plan: Plan,
-    pub(super) keys: Vec<Option<u128>>,
+    pub(super) keys: Vec<Option<Key>>,
     pub(super) choices: Vec<Choice>,
     pub(super) next: usize,
     /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
@@ -19,6 +20,8 @@ pub struct Frame {
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
     pub(super) rows: Vec<u32>,
+    /// Where kernels for forms find theirs; beside components with such a key.
+    pub(super) form_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<crate::scene::NodeId>,
 }
 
@@ -26,6 +29,11 @@ impl Frame {
     /// Share that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
+    }
+
+    /// Where the rows of a component's kernel begin among those of forms, in bytes; `None` for all other kernels.
+    pub(super) fn form_window(&self, component: usize) -> Option<u32> {
+        self.form_rows[component].filter(|_| self.choices[component].walk == Walk::Straight)
     }
 
     /// Whether a kernel is dispatched for the first time among these pieces.

@@ -1,0 +1,96 @@
+//! Which components get a kernel, and for what: their structure, or their form.
+//!
+//! A kernel for a structure is the fastest, but a scene may have as many structures as components: each takes a driver
+//! tenths of a second, and lavapipe throws kernels away where they hold more than some 500 000 instructions together,
+//! so that it compiles all of them anew in every frame (137 s instead of 0.2 for 128 groups of 8 leaves). So where there
+//! are too many, components whose forms are alike share a kernel for their form.
+
+use std::collections::{HashMap, HashSet};
+
+use super::kernel::{ShapeSet, Structure};
+use super::kernels::Method;
+use crate::flat::FlatScene;
+
+/// What a component's kernel is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Key {
+    /// Equal for what shares a kernel.
+    pub bits: u128,
+    /// The shapes that its leaves may be, where it is for a form.
+    pub form: Option<ShapeSet>,
+}
+
+/// Most entries of all different structures together that get kernels. Twice as many are too many for lavapipe.
+pub const MAX_STRUCTURE_ENTRIES: usize = 600;
+/// So many structures of one form share a kernel, where there are too many.
+const LEAST_SHARED: usize = 3;
+
+/// Knows which shapes each form has been used with: only ever more, so that kernels are seldom made anew.
+#[derive(Debug, Default)]
+pub struct Forms {
+    shapes: HashMap<u128, ShapeSet>,
+}
+
+impl Forms {
+    /// The key of each component; `None` where it gets no kernel of its own.
+    pub fn keys(&mut self, flat: &FlatScene, method: Method) -> Vec<Option<Key>> {
+        let structure = |bits| Key { bits, form: None };
+        let components = flat.components.iter();
+        match method {
+            Method::Interpreted | Method::Pruned => vec![None; flat.components.len()],
+            Method::Generated => components.map(|c| Some(structure(Structure::baked_key(flat, c)))).collect(),
+            Method::Specialised => components.map(|c| Structure::key(flat, c).map(structure)).collect(),
+            Method::Auto => {
+                let keys: Vec<_> = components.map(|c| Structure::key(flat, c)).collect();
+                let of_all = entries(flat, &keys);
+                if of_all <= MAX_STRUCTURE_ENTRIES {
+                    return keys.into_iter().map(|key| key.map(structure)).collect();
+                }
+                self.shared(flat, &keys)
+            }
+        }
+    }
+
+    /// The keys where the structures are too many.
+    fn shared(&mut self, flat: &FlatScene, structures: &[Option<u128>]) -> Vec<Option<Key>> {
+        let forms: Vec<_> = flat.components.iter().map(|c| Structure::form_key(flat, c)).collect();
+        let mut of_form: HashMap<u128, HashSet<u128>> = HashMap::new();
+        for ((form, shapes), structure) in forms.iter().zip(structures).filter_map(|(f, s)| Some(((*f)?, (*s)?))) {
+            of_form.entry(form).or_default().insert(structure);
+            self.shapes.entry(form).or_default().0 |= shapes.0;
+        }
+        let is_shared = |form: &u128| of_form[form].len() >= LEAST_SHARED;
+        let mut keys: Vec<Option<Key>> = vec![None; forms.len()];
+        for (key, form) in keys.iter_mut().zip(&forms) {
+            *key = form.filter(|(form, _)| is_shared(form)).map(|(form, _)| {
+                let shapes = self.shapes[&form];
+                Key { bits: form ^ (u128::from(shapes.0) << 64) ^ FORM, form: Some(shapes) }
+            });
+        }
+        // The largest of the others have room for kernels of their own.
+        let size = |i: usize| flat.components[i].bounds.half().max_element();
+        let mut others: Vec<usize> = (0..keys.len()).filter(|i| keys[*i].is_none() && structures[*i].is_some()).collect();
+        others.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+        let (mut met, mut left) = (HashSet::new(), MAX_STRUCTURE_ENTRIES);
+        for index in others {
+            let Some(bits) = structures[index] else { continue };
+            let needed = if met.contains(&bits) { 0 } else { flat.components[index].count as usize };
+            if let Some(rest) = left.checked_sub(needed) {
+                left = rest;
+                met.insert(bits);
+                keys[index] = Some(Key { bits, form: None });
+            }
+        }
+        keys
+    }
+}
+
+/// Tells forms from structures.
+const FORM: u128 = 0x5eed_f0f0_0000_0000_0000_0000_0000_0001;
+
+/// Entries of all different structures.
+fn entries(flat: &FlatScene, keys: &[Option<u128>]) -> usize {
+    let mut met = HashSet::new();
+    let pairs = flat.components.iter().zip(keys).filter_map(|(c, key)| Some((c, (*key)?)));
+    pairs.filter(|(_, key)| met.insert(*key)).map(|(component, _)| component.count as usize).sum()
+}
