@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
 use isolith::flat::{CellTree, FlatScene, flatten, pruned_field};
 use isolith::gallery;
-use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
+use isolith::render::kernel::{Evaluator, Features, Options, ShapeSet, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
@@ -134,6 +134,30 @@ fn runs_agree() {
         assert!(flat.nodes.iter().filter(|n| n.is_run()).count() >= 6, "nothing is skipped here");
         assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a kernel");
         agree_skipping("runs", &scene, &mut random, skipping);
+    }
+}
+
+/// A kernel for a form serves all structures of the form: few shapes, and so many that they are skipped.
+#[test]
+fn forms_agree() {
+    let few = gallery::random(16, 1);
+    let mut many = Scene::new();
+    let blend = Blend { kernel: BlendKernel::Cubic, radius: 0.1 };
+    let group = NodeKind::Group(Group { operator: Operator::Union, blend });
+    let parent = add(&mut many, None, Node::new("Group", group));
+    for (i, kind) in ShapeKind::ALL.iter().take(6).enumerate() {
+        add(&mut many, Some(parent), object(kind.default_shape()).at(DVec3::X * 0.4 * i as f64));
+    }
+    for (scene, skipping) in [(&few, Skipping::Branches), (&few, Skipping::Loops), (&many, Skipping::Loops)] {
+        let (flat, mut random) = (flatten(scene, 0.0).unwrap(), Random::new(1));
+        let used = flat.nodes.iter().filter(|node| node.is_leaf()).fold(0, |all, node| all | 1 << (node.code & 0xffff));
+        for (index, component) in flat.components.iter().enumerate() {
+            let form = Structure::form(&flat, component, ShapeSet(used)).expect("it is small");
+            let (points, options) = (points(&mut random, 500), Options { skipping, ..Options::default() });
+            let evaluator = Evaluator::Specialised(form);
+            let values = probe::field(&shared().gpu, &flat, index, &points, &evaluator, options).unwrap();
+            compare(&flat, index, &points, &values).unwrap_or_else(|e| panic!("{skipping:?}: {e}"));
+        }
     }
 }
 

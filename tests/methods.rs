@@ -1,11 +1,13 @@
 //! All methods draw the same picture: equal in hit or miss pixel for pixel, depths within what refinement leaves.
 
+use std::time::Duration;
+
 use isolith::flat::Buffers;
 use isolith::gallery;
-use isolith::render::Method;
+use isolith::render::{Method, OverlaySettings, Renderer, Slot};
 
 use crate::contract::trees::{Recipe, tree};
-use crate::gpu::{Subject, scenes};
+use crate::gpu::{Subject, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 48;
@@ -66,6 +68,30 @@ fn random_trees_are_the_same_by_every_method() {
         faults.extend(compare(&subject, SIDE, methods));
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Too many structures for kernels of their own share kernels for their forms: three, one for each kind of blend.
+#[test]
+fn many_structures_share_kernels_and_are_the_same() {
+    let subject = Subject::new("random", &gallery::random(1024, 5), None);
+    let reference = subject.render(SIDE, Method::Interpreted);
+    let gpu = shared().gpu.clone();
+    let mut renderer = Renderer::new(&gpu).expect("a renderer");
+    let Subject { flat, meshes, camera, .. } = &subject;
+    let begin = |renderer: &mut Renderer| {
+        renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], OverlaySettings::default()).expect("a frame")
+    };
+    let mut frame = begin(&mut renderer);
+    while renderer.is_preparing() {
+        std::thread::sleep(Duration::from_millis(20));
+        frame = begin(&mut renderer);
+    }
+    // The interpreter drew meanwhile.
+    assert_eq!(renderer.kernels().built(), 3 + 1);
+    renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+    let picture = renderer.read(&frame).expect("buffers");
+    let found = difference(&reference, &picture, camera.footprint(f64::from(SIDE)));
+    assert_eq!(found, None);
 }
 
 #[test]

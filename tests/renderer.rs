@@ -1,11 +1,14 @@
 //! What the renderer promises beside its pictures: it can be stopped, survives the loss of its device,
 //! uploads what has changed and nothing else.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use isolith::flat::Buffers;
+use isolith::document::{Document, Edit};
+use isolith::flat::{Buffers, FlatScene, Flattener, flatten};
 use isolith::gallery;
+use isolith::geometry::Camera;
 use isolith::render::{Gpu, Method, OverlaySettings, RenderError, Renderer, Slot};
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Shape};
 
 use crate::gpu::{Subject, shared};
 
@@ -86,4 +89,134 @@ fn a_picture_larger_than_the_device_allows_is_refused_with_the_limit() {
         let result = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
         assert!(matches!(result, Err(RenderError::Size(..))), "{size:?}");
     }
+}
+
+/// Width and height of the pictures whose time is taken, in pixels.
+const TIMED_SIDE: u32 = 256;
+/// What a picture may take at once; the window shows a coarse one where a whole one would take longer.
+const AT_ONCE: Duration = Duration::from_millis(60);
+
+/// Times are shown with `--nocapture`; machines that others share are no judges of them.
+#[expect(clippy::print_stdout, reason = "a test has no other way to say how long something took")]
+fn note(text: &str) {
+    println!("{text}");
+}
+
+/// Begins and draws a picture as the window does after an edit. Returns how long that took.
+fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Duration {
+    let start = Instant::now();
+    let full = renderer.estimate(flat, camera, [TIMED_SIDE; 2]).expect("an estimate");
+    let factor = (full.as_secs_f64() / AT_ONCE.as_secs_f64()).sqrt().ceil().clamp(1.0, 8.0) as u32;
+    let size = [TIMED_SIDE.div_ceil(factor); 2];
+    let mut frame =
+        renderer.begin(Slot::Preview, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
+    renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+    start.elapsed()
+}
+
+/// Shares of the pixels that may differ in depth between kernels of two kinds, as in `methods`.
+const MAX_SHARE: f64 = 2e-3;
+
+/// Whether two pictures show the same: hit or miss everywhere, depth but for a few pixels at edges.
+fn is_same(a: &Buffers, b: &Buffers) -> bool {
+    let pairs = || a.depth.iter().zip(&b.depth);
+    let far = pairs().filter(|(a, b)| a.is_finite() && (*a - *b).abs() > 1e-3 * **a).count();
+    pairs().all(|(a, b)| a.is_finite() == b.is_finite()) && far as f64 <= MAX_SHARE * a.depth.len() as f64
+}
+
+fn picture(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Buffers {
+    renderer.render(flat, &[], camera, [SIDE, SIDE], &mut |_| true).expect("a picture").0
+}
+
+fn wait_for_kernels(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) {
+    loop {
+        renderer.estimate(flat, camera, [SIDE, SIDE]).expect("an estimate");
+        if !renderer.is_preparing() {
+            return;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_kernel() {
+    let (_, mut plain) = own_renderer();
+    let mut renderer = Renderer::new(plain.gpu()).expect("a renderer");
+    let mut document = Document::new(gallery::random(512, 5));
+    let mut flattener = Flattener::default();
+    let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.0);
+    wait_for_kernels(&mut renderer, &flat, &camera);
+    answer(&mut renderer, &flat, &camera);
+    let group = |document: &Document, at: usize| {
+        let groups = document.scene().nodes().iter().filter(|n| n.parent.is_some() && n.name.starts_with("Group"));
+        groups.map(|n| n.id).nth(at).expect("64 groups")
+    };
+    let child = |document: &Document, at: usize, nth: usize| {
+        let parent = Some(group(document, at));
+        let children = document.scene().nodes().iter().filter(|n| n.parent == parent);
+        children.map(|n| n.id).nth(nth).expect("eight children")
+    };
+    let object = Object { shape: Shape::Sphere { radius: 0.3 }, material: MaterialId(1) };
+    let ball = Node::new("ball", NodeKind::Object(object));
+    let edits = [
+        ("add", Edit::Insert { parent: Some(group(&document, 40)), position: 3, node: ball }),
+        ("delete", Edit::Remove(vec![child(&document, 50, 2)])),
+        ("delete a group", Edit::Remove(vec![group(&document, 10)])),
+        ("reorder", Edit::Move { ids: vec![child(&document, 60, 7)], parent: Some(group(&document, 60)), position: 0 }),
+    ];
+    for (name, edit) in edits {
+        let start = Instant::now();
+        document.apply(edit).expect("an edit");
+        let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+        let edited = start.elapsed();
+        let took = edited + answer(&mut renderer, &flat, &camera);
+        note(&format!("577 nodes, {name}: picture after {:.1} ms", took.as_secs_f64() * 1e3));
+        let (next, right) = (picture(&mut renderer, &flat, &camera), picture(&mut plain, &flat, &camera));
+        assert!(is_same(&next, &right), "{name}");
+        wait_for_kernels(&mut renderer, &flat, &camera);
+        assert!(is_same(&picture(&mut renderer, &flat, &camera), &right), "{name}, once kernels are there");
+    }
+}
+
+#[test]
+fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
+    let (_, mut plain) = own_renderer();
+    let mut renderer = Renderer::new(plain.gpu()).expect("a renderer");
+    let mut document = Document::new(gallery::crowd(400, true, 3));
+    let mut flattener = Flattener::default();
+    let mut flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.0);
+    // The interpreter is built, which is not what is timed.
+    let few = flatten(&gallery::crowd(8, true, 3), 0.0).expect("within the limits");
+    wait_for_kernels(&mut renderer, &few, &camera);
+    let start = Instant::now();
+    renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
+    note(&format!("400 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
+    assert!(renderer.pruner().building() > 0, "lists of this size are not waited for");
+    assert!(is_same(&picture(&mut renderer, &flat, &camera), &picture(&mut plain, &flat, &camera)));
+    wait_for_kernels(&mut renderer, &flat, &camera);
+    let uploaded = renderer.uploaded();
+    picture(&mut renderer, &flat, &camera);
+    assert!(renderer.uploaded() > uploaded + 20_000, "the lists are on the device now");
+    for step in 0..2 {
+        let leaf = document.scene().nodes().iter().filter(|n| matches!(n.kind, NodeKind::Object(_))).nth(150 * step);
+        let mut node = Node::clone(leaf.expect("four hundred leaves"));
+        node.transform.translation.y += 0.3;
+        document.apply(Edit::Replace(node)).expect("an edit");
+        let start = Instant::now();
+        flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
+        renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
+        note(&format!("after an edit: {:.1} ms until the frame begins", start.elapsed().as_secs_f64() * 1e3));
+        let (next, right) = (picture(&mut renderer, &flat, &camera), picture(&mut plain, &flat, &camera));
+        assert!(is_same(&next, &right), "edit {step}");
+    }
+    let uploaded = renderer.uploaded();
+    wait_for_kernels(&mut renderer, &flat, &camera);
+    let last = picture(&mut renderer, &flat, &camera);
+    assert!(is_same(&last, &picture(&mut plain, &flat, &camera)));
+    let uploaded_once = renderer.uploaded();
+    assert!(uploaded_once >= uploaded);
+    assert!(picture(&mut renderer, &flat, &camera) == last);
+    assert_eq!(renderer.uploaded(), uploaded_once, "what has not changed is not uploaded");
 }

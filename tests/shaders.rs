@@ -4,7 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
-use isolith::render::kernel::{Evaluator, FILES, Features, Options, Skipping, Structure, source};
+use isolith::render::kernel::{Evaluator, FILES, Features, Options, ShapeSet, Skipping, Structure, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
 use isolith::render::{Instance, Overlay};
 use isolith::scene::ShapeKind;
@@ -22,6 +22,9 @@ fn evaluators() -> Vec<Evaluator> {
     let mut structures: Vec<_> = flats
         .flat_map(|flat| flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect::<Vec<_>>())
         .collect();
+    let everything = flatten(&gallery::random(16, 1), 0.0).expect("within the limits");
+    let shapes = ShapeSet(ShapeKind::ALL.iter().fold(0, |all, kind| all | 1 << *kind as u32));
+    structures.extend(everything.components.iter().filter_map(|c| Structure::form(&everything, c, shapes)));
     structures.sort();
     structures.dedup();
     let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });

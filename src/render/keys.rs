@@ -2,8 +2,8 @@
 //!
 //! A kernel for a structure is the fastest, but a scene may have as many structures as components: each takes a driver
 //! tenths of a second, and lavapipe throws kernels away where they hold more than some 500 000 instructions together,
-//! so that it compiles all of them anew in every frame (137 s instead of 0.2 for 128 groups of 8 leaves). So where there
-//! are too many, components whose forms are alike share a kernel for their form.
+//! so that it compiles all of them anew in every frame (137 s instead of 0.14 for 128 groups of 8 leaves). So where there
+//! are many, components whose forms are alike share a kernel for their form, which takes about a fifth longer.
 
 use std::collections::{HashMap, HashSet};
 
@@ -21,11 +21,14 @@ pub struct Key {
 }
 
 /// Most entries of all different structures together that get kernels. Twice as many are too many for lavapipe.
-pub const MAX_STRUCTURE_ENTRIES: usize = 600;
-/// So many structures of one form share a kernel, where there are too many.
+const MAX_STRUCTURE_ENTRIES: usize = 600;
+/// Where there are more than this, compiling them takes longer than one waits gladly: a second for twenty.
+const MANY_STRUCTURE_ENTRIES: usize = 200;
+/// So many structures of one form share a kernel, where there are many.
 const LEAST_SHARED: usize = 3;
 
-/// Knows which shapes each form has been used with: only ever more, so that kernels are seldom made anew.
+/// Knows which shapes each form has been used with: while they are few only ever more, so that kernels are seldom made
+/// anew.
 #[derive(Debug, Default)]
 pub struct Forms {
     shapes: HashMap<u128, ShapeSet>,
@@ -42,24 +45,32 @@ impl Forms {
             Method::Specialised => components.map(|c| Structure::key(flat, c).map(structure)).collect(),
             Method::Auto => {
                 let keys: Vec<_> = components.map(|c| Structure::key(flat, c)).collect();
-                let of_all = entries(flat, &keys);
-                if of_all <= MAX_STRUCTURE_ENTRIES {
-                    return keys.into_iter().map(|key| key.map(structure)).collect();
+                match entries(flat, &keys) {
+                    0..=MANY_STRUCTURE_ENTRIES => keys.into_iter().map(|key| key.map(structure)).collect(),
+                    entries => self.shared(flat, &keys, entries > MAX_STRUCTURE_ENTRIES),
                 }
-                self.shared(flat, &keys)
             }
         }
     }
 
-    /// The keys where the structures are too many.
-    fn shared(&mut self, flat: &FlatScene, structures: &[Option<u128>]) -> Vec<Option<Key>> {
+    /// The keys where the structures are many. Forms of many shapes are slow, and only for where they are too many.
+    fn shared(&mut self, flat: &FlatScene, structures: &[Option<u128>], too_many: bool) -> Vec<Option<Key>> {
         let forms: Vec<_> = flat.components.iter().map(|c| Structure::form_key(flat, c)).collect();
         let mut of_form: HashMap<u128, HashSet<u128>> = HashMap::new();
+        let mut met: HashMap<u128, ShapeSet> = HashMap::new();
         for ((form, shapes), structure) in forms.iter().zip(structures).filter_map(|(f, s)| Some(((*f)?, (*s)?))) {
             of_form.entry(form).or_default().insert(structure);
-            self.shapes.entry(form).or_default().0 |= shapes.0;
+            met.entry(form).or_default().0 |= shapes.0;
         }
-        let is_shared = |form: &u128| of_form[form].len() >= LEAST_SHARED;
+        for (form, now) in met {
+            let known = self.shapes.entry(form).or_default();
+            let both = ShapeSet(known.0 | now.0);
+            *known = if both.is_small() { both } else { now };
+        }
+        let is_shared = |form: &u128| {
+            of_form.get(form).is_some_and(|structures| structures.len() >= LEAST_SHARED)
+                && (too_many || self.shapes[form].is_small())
+        };
         let mut keys: Vec<Option<Key>> = vec![None; forms.len()];
         for (key, form) in keys.iter_mut().zip(&forms) {
             *key = form.filter(|(form, _)| is_shared(form)).map(|(form, _)| {
@@ -69,7 +80,8 @@ impl Forms {
         }
         // The largest of the others have room for kernels of their own.
         let size = |i: usize| flat.components[i].bounds.half().max_element();
-        let mut others: Vec<usize> = (0..keys.len()).filter(|i| keys[*i].is_none() && structures[*i].is_some()).collect();
+        let mut others: Vec<usize> =
+            (0..keys.len()).filter(|i| keys[*i].is_none() && structures[*i].is_some()).collect();
         others.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
         let (mut met, mut left) = (HashSet::new(), MAX_STRUCTURE_ENTRIES);
         for index in others {

@@ -3,7 +3,7 @@
 //! | lives as long as | types |
 //! |---|---|
 //! | the device | [`Gpu`], `Layouts`, the pipelines of passes without fields |
-//! | a structure | [`Kernels`]: the interpreter, and specialised kernels as they become ready |
+//! | a structure or form | [`Kernels`]: the interpreter, and specialised kernels as they become ready |
 //! | the scene | `Mirror` buffers: nodes, numbers, materials; meshes by their own life |
 //! | the picture's size | `Targets` |
 //! | the frame | [`Frame`]: the pieces of work that are still to be done; view, components, lights |

@@ -5,7 +5,7 @@ use wgpu::ShaderStages;
 
 use super::buffers::{Mirror, RowTexture};
 use super::gpu::Gpu;
-use super::kernel::{Evaluator, Options, source};
+use super::kernel::{Evaluator, Options, form_rows, source};
 use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
 use super::readback::read_words;
 use super::renderer::{KERNEL_WINDOW, LISTS_FORMAT, NUMBERS_FORMAT, RenderError};
@@ -56,7 +56,13 @@ pub fn field(
     let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
     let lists = texture("lists", LISTS_FORMAT, words);
     let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
-    let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
+    // A kernel for a form has rows of its own form.
+    let is_form = matches!(evaluator, Evaluator::Specialised(structure) if structure.is_form());
+    let mut of_form = Vec::new();
+    form_rows(flat, &flat.components[index], &mut of_form);
+    let of_form = uploaded(bytemuck::cast_slice(&of_form));
+    let rows_window = window(if is_form { of_form.buffer() } else { scene[3].buffer() }, KERNEL_WINDOW);
+    let rows_at = if is_form { 0 } else { flat.components[index].numbers * 16 };
     let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
@@ -71,7 +77,7 @@ pub fn field(
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &groups[0], &[]);
-        pass.set_bind_group(1, &groups[1], &[flat.components[index].numbers * 16]);
+        pass.set_bind_group(1, &groups[1], &[rows_at]);
         pass.set_bind_group(2, &groups[2], &[]);
         pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
     }

@@ -3,36 +3,36 @@
 mod choice;
 mod frame;
 mod measure;
+mod record;
+mod upload;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
-use wgpu::BindGroup;
 
 use super::buffers::{Mirror, RowTexture};
 use super::gpu::{Gpu, GpuError};
-use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping, form_rows};
+use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Kernels, Method};
-use super::keys::Key;
-use super::layouts::{Layouts, bind, window};
+use super::layouts::Layouts;
 use super::list_texture::ListTexture;
 use super::passes::farthest::FarthestPass;
-use super::passes::field::{FieldGroups, Lists};
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
-use super::passes::shade::{ShadePass, mesh_emissions};
+use super::passes::shade::ShadePass;
 use super::readback::read_buffers;
-use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, TILE, plan};
+use super::schedule::{DISPATCH_TARGET, Effort, Pace, Plan, plan};
 use super::targets::Targets;
-use super::uniforms::{GpuComponent, View, Work};
-use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, ROW_ALIGNMENT, Row, Warning, gpu_lights};
+use super::uniforms::Work;
+use crate::flat::{Buffers, FlatScene, Pruner, Row, Warning};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
 use choice::Chosen;
 pub use frame::Frame;
 pub use measure::Counts;
+use upload::{Groups, form_windows};
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -58,22 +58,6 @@ fn work_bytes(plan: &Plan) -> Vec<u8> {
         slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
     }
     work
-}
-
-/// The rows of components whose kernels are for forms, and where those of each begin, in bytes. As much room as a window
-/// takes is behind the last.
-fn form_windows(flat: &FlatScene, keys: &[Option<Key>]) -> (Vec<Option<u32>>, Vec<u8>) {
-    let mut rows: Vec<Row> = Vec::new();
-    let window = |(component, key): (&Component, &Option<Key>)| {
-        key.and_then(|key| key.form)?;
-        rows.resize(rows.len().next_multiple_of(ROW_ALIGNMENT), [0.0; 4]);
-        let first = rows.len();
-        form_rows(flat, component, &mut rows);
-        Some((first * size_of::<Row>()) as u32)
-    };
-    let windows = flat.components.iter().zip(keys).map(window).collect();
-    rows.resize(rows.len() + MAX_KERNEL_ROWS as usize, [0.0; 4]);
-    (windows, bytemuck::cast_slice(&rows).to_vec())
 }
 
 /// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
@@ -127,19 +111,6 @@ pub struct Renderer {
     march_counts: Mirror,
     slots: [Option<SlotState>; 2],
     pace: Pace,
-}
-
-#[derive(Debug)]
-struct Groups {
-    view: BindGroup,
-    scene: BindGroup,
-    /// The same with the rows of forms.
-    forms: BindGroup,
-    work: BindGroup,
-    lights: BindGroup,
-    field: FieldGroups,
-    farthest: BindGroup,
-    shade: BindGroup,
 }
 
 /// Dynamic offsets of `Work` are multiples of this.
@@ -241,7 +212,8 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        let buffers = [&self.nodes, &self.rows, &self.form_rows, &self.components, &self.materials].map(Mirror::uploaded);
+        let buffers =
+            [&self.nodes, &self.rows, &self.form_rows, &self.components, &self.materials].map(Mirror::uploaded);
         buffers.iter().sum::<u64>() + self.numbers.uploaded() + self.lists.uploaded()
     }
 
@@ -373,167 +345,5 @@ impl Renderer {
 
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
-    }
-
-    /// Returns whether a buffer was replaced.
-    fn upload(
-        &mut self,
-        flat: &FlatScene,
-        trees: &[Option<Arc<CellTree>>],
-        camera: &Camera,
-        size: [u32; 2],
-        plan: &Plan,
-    ) -> bool {
-        let Gpu { device, queue, .. } = &self.gpu;
-        let nothing = vec![[0_u32, 1, 1, 0]; plan.lists as usize];
-        let mut is_new = self.lists.hold(device, queue, trees);
-        let placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
-            let gpu = GpuComponent::new(component, camera.position);
-            let place = tree.as_ref().and_then(|tree| Some((tree, self.lists.place(tree)?)));
-            place.map_or(gpu, |(tree, at)| gpu.with_grid(tree, at))
-        };
-        let components: Vec<_> = flat.components.iter().zip(trees).map(placed).collect();
-        let numbers: &[u8] = bytemuck::cast_slice(&flat.numbers);
-        let (rows_are_new, changed) = self.rows.set_with_room(device, queue, numbers, KERNEL_WINDOW, size_of::<Row>());
-        let texture_is_new = self.numbers.reserve(device, numbers.len());
-        if let Some(range) = if texture_is_new { Some(0..numbers.len()) } else { changed } {
-            self.numbers.write(queue, range.start, &numbers[range]);
-        }
-        is_new |= rows_are_new || texture_is_new;
-        let lights = gpu_lights(flat, camera);
-        let view = View::new(camera, size, flat, lights.len() as u32);
-        let uploads = [
-            self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.components.set(device, queue, bytemuck::cast_slice(&components)),
-            self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
-            self.view.set(device, queue, bytemuck::bytes_of(&view)),
-            self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
-            self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
-            self.work.set(device, queue, &work_bytes(plan)),
-            self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
-            self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
-            self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
-            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
-            self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
-        ];
-        is_new || uploads.contains(&true)
-    }
-
-    fn bind_all(&self, targets: &Targets) -> Groups {
-        let device = &self.gpu.device;
-        let [scene, forms] = [&self.rows, &self.form_rows].map(|rows| {
-            let resources = [
-                self.nodes.binding(),
-                self.numbers.binding(),
-                self.components.binding(),
-                self.materials.binding(),
-                window(rows.buffer(), KERNEL_WINDOW),
-                self.lists.binding(),
-            ];
-            bind(device, "scene", &self.layouts.scene, &resources)
-        });
-        let lists = Lists {
-            tiles: self.tiles.buffer(),
-            tile_counts: self.tile_counts.buffer(),
-            rays: self.rays.buffer(),
-            ray_counts: self.ray_counts.buffer(),
-            nothing: self.nothing.buffer(),
-            march_counts: self.march_counts.buffer(),
-        };
-        let work = window(self.work.buffer(), size_of::<Work>());
-        Groups {
-            view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
-            scene,
-            forms,
-            work: bind(device, "work", &self.layouts.work, &[work]),
-            lights: self.shade.bind_lights(device, [self.lights.binding(), self.mesh_emissions.binding()]),
-            field: self.kernels.field().bind(device, targets, lists),
-            farthest: self.farthest.bind(device, targets),
-            shade: self.shade.bind(device, targets),
-        }
-    }
-
-    fn submit(&self, frame: &Frame, range: std::ops::Range<usize>) {
-        let SlotState { targets, groups } = self.slot(frame.slot);
-        let groups = groups.as_ref().expect("begin binds");
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
-        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        let pieces = &frame.plan.pieces;
-        let mut at = range.start;
-        while at < range.end {
-            if pieces[at].stage == Stage::Mesh {
-                // No ray is left over yet.
-                encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
-                self.mesh.record(&mut encoder, targets, &groups.view);
-                at += 1;
-                continue;
-            }
-            let end = (at..range.end).find(|i| pieces[*i].stage == Stage::Mesh).unwrap_or(range.end);
-            self.record_compute(&mut encoder, groups, frame, at..end);
-            at = end;
-        }
-        if range.end == pieces.len() && !frame.overlay.is_empty() {
-            self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-    }
-
-    fn record_compute(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        groups: &Groups,
-        frame: &Frame,
-        range: std::ops::Range<usize>,
-    ) {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_bind_group(0, &groups.view, &[]);
-        for at in range {
-            let piece = &frame.plan.pieces[at];
-            pass.set_bind_group(3, &groups.work, &[(at * WORK_STRIDE) as u32]);
-            match piece.stage {
-                Stage::Farthest => {
-                    pass.set_pipeline(self.farthest.pipeline());
-                    pass.set_bind_group(1, self.farthest.scene(), &[]);
-                    pass.set_bind_group(2, &groups.farthest, &[]);
-                }
-                Stage::Shade => {
-                    pass.set_pipeline(self.shade.pipeline());
-                    pass.set_bind_group(1, &groups.lights, &[]);
-                    pass.set_bind_group(2, &groups.shade, &[]);
-                }
-                _ => {
-                    self.record_field(&mut pass, groups, frame, piece);
-                    continue;
-                }
-            }
-            let [x, y] = piece.tiles();
-            pass.dispatch_workgroups(x, y, 1);
-        }
-    }
-
-    /// A pass over one component.
-    fn record_field(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups, frame: &Frame, piece: &Piece) {
-        let component = piece.work.component as usize;
-        let kernel = &frame.choices[component].kernel;
-        let (pipeline, targets) = match piece.stage {
-            Stage::Cone => (&kernel.cone, &groups.field.cone),
-            Stage::Trace if piece.work.packed == 1 => (&kernel.trace, &groups.field.packed),
-            Stage::Trace => (&kernel.trace, &groups.field.trace),
-            Stage::Surface => (&kernel.surface, &groups.field.surface),
-            Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
-        };
-        pass.set_pipeline(pipeline);
-        match frame.form_window(component) {
-            Some(window) => pass.set_bind_group(1, &groups.forms, &[window]),
-            None => pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]),
-        }
-        pass.set_bind_group(2, targets, &[]);
-        if piece.stage == Stage::Cone {
-            let [x, y] = piece.tiles();
-            pass.dispatch_workgroups((x * y).div_ceil(CONE_GROUP), 1, 1);
-        } else {
-            let counts = if piece.work.packed == 1 { &self.ray_counts } else { &self.tile_counts };
-            pass.dispatch_workgroups_indirect(counts.buffer(), u64::from(piece.work.list) * 16);
-        }
     }
 }

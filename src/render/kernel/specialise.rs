@@ -206,8 +206,7 @@ impl Writer<'_> {
     }
 }
 
-/// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row. For lavapipe by loops of at most one
-/// round, see [`Skipping`].
+/// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row.
 pub(super) fn any_of(
     shapes: ShapeSet,
     at: usize,
@@ -222,6 +221,7 @@ pub(super) fn any_of(
         let is_it = format!("q{row}.z == {code}.0");
         out += &match skipping {
             Skipping::Branches | Skipping::Never => format!("    if {is_it} {{ {name}{at} = {value}; }}\n"),
+            Skipping::Loops if shapes.is_small() => format!("    {name}{at} = select({name}{at}, {value}, {is_it});\n"),
             // Ended by what no compiler knows: it would make the loop an `if` again.
             Skipping::Loops => format!(
                 "    var is_{name}{at}_{code} = {is_it};\n    while is_{name}{at}_{code} {{ {name}{at} = {value}; \

@@ -28,6 +28,12 @@ pub enum EntryKind {
 pub struct ShapeSet(pub u32);
 
 impl ShapeSet {
+    /// Whether lavapipe computes all of them and chooses in less time than it takes to skip those that are not meant,
+    /// by loops: with three shapes 137 instead of 217 ms for 128 groups of 8 leaves, and 431 instead of 895 for 1 024.
+    pub fn is_small(self) -> bool {
+        self.0.count_ones() <= 4
+    }
+
     /// The shapes, in order.
     pub fn shapes(self) -> impl Iterator<Item = ShapeKind> {
         ShapeKind::ALL.iter().copied().filter(move |kind| self.0 >> *kind as u32 & 1 == 1)
@@ -115,6 +121,11 @@ impl Structure {
             }
         }
         Some(structure)
+    }
+
+    /// Whether it is the form of many structures.
+    pub fn is_form(&self) -> bool {
+        self.entries.iter().any(|entry| matches!(entry.kind, EntryKind::AnyLeaf(_)))
     }
 
     /// A key of the form, and the shapes that the component uses.

@@ -1,0 +1,91 @@
+//! Writes the dispatches of a frame down and hands them to the device.
+
+use super::upload::Groups;
+use super::{CONE_GROUP, Frame, Renderer, SlotState, WORK_STRIDE};
+use crate::render::schedule::{Piece, Stage};
+
+impl Renderer {
+    pub(super) fn submit(&self, frame: &Frame, range: std::ops::Range<usize>) {
+        let SlotState { targets, groups } = self.slot(frame.slot);
+        let groups = groups.as_ref().expect("begin binds");
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let pieces = &frame.plan.pieces;
+        let mut at = range.start;
+        while at < range.end {
+            if pieces[at].stage == Stage::Mesh {
+                // No ray is left over yet.
+                encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
+                self.mesh.record(&mut encoder, targets, &groups.view);
+                at += 1;
+                continue;
+            }
+            let end = (at..range.end).find(|i| pieces[*i].stage == Stage::Mesh).unwrap_or(range.end);
+            self.record_compute(&mut encoder, groups, frame, at..end);
+            at = end;
+        }
+        if range.end == pieces.len() && !frame.overlay.is_empty() {
+            self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    fn record_compute(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        groups: &Groups,
+        frame: &Frame,
+        range: std::ops::Range<usize>,
+    ) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_bind_group(0, &groups.view, &[]);
+        for at in range {
+            let piece = &frame.plan.pieces[at];
+            pass.set_bind_group(3, &groups.work, &[(at * WORK_STRIDE) as u32]);
+            match piece.stage {
+                Stage::Farthest => {
+                    pass.set_pipeline(self.farthest.pipeline());
+                    pass.set_bind_group(1, self.farthest.scene(), &[]);
+                    pass.set_bind_group(2, &groups.farthest, &[]);
+                }
+                Stage::Shade => {
+                    pass.set_pipeline(self.shade.pipeline());
+                    pass.set_bind_group(1, &groups.lights, &[]);
+                    pass.set_bind_group(2, &groups.shade, &[]);
+                }
+                _ => {
+                    self.record_field(&mut pass, groups, frame, piece);
+                    continue;
+                }
+            }
+            let [x, y] = piece.tiles();
+            pass.dispatch_workgroups(x, y, 1);
+        }
+    }
+
+    /// A pass over one component.
+    fn record_field(&self, pass: &mut wgpu::ComputePass<'_>, groups: &Groups, frame: &Frame, piece: &Piece) {
+        let component = piece.work.component as usize;
+        let kernel = &frame.choices[component].kernel;
+        let (pipeline, targets) = match piece.stage {
+            Stage::Cone => (&kernel.cone, &groups.field.cone),
+            Stage::Trace if piece.work.packed == 1 => (&kernel.trace, &groups.field.packed),
+            Stage::Trace => (&kernel.trace, &groups.field.trace),
+            Stage::Surface => (&kernel.surface, &groups.field.surface),
+            Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
+        };
+        pass.set_pipeline(pipeline);
+        match frame.form_window(component) {
+            Some(window) => pass.set_bind_group(1, &groups.forms, &[window]),
+            None => pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]),
+        }
+        pass.set_bind_group(2, targets, &[]);
+        if piece.stage == Stage::Cone {
+            let [x, y] = piece.tiles();
+            pass.dispatch_workgroups((x * y).div_ceil(CONE_GROUP), 1, 1);
+        } else {
+            let counts = if piece.work.packed == 1 { &self.ray_counts } else { &self.tile_counts };
+            pass.dispatch_workgroups_indirect(counts.buffer(), u64::from(piece.work.list) * 16);
+        }
+    }
+}
