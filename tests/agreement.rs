@@ -8,9 +8,11 @@ use isolith::gallery;
 use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
-    Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator, Scene,
+    Shape, ShapeKind,
 };
 
+use crate::contract::modifiers::{modified, samples};
 use crate::contract::samples::{Random, ordinary};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::shared;
@@ -175,4 +177,20 @@ fn a_disagreement_is_caught() {
     assert!(compare(&flat, 0, &points, &values(&|f| f * 1.001)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|f| -f)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|_| f64::NAN)).is_err());
+}
+
+/// Every modifier, alone and one upon the other, over lopsided content.
+#[test]
+fn every_modifier_agrees() {
+    for &kind in ModifierKind::ALL {
+        let mut random = Random::new(kind as u64);
+        for (i, modifier) in samples(kind, 2).into_iter().enumerate() {
+            let other = if i == 0 { Modifier::Bend { angle: 30.0 } } else { Modifier::Round { radius: 0.02 } };
+            for modifiers in [vec![modifier], vec![modifier, other]] {
+                if flatten(&modified(&modifiers), 0.0).is_ok() {
+                    agree(&format!("{modifiers:?}"), &modified(&modifiers), &mut random);
+                }
+            }
+        }
+    }
 }

@@ -24,8 +24,10 @@ fn evaluators() -> Vec<Evaluator> {
         .collect();
     structures.sort();
     structures.dedup();
-    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
-    let walked: Vec<_> = alone.chain([Features::all()]).collect();
+    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), ..Features::none() });
+    let kinds = Features::all().modifiers;
+    let modified = kinds.iter().map(|kind| Features { modifiers: [*kind].into(), stack: 2, ..Features::none() });
+    let walked: Vec<_> = alone.chain(modified).chain([Features::all()]).collect();
     let interpreted = walked.iter().cloned().map(Evaluator::Interpreted);
     let pruned = walked.iter().cloned().map(Evaluator::Pruned);
     interpreted.chain(pruned).chain(structures.into_iter().map(Evaluator::Specialised)).collect()

@@ -5,9 +5,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use crate::geometry::{Aabb, Camera};
-use crate::scene::{Environment, Light, MaterialId, NodeId};
+use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId};
 
-/// Entry of the subtree-extent array: a group, a leaf (one shape), or a run.
+/// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
 /// A run stands before operands of the same group that follow each other and join in the same way. It
 /// has no value; it says where none of them can matter, so that all are skipped at once.
@@ -17,7 +17,7 @@ use crate::scene::{Environment, Light, MaterialId, NodeId};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct FlatNode {
-    /// Bits 0–15: shape code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
+    /// Bits 0–15: shape code, [`FlatNode::MODIFIER`] and a modifier's code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
     pub code: u32,
     /// Entries of this node and everything below it; 1 for a leaf.
     pub extent: u32,
@@ -32,6 +32,8 @@ impl FlatNode {
     pub const GROUP: u32 = 0xffff;
     /// The shape code that marks a run.
     pub const RUN: u32 = 0xfffe;
+    /// The first of the shape codes that mark modifiers.
+    pub const MODIFIER: u32 = 0xff00;
 
     /// Whether it is a group.
     pub fn is_group(&self) -> bool {
@@ -45,7 +47,13 @@ impl FlatNode {
 
     /// Whether it is a leaf.
     pub fn is_leaf(&self) -> bool {
-        !self.is_group() && !self.is_run()
+        self.code & 0xffff < Self::MODIFIER
+    }
+
+    /// Which modifier it is, if it is one.
+    pub fn modifier(&self) -> Option<ModifierKind> {
+        let code = (self.code & 0xffff).checked_sub(Self::MODIFIER)?;
+        ModifierKind::ALL.get(code as usize).copied()
     }
 
     /// How it joins what precedes it.
@@ -80,7 +88,9 @@ pub enum Join {
 ///
 /// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies. A run has the same rows: the largest support of its operands, and bounds
+/// slope 0 and finite dummies. A modifier has the same three, the first as `[support, slope, distance_scale, 0]`,
+/// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
+/// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.
 pub type Row = [f32; 4];
 
@@ -90,6 +100,23 @@ pub const ROW_ALIGNMENT: usize = 16;
 pub const LEAF_ROWS: usize = 4;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
+
+/// Rows of a modifier before its own.
+pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
+
+/// How many rows a modifier's own numbers take.
+pub const fn modifier_rows(kind: ModifierKind) -> usize {
+    match kind {
+        // These are written as copies.
+        ModifierKind::Mirror | ModifierKind::Polar => 0,
+        ModifierKind::Repeat => 10,
+        ModifierKind::Recursion => 6,
+        ModifierKind::Bend => 4,
+        ModifierKind::Taper => 3,
+        ModifierKind::Twist | ModifierKind::Noise => 2,
+        ModifierKind::Elongate | ModifierKind::Round | ModifierKind::Onion | ModifierKind::Waves => 1,
+    }
+}
 
 /// A material as the GPU reads it.
 #[repr(C)]
@@ -163,6 +190,10 @@ pub struct Component {
     pub half_space: Option<[f64; 4]>,
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
+    /// Whether it holds modifiers.
+    pub modified: bool,
+    /// How often an entry may be evaluated for one point: 1 without repetition.
+    pub copies: u32,
 }
 
 /// Something that the artist should know; the scene is still rendered.

@@ -1,6 +1,6 @@
 //! Writes the fold of one component into the arrays, relative to the component's origin.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
 use super::operands::{Operand, Value, fold_bounds};
@@ -19,6 +19,7 @@ pub(super) fn emit(
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
+    let modified = flat.nodes[first..].iter().any(|n| n.modifier().is_some());
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
@@ -28,6 +29,19 @@ pub(super) fn emit(
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
         stack,
+        modified,
+        copies: operands.iter().map(copies).max().unwrap_or(1),
+    }
+}
+
+/// How often a leaf of the operand may be evaluated for one point.
+fn copies(operand: &Operand<'_>) -> u32 {
+    match &operand.value {
+        Value::Leaf { .. } => 1,
+        Value::Fold(inner) => inner.iter().map(copies).max().unwrap_or(1),
+        Value::Modified { content, modified, .. } => {
+            content.iter().map(copies).max().unwrap_or(1).saturating_mul(modified.copies)
+        }
     }
 }
 
@@ -42,6 +56,7 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
     }
     match &operands[0].value {
         Value::Leaf { local_from_world, .. } => local_from_world.inverse().translation,
+        Value::Modified { local_from_world, .. } => local_from_world.inverse().translation,
         Value::Fold(inner) => origin_of(bounds, inner),
     }
 }
@@ -127,6 +142,15 @@ fn bounding_rows(support: f32, slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
     [[support, slope, 0.0, 0.0], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
 }
 
+/// Local from component.
+fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [Row; 3] {
+    let shift = local_from_world.transform_point3(origin);
+    [0, 1, 2].map(|row| {
+        let r = local_from_world.matrix3.row(row);
+        [r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]
+    })
+}
+
 /// Returns how many accumulators have to be put aside within the operand.
 fn emit_operand(
     flat: &mut FlatScene,
@@ -144,13 +168,8 @@ fn emit_operand(
         Value::Leaf { local_from_world, distance_scale, shape, material: id } => {
             let material = material(flat, *id);
             flat.nodes.push(FlatNode { code: code(shape.kind() as u32), extent: 1, numbers, material });
-            let m = &local_from_world.matrix3;
-            let shift = local_from_world.transform_point3(origin);
             flat.numbers.push([support, *distance_scale as f32, 0.0, 0.0]);
-            for row in 0..3 {
-                let r = m.row(row);
-                flat.numbers.push([r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]);
-            }
+            flat.numbers.extend(placing_rows(local_from_world, origin));
             let packed = shape.packed().map(|v| v as f32);
             let rows = shape.kind().rows();
             flat.numbers.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
@@ -160,6 +179,18 @@ fn emit_operand(
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
             flat.numbers.extend(bounding_rows(support, operand.slope, &operand.skip.translated(-origin)));
             let stack = emit_fold(flat, inner, origin, material);
+            flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
+            stack + 1
+        }
+        Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
+            let marker = FlatNode::MODIFIER + *kind as u32;
+            flat.nodes.push(FlatNode { code: code(marker), extent: 0, numbers, material: 0 });
+            let mut bounding = bounding_rows(support, operand.slope, &operand.skip.translated(-origin));
+            bounding[0][2] = *distance_scale as f32;
+            flat.numbers.extend(bounding);
+            flat.numbers.extend(placing_rows(local_from_world, origin));
+            flat.numbers.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
+            let stack = emit_fold(flat, content, DVec3::ZERO, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }

@@ -4,6 +4,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modify` | what modifiers do to bounds and steps |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
@@ -23,6 +24,7 @@ mod emit;
 mod flatten;
 pub mod mesh_rays;
 mod meshes;
+mod modify;
 mod operands;
 pub mod pick;
 mod prune;
@@ -37,6 +39,7 @@ pub use arrays::*;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};
+pub use modify::{MAX_NEIGHBOURS, REPEAT_REACH, is_copying};
 pub use prune::*;
 pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};

@@ -89,7 +89,8 @@ impl Last {
         let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
         let old = self.flat.components[at].clone();
         let Some(operands) = component_of(scene, outermost) else { return false };
-        if fold_bounds(&operands).bounds.is_empty() {
+        let had_warnings = old.modified && !self.flat.warnings.is_empty();
+        if fold_bounds(&operands).bounds.is_empty() || had_warnings {
             return false;
         }
         let mut scratch = FlatScene { environment: self.flat.environment, ..FlatScene::default() };
@@ -115,11 +116,17 @@ impl Last {
     }
 }
 
-/// Whether only the values of an object differ, so that the arrays keep their form.
+/// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
 fn is_small(old: &Node, new: &Node) -> bool {
     let form = |n: &Node| (n.id, n.parent, n.visible, n.negative);
-    let (NodeKind::Object(a), NodeKind::Object(b)) = (&old.kind, &new.kind) else { return false };
-    form(old) == form(new) && a.material == b.material
+    let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
+    let kinds = match (&old.kind, &new.kind) {
+        (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
+        // An opened group holds more than one component.
+        (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(old) && !is_opened(new),
+        _ => false,
+    };
+    kinds && form(old) == form(new) && modifiers(old) == modifiers(new)
 }
 
 /// The node at the top of the component that the node at `index` is part of.

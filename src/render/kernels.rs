@@ -112,7 +112,7 @@ impl Kernels {
     /// The interpreter, for no shapes yet.
     pub fn new(gpu: &Gpu, layouts: &Layouts, options: Options) -> Result<Self, ShaderError> {
         let field = FieldLayouts::new(&gpu.device);
-        let features = Features { shapes: [].into(), stack: 1 };
+        let features = Features::none();
         let evaluator = Evaluator::Interpreted(features.clone());
         let interpreter = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
         let shared = Arc::new(Shared { gpu: gpu.clone(), layouts: layouts.clone(), field, options });

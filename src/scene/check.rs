@@ -8,8 +8,8 @@ use super::limits::{
     SHININESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Light, LightKind, Material, MeshNode, Node, NodeKind, ParamValue,
-    SceneError, Shape,
+    Attenuation, CameraNode, Environment, Group, Light, LightKind, MAX_MODIFIERS, Material, MeshNode, Modifier,
+    ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
 
@@ -46,6 +46,15 @@ pub fn node(node: &Node) -> Result<(), Fault> {
         return Err(Fault::new("negative", "only objects and groups can be negative"));
     }
     transform(&node.transform).map_err(|f| f.below("transform"))?;
+    if !node.modifiers.is_empty() && !node.has_field() {
+        return Err(Fault::new("modifiers", "only objects and groups can have modifiers"));
+    }
+    if node.modifiers.len() > MAX_MODIFIERS {
+        return Err(Fault::new("modifiers", format!("must be at most {MAX_MODIFIERS} of them")));
+    }
+    for (i, slot) in node.modifiers.iter().enumerate() {
+        modifier(&slot.modifier).map_err(|f| f.below(&format!("modifiers[{i}].modifier")))?;
+    }
     match &node.kind {
         NodeKind::Group(g) => group(g).map_err(|f| f.below("group")),
         NodeKind::Object(o) => shape(&o.shape).map_err(|f| f.below("object.shape")),
@@ -149,6 +158,20 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
         match value {
             ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
             ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
+        }
+    }
+    Ok(())
+}
+
+/// Every parameter against the limits in its modifier's own table.
+fn modifier(modifier: &Modifier) -> Result<(), Fault> {
+    for (param, value) in modifier.kind().params().iter().zip(modifier.values()) {
+        match value {
+            ModifierValue::Scalar(v) => number(param.name, v, &param.limits)?,
+            ModifierValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
+            ModifierValue::Count(n) => number(param.name, n.into(), &param.limits)?,
+            ModifierValue::Counts(n) => vector(param.name, n.map(f64::from), &param.limits)?,
+            ModifierValue::Flag(_) | ModifierValue::Flags(_) => {}
         }
     }
     Ok(())

@@ -59,3 +59,15 @@ pub const CONE: Limits = Limits { soft: [0.0, 89.0], hard: [0.0, 89.9], unit: "�
 pub const FOV: Limits = Limits { soft: [10.0, 120.0], hard: [0.1, 170.0], unit: "°" };
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits { soft: [1e-3, 1e4], hard: [1e-6, 1e9], unit: "m" };
+/// Distance from one copy to the next, and lengths of waves.
+pub const SPACING: Limits = Limits { soft: [0.01, 5.0], hard: [1e-6, 1e6], unit: "m" };
+/// Numbers of copies.
+pub const COPIES: Limits = Limits { soft: [0.0, 16.0], hard: [0.0, 1e6], unit: "" };
+/// Angles in degrees.
+pub const ANGLE: Limits = Limits { soft: [-180.0, 180.0], hard: [-1e4, 1e4], unit: "°" };
+/// Angles per length, in degrees per metre.
+pub const CURVATURE: Limits = Limits { soft: [-360.0, 360.0], hard: [-3.6e4, 3.6e4], unit: "°/m" };
+/// Change of width per height.
+pub const TAPER: Limits = Limits { soft: [-1.0, 1.0], hard: [-1e3, 1e3], unit: "/m" };
+/// How far a displacement moves the surface.
+pub const AMPLITUDE: Limits = Limits { soft: [0.0, 0.5], hard: [0.0, 1e6], unit: "m" };

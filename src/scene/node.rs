@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Blend, Light, MaterialId, Operator, Shape};
+use super::{Blend, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape};
 use crate::geometry::Transform;
 
 /// Stable identity of a node; never reused within a document.
@@ -35,6 +35,8 @@ pub struct Node {
     pub negative: bool,
     /// Parent from local.
     pub transform: Transform,
+    /// What it does to itself and all below it, in its own space, the first one first; objects and groups only.
+    pub modifiers: Vec<ModifierSlot>,
     /// What it is.
     pub kind: NodeKind,
 }
@@ -50,6 +52,7 @@ impl Node {
             locked: false,
             negative: false,
             transform: Transform::IDENTITY,
+            modifiers: Vec::new(),
             kind,
         }
     }
@@ -75,6 +78,12 @@ impl Node {
     /// The same node cut away instead of joined.
     pub fn negative(mut self) -> Self {
         self.negative = true;
+        self
+    }
+
+    /// The same node with one more modifier, after those that it has.
+    pub fn modified(mut self, modifier: Modifier) -> Self {
+        self.modifiers.push(modifier.into());
         self
     }
 

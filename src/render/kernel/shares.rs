@@ -75,7 +75,7 @@ impl Shares<'_> {
             self.line(&format!(
                 "    gradient += share{at} * {factor} * {moved}(dual_{}({}), q{}, q{}, q{});",
                 shape.function(),
-                arguments(entry, shape, row),
+                arguments("p", entry, shape, row),
                 row + 1,
                 row + 2,
                 row + 3

@@ -1,16 +1,17 @@
 //! WGSL source of each pass: includes resolved, and what depends on the evaluator generated.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::sync::{LazyLock, Mutex, PoisonError};
 
 use thiserror::Error;
 
-use super::dual::{DUAL_PRELUDE, dual};
+use super::dual::DUAL_PRELUDE;
+use super::gradients::gradient_wgsl;
+use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::specialise::{Fold, specialise};
 use super::{Evaluator, Options, Skipping};
-use crate::flat::{FlatScene, MAX_STACK};
-use crate::scene::ShapeKind;
+use crate::flat::{FlatScene, MAX_STACK, modifier_rows};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// Every file of `shaders/`, by its path there.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
@@ -21,6 +22,8 @@ pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.r
 pub struct Features {
     /// Shapes in use.
     pub shapes: BTreeSet<ShapeKind>,
+    /// Modifiers in use.
+    pub modifiers: BTreeSet<ModifierKind>,
     /// Accumulators that can be put aside: a power of two.
     pub stack: u32,
 }
@@ -29,29 +32,47 @@ impl Features {
     /// What `flat` uses.
     pub fn of(flat: &FlatScene) -> Self {
         let mut used = vec![false; ShapeKind::ALL.len()];
+        let mut modifiers = BTreeSet::new();
         for node in &flat.nodes {
-            if node.is_leaf() {
+            if let Some(kind) = node.modifier() {
+                modifiers.insert(kind);
+            } else if node.is_leaf() {
                 used[(node.code & 0xffff) as usize] = true;
             }
         }
         let shapes = ShapeKind::ALL.iter().filter(|k| used[**k as usize]).copied().collect();
         let stack = flat.components.iter().map(|c| c.stack).max().unwrap_or(0);
-        Self { shapes, stack: stack.max(1).next_power_of_two() }
+        Self { shapes, modifiers, stack: stack.max(1).next_power_of_two() }
+    }
+
+    /// Nothing.
+    pub fn none() -> Self {
+        Self { shapes: BTreeSet::new(), modifiers: BTreeSet::new(), stack: 1 }
     }
 
     /// Everything there is.
     pub fn all() -> Self {
-        Self { shapes: ShapeKind::ALL.iter().copied().collect(), stack: MAX_STACK }
+        Self {
+            shapes: ShapeKind::ALL.iter().copied().collect(),
+            modifiers: ModifierKind::ALL.iter().copied().filter(|kind| modifier_rows(*kind) > 0).collect(),
+            stack: MAX_STACK,
+        }
     }
 
     /// Whether a kernel for `self` also serves `other`.
     pub fn covers(&self, other: &Self) -> bool {
-        self.stack >= other.stack && self.shapes.is_superset(&other.shapes)
+        self.stack >= other.stack
+            && self.shapes.is_superset(&other.shapes)
+            && self.modifiers.is_superset(&other.modifiers)
     }
 
     /// What serves both.
     pub fn union(&self, other: &Self) -> Self {
-        Self { shapes: self.shapes.union(&other.shapes).copied().collect(), stack: self.stack.max(other.stack) }
+        Self {
+            shapes: self.shapes.union(&other.shapes).copied().collect(),
+            modifiers: self.modifiers.union(&other.modifiers).copied().collect(),
+            stack: self.stack.max(other.stack),
+        }
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
@@ -118,20 +139,6 @@ pub(super) fn gradient_include(kind: ShapeKind) -> String {
     format!("#include \"generated/dual/{}.wgsl\"", kind.function())
 }
 
-/// A shape's function with its gradient; derived once, however many kernels hold it.
-fn gradient_wgsl(function: &str) -> Option<String> {
-    static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
-    let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(text) = derived.get(function) {
-        return Some(text.clone());
-    }
-    let text = plain_source(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_")?)).ok()?;
-    // A shape without a derivative has no kernel; a test derives every one.
-    let dual = dual(&text, function).ok()?;
-    derived.insert(function.to_owned(), dual.clone());
-    Some(dual)
-}
-
 /// The whole source of the shader `entry`, each file included once, before its first user.
 pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
@@ -152,7 +159,7 @@ pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<St
 
 /// The same for a shader that evaluates no field.
 pub fn plain_source(entry: &str) -> Result<String, ShaderError> {
-    let nothing = Evaluator::Interpreted(Features { shapes: BTreeSet::new(), stack: 1 });
+    let nothing = Evaluator::Interpreted(Features::none());
     source(entry, &nothing, Options::default())
 }
 
@@ -199,11 +206,18 @@ impl Resolver<'_> {
             ("generated/value.wgsl", Pruned(_)) => include("pruned_value"),
             ("generated/surface.wgsl", Pruned(_)) => include("pruned_surface"),
             ("generated/value.wgsl", Specialised(structure)) => special(structure, None, Fold::Value),
+            ("generated/surface.wgsl", Specialised(s) | Generated(s, _)) if s.is_modified() => {
+                include("interpreted_surface")
+            }
             ("generated/surface.wgsl", Specialised(structure)) => special(structure, None, Fold::Surface),
             ("generated/value.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Value),
             ("generated/surface.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Surface),
-            ("generated/shapes.wgsl", Interpreted(f) | Pruned(f)) => Some(f.shapes_wgsl()),
-            ("generated/gradients.wgsl", Interpreted(f) | Pruned(f)) => Some(f.gradients_wgsl()),
+            ("generated/shapes.wgsl", _) => Some(self.evaluator.features().shapes_wgsl()),
+            ("generated/gradients.wgsl", _) => Some(self.evaluator.features().gradients_wgsl()),
+            ("generated/modifiers.wgsl", _) => Some(modifiers_wgsl(&self.evaluator.features())),
+            ("generated/modifier_gradients.wgsl", _) => {
+                Some(modifier_gradients_wgsl(&self.evaluator.features().modifiers))
+            }
             ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
             _ => {
                 let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;
@@ -228,7 +242,7 @@ mod tests {
 
     #[test]
     fn a_kernel_holds_only_the_shapes_in_use() {
-        let features = Features { shapes: [ShapeKind::Sphere].into(), stack: 1 };
+        let features = Features { shapes: [ShapeKind::Sphere].into(), ..Features::none() };
         let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
         assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
     }

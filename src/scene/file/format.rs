@@ -14,7 +14,8 @@ use serde_json::json;
 use crate::geometry::Transform;
 use crate::scene::limits::{MAX_MATERIALS, MAX_NODES};
 use crate::scene::{
-    CameraNode, Environment, Group, Light, Material, MaterialId, MeshNode, Node, NodeId, NodeKind, Object,
+    CameraNode, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId,
+    NodeKind, Object,
 };
 
 /// The version that is written; every version up to it is read.
@@ -64,6 +65,9 @@ pub(super) struct NodeV1 {
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformV1::is_identity")]
     pub transform: TransformV1,
+    /// What it does to itself and all below it, the first one first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
+    pub modifiers: Vec<ModifierSlot>,
     /// Joins its children.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<Group>,
@@ -134,6 +138,7 @@ impl From<&Node> for NodeV1 {
             locked: node.locked,
             negative: node.negative,
             transform: node.transform.into(),
+            modifiers: node.modifiers.clone(),
             group: None,
             object: None,
             mesh: None,
@@ -171,6 +176,7 @@ impl NodeV1 {
             locked: self.locked,
             negative: self.negative,
             transform: self.transform.into(),
+            modifiers: self.modifiers,
             kind,
         })
     }
