@@ -3,18 +3,22 @@
 
 #include "field/leaf.wgsl"
 #include "field/joined_surface.wgsl"
+#if MODIFIERS
 #include "generated/modifiers.wgsl"
 #include "generated/modifier_gradients.wgsl"
+#end
 
 var<private> surface_first: u32;
 var<private> surface_end: u32;
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_group: array<u32, STACK_SIZE>;
+#if MODIFIERS
 // Of modifiers under way, see `interpreted_value.wgsl`.
-var<private> surface_outside: array<vec3f, POINT_STACK>;
-var<private> surface_local: array<vec3f, POINT_STACK>;
-var<private> surface_copy: array<u32, POINT_STACK>;
-var<private> surface_least: array<Surface, POINT_STACK>;
+var<private> surface_outside: array<vec3f, STACK_SIZE>;
+var<private> surface_local: array<vec3f, STACK_SIZE>;
+var<private> surface_copy: array<u32, STACK_SIZE>;
+var<private> surface_least: array<Surface, STACK_SIZE>;
+#end
 
 // Chooses the component. Before any call of `surface`.
 fn surface_begin(component: Component) {
@@ -22,6 +26,7 @@ fn surface_begin(component: Component) {
     surface_end = component.end;
 }
 
+#if MODIFIERS
 // The k-th copy of what a modifier holds, as seen from outside of it.
 fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Surface) -> Surface {
     let scale = modifier_scale(modifier, copy, row);
@@ -42,6 +47,7 @@ fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface)
         * (scene_row(numbers + 3u).xyz * d.x + scene_row(numbers + 4u).xyz * d.y + scene_row(numbers + 5u).xyz * d.z);
     return seen;
 }
+#end
 
 fn surface(p: vec3f) -> Surface {
     var q = p;
@@ -57,7 +63,8 @@ fn surface(p: vec3f) -> Surface {
             if has_content && kind != RUN {
                 surface_stack[depth] = so_far;
                 surface_group[depth] = at;
-                if MODIFIERS && kind < RUN {
+#if MODIFIERS
+                if kind < RUN {
                     let local = leaf_place(node.numbers + 2u, q);
                     let row = node.numbers + MODIFIER_ROWS;
                     let least = modifier_start(kind, local, row);
@@ -71,6 +78,7 @@ fn surface(p: vec3f) -> Surface {
                         q = modifier_point(kind, local, copy, row);
                     }
                 }
+#end
                 depth += 1u;
             }
             if has_content {
@@ -87,8 +95,9 @@ fn surface(p: vec3f) -> Surface {
             if surface_group[depth - 1u] + group.extent != at {
                 break;
             }
+#if MODIFIERS
             let modifier = group.code & 0xffffu;
-            if MODIFIERS && modifier < RUN {
+            if modifier < RUN {
                 let local = surface_local[depth - 1u];
                 let row = group.numbers + MODIFIER_ROWS;
                 var copy = surface_copy[depth - 1u];
@@ -111,6 +120,7 @@ fn surface(p: vec3f) -> Surface {
                 so_far = surface_modified(modifier, group.numbers, local, least);
                 q = surface_outside[depth - 1u];
             }
+#end
             depth -= 1u;
             so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers).x, surface_stack[depth], so_far);
         }

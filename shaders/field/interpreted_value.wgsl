@@ -2,17 +2,21 @@
 // Twin of `flat::twin::field`.
 
 #include "field/leaf.wgsl"
+#if MODIFIERS
 #include "generated/modifiers.wgsl"
+#end
 
 var<private> value_first: u32;
 var<private> value_end: u32;
 var<private> value_stack: array<f32, STACK_SIZE>;
 var<private> value_group: array<u32, STACK_SIZE>;
+#if MODIFIERS
 // Of modifiers under way: the point outside, the point in its own space, the copy that is evaluated, the least so far.
-var<private> value_outside: array<vec3f, POINT_STACK>;
-var<private> value_local: array<vec3f, POINT_STACK>;
-var<private> value_copy: array<u32, POINT_STACK>;
-var<private> value_least: array<f32, POINT_STACK>;
+var<private> value_outside: array<vec3f, STACK_SIZE>;
+var<private> value_local: array<vec3f, STACK_SIZE>;
+var<private> value_copy: array<u32, STACK_SIZE>;
+var<private> value_least: array<f32, STACK_SIZE>;
+#end
 
 fn join_value(node: FlatNode, support: f32, so_far: f32, value: f32) -> f32 {
     let join = (node.code >> 16u) & 0xffu;
@@ -43,7 +47,8 @@ fn field(p: vec3f) -> f32 {
             if has_content && kind != RUN {
                 value_stack[depth] = so_far;
                 value_group[depth] = at;
-                if MODIFIERS && kind < RUN {
+#if MODIFIERS
+                if kind < RUN {
                     let local = leaf_place(node.numbers + 2u, q);
                     let row = node.numbers + MODIFIER_ROWS;
                     let least = modifier_start(kind, local, row);
@@ -57,6 +62,7 @@ fn field(p: vec3f) -> f32 {
                         q = modifier_point(kind, local, copy, row);
                     }
                 }
+#end
                 depth += 1u;
             }
             if has_content {
@@ -74,8 +80,9 @@ fn field(p: vec3f) -> f32 {
             if value_group[depth - 1u] + group.extent != at {
                 break;
             }
+#if MODIFIERS
             let modifier = group.code & 0xffffu;
-            if MODIFIERS && modifier < RUN {
+            if modifier < RUN {
                 let local = value_local[depth - 1u];
                 let row = group.numbers + MODIFIER_ROWS;
                 var copy = value_copy[depth - 1u];
@@ -95,6 +102,7 @@ fn field(p: vec3f) -> f32 {
                 so_far = modifier_value(modifier, least, local, row) * scene_row(group.numbers).z;
                 q = value_outside[depth - 1u];
             }
+#end
             depth -= 1u;
             so_far = join_value(group, scene_row(group.numbers).x, value_stack[depth], so_far);
         }

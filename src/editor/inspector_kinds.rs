@@ -131,7 +131,7 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
 }
 
 /// `bottom_radius` → `Bottom radius`.
-fn sentence_case(name: &str) -> String {
+pub fn sentence_case(name: &str) -> String {
     let spaced = name.replace('_', " ");
     let mut chars = spaced.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())

@@ -264,7 +264,10 @@ fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [
         }
         all
     };
-    let flags = mirrored.iter().enumerate().map(|(i, on)| f64::from(u8::from(*on)) * f64::from(1 << i)).sum();
+    // Space is folded to the side on which the next copy stands.
+    let child = if same.bounds.is_finite() { parent_from_child.transform_point3(same.bounds.center()) } else { offset };
+    let flag = |i: usize| (1 << i) + if child[i] < 0.0 { 8 << i } else { 0 };
+    let flags = f64::from((0..3).filter(|i| mirrored[*i]).map(flag).sum::<i32>());
     let inverse = rotation.transpose();
     let (center, half) = finite_box(&same.skip);
     let rows = vec![

@@ -6,10 +6,12 @@
 mod blend_kernels;
 mod boolean_operations;
 mod chess_pawn;
+mod chessboard;
 mod crowds;
 mod deep_tree;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
+mod modifiers;
 mod random_groups;
 mod showcase;
 mod stage;
@@ -35,6 +37,8 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("blend-kernels", blend_kernels::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
         ("deep-tree", deep_tree::scene()),
+        ("modifiers", modifiers::scene()),
+        ("chessboard", chessboard::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -268,6 +268,30 @@ mod tests {
     }
 
     #[test]
+    fn every_parameter_of_every_modifier_is_held_to_its_limits() {
+        use crate::scene::{ModifierKind, Shape};
+        let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
+        for &kind in ModifierKind::ALL {
+            let with = |modifier| Node::new("x", NodeKind::Object(object)).modified(modifier);
+            assert_eq!(node(&with(kind.default_modifier())), Ok(()));
+            for (i, param) in kind.params().iter().enumerate() {
+                let bad = param.limits.hard[1] * 1.01 + 1.0;
+                let mut modifier = kind.default_modifier();
+                let value = match modifier.values()[i] {
+                    ModifierValue::Scalar(_) => ModifierValue::Scalar(f64::NAN),
+                    ModifierValue::Vector(_) => ModifierValue::Vector(glam::DVec3::new(1.0, bad, 1.0)),
+                    ModifierValue::Count(_) => ModifierValue::Count(bad as u32),
+                    ModifierValue::Counts(_) => ModifierValue::Counts([1, 1, bad as u32]),
+                    ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
+                };
+                assert!(modifier.set_value(i, value));
+                let fault = node(&with(modifier)).unwrap_err();
+                assert!(fault.field.starts_with(&format!("modifiers[0].modifier.{}", param.name)), "{fault:?}");
+            }
+        }
+    }
+
+    #[test]
     fn only_paths_inside_the_scenes_folder_pass() {
         for good in ["duck.glb", "models/a b/ä.gltf", "a..b/c.glb"] {
             assert_eq!(mesh_path(good), Ok(()));

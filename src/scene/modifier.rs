@@ -199,7 +199,7 @@ modifiers! {
         rotation: [f64; 3] = [0.0, 0.0, 30.0], ANGLE;
         /// Size of each copy relative to the one before.
         scale: f64 = 0.7, RECURSION_SCALE;
-        /// Each copy stands on both sides of the plane at right angles to the axis.
+        /// Each copy stands on both sides of the plane at right angles to the axis; what crosses the plane is cut there.
         mirrored: [bool; 3] = [true, false, false], POSITION;
     }
     /// Turned around the Y axis, more with every metre of height.

@@ -172,8 +172,10 @@ pub fn mod_recursion_point<T: Real>(p: Point<T>, k: u32, rows: &[Row]) -> Point<
     let (offset, flags) = (row(rows, 0), rows[2][3] as u32);
     let mut q = p;
     for _ in 0..k {
-        let folded: Point<T> =
-            std::array::from_fn(|i| if flags & (1 << i) != 0 { q[i].abs() } else { q[i] } - offset[i]);
+        let folded: Point<T> = std::array::from_fn(|i| {
+            let side = if flags & (8 << i) != 0 { -1.0 } else { 1.0 };
+            if flags & (1 << i) != 0 { q[i].abs() * side - offset[i] } else { q[i] - offset[i] }
+        });
         q = [1, 2, 3].map(|r| {
             let m = row(rows, r);
             (folded[0] * m[0] + folded[1] * m[1] + folded[2] * m[2]) * offset[3].recip()

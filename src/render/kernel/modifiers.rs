@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::dual::dual;
-use super::source::{Features, plain_source};
+use super::source::plain_source;
 use crate::flat::{FlatNode, is_copying, modifier_rows};
 use crate::scene::ModifierKind;
 
@@ -31,15 +31,12 @@ pub fn modifier_include(kind: ModifierKind) -> String {
 }
 
 /// The generated file: the choice of a modifier's functions by its code.
-pub fn modifiers_wgsl(features: &Features) -> String {
-    let modifiers = &features.modifiers;
+pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let mut out = String::new();
     for kind in modifiers {
         line(&mut out, &modifier_include(*kind));
     }
-    let stack = if modifiers.is_empty() { 1 } else { features.stack };
-    line(&mut out, &format!("const MODIFIERS: bool = {};", !modifiers.is_empty()));
-    line(&mut out, &format!("const POINT_STACK: u32 = {stack}u;\nconst NO_COPY: u32 = 0xffffffffu;"));
+    line(&mut out, "const NO_COPY: u32 = 0xffffffffu;");
     let copying = |kind: &ModifierKind| is_copying(*kind);
     let moving = |kind: &ModifierKind| has_point(*kind);
     let changing = |kind: &ModifierKind| has_value(*kind);

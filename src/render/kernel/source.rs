@@ -183,16 +183,29 @@ impl Resolver<'_> {
                 FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
             }
         };
+        // What stands between `#if MODIFIERS` and `#end` is for scenes that have some.
+        let has_modifiers = !self.evaluator.features().modifiers.is_empty();
+        let mut is_wanted = true;
         for line in text.lines() {
-            match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
-                Some(included) => self.include(included, name)?,
-                None => {
-                    self.out.push_str(line);
-                    self.out.push('\n');
-                }
+            match line {
+                "#if MODIFIERS" => is_wanted = has_modifiers,
+                "#end" => is_wanted = true,
+                _ if is_wanted => self.line(line, name)?,
+                _ => {}
             }
         }
         Ok(())
+    }
+
+    fn line(&mut self, line: &str, name: &str) -> Result<(), ShaderError> {
+        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+            Some(included) => self.include(included, name),
+            None => {
+                self.out.push_str(line);
+                self.out.push('\n');
+                Ok(())
+            }
+        }
     }
 
     /// Files that do not exist: the evaluator decides what is in them.
@@ -214,7 +227,7 @@ impl Resolver<'_> {
             ("generated/surface.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Surface),
             ("generated/shapes.wgsl", _) => Some(self.evaluator.features().shapes_wgsl()),
             ("generated/gradients.wgsl", _) => Some(self.evaluator.features().gradients_wgsl()),
-            ("generated/modifiers.wgsl", _) => Some(modifiers_wgsl(&self.evaluator.features())),
+            ("generated/modifiers.wgsl", _) => Some(modifiers_wgsl(&self.evaluator.features().modifiers)),
             ("generated/modifier_gradients.wgsl", _) => {
                 Some(modifier_gradients_wgsl(&self.evaluator.features().modifiers))
             }
