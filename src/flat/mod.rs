@@ -15,6 +15,7 @@
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
+//! | `inspect` | ways to look at a picture other than lit, their colours |
 //! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
@@ -22,6 +23,7 @@ mod buffers;
 pub mod compare;
 mod emit;
 mod flatten;
+pub mod inspect;
 pub mod mesh_rays;
 mod meshes;
 mod modify;
