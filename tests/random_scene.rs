@@ -3,8 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Limits, Material, MaterialId,
-    MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape, ShapeKind, limits,
+    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
+    MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind,
+    limits,
 };
 
 /// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
@@ -131,8 +132,16 @@ impl Random {
 
     /// Operator and blend of a group.
     pub fn group(&mut self) -> Group {
-        let blend = Blend { kernel: self.pick(&BlendKernel::ALL), radius: self.number(&limits::BLEND_RADIUS) };
-        Group { operator: self.pick(&Operator::ALL), blend }
+        let blend = Blend::new(self.pick(&BlendKernel::ALL), self.number(&limits::BLEND_RADIUS));
+        let mut group = Group::new(self.pick(&Operator::ALL), blend);
+        if self.once_in(2) {
+            group.blend.unit = self.pick(&RadiusUnit::ALL);
+            group.blend.steps = 1 + self.below(64) as u32;
+            group.width = self.number(&limits::THICKNESS);
+            group.depth = self.number(&limits::THICKNESS);
+            group.share = self.number(&limits::UNIT);
+        }
+        group
     }
 
     fn kind(&mut self, materials: &[MaterialId]) -> NodeKind {
@@ -161,6 +170,11 @@ impl Random {
         node.visible = !self.once_in(5);
         node.locked = self.once_in(5);
         node.negative = node.has_field() && self.once_in(4);
+        if self.once_in(3) {
+            let radius = self.number(&limits::BLEND_RADIUS);
+            node.joining = self.pick(&[Joining::Hard, Joining::Radius(radius)]);
+            node.apart = (0..self.below(3)).map(|_| NodeId(self.below(1000) as u64)).collect();
+        }
         node
     }
 }

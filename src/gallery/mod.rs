@@ -10,6 +10,7 @@ mod crowds;
 mod deep_tree;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
+mod operators;
 mod random_groups;
 mod showcase;
 mod stage;
@@ -33,6 +34,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("pawn", chess_pawn::scene()),
         ("boolean-operations", boolean_operations::scene()),
         ("blend-kernels", blend_kernels::scene()),
+        ("operators", operators::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
         ("deep-tree", deep_tree::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
