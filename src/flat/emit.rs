@@ -186,7 +186,7 @@ fn emit_operand(
         Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
             let marker = FlatNode::MODIFIER + *kind as u32;
             flat.nodes.push(FlatNode { code: code(marker), extent: 0, numbers, material: 0 });
-            let mut bounding = bounding_rows(support, operand.slope, &operand.skip.translated(-origin));
+            let mut bounding = bounding_rows(joint, operand.slope, &operand.skip.translated(-origin));
             bounding[1][3] = *distance_scale as f32;
             flat.numbers.extend(bounding);
             flat.numbers.extend(placing_rows(local_from_world, origin));
