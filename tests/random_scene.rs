@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Limits, Material, MaterialId,
-    MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind, Object, Operator,
-    ParamValue, Scene, Shape, ShapeKind, limits,
+    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
+    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind, Object,
+    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
 
 /// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
@@ -152,8 +152,16 @@ impl Random {
 
     /// Operator and blend of a group.
     pub fn group(&mut self) -> Group {
-        let blend = Blend { kernel: self.pick(&BlendKernel::ALL), radius: self.number(&limits::BLEND_RADIUS) };
-        Group { operator: self.pick(&Operator::ALL), blend }
+        let blend = Blend::new(self.pick(&BlendKernel::ALL), self.number(&limits::BLEND_RADIUS));
+        let mut group = Group::new(self.pick(&Operator::ALL), blend);
+        if self.once_in(2) {
+            group.blend.unit = self.pick(&RadiusUnit::ALL);
+            group.blend.steps = 1 + self.below(64) as u32;
+            group.width = self.number(&limits::THICKNESS);
+            group.depth = self.number(&limits::THICKNESS);
+            group.share = self.number(&limits::UNIT);
+        }
+        group
     }
 
     fn kind(&mut self, materials: &[MaterialId]) -> NodeKind {
@@ -185,6 +193,11 @@ impl Random {
         if node.has_field() && self.once_in(3) {
             let slot = |r: &mut Self| ModifierSlot { enabled: !r.once_in(4), modifier: r.modifier() };
             node.modifiers = (0..=self.below(3)).map(|_| slot(self)).collect();
+        }
+        if self.once_in(3) {
+            let radius = self.number(&limits::BLEND_RADIUS);
+            node.joining = self.pick(&[Joining::Hard, Joining::Radius(radius)]);
+            node.apart = (0..self.below(3)).map(|_| NodeId(self.below(1000) as u64)).collect();
         }
         node
     }

@@ -40,7 +40,7 @@ fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Su
 fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface) -> Surface {
     let slopes = modifier_slopes(modifier, content.distance, local, numbers + MODIFIER_ROWS);
     let d = content.gradient * slopes.w + slopes.xyz;
-    let scale = scene_row(numbers).z;
+    let scale = scene_row(numbers + 1u).w;
     var seen = content;
     seen.distance = modifier_value(modifier, content.distance, local, numbers + MODIFIER_ROWS) * scale;
     seen.gradient = scale
@@ -122,7 +122,7 @@ fn surface(p: vec3f) -> Surface {
             }
 #end
             depth -= 1u;
-            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers).x, surface_stack[depth], so_far);
+            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers), surface_stack[depth], so_far);
         }
     }
     return so_far;

@@ -18,12 +18,12 @@ var<private> value_copy: array<u32, STACK_SIZE>;
 var<private> value_least: array<f32, STACK_SIZE>;
 #end
 
-fn join_value(node: FlatNode, support: f32, so_far: f32, value: f32) -> f32 {
+fn join_value(node: FlatNode, joint: vec4f, so_far: f32, value: f32) -> f32 {
     let join = (node.code >> 16u) & 0xffu;
     if join == JOIN_FIRST {
         return value;
     }
-    return op_join(join, so_far, value, support, node.code >> 24u).x;
+    return op_join(join, so_far, value, joint, node.code >> 24u).x;
 }
 
 // Chooses the component. Before any call of `field`.
@@ -71,7 +71,7 @@ fn field(p: vec3f) -> f32 {
             }
             at += node.extent;
         } else {
-            so_far = join_value(node, joint.x, so_far, leaf_distance(kind, node.numbers, joint, q));
+            so_far = join_value(node, joint, so_far, leaf_distance(kind, node.numbers, joint, q));
             at += 1u;
         }
         // Every group that ends here joins what stood before it.
@@ -99,12 +99,12 @@ fn field(p: vec3f) -> f32 {
                     at = value_group[depth - 1u] + 1u;
                     break;
                 }
-                so_far = modifier_value(modifier, least, local, row) * scene_row(group.numbers).z;
+                so_far = modifier_value(modifier, least, local, row) * scene_row(group.numbers + 1u).w;
                 q = value_outside[depth - 1u];
             }
 #end
             depth -= 1u;
-            so_far = join_value(group, scene_row(group.numbers).x, value_stack[depth], so_far);
+            so_far = join_value(group, scene_row(group.numbers), value_stack[depth], so_far);
         }
     }
     return so_far;

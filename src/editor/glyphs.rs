@@ -5,7 +5,8 @@ use std::f32::consts::TAU;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_FLASHLIGHT_ON, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_VIDEOCAM,
+    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT,
+    ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM,
     ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
@@ -42,6 +43,13 @@ pub fn operator_icon(operator: Operator) -> MaterialIcon {
         Operator::Union => ICON_JOIN_FULL,
         Operator::Intersection => ICON_JOIN_INNER,
         Operator::Difference => ICON_JOIN_LEFT,
+        Operator::Xor => ICON_JOIN,
+        Operator::Pipe => ICON_PLUMBING,
+        Operator::Groove => ICON_VERTICAL_ALIGN_BOTTOM,
+        Operator::Tongue => ICON_VERTICAL_ALIGN_TOP,
+        Operator::Engrave => ICON_STYLUS,
+        Operator::Morph => ICON_ANIMATION,
+        Operator::Paint => ICON_FORMAT_PAINT,
     }
 }
 

@@ -8,8 +8,8 @@ use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICO
 use super::sheet::Sheet;
 use super::workbench::Workbench;
 use super::{
-    fields, glyphs, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene, inspector_transform,
-    theme,
+    fields, glyphs, inspector_joints, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
+    inspector_transform, theme,
 };
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
@@ -40,7 +40,7 @@ impl Inspector {
         if all.iter().all(|n| n.has_field())
             && let Some(mut sheet) = Sheet::new(bench, all.clone())
         {
-            inspector_kinds::role(ui, &mut sheet);
+            inspector_joints::role(ui, &mut sheet);
         }
         if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
             self.transform.show(ui, &mut sheet);
@@ -49,7 +49,7 @@ impl Inspector {
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
         let Some(mut sheet) = Sheet::new(bench, alike) else { return };
         match &active.kind {
-            NodeKind::Group(_) => inspector_kinds::group(ui, &mut sheet),
+            NodeKind::Group(_) => inspector_joints::group(ui, &mut sheet),
             NodeKind::Object(object) => {
                 inspector_kinds::shape(ui, &mut sheet);
                 inspector_material::show(ui, &mut sheet, Some(object.material));

@@ -21,6 +21,7 @@ mod gizmo;
 mod glyphs;
 mod insertion;
 mod inspector;
+mod inspector_joints;
 mod inspector_kinds;
 mod inspector_material;
 mod inspector_modifiers;

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use crate::geometry::{Aabb, Camera};
-use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId};
+use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -79,16 +79,81 @@ pub enum Join {
     Intersection,
     /// Cut away.
     Difference,
+    /// What is in one but not in both.
+    Xor,
+    /// A tube where both surfaces meet.
+    Pipe,
+    /// A groove along its surface.
+    Groove,
+    /// A tongue along its surface.
+    Tongue,
+    /// A V cut along its surface.
+    Engrave,
+    /// Between both.
+    Morph,
+    /// Only its material.
+    Paint,
 }
 
-/// Numbers of an entry, four at a time. Both kinds begin with the joint.
+impl Join {
+    /// Every join, by its number.
+    pub const ALL: [Self; 11] = [
+        Self::First,
+        Self::Union,
+        Self::Intersection,
+        Self::Difference,
+        Self::Xor,
+        Self::Pipe,
+        Self::Groove,
+        Self::Tongue,
+        Self::Engrave,
+        Self::Morph,
+        Self::Paint,
+    ];
+
+    /// How the later children of a group join.
+    pub fn of(operator: Operator) -> Self {
+        match operator {
+            Operator::Union => Self::Union,
+            Operator::Intersection => Self::Intersection,
+            Operator::Difference => Self::Difference,
+            Operator::Xor => Self::Xor,
+            Operator::Pipe => Self::Pipe,
+            Operator::Groove => Self::Groove,
+            Operator::Tongue => Self::Tongue,
+            Operator::Engrave => Self::Engrave,
+            Operator::Morph => Self::Morph,
+            Operator::Paint => Self::Paint,
+        }
+    }
+
+    /// Whether it needs more than a sum of shares: derivatives of any sign, or a material of its own.
+    pub fn is_further(self) -> bool {
+        self > Self::Difference
+    }
+
+    /// Whether it only takes from what stands so far, or leaves it as it is.
+    pub fn only_cuts(self) -> bool {
+        matches!(self, Self::Intersection | Self::Difference | Self::Groove | Self::Engrave | Self::Paint)
+    }
+
+    /// Whether an operand that is far off changes nothing, so that it can be skipped by its bounds.
+    pub fn is_skipped_far_off(self) -> bool {
+        matches!(self, Self::Union | Self::Difference)
+    }
+}
+
+/// Kernels from this one on are the further ones: bevels, steps and columns.
+pub const FIRST_FURTHER_KERNEL: u32 = 3;
+
+/// Numbers of an entry, four at a time. Both kinds begin with the joint, see [`super::twin::Joint`].
 ///
-/// Leaf: `[support, distance_scale, 0, 0]`, three rows of local-from-component (a point `p` maps to
+/// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
 /// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows).
 ///
-/// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
+/// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies. A modifier has the same three, the first as `[support, slope, distance_scale, 0]`,
+/// slope 0 and finite dummies. A modifier has the same three, with its distance_scale behind the centre,
 /// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
 /// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.

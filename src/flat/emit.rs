@@ -3,7 +3,8 @@
 use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
-use super::operands::{Operand, Value, fold_bounds};
+use super::enclosure::fold_bounds;
+use super::operands::{Operand, Value};
 use crate::geometry::Aabb;
 use crate::scene::{BlendKernel, MaterialId, Shape};
 
@@ -64,7 +65,7 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
 /// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let Value::Leaf { local_from_world, shape: Shape::Plane {}, .. } = &operands[0].value else { return None };
-    if operands.iter().any(|o| o.join == Join::Union) {
+    if !operands[1..].iter().all(|o| o.join.only_cuts()) {
         return None;
     }
     // The plane's inside is local y < 0.
@@ -88,7 +89,7 @@ fn emit_fold(
     material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
 ) -> u32 {
     let alike = |a: &Operand<'_>, b: &Operand<'_>| {
-        let skippable = |o: &Operand<'_>| o.slope > 0.0 && matches!(o.join, Join::Union | Join::Difference);
+        let skippable = |o: &Operand<'_>| o.slope > 0.0 && o.join.is_skipped_far_off();
         a.join == b.join && skippable(a) && skippable(b)
     };
     let mut stack = 0;
@@ -119,7 +120,7 @@ fn emit_runs(
         let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.skip)).translated(-origin);
         let slope = run.iter().map(|o| o.slope).fold(f64::INFINITY, f64::min);
         let support = run.iter().map(|o| o.blend.support()).fold(0.0, f64::max);
-        flat.numbers.extend(bounding_rows(support as f32, slope, &bounds));
+        flat.numbers.extend(bounding_rows([support as f32, 0.0, 0.0], slope, &bounds));
         stack = stack.max(if run.len() > RUN_LENGTH {
             emit_runs(flat, run, origin, material)
         } else {
@@ -131,15 +132,15 @@ fn emit_runs(
 }
 
 /// The rows of a group or run. Rounding to f32 must never make the bounds smaller or the slope greater.
-fn bounding_rows(support: f32, slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
+fn bounding_rows([support, size, depth]: [f32; 3], slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
     if slope <= 0.0 {
-        return [[support, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+        return [[support, 0.0, size, depth], [0.0; 4], [0.0; 4]];
     }
     let (center, half) = (bounds.center(), bounds.half());
     let half = (half + (half + center.abs()) * 1e-6).as_vec3();
     let center = center.as_vec3();
     let slope = (slope * (1.0 - 1e-6)) as f32;
-    [[support, slope, 0.0, 0.0], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
+    [[support, slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
 }
 
 /// Local from component.
@@ -162,13 +163,13 @@ fn emit_operand(
     let numbers = flat.numbers.len() as u32;
     let kernel = BlendKernel::ALL.iter().position(|k| *k == operand.blend.kernel).expect("ALL holds every kernel");
     let code = |what: u32| what | ((operand.join as u32) << 16) | ((kernel as u32) << 24);
-    let support = operand.blend.support() as f32;
+    let joint = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
     flat.ids.push(operand.node.id);
     match &operand.value {
         Value::Leaf { local_from_world, distance_scale, shape, material: id } => {
             let material = material(flat, *id);
             flat.nodes.push(FlatNode { code: code(shape.kind() as u32), extent: 1, numbers, material });
-            flat.numbers.push([support, *distance_scale as f32, 0.0, 0.0]);
+            flat.numbers.push([joint[0], *distance_scale as f32, joint[1], joint[2]]);
             flat.numbers.extend(placing_rows(local_from_world, origin));
             let packed = shape.packed().map(|v| v as f32);
             let rows = shape.kind().rows();
@@ -177,7 +178,7 @@ fn emit_operand(
         }
         Value::Fold(inner) => {
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
-            flat.numbers.extend(bounding_rows(support, operand.slope, &operand.skip.translated(-origin)));
+            flat.numbers.extend(bounding_rows(joint, operand.slope, &operand.skip.translated(-origin)));
             let stack = emit_fold(flat, inner, origin, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
@@ -185,8 +186,8 @@ fn emit_operand(
         Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
             let marker = FlatNode::MODIFIER + *kind as u32;
             flat.nodes.push(FlatNode { code: code(marker), extent: 0, numbers, material: 0 });
-            let mut bounding = bounding_rows(support, operand.slope, &operand.skip.translated(-origin));
-            bounding[0][2] = *distance_scale as f32;
+            let mut bounding = bounding_rows(joint, operand.slope, &operand.skip.translated(-origin));
+            bounding[1][3] = *distance_scale as f32;
             flat.numbers.extend(bounding);
             flat.numbers.extend(placing_rows(local_from_world, origin));
             flat.numbers.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));

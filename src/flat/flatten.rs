@@ -13,7 +13,8 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::emit::emit;
-use super::operands::{Operand, collect, fold_bounds, group_of, is_plain};
+use super::enclosure::fold_bounds;
+use super::operands::{Operand, collect, group_of, is_plain};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 

@@ -8,7 +8,7 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::arrays::modifier_rows;
-use super::operands::Enclosure;
+use super::enclosure::Enclosure;
 use crate::geometry::Aabb;
 use crate::scene::{Modifier, ModifierKind};
 

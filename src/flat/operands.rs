@@ -3,7 +3,9 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::{Join, MAX_FLAT_NODES, Warning};
+use super::enclosure::{Enclosure, fold_bounds};
 use super::flatten::FlattenError;
+use super::joints::{Joiner, has_own_radius};
 use super::modify::{MAX_NEIGHBOURS, Modified, Refusal, is_idle, modify};
 use crate::geometry::{Aabb, singular_values};
 use crate::scene::{Blend, Group, MaterialId, Modifier, ModifierKind, Node, NodeKind, Operator, Scene, Shape};
@@ -17,8 +19,10 @@ pub(super) struct Operand<'a> {
     pub outermost: &'a Node,
     /// How it joins what precedes it.
     pub join: Join,
-    /// How round the joint is.
+    /// How round the joint is, in metres.
     pub blend: Blend,
+    /// What else the join needs, see [`super::twin::Joint`]: size and depth.
+    pub detail: [f64; 2],
     /// Around its surface, in the world.
     pub bounds: Aabb,
     /// Its field is at least `slope` times the distance to `skip`.
@@ -57,9 +61,10 @@ pub(super) struct Components<'a> {
 }
 
 /// Whether a node is opened at the top: its children are components of their own.
-pub(super) fn is_opened(node: &Node) -> bool {
+pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
     let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
-    !negative && active(node).next().is_none() && group.operator == Operator::Union && group.blend.radius == 0.0
+    let is_hard = group.operator == Operator::Union && group.blend.radius == 0.0;
+    !negative && active(node).next().is_none() && is_hard && !scene.children(Some(node.id)).any(has_own_radius)
 }
 
 /// The modifiers that do something, in their order.
@@ -124,7 +129,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             if !node.visible {
                 continue;
             }
-            if is_opened(node) {
+            if is_opened(self.scene, node) {
                 self.split(first + 1..children.end, world * node.transform.to_affine(), out);
                 continue;
             }
@@ -303,6 +308,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             outermost,
             join: Join::First,
             blend: Blend::HARD,
+            detail: [0.0; 2],
             bounds: modified.bounds.transformed(world),
             skip,
             slope: if skip.is_finite() { modified.slope * least / greatest } else { 0.0 },
@@ -336,6 +342,8 @@ impl<'a, 'b> Collector<'a, 'b> {
         outermost: &'a Node,
     ) -> Vec<Operand<'a>> {
         let mut fold: Vec<Operand<'a>> = Vec::new();
+        let keeps = self.scene.children(Some(self.scene.nodes()[range.start - 1].id)).any(|n| !n.apart.is_empty());
+        let mut joiner = Joiner::new(group, keeps);
         let mut at = range.start;
         while at < range.end {
             let child = at;
@@ -346,17 +354,13 @@ impl<'a, 'b> Collector<'a, 'b> {
                 if node.negative {
                     self.warn_nothing_to_cut(node);
                 } else {
+                    joiner.begin(node, &operand);
                     fold = begin_with(operand);
                 }
                 continue;
             }
-            operand.join = match (node.negative, group.operator) {
-                (true, _) | (_, Operator::Difference) => Join::Difference,
-                (_, Operator::Union) => Join::Union,
-                (_, Operator::Intersection) => Join::Intersection,
-            };
-            operand.blend = group.blend;
-            join(&mut fold, operand);
+            joiner.set_joint(node, &mut operand);
+            joiner.join(node, operand, &mut fold);
         }
         fold
     }
@@ -370,11 +374,12 @@ impl<'a, 'b> Collector<'a, 'b> {
 pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
     let Enclosure { bounds, skip, slope } = fold_bounds(&fold);
     let Operand { node, outermost, .. } = fold[0];
-    Operand { node, outermost, join: Join::First, blend: Blend::HARD, bounds, skip, slope, value: Value::Fold(fold) }
+    let (blend, detail) = (Blend::HARD, [0.0; 2]);
+    Operand { node, outermost, join: Join::First, blend, detail, bounds, skip, slope, value: Value::Fold(fold) }
 }
 
 /// A fold that starts with `operand`: a group's fold simply goes on.
-fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
+pub(super) fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
     operand.join = Join::First;
     match operand.value {
         Value::Fold(fold) => {
@@ -419,7 +424,7 @@ fn polar_copies(count: u32, radius: f64, mirrored: bool) -> Vec<DAffine3> {
 }
 
 /// Appends an operand. A hard union inside a hard union is opened: min is associative.
-fn join<'a>(fold: &mut Vec<Operand<'a>>, operand: Operand<'a>) {
+pub(super) fn join<'a>(fold: &mut Vec<Operand<'a>>, operand: Operand<'a>) {
     let hard_union = |o: &Operand<'_>| o.join == Join::Union && o.blend.radius == 0.0;
     match operand.value {
         Value::Fold(ref inner) if hard_union(&operand) && inner[1..].iter().all(hard_union) => {
@@ -448,6 +453,7 @@ fn leaf<'a>(
         outermost,
         join: Join::First,
         blend: Blend::HARD,
+        detail: [0.0; 2],
         bounds,
         skip: bounds,
         slope: if bounds.is_finite() { least / greatest } else { 0.0 },
@@ -475,46 +481,4 @@ fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f6
     }
     let (least, greatest) = singular_values(m);
     (*shape, *world_from_local, least, greatest)
-}
-
-/// What encloses a fold.
-pub(super) struct Enclosure {
-    pub bounds: Aabb,
-    pub skip: Aabb,
-    pub slope: f64,
-}
-
-/// Bounds of a fold, and the box and slope below which its field never falls.
-///
-/// A blended union falls below the least operand by at most its thickening, and a row of them by at
-/// most their support. Intersection and difference never fall below their operands.
-pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> Enclosure {
-    let first = &fold[0];
-    let (mut bounds, mut skip, mut slope) = (first.bounds, first.skip, first.slope);
-    let mut growth = 0.0_f64;
-    for operand in &fold[1..] {
-        match operand.join {
-            Join::Union => {
-                bounds = bounds.union(&operand.bounds);
-                skip = skip.union(&operand.skip);
-                slope = slope.min(operand.slope);
-                growth = growth.max((growth + operand.blend.thickening()).min(operand.blend.support()));
-            }
-            Join::Intersection => {
-                bounds = bounds.expanded(growth).intersection(&operand.bounds);
-                skip = skip.expanded(if slope > 0.0 { growth / slope } else { 0.0 });
-                growth = 0.0;
-                // Both are below the field; the smaller one says more.
-                let smaller =
-                    operand.slope > 0.0 && (slope == 0.0 || operand.skip.half().length() < skip.half().length());
-                if smaller {
-                    (skip, slope) = (operand.skip, operand.slope);
-                }
-            }
-            Join::First | Join::Difference => {}
-        }
-    }
-    let skip = skip.expanded(if slope > 0.0 { growth / slope } else { 0.0 });
-    let bounds = bounds.expanded(growth);
-    Enclosure { bounds, skip, slope: if skip.is_finite() { slope } else { 0.0 } }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::arrays::FlatScene;
 use super::emit::emit;
+use super::enclosure::fold_bounds;
 use super::flatten::{FlattenError, flatten_with_cuts};
-use super::operands::{component_of, fold_bounds, is_opened};
+use super::operands::{component_of, is_opened};
 use crate::scene::{Material, Node, NodeKind, Scene};
 
 /// Keeps the arrays of the last scene, and makes those of the next one from them where little has
@@ -69,7 +70,8 @@ impl Last {
         let pairs = self.nodes.iter().zip(scene.nodes()).enumerate();
         let changed: Vec<usize> =
             pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b)).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
-        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(&self.nodes[*i], &scene.nodes()[*i])) {
+        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(scene, &self.nodes[*i], &scene.nodes()[*i]))
+        {
             return false;
         }
         for index in changed {
@@ -117,13 +119,13 @@ impl Last {
 }
 
 /// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
-fn is_small(old: &Node, new: &Node) -> bool {
-    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative);
+fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.joining, n.apart.clone());
     let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
     let kinds = match (&old.kind, &new.kind) {
         (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
         // An opened group holds more than one component.
-        (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(old) && !is_opened(new),
+        (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(scene, old) && !is_opened(scene, new),
         _ => false,
     };
     kinds && form(old) == form(new) && modifiers(old) == modifiers(new)
@@ -138,7 +140,7 @@ fn outermost(scene: &Scene, index: usize) -> Option<usize> {
         path.push(parent);
         at = scene.nodes()[parent].parent;
     }
-    path.into_iter().rev().find(|i| !is_opened(&scene.nodes()[*i]))
+    path.into_iter().rev().find(|i| !is_opened(scene, &scene.nodes()[*i]))
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@ mod deep_tree;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
 mod modifiers;
+mod operators;
 mod random_groups;
 mod showcase;
 mod stage;
@@ -35,6 +36,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("pawn", chess_pawn::scene()),
         ("boolean-operations", boolean_operations::scene()),
         ("blend-kernels", blend_kernels::scene()),
+        ("operators", operators::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
         ("deep-tree", deep_tree::scene()),
         ("modifiers", modifiers::scene()),

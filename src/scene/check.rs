@@ -4,12 +4,12 @@
 use glam::DQuat;
 
 use super::limits::{
-    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_NAME, MAX_PATH, POSITION, RANGE, SCALE,
-    SHININESS, UNIT,
+    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, POSITION, RANGE,
+    SCALE, SHININESS, STEPS, THICKNESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Light, LightKind, MAX_MODIFIERS, Material, MeshNode, Modifier,
-    ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
+    Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, MAX_MODIFIERS, Material, MeshNode,
+    Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
 
@@ -44,6 +44,12 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     name(&node.name)?;
     if node.negative && !node.has_field() {
         return Err(Fault::new("negative", "only objects and groups can be negative"));
+    }
+    if let Joining::Radius(radius) = node.joining {
+        number("joining.radius", radius, &BLEND_RADIUS)?;
+    }
+    if node.apart.len() > MAX_APART {
+        return Err(Fault::new("apart", format!("must name at most {MAX_APART} nodes, not {}", node.apart.len())));
     }
     transform(&node.transform).map_err(|f| f.below("transform"))?;
     if !node.modifiers.is_empty() && !node.has_field() {
@@ -149,7 +155,11 @@ fn transform(transform: &Transform) -> Result<(), Fault> {
 }
 
 fn group(group: &Group) -> Result<(), Fault> {
-    number("blend.radius", group.blend.radius, &BLEND_RADIUS)
+    number("blend.radius", group.blend.radius, &BLEND_RADIUS)?;
+    number("blend.steps", group.blend.steps.into(), &STEPS)?;
+    number("width", group.width, &THICKNESS)?;
+    number("depth", group.depth, &THICKNESS)?;
+    number("share", group.share, &UNIT)
 }
 
 /// Every parameter against the limits in its shape's own table.

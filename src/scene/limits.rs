@@ -43,6 +43,10 @@ pub const POSITION: Limits = Limits { soft: [-10.0, 10.0], hard: [-1e9, 1e9], un
 pub const SCALE: Limits = Limits { soft: [0.01, 10.0], hard: [1e-6, 1e6], unit: "" };
 /// Blend radius.
 pub const BLEND_RADIUS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
+/// Steps and columns of a joint.
+pub const STEPS: Limits = Limits { soft: [1.0, 12.0], hard: [1.0, 64.0], unit: "" };
+/// Most siblings that a node names as not to be blended with.
+pub const MAX_APART: usize = 64;
 /// Shares and reflectances.
 pub const UNIT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
 /// Light intensities and emitted colours.

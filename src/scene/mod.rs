@@ -20,7 +20,7 @@ pub use limits::Limits;
 pub use material::{Material, MaterialId};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierParam, ModifierSlot, ModifierValue};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
-pub use operator::{Blend, BlendKernel, Operator};
+pub use operator::{Blend, BlendKernel, Joining, Operator, RadiusUnit};
 pub(crate) use shape::for_each_shape;
 pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
 pub use table::Scene;

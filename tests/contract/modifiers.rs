@@ -28,8 +28,8 @@ fn content(scene: &mut Scene, group: Node) -> NodeId {
 }
 
 fn blended() -> Node {
-    let blend = Blend { kernel: BlendKernel::Circular, radius: 0.1 };
-    Node::new("Content", NodeKind::Group(Group { operator: Operator::Union, blend }))
+    let blend = Blend::new(BlendKernel::Circular, 0.1);
+    Node::new("Content", NodeKind::Group(Group::new(Operator::Union, blend)))
 }
 
 /// A scene of the lopsided content with these modifiers.

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::flat::twin::shape_distance;
+use crate::flat::twin::{Joint, shape_distance};
 use crate::flat::{Component, FlatScene, LEAF_ROWS, Row};
 use crate::geometry::{Aabb, singular_values};
 use crate::scene::{ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
@@ -108,8 +108,8 @@ pub(super) struct Entries {
     pub leaves: Vec<Leaf>,
     /// Around leaves and groups.
     pub balls: Vec<Ball>,
-    /// Supports of the joints, in metres.
-    pub supports: Vec<f64>,
+    /// The numbers of the joints.
+    pub joints: Vec<Joint>,
     /// How large coordinates get in the component, in metres, rounded up to a power of two so that
     /// edits rarely change it.
     pub size: f64,
@@ -120,12 +120,16 @@ impl Entries {
     pub fn new(flat: &FlatScene, component: &Component) -> Self {
         let count = component.count as usize;
         let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters: [0.0; 8] };
-        let mut entries =
-            Self { leaves: vec![none; count], balls: vec![Ball::NONE; count], supports: vec![0.0; count], size: 0.0 };
+        let mut entries = Self {
+            leaves: vec![none; count],
+            balls: vec![Ball::NONE; count],
+            joints: vec![Joint::blend(0.0); count],
+            size: 0.0,
+        };
         let mut size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
         for (index, node) in flat.nodes[component.first as usize..][..count].iter().enumerate() {
             let numbers = &flat.numbers[node.numbers as usize..];
-            entries.supports[index] = numbers[0][0].into();
+            entries.joints[index] = Joint::read(&numbers[0]);
             if node.is_leaf() {
                 let leaf = Leaf::read(node.code & 0xffff, numbers);
                 size = size.max(leaf.size());

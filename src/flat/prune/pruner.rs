@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::build::{Build, Grid};
 use super::part::Part;
 use super::{CellTree, is_pruned};
+use crate::flat::twin::Joint;
 use crate::flat::{Component, FlatNode, FlatScene, Row};
 use crate::scene::NodeId;
 
@@ -135,11 +136,13 @@ impl Kept {
             }
             let first = new.numbers as usize;
             let last = self.nodes.get(index + 1).map_or(self.numbers.len(), |next| next.numbers as usize);
-            // Lists do not depend on a run at all, and of a group's numbers only on its support: bounds
+            // Lists do not depend on a run at all, and of a group's numbers only on its joint: bounds
             // merely tell sooner what the leaves would.
             let same = match () {
                 () if new.is_run() => true,
-                () if new.is_group() => old.code == new.code && self.numbers[first][0] == new_numbers[first][0],
+                () if new.is_group() => {
+                    old.code == new.code && Joint::read(&self.numbers[first]) == Joint::read(&new_numbers[first])
+                }
                 () => old.code == new.code && self.numbers[first..last] == new_numbers[first..last],
             };
             changed[index] = !same;

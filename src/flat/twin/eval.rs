@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::modifier::*;
-use super::{Dual, Joined, Real, op_join, shape_distance};
+use super::{Dual, Joined, Joint, Real, op_join, shape_distance};
 use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row};
 use crate::scene::{ModifierKind, ShapeKind};
 
@@ -154,8 +154,8 @@ fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: [O::Number; 3]) ->
             continue;
         }
         let next: O = operand(flat, at, p);
-        let support = f64::from(flat.numbers[node.numbers as usize][0]);
-        let result = op_join(node.join(), so_far.distance(), next.distance(), support, node.kernel());
+        let joint = Joint::read(&flat.numbers[node.numbers as usize]);
+        let result = op_join(node.join(), so_far.distance(), next.distance(), &joint, node.kernel());
         so_far = so_far.joined(next, result);
         at += node.extent as usize;
     }
@@ -201,7 +201,7 @@ fn modified<O: Operand>(
         Some(copy) => (copy, start.min(copy.distance())),
         None => (fold(flat, content, modifier_point(kind, local, 0, rows)), start),
     };
-    carrier.with_distance(modifier_value(kind, found, local, rows) * f64::from(numbers[0][2]))
+    carrier.with_distance(modifier_value(kind, found, local, rows) * f64::from(numbers[1][3]))
 }
 
 /// The point mapped by three rows.

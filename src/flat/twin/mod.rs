@@ -19,6 +19,8 @@ mod sdf;
 pub use ellipsoid::sdf_ellipsoid;
 pub use eval::{SurfaceMaterial, SurfacePoint, field, gradient, surface};
 pub use modifier::*;
-pub use op::{Joined, op_difference, op_intersection, op_join, op_union};
+pub use op::{
+    Joined, Joint, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe, op_union, op_xor,
+};
 pub use real::{Dual, Real};
 pub use sdf::*;

@@ -10,7 +10,7 @@ use super::gradients::gradient_wgsl;
 use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::specialise::{Fold, specialise};
 use super::{Evaluator, Options, Skipping};
-use crate::flat::{FlatScene, MAX_STACK, modifier_rows};
+use crate::flat::{FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, MAX_STACK, modifier_rows};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Every file of `shaders/`, by its path there.
@@ -26,6 +26,27 @@ pub struct Features {
     pub modifiers: BTreeSet<ModifierKind>,
     /// Accumulators that can be put aside: a power of two.
     pub stack: u32,
+    /// Operators and blend kernels beyond the first three.
+    pub further: Further,
+}
+
+/// Which of the operators a kernel holds: those beyond the first three are left out where nothing needs them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Further {
+    /// Whether there are operators beyond union, intersection and difference.
+    pub joins: bool,
+    /// Whether there are blends beyond circular, quadratic and cubic ones.
+    pub kernels: bool,
+}
+
+impl Further {
+    /// What these entries need.
+    fn of(nodes: &[FlatNode]) -> Self {
+        Self {
+            joins: nodes.iter().any(|node| Join::ALL[node.join() as usize].is_further()),
+            kernels: nodes.iter().any(|node| node.kernel() >= FIRST_FURTHER_KERNEL),
+        }
+    }
 }
 
 impl Features {
@@ -42,12 +63,12 @@ impl Features {
         }
         let shapes = ShapeKind::ALL.iter().filter(|k| used[**k as usize]).copied().collect();
         let stack = flat.components.iter().map(|c| c.stack).max().unwrap_or(0);
-        Self { shapes, modifiers, stack: stack.max(1).next_power_of_two() }
+        Self { shapes, modifiers, stack: stack.max(1).next_power_of_two(), further: Further::of(&flat.nodes) }
     }
 
     /// Nothing.
     pub fn none() -> Self {
-        Self { shapes: BTreeSet::new(), modifiers: BTreeSet::new(), stack: 1 }
+        Self { shapes: BTreeSet::new(), modifiers: BTreeSet::new(), stack: 1, further: Further::default() }
     }
 
     /// Everything there is.
@@ -56,14 +77,18 @@ impl Features {
             shapes: ShapeKind::ALL.iter().copied().collect(),
             modifiers: ModifierKind::ALL.iter().copied().filter(|kind| modifier_rows(*kind) > 0).collect(),
             stack: MAX_STACK,
+            further: Further { joins: true, kernels: true },
         }
     }
 
     /// Whether a kernel for `self` also serves `other`.
     pub fn covers(&self, other: &Self) -> bool {
+        let has = |a: bool, b: bool| a || !b;
         self.stack >= other.stack
             && self.shapes.is_superset(&other.shapes)
             && self.modifiers.is_superset(&other.modifiers)
+            && has(self.further.joins, other.further.joins)
+            && has(self.further.kernels, other.further.kernels)
     }
 
     /// What serves both.
@@ -72,6 +97,10 @@ impl Features {
             shapes: self.shapes.union(&other.shapes).copied().collect(),
             modifiers: self.modifiers.union(&other.modifiers).copied().collect(),
             stack: self.stack.max(other.stack),
+            further: Further {
+                joins: self.further.joins || other.further.joins,
+                kernels: self.further.kernels || other.further.kernels,
+            },
         }
     }
 
@@ -142,15 +171,17 @@ pub(super) fn gradient_include(kind: ShapeKind) -> String {
 /// The whole source of the shader `entry`, each file included once, before its first user.
 pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
-    let fineness = options.quality.fineness();
+    let (fineness, further) = (options.quality.fineness(), evaluator.features().further);
     write!(
         resolver.out,
         "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst FINENESS: f32 = \
-         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\n",
+         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
         options.counting,
         options.cones,
         options.skipping != Skipping::Never,
-        fineness.sqrt()
+        fineness.sqrt(),
+        further.joins,
+        further.kernels
     )
     .expect("strings take all");
     resolver.include(entry, entry)?;

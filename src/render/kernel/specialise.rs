@@ -98,7 +98,9 @@ impl Writer<'_> {
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
                 if entry.join != Join::First && entry.kind != EntryKind::Run {
-                    self.line(&format!("    var w{at} = 0.0;"));
+                    // The weight of what joins; in general what `op_join` returns.
+                    let nothing = if self.is_general() { "vec4f(0.0, 1.0, 0.0, 0.0)" } else { "0.0" };
+                    self.line(&format!("    var w{at} = {nothing};"));
                 }
             }
         } else {
@@ -113,9 +115,7 @@ impl Writer<'_> {
                 let value = self.leaf(entry, shape, row);
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
-                let skipped = entry.bounded
-                    && entry.extent >= LEAST_SKIPPED
-                    && matches!(entry.join, Join::Union | Join::Difference);
+                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join.is_skipped_far_off();
                 let skipped = skipped && self.options.skipping != Skipping::Never;
                 self.open_block(level, at, entry, row, skipped);
                 if entry.kind != EntryKind::Run {
@@ -156,6 +156,11 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether surfaces need derivatives and shares of the material apart.
+    fn is_general(&self) -> bool {
+        self.fold == Fold::Surface && self.structure.has_further_joins()
+    }
+
     /// The value of a leaf whose rows begin at `row`.
     fn leaf(&self, entry: &Entry, shape: ShapeKind, row: usize) -> String {
         let value = format!("{}({})", shape.function(), arguments(self.point(), entry, shape, row));
@@ -176,12 +181,21 @@ impl Writer<'_> {
             Join::Union => "union",
             Join::Intersection => "intersection",
             Join::Difference => "difference",
+            _ => "further",
         };
+        let general = self.is_general() || entry.join.is_further();
         let joined = match entry.kernel {
-            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}.x, {kernel}u)"),
+            _ if general => {
+                let (join, kernel) = (entry.join as u32, entry.kernel.unwrap_or(0));
+                format!("op_join({join}u, s{level}, {value}, q{row}, {kernel}u)")
+            }
+            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}, {kernel}u)"),
             None => format!("op_hard_{name}(s{level}, {value})"),
         };
-        if surface {
+        if surface && general {
+            self.line(&format!("    w{at} = {joined}; s{level} = w{at}.x;"));
+            self.line(&format!("    l{level} = select(l{level}, {leaf}, w{at}.w > 0.5);"));
+        } else if surface {
             self.line(&format!("    {{ let joined = {joined};"));
             self.line(&format!("      l{level} = select(l{level}, {leaf}, joined.y > 0.5);"));
             self.line(&format!("      w{at} = joined.y; s{level} = joined.x; }}"));
@@ -226,7 +240,7 @@ impl Writer<'_> {
             self.line(&format!("    s{level} = mod_{name}_value(s{level}, a{at}{rows});"));
         }
         if !entry.unscaled {
-            self.line(&format!("    s{level} *= q{row}.z;"));
+            self.line(&format!("    s{level} *= q{}.w;", row + 1));
         }
     }
 

@@ -1,7 +1,9 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use super::source::Features;
-use crate::flat::{Component, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, modifier_rows};
+use super::source::{Features, Further};
+use crate::flat::{
+    Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, modifier_rows,
+};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
@@ -108,9 +110,18 @@ impl Structure {
         self.entries.iter().any(|e| matches!(e.kind, EntryKind::Modified(_)))
     }
 
+    /// Whether it has operators beyond union, intersection and difference.
+    pub fn has_further_joins(&self) -> bool {
+        self.entries.iter().any(|entry| entry.join.is_further())
+    }
+
     /// What an interpreter must know to evaluate it.
     pub fn features(&self) -> Features {
         let mut features = Features::none();
+        features.further = Further {
+            joins: self.has_further_joins(),
+            kernels: self.entries.iter().any(|e| e.kernel.is_some_and(|k| u32::from(k) >= FIRST_FURTHER_KERNEL)),
+        };
         // Where the groups and modifiers under way end.
         let mut open: Vec<usize> = Vec::new();
         for (at, entry) in self.entries.iter().enumerate() {
@@ -148,7 +159,7 @@ fn fits(component: &Component) -> bool {
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
     let rows = &flat.numbers[node.numbers as usize..];
     let joint = rows[0];
-    let join = [Join::First, Join::Union, Join::Intersection, Join::Difference][node.join() as usize];
+    let join = Join::ALL[node.join() as usize];
     let blended = joint[0] > 0.0 && join != Join::First;
     let leaf = node.is_leaf();
     let modifier = node.modifier().is_some();
@@ -171,7 +182,7 @@ fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
         join,
         kernel: blended.then_some(node.kernel() as u8),
         moved: (leaf || modifier) && identity(0) && identity(1) && identity(2),
-        unscaled: if leaf { joint[1] == 1.0 } else { modifier && joint[2] == 1.0 },
+        unscaled: if leaf { joint[1] == 1.0 } else { modifier && rows[1][3] == 1.0 },
         bounded: !leaf && joint[1] > 0.0,
     }
 }
