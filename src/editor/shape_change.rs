@@ -70,6 +70,7 @@ impl Room {
                 let (center, reach) = (self.center, DVec3::Y * (half.y - upright).max(0.0));
                 Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius: upright }
             }
+            ShapeKind::MengerSponge => Shape::MengerSponge { size: 2.0 * mean, iterations: 3.0 },
             ShapeKind::InfiniteCylinder => Shape::InfiniteCylinder { radius: side },
             ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
             ShapeKind::Octahedron => Shape::Octahedron { radius: mean },

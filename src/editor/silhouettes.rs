@@ -118,6 +118,12 @@ impl Pen<'_> {
     fn prisms(&self, kind: ShapeKind) -> bool {
         match kind {
             ShapeKind::Box => self.cube(),
+            ShapeKind::MengerSponge => {
+                self.cube();
+                self.line(&[[-0.5, -0.02], [-0.25, 0.1], [-0.25, 0.42], [-0.5, 0.3], [-0.5, -0.02]]);
+                self.line(&[[0.5, -0.02], [0.25, 0.1], [0.25, 0.42], [0.5, 0.3], [0.5, -0.02]]);
+                self.line(&[[0.0, -0.58], [0.25, -0.45], [0.0, -0.32], [-0.25, -0.45], [0.0, -0.58]]);
+            }
             ShapeKind::BoxFrame => {
                 self.cube();
                 self.line(&[[-0.4, 0.32], [-0.4, 0.0], [-0.2, -0.1]]);

@@ -11,6 +11,7 @@ mod deep_tree;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
 mod random_groups;
+mod shapes;
 mod showcase;
 mod stage;
 
@@ -34,6 +35,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("boolean-operations", boolean_operations::scene()),
         ("blend-kernels", blend_kernels::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
+        ("shapes", shapes::scene()),
         ("deep-tree", deep_tree::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),

@@ -61,6 +61,8 @@ pub const ARC: Limits = Limits { soft: [0.0, 180.0], hard: [0.0, 180.0], unit: "
 pub const SECTOR: Limits = Limits { soft: [0.0, 179.0], hard: [0.0, 179.9], unit: "°" };
 /// Sides of a polygon, points of a star.
 pub const SIDES: Limits = Limits { soft: [3.0, 12.0], hard: [3.0, 64.0], unit: "" };
+/// How often a fractal repeats itself.
+pub const ITERATIONS: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 8.0], unit: "" };
 /// Vertical angle of view, in degrees.
 pub const FOV: Limits = Limits { soft: [10.0, 120.0], hard: [0.1, 170.0], unit: "°" };
 /// Near and far limits of a camera.

@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{ARC, CONE, POSITION, SECTOR, SIDES, SIZE, THICKNESS};
+use super::limits::{ARC, CONE, ITERATIONS, POSITION, SECTOR, SIDES, SIZE, THICKNESS};
 
 mod extent;
 mod param;
@@ -353,6 +353,13 @@ shapes! {
         major_radius: f64 = 0.5, SIZE;
         /// From the middle of the polygon to the middle of a side; one of them faces outwards.
         minor_radius: f64 = 0.14, SIZE;
+    }
+    /// A cube with square holes, in each of its parts again.
+    MengerSponge = sdf_menger_sponge, "Menger sponge" {
+        /// Edge length.
+        size: f64 = 1.0, SIZE;
+        /// How often holes are made, each time a third as wide; a whole number.
+        iterations: f64 = 3.0, ITERATIONS;
     }
 }
 

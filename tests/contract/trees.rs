@@ -8,7 +8,7 @@ use isolith::scene::{
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, ordinary, shape_with};
+use super::samples::{Random, ordinary, shape_with, usual};
 use super::surfaces::inside;
 
 const TREES: u64 = 60;
@@ -40,7 +40,9 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let blend = Blend { kernel: random.pick(&BlendKernel::ALL), radius };
         NodeKind::Group(Group { operator: random.pick(&Operator::ALL), blend })
     } else {
-        let shape = shape_with(random.pick(ShapeKind::ALL), |_| random.range(0.05, 1.2));
+        let shape = shape_with(random.pick(ShapeKind::ALL), |limits| {
+            if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
+        });
         NodeKind::Object(Object { shape, material: MaterialId(2 + random.index(3) as u64) })
     };
     let mut node = Node::new("Node", kind).at(random.point(0.8));

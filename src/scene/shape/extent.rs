@@ -67,6 +67,7 @@ impl Shape {
                 let across = major_radius + minor_radius;
                 DVec3::new(0.5 * length + across, minor_radius, across)
             }
+            Self::MengerSponge { size, .. } => DVec3::splat(0.5 * size),
             Self::InfiniteCylinder { radius } => turned(radius, INFINITY),
             Self::TriangularPrism { width, depth, height } | Self::Rhombus { width, depth, height, .. } => {
                 DVec3::new(width, height, depth) * 0.5

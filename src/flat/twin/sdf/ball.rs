@@ -95,11 +95,11 @@ pub fn sdf_vesica<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let half_width = (0.5 * q[1]).min(half_height);
     let at = [length2([p[0], p[2]]), p[1].abs()];
     // k times the distance of the arc's centre from the axis, in half heights, is `away`.
-    let scale = half_height.max(1e-30);
+    let scale = half_height.max(1e-100);
     let k = half_width / scale;
     let away = 0.5 * (1.0 - k) * (1.0 + k);
     let (x, y) = (at[0] * scale.recip(), at[1] * scale.recip());
-    if half_height == 0.0 || (y.value() >= 1.0 && (y.value() - 1.0) * away >= k * x.value()) {
+    if half_height < 1e-100 || (y.value() >= 1.0 && (y.value() - 1.0) * away >= k * x.value()) {
         return length2([at[0], at[1] - half_height]);
     }
     let excess = ((x - k) * (x + k) + y.squared()) * k + (x - k) * (2.0 * away);

@@ -1,0 +1,63 @@
+//! How near the fields of shapes come to the distance. The table of it in `shaders/README.md` is held to what is
+//! measured here; with `ISOLITH_ACCEPT_TIGHTNESS=1` it is written anew.
+
+use std::fmt::Write as _;
+
+use glam::DVec3;
+use isolith::flat::twin::shape_distance;
+use isolith::scene::{Shape, ShapeKind};
+
+use super::outlines::menger_distance;
+use super::samples::{Random, size};
+use super::surfaces::{Patch, brute_distance, patches};
+
+const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
+const MARKS: [&str; 2] = ["<!-- tightness:begin -->", "<!-- tightness:end -->"];
+/// Points outside of each shape.
+const POINTS: usize = 200;
+
+/// The distance from outside by brute force.
+fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
+    match *shape {
+        Shape::MengerSponge { size, iterations } => {
+            menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
+        }
+        _ => brute_distance(surface, p),
+    }
+}
+
+/// The mean and the least of field over distance, at random points outside of the default shape within its size.
+fn tightness(kind: ShapeKind) -> [f64; 2] {
+    let shape = kind.default_shape();
+    let surface = patches(&shape);
+    let mut random = Random::new(17 + kind as u64);
+    let (mut sum, mut least, mut count) = (0.0, f64::INFINITY, 0);
+    while count < POINTS {
+        let p = random.point(1.2 * size(&shape).max(0.5));
+        let f = shape_distance(kind, p.to_array(), &shape.packed());
+        if f < 1e-3 {
+            continue;
+        }
+        let d = truth(&shape, &surface, p);
+        assert!(f <= d + 1e-6, "{kind:?} at {p}: the field is {f}, the distance {d}");
+        (sum, least, count) = (sum + f / d, least.min(f / d), count + 1);
+    }
+    [sum / POINTS as f64, least]
+}
+
+#[test]
+fn the_table_says_how_tight_fields_are() {
+    let mut table = String::from("| field | mean of field / distance | least |\n|---|--:|--:|\n");
+    for &kind in ShapeKind::ALL {
+        let [mean, least] = tightness(kind);
+        writeln!(table, "| {} | {mean:.3} | {least:.3} |", kind.label()).unwrap();
+    }
+    let text = std::fs::read_to_string(README).unwrap();
+    let [begin, end] = MARKS.map(|mark| text.find(mark).expect("the marks of the table"));
+    let (before, held) = (&text[..begin + MARKS[0].len()], &text[begin + MARKS[0].len()..end]);
+    if std::env::var_os("ISOLITH_ACCEPT_TIGHTNESS").is_some() {
+        std::fs::write(README, format!("{before}\n\n{table}\n{}", &text[end..])).unwrap();
+    } else {
+        assert!(held.trim() == table.trim(), "measured now:\n{table}");
+    }
+}
