@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::geometry::Aabb;
-use crate::scene::{Degrees, Shape, ShapeKind, Sides};
+use crate::scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
 
 /// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
 /// then the kind's defaults.
@@ -71,6 +71,11 @@ impl Room {
                 Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius: upright }
             }
             ShapeKind::MengerSponge => Shape::MengerSponge { size: 2.0 * mean, iterations: 3.0 },
+            ShapeKind::Julia | ShapeKind::Kleinian => {
+                let mut shape = kind.default_shape();
+                shape.set_value(0, ParamValue::Scalar(1.2 * mean));
+                shape
+            }
             ShapeKind::InfiniteCylinder => Shape::InfiniteCylinder { radius: side },
             ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
             ShapeKind::Octahedron => Shape::Octahedron { radius: mean },
@@ -121,7 +126,6 @@ fn rounded(mut shape: Shape) -> Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::ParamValue;
 
     #[test]
     fn every_change_keeps_about_the_size_and_every_value_is_allowed() {

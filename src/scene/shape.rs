@@ -7,7 +7,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{ARC, CONE, ITERATIONS, POSITION, SECTOR, SIDES, SIZE, THICKNESS};
+use super::limits::{ARC, CONE, CONSTANT, FOLD, ITERATIONS, POSITION, REACH, SECTOR, SIDES, SIZE, SQUARES, THICKNESS};
 
 mod extent;
 mod param;
@@ -360,6 +360,32 @@ shapes! {
         size: f64 = 1.0, SIZE;
         /// How often holes are made, each time a third as wide; a whole number.
         iterations: f64 = 3.0, ITERATIONS;
+    }
+    /// A Julia set of quaternions: where z² + c, repeated, stays near.
+    Julia = sdf_julia, "Julia set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// The first three numbers of the quaternion c.
+        constant: [f64; 3] = [-0.2, 0.8, 0.0], CONSTANT;
+        /// The fourth number of c, along the axis that is not seen.
+        fourth: f64 = 0.0, CONSTANT;
+        /// How often it is repeated; a whole number.
+        iterations: f64 = 9.0, SQUARES;
+    }
+    /// A pseudo-Kleinian set: folded at a box and turned inside out, again and again.
+    Kleinian = sdf_kleinian, "Kleinian set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// How much of the set the ball shows: its radius in the set's own unit.
+        reach: f64 = 1.6, REACH;
+        /// Half the box at which space is folded, in that unit.
+        fold: [f64; 3] = [0.92, 0.9, 0.92], FOLD;
+        /// Square of the radius within which space is turned inside out, in that unit.
+        inversion: f64 = 1.0, FOLD;
+        /// How thick the set is drawn, in that unit.
+        thickness: f64 = 0.03, FOLD;
+        /// How often it is folded; a whole number.
+        iterations: f64 = 5.0, ITERATIONS;
     }
 }
 

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use isolith::scene::Shape;
 
 use super::surfaces::{Patch, ball, mapped, outside_only, triangle, turned};
@@ -55,6 +55,29 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             };
             p.abs().max_element() < 0.5 * size && !(0..iterations.round() as i32).any(is_hole)
         }
+        Shape::Julia { radius, constant: [a, b, c], fourth, iterations } => {
+            let constant = DQuat::from_xyzw(b, c, fourth, a);
+            let escape = (1.0 + (1.0 + 4.0 * constant.length()).sqrt()) * 0.5;
+            let p = p * (escape / radius);
+            let mut z = DQuat::from_xyzw(p.y, p.z, 0.0, p.x);
+            for _ in 0..iterations.round() as i32 {
+                if z.length() >= escape {
+                    return false;
+                }
+                z = z * z + constant;
+            }
+            z.length() < escape
+        }
+        Shape::Kleinian { radius, reach, fold, inversion, thickness, iterations } => {
+            let mut z = p * (reach / radius);
+            for _ in 0..iterations.round() as i32 {
+                z = z.clamp(-DVec3::from(fold), fold.into()) * 2.0 - z;
+                z *= (inversion / z.length_squared().max(1e-30)).max(1.0);
+            }
+            let around = z.x.hypot(z.z);
+            let disc = (around * z.y / z.length().max(1e-30)).abs().max(around - 0.92);
+            p.length() < radius && disc < thickness
+        }
         Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => {
             let near = nearest(&corners(shape, 1.0), flat);
             (near - flat).length().hypot(p.y) < 0.5 * thickness
@@ -89,7 +112,7 @@ pub fn menger_distance(p: DVec3, center: DVec3, size: f64, iterations: i32, best
 /// The surface; nothing for fractals.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
-        Shape::MengerSponge { .. } => vec![],
+        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } => vec![],
         Shape::CappedTorus { .. } | Shape::Link { .. } => tubes(shape),
         Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => sheet(shape, 0.5 * thickness),
         Shape::Pyramid { width, height } => {

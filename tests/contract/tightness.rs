@@ -22,8 +22,30 @@ fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
         Shape::MengerSponge { size, iterations } => {
             menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
         }
+        Shape::Julia { .. } | Shape::Kleinian { .. } => ray_distance(shape, p),
         _ => brute_distance(surface, p),
     }
+}
+
+/// The distance along the best of many rays, which is turned ever less from there on. Not less than the distance.
+fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
+    let field = |p: DVec3| shape_distance(shape.kind(), p.to_array(), &shape.packed());
+    let mut random = Random::new(1);
+    let (mut best, mut ahead) = (f64::INFINITY, DVec3::ZERO);
+    for i in 0..600 {
+        let turn = if i < 300 { random.direction() } else { random.direction() * 0.98_f64.powi(i - 300) };
+        let direction = if i < 300 { turn } else { (ahead + turn).normalize() };
+        let mut t = 0.0;
+        while t < best.min(4.0) {
+            let f = field(p + direction * t);
+            if f < 1e-4 {
+                (best, ahead) = (t, direction);
+                break;
+            }
+            t += f;
+        }
+    }
+    best
 }
 
 /// The mean and the least of field over distance, at random points outside of the default shape within its size.

@@ -51,9 +51,11 @@ impl Shape {
     fn half_extent(&self) -> DVec3 {
         let turned = |r: f64, half: f64| DVec3::new(r, half, r);
         match *self {
-            Self::Sphere { radius } | Self::Octahedron { radius } | Self::DeathStar { radius, .. } => {
-                DVec3::splat(radius)
-            }
+            Self::Sphere { radius }
+            | Self::Octahedron { radius }
+            | Self::DeathStar { radius, .. }
+            | Self::Julia { radius, .. }
+            | Self::Kleinian { radius, .. } => DVec3::splat(radius),
             Self::Ellipsoid { radii } => radii.into(),
             Self::Box { size, .. } | Self::BoxFrame { size, .. } => DVec3::from(size) * 0.5,
             Self::Torus { major_radius, minor_radius } => turned(major_radius + minor_radius, minor_radius),
