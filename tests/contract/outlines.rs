@@ -47,6 +47,25 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let (center, radius) = arc(height, width);
             width.min(height) > 0.0 && (around - center).hypot(p.y) < radius
         }
+        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } => inside_fractal(shape, p),
+        Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => {
+            let near = nearest(&corners(shape, 1.0), flat);
+            (near - flat).length().hypot(p.y) < 0.5 * thickness
+        }
+        _ => {
+            let Drawn { shrunk, half, rounding } = drawn(shape);
+            let core = corners(shape, shrunk);
+            if rounding == 0.0 {
+                return p.y.abs() < half && holds(&core, flat);
+            }
+            let y = half - rounding;
+            (nearest(&core, flat) - flat).length().hypot(p.y - p.y.clamp(-y, y)) < rounding
+        }
+    }
+}
+
+fn inside_fractal(shape: &Shape, p: DVec3) -> bool {
+    match *shape {
         Shape::MengerSponge { size, iterations } => {
             let is_hole = |step: i32| {
                 let side = size / 3_f64.powi(step);
@@ -78,19 +97,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let disc = (around * z.y / z.length().max(1e-30)).abs().max(around - 0.92);
             p.length() < radius && disc < thickness
         }
-        Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => {
-            let near = nearest(&corners(shape, 1.0), flat);
-            (near - flat).length().hypot(p.y) < 0.5 * thickness
-        }
-        _ => {
-            let Drawn { shrunk, half, rounding } = drawn(shape);
-            let core = corners(shape, shrunk);
-            if rounding == 0.0 {
-                return p.y.abs() < half && holds(&core, flat);
-            }
-            let y = half - rounding;
-            (nearest(&core, flat) - flat).length().hypot(p.y - p.y.clamp(-y, y)) < rounding
-        }
+        _ => panic!("{shape:?} is no fractal"),
     }
 }
 

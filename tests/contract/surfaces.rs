@@ -129,7 +129,7 @@ pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Patches without extent give the same point many times.
     starts.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-12);
-    let refined = starts.iter().take(9).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
+    let refined = starts.iter().take(24).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
     refined.fold(f64::INFINITY, f64::min)
 }
 

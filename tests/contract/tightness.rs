@@ -8,7 +8,7 @@ use isolith::flat::twin::shape_distance;
 use isolith::scene::{Shape, ShapeKind};
 
 use super::outlines::menger_distance;
-use super::samples::{Random, size};
+use super::samples::Random;
 use super::surfaces::{Patch, brute_distance, patches};
 
 const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
@@ -52,10 +52,12 @@ fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
 fn tightness(kind: ShapeKind) -> [f64; 2] {
     let shape = kind.default_shape();
     let surface = patches(&shape);
+    let bounds = shape.bounds();
+    let reach = if bounds.is_finite() { 1.2 * bounds.half().max_element() } else { 1.0 };
     let mut random = Random::new(17 + kind as u64);
     let (mut sum, mut least, mut count) = (0.0, f64::INFINITY, 0);
     while count < POINTS {
-        let p = random.point(1.2 * size(&shape).max(0.5));
+        let p = random.point(reach);
         let f = shape_distance(kind, p.to_array(), &shape.packed());
         if f < 1e-3 {
             continue;
