@@ -43,7 +43,7 @@ pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let constant = [q[1], q[2], q[3], q[4]];
     let escape = 0.5 + (0.25 + constant.iter().map(|c| c * c).sum::<f64>().sqrt()).sqrt();
-    let scale = q[0].max(1e-9) / escape;
+    let scale = q[0].max(1e-30) / escape;
     let [x, y, z] = p.map(|v| v * scale.recip());
     let mut at = [x, y, z, T::constant(0.0)];
     let mut radii = [T::constant(0.0); MOST_SQUARES + 1];
@@ -78,7 +78,7 @@ pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (fold, inversion, thickness) = ([q[2], q[3], q[4]], q[5], q[6]);
     let ball = length3(p) - q[0];
-    let scale = q[0].max(1e-9) / q[1];
+    let scale = q[0].max(1e-30) / q[1];
     let mut at = p.map(|v| v * scale.recip());
     let mut radii = [T::constant(0.0); MOST_FOLDS];
     let count = (0..MOST_FOLDS).take_while(|step| *step as f64 + 0.5 < q[7]).count();
