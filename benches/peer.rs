@@ -268,7 +268,7 @@ fn is_rotation(m: &DMat3) -> bool {
     (m.transpose() * *m).abs_diff_eq(DMat3::IDENTITY, 1e-6)
 }
 
-/// The shapes' distances without branches; `None` for those that have no closed form.
+/// The shapes' distances without branches; `None` for those that it is not compared in.
 fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
     let [x, y, z] = p;
     Some(match kind {
@@ -303,7 +303,7 @@ fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
             solid([outline, y.abs() - 0.5 * q[1]])
         }
         ShapeKind::BoxFrame => box_frame([x, y, z], q),
-        ShapeKind::Ellipsoid | ShapeKind::Octahedron => return None,
+        _ => return None,
     })
 }
 

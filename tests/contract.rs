@@ -5,9 +5,11 @@
 mod joints;
 pub mod modifiers;
 mod operators;
+mod outlines;
 mod rules;
 pub mod samples;
 mod shapes;
 mod surfaces;
+mod tightness;
 mod tracing;
 pub mod trees;

@@ -37,6 +37,7 @@ mod picking;
 mod selection;
 mod shape_change;
 mod sheet;
+mod silhouettes;
 mod status;
 mod theme;
 mod toolbar;

@@ -14,6 +14,7 @@ mod mesh_and_fields;
 mod modifiers;
 mod operators;
 mod random_groups;
+mod shapes;
 mod showcase;
 mod stage;
 
@@ -38,6 +39,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("blend-kernels", blend_kernels::scene()),
         ("operators", operators::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
+        ("shapes", shapes::scene()),
         ("deep-tree", deep_tree::scene()),
         ("modifiers", modifiers::scene()),
         ("chessboard", chessboard::scene()),

@@ -59,6 +59,22 @@ pub const RANGE: Limits = Limits { soft: [0.1, 100.0], hard: [1e-3, 1e9], unit: 
 pub const ATTENUATION: Limits = Limits { soft: [0.0, 2.0], hard: [0.0, 1e6], unit: "" };
 /// Half angle of a spot light's cone, in degrees.
 pub const CONE: Limits = Limits { soft: [0.0, 89.0], hard: [0.0, 89.9], unit: "°" };
+/// Half of an arc, in degrees.
+pub const ARC: Limits = Limits { soft: [0.0, 180.0], hard: [0.0, 180.0], unit: "°" };
+/// Half angle of a part of a ball, in degrees: less than all of it, whose sides would meet.
+pub const SECTOR: Limits = Limits { soft: [0.0, 179.0], hard: [0.0, 179.9], unit: "°" };
+/// Sides of a polygon, points of a star.
+pub const SIDES: Limits = Limits { soft: [3.0, 12.0], hard: [3.0, 64.0], unit: "" };
+/// How often a fractal repeats itself.
+pub const ITERATIONS: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 8.0], unit: "" };
+/// How often a Julia set squares.
+pub const SQUARES: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 16.0], unit: "" };
+/// Each number of a Julia set's constant.
+pub const CONSTANT: Limits = Limits { soft: [-1.0, 1.0], hard: [-2.0, 2.0], unit: "" };
+/// Sizes of a Kleinian set, in its own unit.
+pub const FOLD: Limits = Limits { soft: [0.0, 1.5], hard: [0.0, 10.0], unit: "" };
+/// How much of a Kleinian set is shown, in its own unit.
+pub const REACH: Limits = Limits { soft: [0.5, 4.0], hard: [0.1, 10.0], unit: "" };
 /// Vertical angle of view, in degrees.
 pub const FOV: Limits = Limits { soft: [10.0, 120.0], hard: [0.1, 170.0], unit: "°" };
 /// Near and far limits of a camera.

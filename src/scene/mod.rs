@@ -22,5 +22,5 @@ pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierParam, Modifie
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, Joining, Operator, RadiusUnit};
 pub(crate) use shape::for_each_shape;
-pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+pub use shape::{Degrees, Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;

@@ -9,7 +9,7 @@ use isolith::scene::{
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, ordinary, shape_with};
+use super::samples::{Random, ordinary, shape_with, usual};
 use super::surfaces::inside;
 
 const TREES: u64 = 60;
@@ -51,7 +51,9 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let (width, depth, share) = (random.range(0.0, 0.6), random.range(0.0, 0.3), random.range(0.0, 1.0));
         NodeKind::Group(Group { width, depth, share, ..Group::new(operator, blend) })
     } else {
-        let shape = shape_with(random.pick(ShapeKind::ALL), |_| random.range(0.05, 1.2));
+        let shape = shape_with(random.pick(ShapeKind::ALL), |limits| {
+            if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
+        });
         NodeKind::Object(Object { shape, material: MaterialId(2 + random.index(3) as u64) })
     };
     let mut node = Node::new("Node", kind).at(random.point(0.8));

@@ -5,7 +5,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use crate::flat::twin::{Joint, shape_distance};
 use crate::flat::{Component, FlatScene, LEAF_ROWS, Row};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+use crate::scene::{SHAPE_FLOATS, ShapeKind};
 
 /// A leaf, evaluated exactly as the twin does it.
 #[derive(Clone, Copy)]
@@ -44,7 +44,7 @@ impl Leaf {
     }
 
     fn ball(&self) -> Ball {
-        let bounds = shape(self.kind, &self.parameters).bounds();
+        let bounds = self.kind.unpacked(&self.parameters).bounds();
         let local_from_component = DAffine3 {
             matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
             translation: self.rows.map(|(_, shift)| shift).into(),
@@ -53,21 +53,6 @@ impl Leaf {
         let (least, _) = singular_values(&local_from_component.matrix3);
         Ball::new(center, least * self.scale, bounds.half().length() * self.scale)
     }
-}
-
-/// The shape of these packed parameters, see [`Shape::packed`].
-fn shape(kind: ShapeKind, packed: &[f64; SHAPE_FLOATS]) -> Shape {
-    let mut shape = kind.default_shape();
-    let mut at = 0;
-    for (index, value) in shape.values().into_iter().enumerate() {
-        let value = match value {
-            ParamValue::Scalar(_) => ParamValue::Scalar(packed[at]),
-            ParamValue::Vector(_) => ParamValue::Vector(DVec3::from_slice(&packed[at..at + 3])),
-        };
-        at += if matches!(value, ParamValue::Scalar(_)) { 1 } else { 3 };
-        shape.set_value(index, value);
-    }
-    shape
 }
 
 /// Around an entry: its field at p is at least `slope` |p − `center`| − `reach`.

@@ -92,8 +92,8 @@ fn random_tree(seed: u64, count: usize) -> Scene {
             Node::new("", random.group(0.3)).at(0.5 * place)
         } else {
             let shape = random.shape();
-            // A half space would leave nothing bounded, or nothing.
-            object(if matches!(shape, Shape::Plane {}) { Shape::Sphere { radius: 0.6 } } else { shape })
+            // A half space or what has no end would leave nothing bounded, or nothing.
+            object(if shape.bounds().is_finite() { shape } else { Shape::Sphere { radius: 0.6 } })
                 .at(place)
                 .rotated(turned)
                 .scaled(scale)

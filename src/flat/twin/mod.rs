@@ -4,7 +4,7 @@
 //! | file | what it holds | its twin on the GPU |
 //! |---|---|---|
 //! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
-//! | `sdf`, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `sdf` and its folder, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
 //! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |
 //! | `eval` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |

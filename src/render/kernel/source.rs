@@ -206,7 +206,12 @@ impl Resolver<'_> {
         if !self.seen.insert(name.to_owned()) {
             return Ok(());
         }
-        let generated = self.generated(name);
+        let mut generated = self.generated(name);
+        if let Some(text) = generated.as_mut().filter(|_| name.starts_with("generated/dual/")) {
+            // Twins of functions that several shapes call stand in each of their texts, and are written once.
+            let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));
+            *text = fresh.collect::<Vec<_>>().join("\n\n");
+        }
         let text = match &generated {
             Some(text) => text,
             None => {
