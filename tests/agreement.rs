@@ -8,9 +8,11 @@ use isolith::gallery;
 use isolith::render::kernel::{Evaluator, Features, Options, ShapeSet, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
-    Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator, Scene,
+    Shape, ShapeKind,
 };
 
+use crate::contract::modifiers::{modified, samples};
 use crate::contract::samples::{Random, ordinary};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::shared;
@@ -93,10 +95,15 @@ fn every_shape_agrees() {
 fn every_operator_agrees() {
     for operator in Operator::ALL {
         for kernel in BlendKernel::ALL {
+            if !operator.has_kernel() && kernel != BlendKernel::Circular {
+                continue;
+            }
             let mut random = Random::new(kernel as u64);
             let mut scene = Scene::new();
-            for radius in [0.0, 0.01, 0.2, 3.0] {
-                let group = Group { operator, blend: Blend { kernel, radius } };
+            let radii: &[f64] = if kernel == BlendKernel::Circular { &[0.0, 0.01, 0.2, 3.0] } else { &[0.02, 0.5] };
+            for radius in radii.iter().copied() {
+                let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, radius) };
+                let group = Group { width: 0.3, depth: 0.1, share: 0.3, ..Group::new(operator, blend) };
                 let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
                 for kind in [ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Capsule] {
                     let node = object(kind.default_shape()).at(random.point(0.4));
@@ -122,8 +129,8 @@ fn runs_agree() {
     for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Loops)] {
         let mut random = Random::new(seed);
         let mut scene = Scene::new();
-        let blend = Blend { kernel: BlendKernel::Quadratic, radius: 0.1 };
-        let group = Group { operator: Operator::Union, blend };
+        let blend = Blend::new(BlendKernel::Quadratic, 0.1);
+        let group = Group::new(Operator::Union, blend);
         let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
         for i in 0..45 {
             let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
@@ -142,17 +149,17 @@ fn runs_agree() {
 fn forms_agree() {
     let few = gallery::random(16, 1);
     let mut many = Scene::new();
-    let blend = Blend { kernel: BlendKernel::Cubic, radius: 0.1 };
-    let group = NodeKind::Group(Group { operator: Operator::Union, blend });
+    let group = NodeKind::Group(Group::new(Operator::Union, Blend::new(BlendKernel::Cubic, 0.1)));
     let parent = add(&mut many, None, Node::new("Group", group));
     for (i, kind) in ShapeKind::ALL.iter().take(6).enumerate() {
         add(&mut many, Some(parent), object(kind.default_shape()).at(DVec3::X * 0.4 * i as f64));
     }
     for (scene, skipping) in [(&few, Skipping::Branches), (&few, Skipping::Loops), (&many, Skipping::Loops)] {
         let (flat, mut random) = (flatten(scene, 0.0).unwrap(), Random::new(1));
-        let used = flat.nodes.iter().filter(|node| node.is_leaf()).fold(0, |all, node| all | 1 << (node.code & 0xffff));
+        let used = flat.nodes.iter().filter(|node| node.is_leaf()).map(|n| ShapeKind::ALL[(n.code & 0xffff) as usize]);
+        let used = ShapeSet::of(used);
         for (index, component) in flat.components.iter().enumerate() {
-            let form = Structure::form(&flat, component, ShapeSet(used)).expect("it is small");
+            let form = Structure::form(&flat, component, used).expect("it is small");
             let (points, options) = (points(&mut random, 500), Options { skipping, ..Options::default() });
             let evaluator = Evaluator::Specialised(form);
             let values = probe::field(&shared().gpu, &flat, index, &points, &evaluator, options).unwrap();
@@ -199,4 +206,20 @@ fn a_disagreement_is_caught() {
     assert!(compare(&flat, 0, &points, &values(&|f| f * 1.001)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|f| -f)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|_| f64::NAN)).is_err());
+}
+
+/// Every modifier, alone and one upon the other, over lopsided content.
+#[test]
+fn every_modifier_agrees() {
+    for &kind in ModifierKind::ALL {
+        let mut random = Random::new(kind as u64);
+        for (i, modifier) in samples(kind, 2).into_iter().enumerate() {
+            let other = if i == 0 { Modifier::Bend { angle: 30.0 } } else { Modifier::Round { radius: 0.02 } };
+            for modifiers in [vec![modifier], vec![modifier, other]] {
+                if flatten(&modified(&modifiers), 0.0).is_ok() {
+                    agree(&format!("{modifiers:?}"), &modified(&modifiers), &mut random);
+                }
+            }
+        }
+    }
 }

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
-use isolith::flat::Buffers;
+use isolith::flat::{Buffers, flatten};
 use isolith::gallery;
 use isolith::render::{Method, OverlaySettings, Renderer, Slot};
+use isolith::scene::ModifierKind;
 
+use crate::contract::modifiers::{modified, samples};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::{Subject, scenes, shared};
 
@@ -92,6 +94,21 @@ fn many_structures_share_kernels_and_are_the_same() {
     let picture = renderer.read(&frame).expect("buffers");
     let found = difference(&reference, &picture, camera.footprint(f64::from(SIDE)));
     assert_eq!(found, None);
+}
+
+#[test]
+fn what_is_modified_is_the_same_by_every_method() {
+    let mut faults = Vec::new();
+    for &kind in ModifierKind::ALL {
+        for modifier in samples(kind, 1) {
+            let scene = modified(&[modifier]);
+            if flatten(&scene, 0.0).is_ok() {
+                let subject = Subject::new(&format!("{modifier:?}"), &scene, None);
+                faults.extend(compare(&subject, SIDE, &[Method::Specialised]));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
 #[test]

@@ -8,6 +8,7 @@
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
 //! | `sheet`, `fields`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 
 mod bounds;
@@ -20,10 +21,13 @@ mod gizmo;
 mod glyphs;
 mod insertion;
 mod inspector;
+mod inspector_joints;
 mod inspector_kinds;
 mod inspector_material;
+mod inspector_modifiers;
 mod inspector_scene;
 mod inspector_transform;
+mod legend;
 mod messages;
 mod navigation;
 mod outliner;
@@ -33,6 +37,7 @@ mod picking;
 mod selection;
 mod shape_change;
 mod sheet;
+mod silhouettes;
 mod status;
 mod theme;
 mod toolbar;
@@ -50,6 +55,7 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
+use crate::flat::inspect::Look;
 use crate::flat::{FlatMesh, FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
@@ -82,6 +88,8 @@ pub struct View {
     pub show_grid: bool,
     /// Whether the selection is to be marked.
     pub show_outline: bool,
+    /// What the picture is to show.
+    pub look: Look,
 }
 
 /// An example that the File menu offers.
@@ -107,6 +115,7 @@ pub struct Editor {
     examples: Vec<Example>,
     show_grid: bool,
     show_outline: bool,
+    look: Look,
     shown_title: String,
     /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
     typing: bool,
@@ -140,6 +149,7 @@ impl Editor {
             examples: Vec::new(),
             show_grid: true,
             show_outline: true,
+            look: Look::Shaded,
             shown_title: String::new(),
             typing: false,
         };
@@ -215,6 +225,7 @@ impl Editor {
             navigating: self.viewport.is_navigating() || self.bench.is_changing(),
             show_grid: self.show_grid,
             show_outline: self.show_outline,
+            look: self.look,
         }
     }
 

@@ -3,7 +3,8 @@
 //! A kernel for a structure is the fastest, but a scene may have as many structures as components: each takes a driver
 //! tenths of a second, and lavapipe throws kernels away where they hold more than some 500 000 instructions together,
 //! so that it compiles all of them anew in every frame (137 s instead of 0.14 for 128 groups of 8 leaves). So where there
-//! are many, components whose forms are alike share a kernel for their form, which takes about a fifth longer.
+//! are many, components whose forms are alike share a kernel for their form, which takes about a fifth longer. What has no form, see
+//! [`Structure::form`], keeps the kernel for its structure, or gets none.
 
 use std::collections::{HashMap, HashSet};
 
@@ -24,6 +25,8 @@ pub struct Key {
 const MAX_STRUCTURE_ENTRIES: usize = 600;
 /// Where there are more than this, compiling them takes longer than one waits gladly: a second for twenty.
 const MANY_STRUCTURE_ENTRIES: usize = 200;
+/// Kernels for forms of more shapes have not been measured: a leaf has the code of each of them.
+const MOST_SHAPES: u32 = 12;
 /// So many structures of one form share a kernel, where there are many.
 const LEAST_SHARED: usize = 3;
 
@@ -69,7 +72,7 @@ impl Forms {
         }
         let is_shared = |form: &u128| {
             of_form.get(form).is_some_and(|structures| structures.len() >= LEAST_SHARED)
-                && (too_many || self.shapes[form].is_small())
+                && (self.shapes[form].is_small() || too_many && self.shapes[form].count() <= MOST_SHAPES)
         };
         let mut keys: Vec<Option<Key>> = vec![None; forms.len()];
         for (key, form) in keys.iter_mut().zip(&forms) {

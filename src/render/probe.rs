@@ -59,7 +59,9 @@ pub fn field(
     // A kernel for a form has rows of its own form.
     let is_form = matches!(evaluator, Evaluator::Specialised(structure) if structure.is_form());
     let mut of_form = Vec::new();
-    form_rows(flat, &flat.components[index], &mut of_form);
+    if is_form {
+        form_rows(flat, &flat.components[index], &mut of_form);
+    }
     let of_form = uploaded(bytemuck::cast_slice(&of_form));
     let rows_window = window(if is_form { of_form.buffer() } else { scene[3].buffer() }, KERNEL_WINDOW);
     let rows_at = if is_form { 0 } else { flat.components[index].numbers * 16 };

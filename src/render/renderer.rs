@@ -3,6 +3,8 @@
 mod choice;
 mod frame;
 mod measure;
+mod picture;
+mod pixel_counts;
 mod record;
 mod upload;
 
@@ -18,20 +20,22 @@ use super::kernels::{Kernels, Method};
 use super::layouts::Layouts;
 use super::list_texture::ListTexture;
 use super::passes::farthest::FarthestPass;
+use super::passes::inspect::InspectPass;
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
-use super::readback::read_buffers;
 use super::schedule::{DISPATCH_TARGET, Effort, Pace, Plan, plan};
 use super::targets::Targets;
 use super::uniforms::Work;
-use crate::flat::{Buffers, FlatScene, Pruner, Row, Warning};
+use crate::flat::inspect::Look;
+use crate::flat::{FlatScene, Pruner, Row};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
 use choice::Chosen;
 pub use frame::Frame;
 pub use measure::Counts;
+pub use pixel_counts::{PixelCounts, Spread, Took};
 use upload::{Groups, form_windows};
 
 /// Why there is no picture.
@@ -46,6 +50,9 @@ pub enum RenderError {
     /// The picture is larger than the device allows.
     #[error("a picture of {0} by {1} pixels is not possible; the device's limit is {2} a side")]
     Size(u32, u32, u32),
+    /// What each pixel takes cannot be counted in one buffer of the device.
+    #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
+    Counts(u32, u32),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -88,6 +95,8 @@ pub struct Renderer {
     shade: ShadePass,
     mesh: MeshPass,
     overlay: OverlayPass,
+    /// Built where somebody looks.
+    inspect: Option<InspectPass>,
     nodes: Mirror,
     /// For the windows of specialised kernels.
     rows: Mirror,
@@ -109,6 +118,8 @@ pub struct Renderer {
     ray_counts: Mirror,
     nothing: Mirror,
     march_counts: Mirror,
+    /// Whether kernels count.
+    counting: bool,
     slots: [Option<SlotState>; 2],
     pace: Pace,
 }
@@ -124,7 +135,7 @@ pub(super) const NUMBERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 pub(super) const LISTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of a tile in a list.
 const TILE_BYTES: usize = 20;
-/// Words that are counted for each component.
+/// Words for each list of tiles.
 const COUNTS: usize = 4;
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
@@ -153,6 +164,7 @@ impl Renderer {
             shade: ShadePass::new(device, &layouts)?,
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
+            inspect: None,
             nodes: storage("nodes"),
             rows: Mirror::uniform(device, "rows"),
             form_rows: Mirror::uniform(device, "rows of forms"),
@@ -171,6 +183,7 @@ impl Renderer {
             nothing: storage("nothing"),
             ray_counts: Mirror::indirect(device, "ray counts"),
             march_counts: Mirror::read_back(device, "march counts"),
+            counting: options.counting,
             slots: [None, None],
             pace: Pace::new(gpu.is_software()),
             layouts,
@@ -188,6 +201,11 @@ impl Renderer {
     /// How many kernels are being built.
     pub fn kernels_building(&self) -> usize {
         self.kernels.building()
+    }
+
+    /// How many kernels could not be built.
+    pub fn kernels_failed(&self) -> usize {
+        self.kernels.failed()
     }
 
     /// Whether kernels or pruned lists are being made: pictures are right without them, and faster with them.
@@ -224,28 +242,6 @@ impl Renderer {
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
 
-    /// The picture of a whole scene. `progress` is told the share that is done, between dispatches, and
-    /// answers whether to go on.
-    pub fn render(
-        &mut self,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(Buffers, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        while !frame.is_done() {
-            if !progress(frame.progress()) {
-                return Err(RenderError::Cancelled);
-            }
-            self.advance(&mut frame, Duration::ZERO)?;
-        }
-        progress(1.0);
-        let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
-        Ok((buffers, self.unfinished_rays(&frame)?))
-    }
-
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
     pub fn begin(
         &mut self,
@@ -260,6 +256,7 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
+        self.check_counts(flat.components.len(), size)?;
         let Chosen { keys, choices, evaluations, trees } = self.choose(flat, camera)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
@@ -294,6 +291,7 @@ impl Renderer {
             seconds_done: 0.0,
             slot,
             overlay,
+            look: Look::Shaded,
             form_rows,
             rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),

@@ -1,65 +1,19 @@
 //! Shapes, each with its named parameters. The table below is the only list of them: the enum, the
 //! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
-//! To add one: an entry with its bounds here, `sdf_name` in `flat/twin/sdf.rs`, `sdf_name` in `shaders/sdf/`.
+//! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/twin/sdf/`, `sdf_name` in
+//! `shaders/sdf/`. `src/README.md` shows one.
 
-use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{Limits, POSITION, SIZE, THICKNESS};
-use crate::geometry::Aabb;
+use super::limits::{ARC, CONE, CONSTANT, FOLD, ITERATIONS, POSITION, REACH, SECTOR, SIDES, SIZE, SQUARES, THICKNESS};
 
-/// Most numbers that the parameters of one shape may take.
-pub const SHAPE_FLOATS: usize = 8;
+mod extent;
+mod param;
 
-/// The value of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParamValue {
-    /// One number.
-    Scalar(f64),
-    /// Three numbers: a size or a point.
-    Vector(DVec3),
-}
-
-/// A Rust type that a parameter can have.
-trait ParamField: Copy {
-    /// How many numbers it takes.
-    const FLOATS: usize;
-    fn to_value(self) -> ParamValue;
-    fn from_value(value: ParamValue) -> Option<Self>;
-}
-
-impl ParamField for f64 {
-    const FLOATS: usize = 1;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Scalar(self)
-    }
-    fn from_value(value: ParamValue) -> Option<Self> {
-        if let ParamValue::Scalar(v) = value { Some(v) } else { None }
-    }
-}
-
-impl ParamField for [f64; 3] {
-    const FLOATS: usize = 3;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Vector(self.into())
-    }
-    fn from_value(value: ParamValue) -> Option<Self> {
-        if let ParamValue::Vector(v) = value { Some(v.to_array()) } else { None }
-    }
-}
-
-/// What is known about a parameter.
-#[derive(Clone, Copy, Debug)]
-pub struct Param {
-    /// Its name in files and, with spaces for underscores, in the inspector.
-    pub name: &'static str,
-    /// One sentence for people.
-    pub help: &'static str,
-    /// Accepted and offered ranges.
-    pub limits: Limits,
-}
+use param::ParamField;
+pub use param::{Degrees, Param, ParamValue, SHAPE_FLOATS, Sides};
 
 macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident, $label:literal {
@@ -105,6 +59,13 @@ macro_rules! shapes {
                 }, )*] }, )+ }
             }
 
+            /// The shape of these packed parameters, see [`Shape::packed`].
+            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Shape {
+                let mut rest = packed.as_slice();
+                match self { $( Self::$name => Shape::$name { $( $param: ParamField::unpack(&mut rest), )* }, )+ }
+            }
+
             /// How many rows of four numbers its parameters take, see [`Shape::packed`].
             pub fn rows(self) -> usize {
                 match self { $( Self::$name => const { (0_usize $( + <$type as ParamField>::FLOATS )*).div_ceil(4) }, )+ }
@@ -125,6 +86,16 @@ macro_rules! shapes {
             /// The parameters' values, in the order of [`ShapeKind::params`].
             pub fn values(&self) -> Vec<ParamValue> {
                 match *self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
+            }
+
+            /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
+            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one.
+            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
+                let mut out = [0.0; SHAPE_FLOATS];
+                let mut rest = out.as_mut_slice();
+                match *self { $( Self::$name { $( $param, )* } => { $( $param.pack(&mut rest); )* } )+ }
+                out
             }
 
             /// Sets the parameter at `index`; false, and nothing changed, where there is none or the
@@ -221,7 +192,7 @@ shapes! {
         radius: f64 = 0.25, SIZE;
     }
     /// Everything below the XZ plane; has no end.
-    Plane = sdf_plane, "Plane" {}
+    Plane = sdf_plane, "Plane (half space)" {}
     /// A hexagonal prism along the Y axis.
     HexagonalPrism = sdf_hexagonal_prism, "Hexagonal prism" {
         /// From the axis to the middle of a side; two sides face along X.
@@ -234,101 +205,187 @@ shapes! {
         /// From the centre to a corner.
         radius: f64 = 0.6, SIZE;
     }
-}
-
-impl Shape {
-    /// The parameters in order, as the evaluators read them; unused places are 0.
-    pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
-        let mut out = [0.0; SHAPE_FLOATS];
-        let mut at = 0;
-        for value in self.values() {
-            match value {
-                ParamValue::Scalar(v) => {
-                    out[at] = v;
-                    at += 1;
-                }
-                ParamValue::Vector(v) => {
-                    out[at..at + 3].copy_from_slice(&v.to_array());
-                    at += 3;
-                }
-            }
-        }
-        out
+    /// A ring of which only an arc is left, with round ends.
+    CappedTorus = sdf_capped_torus, "Capped torus" {
+        /// From the axis to the middle of the tube.
+        major_radius: f64 = 0.5, SIZE;
+        /// Of the tube.
+        minor_radius: f64 = 0.13, SIZE;
+        /// From the middle of the arc, which lies on X, to either end.
+        half_angle: Degrees = Degrees(120.0), ARC;
     }
-
-    /// A box around the surface, in local space.
-    pub fn bounds(&self) -> Aabb {
-        let around = |half: DVec3| Aabb::from_center_half(DVec3::ZERO, half);
-        match *self {
-            Self::Sphere { radius } | Self::Octahedron { radius } => around(DVec3::splat(radius)),
-            Self::Ellipsoid { radii } => around(radii.into()),
-            Self::Box { size, .. } | Self::BoxFrame { size, .. } => around(DVec3::from(size) * 0.5),
-            Self::Torus { major_radius, minor_radius } => {
-                let r = major_radius + minor_radius;
-                around(DVec3::new(r, minor_radius, r))
-            }
-            Self::Cylinder { radius, height, .. } => around(DVec3::new(radius, height * 0.5, radius)),
-            Self::CappedCone { bottom_radius, top_radius, height } => {
-                let r = bottom_radius.max(top_radius);
-                around(DVec3::new(r, height * 0.5, r))
-            }
-            Self::RoundCone { bottom_radius, top_radius, height } => {
-                let r = bottom_radius.max(top_radius);
-                let low = (-0.5 * height - bottom_radius).min(0.5 * height - top_radius);
-                let high = (0.5 * height + top_radius).max(-0.5 * height + bottom_radius);
-                Aabb::new(DVec3::new(-r, low, -r), DVec3::new(r, high, r))
-            }
-            Self::Capsule { start, end, radius } => Aabb::from_points([start.into(), end.into()]).expanded(radius),
-            Self::Plane {} => Aabb::new(DVec3::NEG_INFINITY, DVec3::new(f64::INFINITY, 0.0, f64::INFINITY)),
-            Self::HexagonalPrism { radius, height } => {
-                // Two sides face along X, so corners lie on Z, 2/√3 farther out than the sides.
-                around(DVec3::new(radius, height * 0.5, radius * 2.0 / 3.0_f64.sqrt()))
-            }
-        }
+    /// A link of a chain: a ring around the Y axis, pulled apart along X.
+    Link = sdf_link, "Link" {
+        /// Of the straight part.
+        length: f64 = 0.5, SIZE;
+        /// From the middle of a bend to the middle of the tube.
+        major_radius: f64 = 0.3, SIZE;
+        /// Of the tube.
+        minor_radius: f64 = 0.1, SIZE;
     }
-
-    /// The shape whose field is exactly that of this one scaled by `s` (all positive) along its own
-    /// axes, where there is one: non-uniform scale then costs nothing and loosens nothing.
-    pub fn absorb_scale(&self, s: DVec3) -> Option<Self> {
-        let uniform = s.x == s.y && s.y == s.z;
-        let round = s.x == s.z;
-        let times = |v: [f64; 3]| (DVec3::from(v) * s).to_array();
-        Some(match *self {
-            Self::Sphere { radius } if uniform => Self::Sphere { radius: radius * s.x },
-            Self::Sphere { radius } => Self::Ellipsoid { radii: (s * radius).to_array() },
-            Self::Ellipsoid { radii } => Self::Ellipsoid { radii: times(radii) },
-            Self::Box { size, rounding } if uniform || rounding == 0.0 => {
-                Self::Box { size: times(size), rounding: rounding * s.x }
-            }
-            Self::BoxFrame { size, thickness } if uniform => {
-                Self::BoxFrame { size: times(size), thickness: thickness * s.x }
-            }
-            Self::Torus { major_radius, minor_radius } if uniform => {
-                Self::Torus { major_radius: major_radius * s.x, minor_radius: minor_radius * s.x }
-            }
-            Self::Cylinder { radius, height, rounding } if uniform || (round && rounding == 0.0) => {
-                Self::Cylinder { radius: radius * s.x, height: height * s.y, rounding: rounding * s.x }
-            }
-            Self::CappedCone { bottom_radius, top_radius, height } if round => Self::CappedCone {
-                bottom_radius: bottom_radius * s.x,
-                top_radius: top_radius * s.x,
-                height: height * s.y,
-            },
-            Self::RoundCone { bottom_radius, top_radius, height } if uniform => Self::RoundCone {
-                bottom_radius: bottom_radius * s.x,
-                top_radius: top_radius * s.x,
-                height: height * s.y,
-            },
-            Self::Capsule { start, end, radius } if uniform => {
-                Self::Capsule { start: times(start), end: times(end), radius: radius * s.x }
-            }
-            Self::Plane {} => Self::Plane {},
-            Self::HexagonalPrism { radius, height } if round => {
-                Self::HexagonalPrism { radius: radius * s.x, height: height * s.y }
-            }
-            Self::Octahedron { radius } if uniform => Self::Octahedron { radius: radius * s.x },
-            _ => return None,
-        })
+    /// A cone that opens downwards from its tip at the origin; has no end.
+    Cone = sdf_cone, "Infinite cone" {
+        /// Between the axis and the side.
+        half_angle: Degrees = Degrees(30.0), CONE;
+    }
+    /// A cylinder along the Y axis; has no ends.
+    InfiniteCylinder = sdf_infinite_cylinder, "Infinite cylinder" {
+        /// From the axis to the side.
+        radius: f64 = 0.35, SIZE;
+    }
+    /// A prism along the Y axis over an isosceles triangle.
+    TriangularPrism = sdf_triangular_prism, "Triangular prism" {
+        /// Of the side along X, which lies towards -Z.
+        width: f64 = 1.0, SIZE;
+        /// From that side to the corner, along Z.
+        depth: f64 = 0.87, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.6, SIZE;
+    }
+    /// A prism along the Y axis over a regular polygon, its edges rounded inwards.
+    Prism = sdf_prism, "Prism" {
+        /// Of the polygon; a whole number.
+        sides: Sides = Sides(5.0), SIDES;
+        /// From the axis to the middle of a side; one of them faces along X.
+        radius: f64 = 0.5, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.7, SIZE;
+        /// Radius of the edges; at most the radius and half the height take effect.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A pyramid over a square, its tip on the Y axis.
+    Pyramid = sdf_pyramid, "Pyramid" {
+        /// Edge length of the square.
+        width: f64 = 1.1, SIZE;
+        /// From the square to the tip; the origin is half-way.
+        height: f64 = 0.9, SIZE;
+    }
+    /// A prism along the Y axis over a rhombus with its corners on X and Z, its edges rounded inwards.
+    Rhombus = sdf_rhombus, "Rhombus" {
+        /// From corner to corner along X.
+        width: f64 = 1.2, SIZE;
+        /// From corner to corner along Z.
+        depth: f64 = 0.8, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.4, SIZE;
+        /// Radius of the edges; at most what fits into the rhombus and half the height take effect.
+        rounding: f64 = 0.06, THICKNESS;
+    }
+    /// A ball cut flat; what is above the cut stays.
+    CutSphere = sdf_cut_sphere, "Cut sphere" {
+        /// Of the ball.
+        radius: f64 = 0.6, SIZE;
+        /// Height of the cut over the ball's centre, within the ball.
+        cut: f64 = -0.1, POSITION;
+    }
+    /// A bowl: the skin of a ball, cut open above, with a round rim.
+    HollowCutSphere = sdf_hollow_cut_sphere, "Hollow cut sphere" {
+        /// Of the ball, to the middle of the skin.
+        radius: f64 = 0.55, SIZE;
+        /// Height of the cut over the ball's centre, within the ball.
+        cut: f64 = 0.15, POSITION;
+        /// Of the skin.
+        thickness: f64 = 0.1, THICKNESS;
+    }
+    /// A ball out of which another ball above it is cut.
+    DeathStar = sdf_death_star, "Death star" {
+        /// Of the ball.
+        radius: f64 = 0.6, SIZE;
+        /// Of the ball that is cut out; never takes all.
+        cut_radius: f64 = 0.45, SIZE;
+        /// Between the centres, along Y.
+        distance: f64 = 0.7, SIZE;
+    }
+    /// The part of a ball within an angle around the Y axis.
+    SolidAngle = sdf_solid_angle, "Solid angle" {
+        /// Of the ball.
+        radius: f64 = 0.9, SIZE;
+        /// Between the axis and the side.
+        half_angle: Degrees = Degrees(35.0), SECTOR;
+    }
+    /// A spindle along the Y axis: an arc turned about its chord.
+    Vesica = sdf_vesica, "Vesica" {
+        /// From tip to tip.
+        height: f64 = 1.3, SIZE;
+        /// Where it is thickest; at most the height takes effect.
+        width: f64 = 0.7, SIZE;
+    }
+    /// A triangle in the XZ plane, with a thickness and round edges.
+    Triangle = sdf_triangle, "Triangle" {
+        /// Of the side along X, which lies towards -Z.
+        width: f64 = 1.1, SIZE;
+        /// From that side to the corner, along Z.
+        depth: f64 = 1.0, SIZE;
+        /// How far the corner is off the middle, along X.
+        skew: f64 = 0.0, POSITION;
+        /// From face to face.
+        thickness: f64 = 0.08, THICKNESS;
+    }
+    /// A rectangle or parallelogram in the XZ plane, with a thickness and round edges.
+    Quad = sdf_quad, "Quad" {
+        /// Of the sides along X.
+        width: f64 = 1.0, SIZE;
+        /// Between these sides, along Z.
+        depth: f64 = 0.8, SIZE;
+        /// How far the side towards +Z is shifted against the other, along X.
+        skew: f64 = 0.2, POSITION;
+        /// From face to face.
+        thickness: f64 = 0.08, THICKNESS;
+    }
+    /// A prism along the Y axis over a star, its edges rounded inwards.
+    Star = sdf_star, "Star" {
+        /// Points of the star, one of them on X; a whole number.
+        points: Sides = Sides(5.0), SIDES;
+        /// From the axis to a point.
+        outer_radius: f64 = 0.65, SIZE;
+        /// From the axis to a notch.
+        inner_radius: f64 = 0.3, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.3, SIZE;
+        /// Radius of the edges; at most what fits into the star and half the height take effect.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A ring around the Y axis with a regular polygon as its section.
+    PolygonRing = sdf_polygon_ring, "Polygon ring" {
+        /// Of the polygon; a whole number.
+        sides: Sides = Sides(6.0), SIDES;
+        /// From the axis to the middle of the polygon.
+        major_radius: f64 = 0.5, SIZE;
+        /// From the middle of the polygon to the middle of a side; one of them faces outwards.
+        minor_radius: f64 = 0.14, SIZE;
+    }
+    /// A cube with square holes, in each of its parts again.
+    MengerSponge = sdf_menger_sponge, "Menger sponge" {
+        /// Edge length.
+        size: f64 = 1.0, SIZE;
+        /// How often holes are made, each time a third as wide; a whole number.
+        iterations: f64 = 3.0, ITERATIONS;
+    }
+    /// A Julia set of quaternions: where z² + c, repeated, stays near.
+    Julia = sdf_julia, "Julia set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// The first three numbers of the quaternion c.
+        constant: [f64; 3] = [-0.2, 0.8, 0.0], CONSTANT;
+        /// The fourth number of c, along the axis that is not seen.
+        fourth: f64 = 0.0, CONSTANT;
+        /// How often it is repeated; a whole number.
+        iterations: f64 = 9.0, SQUARES;
+    }
+    /// A pseudo-Kleinian set: folded at a box and turned inside out, again and again.
+    Kleinian = sdf_kleinian, "Kleinian set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// How much of the set the ball shows: its radius in the set's own unit.
+        reach: f64 = 1.6, REACH;
+        /// Half the box at which space is folded, in that unit.
+        fold: [f64; 3] = [0.92, 0.9, 0.92], FOLD;
+        /// Square of the radius within which space is turned inside out, in that unit.
+        inversion: f64 = 1.0, FOLD;
+        /// How thick the set is drawn, in that unit.
+        thickness: f64 = 0.03, FOLD;
+        /// How often it is folded; a whole number.
+        iterations: f64 = 5.0, ITERATIONS;
     }
 }
 
@@ -343,8 +400,14 @@ mod tests {
             assert_eq!(shape.kind(), kind);
             let values = shape.values();
             assert_eq!(values.len(), kind.params().len());
-            let floats: usize = values.iter().map(|v| if matches!(v, ParamValue::Vector(_)) { 3 } else { 1 }).sum();
-            assert!(floats <= SHAPE_FLOATS);
+            assert!(kind.rows() * 4 <= SHAPE_FLOATS);
+            for (before, after) in values.iter().zip(kind.unpacked(&shape.packed()).values()) {
+                let [before, after] = [*before, after].map(|v| match v {
+                    ParamValue::Scalar(v) => glam::DVec3::splat(v),
+                    ParamValue::Vector(v) => v,
+                });
+                assert!(before.abs_diff_eq(after, 1e-12), "{kind:?}");
+            }
             for (i, value) in values.iter().enumerate() {
                 let changed = match *value {
                     ParamValue::Scalar(v) => ParamValue::Scalar(v + 0.25),

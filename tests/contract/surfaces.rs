@@ -6,6 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use isolith::scene::Shape;
 
+use super::outlines;
+
 /// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
 /// surface because it lies inside.
 pub type Patch = Box<dyn Fn(f64, f64) -> Option<DVec3>>;
@@ -47,6 +49,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             p.y.abs() < height * 0.5 && (0..6).all(|k| side(f64::from(k)))
         }
         Shape::Octahedron { radius } => p.abs().element_sum() < radius,
+        _ => outlines::inside(shape, p),
     }
 }
 
@@ -105,6 +108,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
                 triangle(corners)
             })
             .collect(),
+        _ => outlines::patches(shape),
     }
 }
 
@@ -125,7 +129,7 @@ pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Patches without extent give the same point many times.
     starts.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-12);
-    let refined = starts.iter().take(9).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
+    let refined = starts.iter().take(24).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
     refined.fold(f64::INFINITY, f64::min)
 }
 
@@ -243,12 +247,12 @@ fn hexagonal_prism(radius: f64, half: f64) -> Vec<Patch> {
     patches
 }
 
-fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
+pub fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
     Box::new(move |u, v| Some(a.lerp(b, u).lerp(a.lerp(c, u), v)))
 }
 
 /// A ball with one radius per axis, where it is not inside `shape`.
-fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
+pub fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
     outside_only(
         Box::new(move |u, v| {
             let (s, c) = (PI * v - FRAC_PI_2).sin_cos();
@@ -259,14 +263,14 @@ fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
 }
 
 /// The point (radius, y) turned about the Y axis by `u` of a full turn.
-fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
+pub fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
     let (s, c) = (TAU * u).sin_cos();
     DVec3::new(radius * c, y, radius * s)
 }
 
 /// The patch without what lies inside the shape. Points are judged a little farther out than they
 /// are, in the patch's own scale, so that rounding does not tear holes.
-fn outside_only(patch: Patch, shape: Shape) -> Patch {
+pub fn outside_only(patch: Patch, shape: Shape) -> Patch {
     Box::new(move |u, v| patch(u, v).filter(|p| !deep_inside(&shape, *p)))
 }
 
@@ -276,7 +280,7 @@ fn deep_inside(shape: &Shape, p: DVec3) -> bool {
     inside(shape, p) && DVec3::AXES.iter().all(|a| inside(shape, p + *a * e) && inside(shape, p - *a * e))
 }
 
-fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
+pub fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
     Box::new(move |u, v| patch(u, v).map(&map))
 }
 

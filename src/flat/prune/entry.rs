@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::flat::twin::shape_distance;
+use crate::flat::twin::{Joint, shape_distance};
 use crate::flat::{Component, FlatScene, LEAF_ROWS, Row};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+use crate::scene::{SHAPE_FLOATS, ShapeKind};
 
 /// A leaf, evaluated exactly as the twin does it.
 #[derive(Clone, Copy)]
@@ -44,7 +44,7 @@ impl Leaf {
     }
 
     fn ball(&self) -> Ball {
-        let bounds = shape(self.kind, &self.parameters).bounds();
+        let bounds = self.kind.unpacked(&self.parameters).bounds();
         let local_from_component = DAffine3 {
             matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
             translation: self.rows.map(|(_, shift)| shift).into(),
@@ -53,21 +53,6 @@ impl Leaf {
         let (least, _) = singular_values(&local_from_component.matrix3);
         Ball::new(center, least * self.scale, bounds.half().length() * self.scale)
     }
-}
-
-/// The shape of these packed parameters, see [`Shape::packed`].
-fn shape(kind: ShapeKind, packed: &[f64; SHAPE_FLOATS]) -> Shape {
-    let mut shape = kind.default_shape();
-    let mut at = 0;
-    for (index, value) in shape.values().into_iter().enumerate() {
-        let value = match value {
-            ParamValue::Scalar(_) => ParamValue::Scalar(packed[at]),
-            ParamValue::Vector(_) => ParamValue::Vector(DVec3::from_slice(&packed[at..at + 3])),
-        };
-        at += if matches!(value, ParamValue::Scalar(_)) { 1 } else { 3 };
-        shape.set_value(index, value);
-    }
-    shape
 }
 
 /// Around an entry: its field at p is at least `slope` |p − `center`| − `reach`.
@@ -108,8 +93,8 @@ pub(super) struct Entries {
     pub leaves: Vec<Leaf>,
     /// Around leaves and groups.
     pub balls: Vec<Ball>,
-    /// Supports of the joints, in metres.
-    pub supports: Vec<f64>,
+    /// The numbers of the joints.
+    pub joints: Vec<Joint>,
     /// How large coordinates get in the component, in metres, rounded up to a power of two so that
     /// edits rarely change it.
     pub size: f64,
@@ -120,12 +105,16 @@ impl Entries {
     pub fn new(flat: &FlatScene, component: &Component) -> Self {
         let count = component.count as usize;
         let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters: [0.0; 8] };
-        let mut entries =
-            Self { leaves: vec![none; count], balls: vec![Ball::NONE; count], supports: vec![0.0; count], size: 0.0 };
+        let mut entries = Self {
+            leaves: vec![none; count],
+            balls: vec![Ball::NONE; count],
+            joints: vec![Joint::blend(0.0); count],
+            size: 0.0,
+        };
         let mut size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
         for (index, node) in flat.nodes[component.first as usize..][..count].iter().enumerate() {
             let numbers = &flat.numbers[node.numbers as usize..];
-            entries.supports[index] = numbers[0][0].into();
+            entries.joints[index] = Joint::read(&numbers[0]);
             if node.is_leaf() {
                 let leaf = Leaf::read(node.code & 0xffff, numbers);
                 size = size.max(leaf.size());

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use super::CellTree;
 use super::build::{Build, Grid};
 use super::part::Part;
+use crate::flat::twin::Joint;
 use crate::flat::{Component, FlatNode, FlatScene, Row};
 
 /// A component's tree, and the component as it was then.
@@ -81,11 +82,13 @@ impl Kept {
             }
             let first = is.numbers as usize;
             let last = old.nodes.get(index + 1).map_or(old.numbers.len(), |next| next.numbers as usize);
-            // Lists do not depend on a run at all, and of a group's numbers only on its support: bounds
+            // Lists do not depend on a run at all, and of a group's numbers only on its joint: bounds
             // merely tell sooner what the leaves would.
             let same = match () {
                 () if is.is_run() => true,
-                () if is.is_group() => was.code == is.code && old.numbers[first][0] == new_numbers[first][0],
+                () if is.is_group() => {
+                    was.code == is.code && Joint::read(&old.numbers[first]) == Joint::read(&new_numbers[first])
+                }
                 () => was.code == is.code && old.numbers[first..last] == new_numbers[first..last],
             };
             changed[index] = !same;

@@ -4,18 +4,23 @@
 //! | file | what it holds | its twin on the GPU |
 //! |---|---|---|
 //! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
-//! | `sdf`, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `sdf` and its folder, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
+//! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |
 //! | `eval` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
 
 mod ellipsoid;
 mod eval;
+mod modifier;
 mod op;
 mod real;
 mod sdf;
 
 pub use ellipsoid::sdf_ellipsoid;
 pub use eval::{SurfaceMaterial, SurfacePoint, field, gradient, surface};
-pub use op::{Joined, op_difference, op_intersection, op_join, op_union};
+pub use modifier::*;
+pub use op::{
+    Joined, Joint, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe, op_union, op_xor,
+};
 pub use real::{Dual, Real};
 pub use sdf::*;

@@ -1,10 +1,13 @@
 //! Straight-line WGSL for a structure. Emits calls only: no formula of a distance stands here.
 
+use std::collections::BTreeSet;
+
+use super::modifiers::{file, has_point, has_value, modifier_include};
 use super::shares::shares;
 use super::structure::{Entry, EntryKind, ShapeSet, Structure};
 use super::{Options, Skipping};
-use crate::flat::{Join, LEAF_ROWS};
-use crate::scene::ShapeKind;
+use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, is_copying, modifier_rows};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,7 +23,7 @@ const LEAST_SKIPPED: u32 = 4;
 
 /// The generated file for one fold over `structure`; with `baked` rows they are written into it, as bits.
 pub fn specialise(structure: &Structure, baked: Option<&Vec<[u32; 4]>>, fold: Fold, options: Options) -> String {
-    let mut writer = Writer { structure, baked, fold, options, out: String::new() };
+    let mut writer = Writer { structure, baked, fold, options, points: vec!["p".to_owned()], out: String::new() };
     writer.head();
     writer.body();
     writer.out
@@ -31,6 +34,8 @@ struct Writer<'a> {
     baked: Option<&'a Vec<[u32; 4]>>,
     fold: Fold,
     options: Options,
+    /// Names of the point outside and in each modifier under way.
+    points: Vec<String>,
     out: String,
 }
 
@@ -44,12 +49,12 @@ impl Writer<'_> {
         let rows = self.structure.rows();
         self.line(&format!("const ROW_COUNT: u32 = {}u;", if self.baked.is_some() { 1 } else { rows }));
         self.line("#include \"field/placed.wgsl\"");
-        let shapes = |e: &Entry| match e.kind {
-            EntryKind::Leaf(shape) => 1 << shape as u32,
-            EntryKind::AnyLeaf(shapes) => shapes.0,
-            EntryKind::Nested | EntryKind::Run => 0,
-        };
-        for shape in ShapeSet(self.structure.entries.iter().fold(0, |all, e| all | shapes(e))).shapes() {
+        let modifier = |e: &Entry| if let EntryKind::Modified(kind) = e.kind { Some(kind) } else { None };
+        let modifiers: BTreeSet<_> = self.structure.entries.iter().filter_map(modifier).collect();
+        for kind in modifiers {
+            self.line(&modifier_include(kind));
+        }
+        for shape in self.structure.shapes().shapes() {
             self.line(&super::source::shape_include(shape));
             if self.fold == Fold::Surface {
                 self.line(&super::source::gradient_include(shape));
@@ -89,7 +94,9 @@ impl Writer<'_> {
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
                 if entry.join != Join::First && entry.kind != EntryKind::Run {
-                    self.line(&format!("    var w{at} = 0.0;"));
+                    // The weight of what joins; in general what `op_join` returns.
+                    let nothing = if self.is_general() { "vec4f(0.0, 1.0, 0.0, 0.0)" } else { "0.0" };
+                    self.line(&format!("    var w{at} = {nothing};"));
                 }
             }
         } else {
@@ -104,21 +111,21 @@ impl Writer<'_> {
                 let value = self.leaf(entry, shape, row);
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else if let EntryKind::AnyLeaf(shapes) = entry.kind {
-                self.line(&format!("    var d{at} = 0.0;"));
-                let call = |kind: ShapeKind| format!("{}({})", kind.function(), arguments(entry, kind, row));
-                let text = any_of(shapes, at, row, "d", &call, self.options.skipping);
-                self.line(&text);
-                self.join(level, at, entry, row, &format!("d{at} * q{row}.y"), &format!("{at}u"));
+                let value = self.any_leaf(at, entry, shapes, row);
+                self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
-                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
+                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join.is_skipped_far_off();
                 let skipped = skipped && self.options.skipping != Skipping::Never;
                 self.open_block(level, at, entry, row, skipped);
-                if entry.kind == EntryKind::Nested {
+                if entry.kind != EntryKind::Run {
                     level += 1;
                     self.line(&format!("    var s{level}: f32;"));
                     if surface {
                         self.line(&format!("    var l{level}: u32;"));
                     }
+                }
+                if let EntryKind::Modified(kind) = entry.kind {
+                    self.open_modifier(at, entry, kind, row);
                 }
                 open.push((at, *entry, row, skipped));
             }
@@ -128,7 +135,10 @@ impl Writer<'_> {
                     break;
                 }
                 open.pop();
-                if group.kind == EntryKind::Nested {
+                if let EntryKind::Modified(kind) = group.kind {
+                    self.close_modifier(level, begin, &group, kind, first);
+                }
+                if group.kind != EntryKind::Run {
                     level -= 1;
                     let [value, leaf] = ["s", "l"].map(|name| format!("{name}{}", level + 1));
                     self.join(level, begin, &group, first, &value, &leaf);
@@ -145,10 +155,24 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether surfaces need derivatives and shares of the material apart.
+    fn is_general(&self) -> bool {
+        self.fold == Fold::Surface && self.structure.has_further_joins()
+    }
+
     /// The value of a leaf whose rows begin at `row`.
     fn leaf(&self, entry: &Entry, shape: ShapeKind, row: usize) -> String {
-        let value = format!("{}({})", shape.function(), arguments(entry, shape, row));
+        let value = format!("{}({})", shape.function(), arguments(self.point(), entry, shape, row));
         if entry.unscaled { value } else { format!("{value} * q{row}.y") }
+    }
+
+    /// The value of a leaf of any shape, computed before it is named.
+    fn any_leaf(&mut self, at: usize, entry: &Entry, shapes: ShapeSet, row: usize) -> String {
+        self.line(&format!("    var d{at} = 0.0;"));
+        let call = |kind: ShapeKind| format!("{}({})", kind.function(), arguments(self.point(), entry, kind, row));
+        let text = any_of(shapes, at, row, "d", &call, self.options.skipping);
+        self.line(&text);
+        format!("d{at} * q{row}.y")
     }
 
     /// Joins `value` to the accumulator of this level; `leaf` is the one that it comes from.
@@ -165,17 +189,66 @@ impl Writer<'_> {
             Join::Union => "union",
             Join::Intersection => "intersection",
             Join::Difference => "difference",
+            _ => "further",
         };
+        let general = self.is_general() || entry.join.is_further();
         let joined = match entry.kernel {
-            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}.x, {kernel}u)"),
+            _ if general => {
+                let (join, kernel) = (entry.join as u32, entry.kernel.unwrap_or(0));
+                format!("op_join({join}u, s{level}, {value}, q{row}, {kernel}u)")
+            }
+            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}, {kernel}u)"),
             None => format!("op_hard_{name}(s{level}, {value})"),
         };
-        if surface {
+        if surface && general {
+            self.line(&format!("    w{at} = {joined}; s{level} = w{at}.x;"));
+            self.line(&format!("    l{level} = select(l{level}, {leaf}, w{at}.w > 0.5);"));
+        } else if surface {
             self.line(&format!("    {{ let joined = {joined};"));
             self.line(&format!("      l{level} = select(l{level}, {leaf}, joined.y > 0.5);"));
             self.line(&format!("      w{at} = joined.y; s{level} = joined.x; }}"));
         } else {
             self.line(&format!("    s{level} = {joined}.x;"));
+        }
+    }
+
+    /// The name of the point where the fold stands.
+    fn point(&self) -> &str {
+        self.points.last().map_or("p", String::as_str)
+    }
+
+    /// The point in the modifier's space and in its content, and the loop over copies where there are several.
+    fn open_modifier(&mut self, at: usize, entry: &Entry, kind: ModifierKind, row: usize) {
+        let placed = if entry.moved { "placed_moved" } else { "placed" };
+        let [x, y, z] = [0, 1, 2].map(|i| row + GROUP_ROWS + i);
+        let outside = self.point().to_owned();
+        self.line(&format!("    let a{at} = {placed}({outside}, q{x}, q{y}, q{z});"));
+        let (name, rows) = (file(kind), own_rows(kind, row));
+        if is_copying(kind) {
+            self.line(&format!("    var v{at} = mod_{name}_start(a{at}{rows});"));
+            self.line(&format!("    var k{at} = 0u;\n    loop {{"));
+            self.line(&format!("    while k{at} < mod_{name}_count({})", rows.trim_start_matches(", ")));
+            self.line(&format!("        && mod_{name}_bound(a{at}, k{at}{rows}) >= v{at} {{ k{at} += 1u; }}"));
+            self.line(&format!("    if k{at} >= mod_{name}_count({}) {{ break; }}", rows.trim_start_matches(", ")));
+            self.line(&format!("    let b{at} = mod_{name}_point(a{at}, k{at}{rows});"));
+        } else if has_point(kind) {
+            self.line(&format!("    let b{at} = mod_{name}_point(a{at}, 0u{rows});"));
+        }
+        self.points.push(if has_point(kind) { format!("b{at}") } else { format!("a{at}") });
+    }
+
+    fn close_modifier(&mut self, level: usize, at: usize, entry: &Entry, kind: ModifierKind, row: usize) {
+        self.points.pop();
+        let (name, rows) = (file(kind), own_rows(kind, row));
+        if is_copying(kind) {
+            self.line(&format!("    v{at} = min(v{at}, s{level} * mod_{name}_scale(k{at}{rows}));"));
+            self.line(&format!("    k{at} += 1u;\n    }}\n    s{level} = v{at};"));
+        }
+        if has_value(kind) {
+            self.line(&format!("    s{level} = mod_{name}_value(s{level}, a{at}{rows});"));
+        }
+        if !entry.unscaled {
+            self.line(&format!("    s{level} *= q{}.w;", row + 1));
         }
     }
 
@@ -190,7 +263,8 @@ impl Writer<'_> {
             Join::Union => format!("s{level} + q{row}.x"),
             _ => format!("q{row}.x - s{level}"),
         };
-        let reached = format!("placed_bounds(p, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
+        let point = self.point();
+        let reached = format!("placed_bounds({point}, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         match self.options.skipping {
             Skipping::Branches | Skipping::Never => self.line(&format!("    if {reached} {{")),
             Skipping::Loops => self.line(&format!("    var once{at} = {reached};\n    while once{at} {{")),
@@ -232,12 +306,17 @@ pub(super) fn any_of(
     out
 }
 
-/// The point in the leaf's own space, and the parameters of its shape.
-pub(super) fn arguments(entry: &Entry, shape: ShapeKind, row: usize) -> String {
+/// A modifier's own rows as further arguments.
+fn own_rows(kind: ModifierKind, row: usize) -> String {
+    (0..modifier_rows(kind)).map(|i| format!(", q{}", row + MODIFIER_ROWS + i)).collect()
+}
+
+/// The place of `point` in the leaf's own space, and the parameters of its shape.
+pub(super) fn arguments(point: &str, entry: &Entry, shape: ShapeKind, row: usize) -> String {
     let placed = if entry.moved { "placed_moved" } else { "placed" };
     let parameter = |i: usize| {
         if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
     };
     let (a, b) = (parameter(0), parameter(1));
-    format!("{placed}(p, q{}, q{}, q{}), {a}, {b}", row + 1, row + 2, row + 3)
+    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}", row + 1, row + 2, row + 3)
 }

@@ -1,7 +1,11 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use crate::flat::{Component, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, Row};
-use crate::scene::{SHAPE_FLOATS, ShapeKind};
+use super::source::{Features, Further};
+use crate::flat::{
+    Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, Row,
+    modifier_rows,
+};
+use crate::scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
 /// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
 pub const MAX_KERNEL_ROWS: u32 = 768;
@@ -19,19 +23,38 @@ pub enum EntryKind {
     AnyLeaf(ShapeSet),
     /// Operands with an accumulator of their own.
     Nested,
+    /// What a modifier holds.
+    Modified(ModifierKind),
     /// Operands that may be skipped together.
     Run,
 }
 
 /// Shapes, a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct ShapeSet(pub u32);
+pub struct ShapeSet(pub u64);
 
 impl ShapeSet {
     /// Whether lavapipe computes all of them and chooses in less time than it takes to skip those that are not meant,
     /// by loops: with three shapes 137 instead of 217 ms for 128 groups of 8 leaves, and 431 instead of 895 for 1 024.
     pub fn is_small(self) -> bool {
-        self.0.count_ones() <= 4
+        self.count() <= 4
+    }
+
+    /// How many they are.
+    pub fn count(self) -> u32 {
+        self.0.count_ones()
+    }
+
+    /// These.
+    pub fn of(shapes: impl IntoIterator<Item = ShapeKind>) -> Self {
+        let mut all = Self::default();
+        shapes.into_iter().for_each(|kind| all.insert(kind));
+        all
+    }
+
+    /// Puts one in.
+    pub fn insert(&mut self, kind: ShapeKind) {
+        self.0 |= 1 << kind as u32;
     }
 
     /// The shapes, in order.
@@ -51,11 +74,11 @@ pub struct Entry {
     pub join: Join,
     /// Kernel of the blend; `None` where the joint is hard.
     pub kernel: Option<u8>,
-    /// Only moved, not turned or scaled; leaves only.
+    /// Only moved, not turned or scaled; leaves and modifiers only.
     pub moved: bool,
-    /// Its field is the shape's, without a factor; leaves only.
+    /// Its field is taken without a factor; leaves and modifiers only.
     pub unscaled: bool,
-    /// Whether it may be skipped by its bounds; groups and runs only.
+    /// Whether it may be skipped by its bounds; all but leaves.
     pub bounded: bool,
 }
 
@@ -65,6 +88,7 @@ impl Entry {
         match self.kind {
             EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
             EntryKind::AnyLeaf(_) => FORM_LEAF_ROWS,
+            EntryKind::Modified(kind) => MODIFIER_ROWS + modifier_rows(kind),
             EntryKind::Nested | EntryKind::Run => GROUP_ROWS,
         }
     }
@@ -112,8 +136,13 @@ impl Structure {
     }
 
     /// The form of a component: its structure with leaves that may be any of these shapes, placed anyhow. Many
-    /// structures have one form, and one kernel. `None` where it is too large for one.
+    /// structures have one form, and one kernel. `None` where it is too large for one, or has no form: the code of a
+    /// shape stands where further joints keep their size, modifiers have rows of their own, and shapes with loops would run
+    /// them for every leaf.
     pub fn form(flat: &FlatScene, component: &Component, shapes: ShapeSet) -> Option<Self> {
+        if !has_form(flat, component) {
+            return None;
+        }
         let mut structure = Self::of(flat, component)?;
         for entry in &mut structure.entries {
             if let EntryKind::Leaf(_) = entry.kind {
@@ -128,9 +157,9 @@ impl Structure {
         self.entries.iter().any(|entry| matches!(entry.kind, EntryKind::AnyLeaf(_)))
     }
 
-    /// A key of the form, and the shapes that the component uses.
+    /// A key of the form, and the shapes that the component uses; `None` where it has no form.
     pub fn form_key(flat: &FlatScene, component: &Component) -> Option<(u128, ShapeSet)> {
-        if !fits(component) {
+        if !fits(component) || !has_form(flat, component) {
             return None;
         }
         let range = component.first as usize..(component.first + component.count) as usize;
@@ -139,12 +168,13 @@ impl Structure {
             let e = entry(flat, node);
             let kind = match e.kind {
                 EntryKind::Leaf(shape) => {
-                    shapes.0 |= 1 << shape as u32;
+                    shapes.insert(shape);
                     0
                 }
                 EntryKind::AnyLeaf(_) => 0,
                 EntryKind::Nested => 1,
                 EntryKind::Run => 2,
+                EntryKind::Modified(_) => return None,
             };
             let kernel = e.kernel.map_or(0xff, u64::from);
             let word = kind | ((e.join as u64) << 16) | (kernel << 20) | (u64::from(e.bounded) << 28);
@@ -159,6 +189,55 @@ impl Structure {
         let codes = flat.nodes[range(component.first, component.count)].iter().map(|node| node.code);
         let numbers = flat.numbers[range(component.numbers, component.rows)].iter().flatten().map(|v| v.to_bits());
         codes.chain(numbers).fold(FNV_START, |hash, word| (hash ^ u128::from(word)).wrapping_mul(FNV_PRIME))
+    }
+
+    /// All shapes that its leaves are or may be.
+    pub fn shapes(&self) -> ShapeSet {
+        let mut all = ShapeSet::default();
+        for entry in &self.entries {
+            match entry.kind {
+                EntryKind::Leaf(shape) => all.insert(shape),
+                EntryKind::AnyLeaf(shapes) => all.0 |= shapes.0,
+                EntryKind::Nested | EntryKind::Modified(_) | EntryKind::Run => {}
+            }
+        }
+        all
+    }
+
+    /// Whether it holds modifiers.
+    pub fn is_modified(&self) -> bool {
+        self.entries.iter().any(|e| matches!(e.kind, EntryKind::Modified(_)))
+    }
+
+    /// Whether it has operators beyond union, intersection and difference.
+    pub fn has_further_joins(&self) -> bool {
+        self.entries.iter().any(|entry| entry.join.is_further())
+    }
+
+    /// What an interpreter must know to evaluate it.
+    pub fn features(&self) -> Features {
+        let mut features = Features::none();
+        features.further = Further {
+            joins: self.has_further_joins(),
+            kernels: self.entries.iter().any(|e| e.kernel.is_some_and(|k| u32::from(k) >= FIRST_FURTHER_KERNEL)),
+        };
+        features.shapes = self.shapes().shapes().collect();
+        // Where the groups and modifiers under way end.
+        let mut open: Vec<usize> = Vec::new();
+        for (at, entry) in self.entries.iter().enumerate() {
+            open.retain(|end| *end > at);
+            match entry.kind {
+                EntryKind::Leaf(_) | EntryKind::AnyLeaf(_) => {}
+                EntryKind::Modified(kind) => {
+                    features.modifiers.insert(kind);
+                    open.push(at + entry.extent as usize);
+                }
+                EntryKind::Nested => open.push(at + entry.extent as usize),
+                EntryKind::Run => {}
+            }
+            features.stack = features.stack.max((open.len() as u32).next_power_of_two());
+        }
+        features
     }
 
     /// Rows of numbers of a component of this structure.
@@ -194,28 +273,84 @@ fn fits(component: &Component) -> bool {
     component.rows <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
 }
 
+/// Whether the function of a shape has a loop.
+fn has_loop(shape: ShapeKind) -> bool {
+    matches!(shape, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian)
+}
+
+/// Whether a component has a form: no modifiers, no joints or blends beyond the first three, no shapes with loops.
+fn has_form(flat: &FlatScene, component: &Component) -> bool {
+    let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
+    let is_further =
+        |node: &FlatNode| Join::ALL[node.join() as usize].is_further() || node.kernel() >= FIRST_FURTHER_KERNEL;
+    let loops = |node: &FlatNode| node.is_leaf() && has_loop(ShapeKind::ALL[(node.code & 0xffff) as usize]);
+    !component.modified && !nodes.iter().any(|node| is_further(node) || loops(node))
+}
+
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
     let rows = &flat.numbers[node.numbers as usize..];
     let joint = rows[0];
-    let join = [Join::First, Join::Union, Join::Intersection, Join::Difference][node.join() as usize];
+    let join = Join::ALL[node.join() as usize];
     let blended = joint[0] > 0.0 && join != Join::First;
+    let leaf = node.is_leaf();
+    let modifier = node.modifier().is_some();
+    let placing = if leaf { 1 } else { GROUP_ROWS };
     let identity = |i: usize| {
         let mut unit = [0.0; 3];
         unit[i] = 1.0;
-        rows[1 + i][..3] == unit
+        rows[placing + i][..3] == unit
     };
-    let leaf = node.is_leaf();
     Entry {
         kind: match node.code & 0xffff {
             FlatNode::GROUP => EntryKind::Nested,
             FlatNode::RUN => EntryKind::Run,
-            shape => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
+            shape => match node.modifier() {
+                Some(kind) => EntryKind::Modified(kind),
+                None => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
+            },
         },
         extent: node.extent,
         join,
         kernel: blended.then_some(node.kernel() as u8),
-        moved: leaf && identity(0) && identity(1) && identity(2),
-        unscaled: leaf && joint[1] == 1.0,
+        moved: (leaf || modifier) && identity(0) && identity(1) && identity(2),
+        unscaled: if leaf { joint[1] == 1.0 } else { modifier && rows[1][3] == 1.0 },
         bounded: !leaf && joint[1] > 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::source::FILES;
+    use super::*;
+    use crate::flat::flatten;
+    use crate::gallery;
+
+    #[test]
+    fn shapes_with_loops_are_known() {
+        for &kind in ShapeKind::ALL {
+            let file = format!("sdf/{}.wgsl", kind.function().trim_start_matches("sdf_"));
+            let text = FILES.iter().find(|(name, _)| *name == file).expect("each shape has a file").1;
+            let code = || text.lines().map(|line| line.split("//").next().unwrap_or("").trim_start());
+            let loops = code().any(|line| ["for ", "loop ", "while "].iter().any(|word| line.starts_with(word)));
+            assert_eq!(has_loop(kind), loops, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_modified_or_joined_further_has_no_form() {
+        let mut without = 0;
+        for (name, scene) in gallery::all() {
+            let flat = flatten(&scene, 0.0).unwrap_or_else(|e| panic!("{name}: {e}"));
+            for component in &flat.components {
+                let whole = Structure::whole(&flat, component);
+                let features = whole.features();
+                let plain = !component.modified && features.further == Further::default();
+                let plain = plain && !features.shapes.iter().any(|kind| has_loop(*kind));
+                assert_eq!(Structure::form_key(&flat, component).is_some(), plain && fits(component), "{name}");
+                assert!(plain || Structure::form(&flat, component, whole.shapes()).is_none(), "{name}");
+                without += usize::from(!plain);
+            }
+        }
+        assert!(without > 10, "only {without} components have no form");
     }
 }

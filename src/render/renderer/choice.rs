@@ -43,14 +43,18 @@ impl Renderer {
         }
         let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
         let choices = self.kernels.choose(flat, &keys, self.method, &has_lists, &largest_first(flat, camera))?;
-        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice
-            .walk
-        {
-            Walk::Straight => Evaluation::of_straight(component),
-            Walk::Entries => Evaluation::of_entries(component),
-            Walk::List => tree.as_ref().map_or(Evaluation::of_entries(component), |tree| Evaluation::of_lists(tree)),
+        let evaluation = |i: usize| {
+            let straight = |key: Key| Evaluation::of_straight(&flat.components[i], key.form);
+            let mut now = match (choices[i].walk, &trees[i], keys[i]) {
+                (Walk::Straight, _, Some(key)) => straight(key),
+                (Walk::List, Some(tree), _) => Evaluation::of_lists(tree),
+                _ => Evaluation::of_entries(&flat.components[i]),
+            };
+            // A kernel that becomes ready takes over within the frame.
+            now.iterations = now.iterations.max(keys[i].map_or(0, |key| straight(key).iterations));
+            now
         };
-        let evaluations = flat.components.iter().zip(&choices).zip(&trees).map(evaluation).collect();
+        let evaluations = (0..flat.components.len()).map(evaluation).collect();
         Ok(Chosen { keys, choices, evaluations, trees })
     }
 }

@@ -1,6 +1,7 @@
 //! A picture under way: what is still to be done, by which kernels.
 
 use super::Slot;
+use crate::flat::inspect::Look;
 use crate::render::kernels::{Choice, Walk};
 use crate::render::keys::Key;
 use crate::render::passes::overlay::OverlaySettings;
@@ -19,6 +20,7 @@ pub struct Frame {
     pub(super) seconds: f64,
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
+    pub(super) look: Look,
     pub(super) rows: Vec<u32>,
     /// Where kernels for forms find theirs; beside components with such a key.
     pub(super) form_rows: Vec<Option<u32>>,

@@ -16,6 +16,7 @@ impl Renderer {
             if pieces[at].stage == Stage::Mesh {
                 // No ray is left over yet.
                 encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
+                self.clear_pixel_counts(&mut encoder, targets.size);
                 self.mesh.record(&mut encoder, targets, &groups.view);
                 at += 1;
                 continue;
@@ -24,8 +25,11 @@ impl Renderer {
             self.record_compute(&mut encoder, groups, frame, at..end);
             at = end;
         }
-        if range.end == pieces.len() && !frame.overlay.is_empty() {
-            self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+        if range.end == pieces.len() {
+            self.record_look(&mut encoder, frame);
+            if !frame.overlay.is_empty() {
+                self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+            }
         }
         self.gpu.queue.submit([encoder.finish()]);
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use wgpu::BindGroup;
 
-use super::{COUNTS, KERNEL_WINDOW, Renderer, TILE_BYTES, work_bytes};
+use super::{KERNEL_WINDOW, Renderer, TILE_BYTES, work_bytes};
 use crate::flat::{CellTree, Component, FlatScene, ROW_ALIGNMENT, Row, gpu_lights};
 use crate::geometry::Camera;
 use crate::render::gpu::Gpu;
@@ -86,9 +86,8 @@ impl Renderer {
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
-            self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
         ];
-        is_new || uploads.contains(&true)
+        self.reset_counts(flat.components.len(), size) || is_new || uploads.contains(&true)
     }
 
     pub(super) fn bind_all(&self, targets: &Targets) -> Groups {

@@ -3,32 +3,18 @@
 mod evaluate;
 
 use super::{DUAL_PRELUDE, DualError, dual};
+use crate::render::kernel::{Evaluator, Features, Options, plain_source, source};
+use crate::scene::{Limits, ParamValue, ShapeKind};
 use evaluate::Machine;
 
-/// Stands for `shaders/sdf/held.wgsl`.
 const HELD: &str = include_str!("../../../../shaders/sdf/held.wgsl");
-const INCLUDE: &str = "#include \"sdf/held.wgsl\"";
 
-macro_rules! shape {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../../../shaders/sdf/", $name, ".wgsl")))
-    };
+/// Every shape, with its source and all that it includes.
+fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
+    let source = |name| plain_source(&format!("sdf/{name}.wgsl")).unwrap();
+    let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
+    ShapeKind::ALL.iter().map(named).map(move |(kind, name)| (kind, name, source(name)))
 }
-
-const SHAPES: [(&str, &str); 12] = [
-    shape!("box"),
-    shape!("box_frame"),
-    shape!("capped_cone"),
-    shape!("capsule"),
-    shape!("cylinder"),
-    shape!("ellipsoid"),
-    shape!("hexagonal_prism"),
-    shape!("octahedron"),
-    shape!("plane"),
-    shape!("round_cone"),
-    shape!("sphere"),
-    shape!("torus"),
-];
 
 /// Numbers that look random, between 0 and 1.
 struct Random(u64);
@@ -44,8 +30,19 @@ impl Random {
     }
 }
 
-fn resolved(text: &str) -> String {
-    text.replace(INCLUDE, HELD)
+/// Parameters of a shape, packed: lengths between 0.1 and 1.1, all angles and numbers of sides.
+fn parameters(kind: ShapeKind, random: &mut Random) -> [f64; 8] {
+    let mut shape = kind.default_shape();
+    for (i, value) in shape.values().into_iter().enumerate() {
+        let Limits { soft: [low, high], unit, .. } = kind.params()[i].limits;
+        let mut number = || if unit == "m" { 0.1 + random.next() } else { low + (high - low) * random.next() };
+        let value = match value {
+            ParamValue::Scalar(_) => ParamValue::Scalar(number()),
+            ParamValue::Vector(_) => ParamValue::Vector([number(), number(), number()].into()),
+        };
+        assert!(shape.set_value(i, value));
+    }
+    shape.packed()
 }
 
 /// The source, the prelude and the twin.
@@ -74,11 +71,16 @@ fn differences(machine: &Machine, function: &str, p: [f64; 3], a: &[f64], b: &[f
 
 /// The greatest difference between the twin's gradient and the differences, over random points.
 fn worst(source: &str, function: &str, tries: usize) -> f64 {
+    worst_with(source, function, tries, |random| std::array::from_fn(|_| 0.1 + random.next()))
+}
+
+/// The same, with parameters made from random numbers.
+fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&mut Random) -> [f64; 8]) -> f64 {
     let machine = machine(source, function);
     let mut random = Random(7);
     let (mut worst, mut compared): (f64, _) = (0.0, 0);
     for _ in 0..tries {
-        let numbers: [f64; 8] = std::array::from_fn(|_| 0.1 + random.next());
+        let numbers = parameters(&mut random);
         let (a, b) = numbers.split_at(4);
         let p = random.point(1.5);
         let twin = machine.call(&format!("dual_{function}"), &[&p, a, b]);
@@ -95,22 +97,24 @@ fn worst(source: &str, function: &str, tries: usize) -> f64 {
 
 #[test]
 fn gradients_of_shapes_are_those_of_central_differences() {
-    for (name, text) in SHAPES {
-        let error = worst(&resolved(text), &format!("sdf_{name}"), 300);
-        assert!(error < if name == "ellipsoid" { 1e-3 } else { 1e-6 }, "{name}: {error:e}");
+    for (kind, name, text) in shapes() {
+        let error = worst_with(&text, kind.function(), 300, |random| parameters(kind, random));
+        // Fractals bend as finely as they are.
+        assert!(
+            error < if matches!(name, "ellipsoid" | "julia" | "kleinian") { 1e-3 } else { 1e-6 },
+            "{name}: {error:e}"
+        );
     }
 }
 
 #[test]
 fn all_twins_stand_in_one_shader() {
-    let mut text = format!("{HELD}{DUAL_PRELUDE}");
-    for (name, source) in SHAPES {
-        text.push_str(&source.replace(INCLUDE, ""));
-        text.push_str(&dual(&resolved(source), &format!("sdf_{name}")).unwrap());
-        let signature = format!("fn dual_sdf_{name}(p: vec3f, a: vec4f, b: vec4f) -> vec4f {{");
-        assert_eq!(text.matches(&signature).count(), 1, "{name}");
+    let everything = Evaluator::Interpreted(Features::all());
+    let text = source("surface.wgsl", &everything, Options::default()).unwrap();
+    for &kind in ShapeKind::ALL {
+        let signature = format!("fn dual_{}(p: vec3f, a: vec4f, b: vec4f) -> vec4f {{", kind.function());
+        assert_eq!(text.matches(&signature).count(), 1, "{kind:?}");
     }
-    Machine::new(&text);
 }
 
 /// The gradient's direction, or zero where there is none.
@@ -125,14 +129,18 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn normals_at_surfaces_are_right_in_f32() {
-    for (name, text) in SHAPES {
-        let (text, twin) = (resolved(text), format!("dual_sdf_{name}"));
+    for (kind, name, text) in shapes() {
+        if matches!(kind, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian) {
+            // Fractals have edges everywhere, and no distance to reach the surface by in a few steps.
+            continue;
+        }
+        let twin = format!("dual_sdf_{name}");
         let exact = machine(&text, &format!("sdf_{name}"));
         let rounded = machine(&text, &format!("sdf_{name}")).rounded();
         let mut random = Random(3);
         let mut compared = 0;
-        for _ in 0..150 {
-            let numbers: [f64; 8] = std::array::from_fn(|_| f64::from((0.1 + random.next()) as f32));
+        for _ in 0..200 {
+            let numbers = parameters(kind, &mut random).map(|v| f64::from(v as f32));
             let (a, b) = numbers.split_at(4);
             let mut p = random.point(1.0);
             for _ in 0..8 {
@@ -176,8 +184,8 @@ fn a_face_has_a_normal_where_the_distance_is_exactly_zero() {
         ("hexagonal_prism", [0.1, 0.5, 0.1], [0.5, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
         ("plane", [3.0, 0.0, 1.0], zero, [0.0, 1.0, 0.0]),
     ] {
-        let (_, text) = SHAPES.iter().find(|(n, _)| *n == name).unwrap();
-        let twin = machine(&resolved(text), &format!("sdf_{name}")).call(&format!("dual_sdf_{name}"), &[&p, &a, &zero]);
+        let (_, _, text) = shapes().find(|(_, n, _)| *n == name).unwrap();
+        let twin = machine(&text, &format!("sdf_{name}")).call(&format!("dual_sdf_{name}"), &[&p, &a, &zero]);
         assert_eq!(twin[3], 0.0, "{name}");
         assert!(distance(direction(&twin), normal) < 1e-7, "{name} at {p:?}: {twin:?}");
     }

@@ -1,0 +1,24 @@
+//! The functions of shapes and modifiers together with their gradients; derived once, however many kernels hold
+//! them.
+
+use std::collections::BTreeMap;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+use super::dual::dual;
+use super::source::plain_source;
+
+/// A shape's function, or one about a modifier (see [`super::modifiers`]), with its gradient.
+pub fn gradient_wgsl(function: &str) -> Option<String> {
+    static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
+    let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = derived.get(function) {
+        return Some(text.clone());
+    }
+    // What has no derivative has no kernel; a test derives every one.
+    let text = match function.strip_prefix("sdf_") {
+        Some(shape) => dual(&plain_source(&format!("sdf/{shape}.wgsl")).ok()?, function).ok()?,
+        None => super::modifiers::derived(function)?,
+    };
+    derived.insert(function.to_owned(), text.clone());
+    Some(text)
+}
