@@ -149,7 +149,8 @@ fn runs_agree() {
 fn forms_agree() {
     let few = gallery::random(16, 1);
     let mut many = Scene::new();
-    let group = NodeKind::Group(Group::new(Operator::Union, Blend::new(BlendKernel::Cubic, 0.1)));
+    let group =
+        NodeKind::Group(Group::new(Operator::Union, Blend { steps: 3, ..Blend::new(BlendKernel::Stairs, 0.1) }));
     let parent = add(&mut many, None, Node::new("Group", group));
     for (i, kind) in ShapeKind::ALL.iter().take(6).enumerate() {
         add(&mut many, Some(parent), object(kind.default_shape()).at(DVec3::X * 0.4 * i as f64));

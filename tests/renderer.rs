@@ -91,8 +91,9 @@ fn a_picture_larger_than_the_device_allows_is_refused_with_the_limit() {
     }
 }
 
-/// Width and height of the pictures whose time is taken, in pixels.
-const TIMED_SIDE: u32 = 256;
+/// Width and height of the pictures whose time is taken, in pixels. As most windows no power of two, nor a part of one:
+/// lavapipe compiles a kernel once more for such targets.
+const TIMED_SIDE: u32 = 300;
 /// What a picture may take at once; the window shows a coarse one where a whole one would take longer.
 const AT_ONCE: Duration = Duration::from_millis(60);
 
@@ -102,8 +103,8 @@ fn note(text: &str) {
     println!("{text}");
 }
 
-/// Begins and draws a picture as the window does after an edit. Returns how long that took.
-fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Duration {
+/// Begins and draws a picture as the window does after an edit. Returns how long that took, and the picture's size.
+fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> (Duration, [u32; 2]) {
     let start = Instant::now();
     let full = renderer.estimate(flat, camera, [TIMED_SIDE; 2]).expect("an estimate");
     let factor = (full.as_secs_f64() / AT_ONCE.as_secs_f64()).sqrt().ceil().clamp(1.0, 8.0) as u32;
@@ -111,7 +112,7 @@ fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Duratio
     let mut frame =
         renderer.begin(Slot::Preview, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
     renderer.advance(&mut frame, Duration::MAX).expect("a picture");
-    start.elapsed()
+    (start.elapsed(), size)
 }
 
 /// Shares of the pixels that may differ in depth between kernels of two kinds, as in `methods`.
@@ -124,8 +125,11 @@ fn is_same(a: &Buffers, b: &Buffers) -> bool {
     pairs().all(|(a, b)| a.is_finite() == b.is_finite()) && far as f64 <= MAX_SHARE * a.depth.len() as f64
 }
 
+/// Width and height of the pictures that the interpreter draws too, in pixels.
+const SMALL_SIDE: u32 = 60;
+
 fn picture(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Buffers {
-    renderer.render(flat, &[], camera, [SIDE, SIDE], &mut |_| true).expect("a picture").0
+    renderer.render(flat, &[], camera, [SMALL_SIDE; 2], &mut |_| true).expect("a picture").0
 }
 
 fn wait_for_kernels(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) {
@@ -170,8 +174,9 @@ fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_kernel() {
         document.apply(edit).expect("an edit");
         let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
         let edited = start.elapsed();
-        let took = edited + answer(&mut renderer, &flat, &camera);
-        note(&format!("577 nodes, {name}: picture after {:.1} ms", took.as_secs_f64() * 1e3));
+        let (drawn, size) = answer(&mut renderer, &flat, &camera);
+        let ms = |took: Duration| took.as_secs_f64() * 1e3;
+        note(&format!("577 nodes, {name}: flat after {:.1} ms, {size:?} pixels {:.1} ms later", ms(edited), ms(drawn)));
         let (next, right) = (picture(&mut renderer, &flat, &camera), picture(&mut plain, &flat, &camera));
         assert!(is_same(&next, &right), "{name}");
         wait_for_kernels(&mut renderer, &flat, &camera);
@@ -183,7 +188,7 @@ fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_kernel() {
 fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     let (_, mut plain) = own_renderer();
     let mut renderer = Renderer::new(plain.gpu()).expect("a renderer");
-    let mut document = Document::new(gallery::crowd(400, true, 3));
+    let mut document = Document::new(gallery::crowd(200, true, 3));
     let mut flattener = Flattener::default();
     let mut flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
@@ -192,7 +197,7 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     wait_for_kernels(&mut renderer, &few, &camera);
     let start = Instant::now();
     renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
-    note(&format!("400 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
+    note(&format!("200 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
     assert!(renderer.pruner().building() > 0, "lists of this size are not waited for");
     assert!(is_same(&picture(&mut renderer, &flat, &camera), &picture(&mut plain, &flat, &camera)));
     wait_for_kernels(&mut renderer, &flat, &camera);
@@ -200,8 +205,8 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     picture(&mut renderer, &flat, &camera);
     assert!(renderer.uploaded() > uploaded + 20_000, "the lists are on the device now");
     for step in 0..2 {
-        let leaf = document.scene().nodes().iter().filter(|n| matches!(n.kind, NodeKind::Object(_))).nth(150 * step);
-        let mut node = Node::clone(leaf.expect("four hundred leaves"));
+        let leaf = document.scene().nodes().iter().filter(|n| matches!(n.kind, NodeKind::Object(_))).nth(80 * step);
+        let mut node = Node::clone(leaf.expect("two hundred leaves"));
         node.transform.translation.y += 0.3;
         document.apply(Edit::Replace(node)).expect("an edit");
         let start = Instant::now();

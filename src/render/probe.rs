@@ -10,7 +10,7 @@ use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storag
 use super::readback::read_words;
 use super::renderer::{KERNEL_WINDOW, LISTS_FORMAT, NUMBERS_FORMAT, RenderError};
 use super::uniforms::GpuComponent;
-use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT};
+use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT, Row};
 
 /// The field of the component of this index at `points` (relative to its origin), by the same source as
 /// the passes.
@@ -40,11 +40,12 @@ pub fn field(
     if let Some(tree) = &tree {
         components[index] = components[index].with_grid(tree, 0);
     }
+    let (rows, rows_at) = window_rows(flat, index, evaluator);
     let scene = [
         uploaded(bytemuck::cast_slice(&flat.nodes)),
         uploaded(bytemuck::cast_slice(&components)),
         uploaded(bytemuck::cast_slice(&flat.materials)),
-        uploaded(bytemuck::cast_slice(&flat.numbers)),
+        uploaded(bytemuck::cast_slice(&rows)),
     ];
     let texture = |label, format, bytes: &[u8]| {
         let mut texture = RowTexture::new(device, label, format);
@@ -56,15 +57,7 @@ pub fn field(
     let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
     let lists = texture("lists", LISTS_FORMAT, words);
     let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
-    // A kernel for a form has rows of its own form.
-    let is_form = matches!(evaluator, Evaluator::Specialised(structure) if structure.is_form());
-    let mut of_form = Vec::new();
-    if is_form {
-        form_rows(flat, &flat.components[index], &mut of_form);
-    }
-    let of_form = uploaded(bytemuck::cast_slice(&of_form));
-    let rows_window = window(if is_form { of_form.buffer() } else { scene[3].buffer() }, KERNEL_WINDOW);
-    let rows_at = if is_form { 0 } else { flat.components[index].numbers * 16 };
+    let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
     let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
     let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
     let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
@@ -85,4 +78,15 @@ pub fn field(
     }
     queue.submit([encoder.finish()]);
     Ok(read_words(gpu, values.buffer(), points.len())?.into_iter().map(f32::from_bits).collect())
+}
+
+/// The rows on which the kernel has its window, and where that begins, in bytes.
+fn window_rows(flat: &FlatScene, index: usize, evaluator: &Evaluator) -> (Vec<Row>, u32) {
+    // A kernel for a form has rows of its own form.
+    if matches!(evaluator, Evaluator::Specialised(structure) if structure.is_form()) {
+        let mut rows = Vec::new();
+        form_rows(flat, &flat.components[index], &mut rows);
+        return (rows, 0);
+    }
+    (flat.numbers.clone(), flat.components[index].numbers * size_of::<Row>() as u32)
 }

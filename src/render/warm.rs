@@ -59,7 +59,8 @@ impl Warmer {
             view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<View>())]),
             scene: bind(device, "scene", &layouts.scene, &scene),
             work: bind(device, "work", &layouts.work, &[window(small.buffer(), size_of::<Work>())]),
-            groups: field.bind(device, &Targets::new(device, [8, 8]), lists),
+            // Sides that are no powers of two, as in most windows: what lavapipe compiles depends on it.
+            groups: field.bind(device, &Targets::new(device, [24, 24]), lists),
             layouts,
             field,
             options,

@@ -55,10 +55,13 @@ impl Pruner {
         let end = Instant::now() + most;
         self.collect();
         let pruned = self.pruned(flat, wanted);
-        pruned.iter().for_each(|(index, key)| self.order_if_changed(flat, &flat.components[*index], *key));
-        if self.away.values().sum::<Duration>() <= most {
-            while !self.away.is_empty() && self.take_next(Some(end)) {}
-            self.away.values_mut().for_each(|expected| *expected = TOO_LONG);
+        // Twice: what was begun before the last edit comes back as it was, and is ordered anew.
+        for _ in 0..2 {
+            pruned.iter().for_each(|(index, key)| self.order_if_changed(flat, &flat.components[*index], *key));
+            if self.away.values().sum::<Duration>() <= end.saturating_duration_since(Instant::now()) {
+                while !self.away.is_empty() && self.take_next(Some(end)) {}
+                self.away.values_mut().for_each(|expected| *expected = TOO_LONG);
+            }
         }
         let mut trees = vec![None; flat.components.len()];
         for (index, key) in pruned {

@@ -292,7 +292,7 @@ pub(super) fn any_of(
     let mut out = String::new();
     for kind in shapes.shapes() {
         let (code, value) = (kind as u32, call(kind));
-        let is_it = format!("q{row}.z == {code}.0");
+        let is_it = format!("q{row}.w == {code}.0");
         out += &match skipping {
             Skipping::Branches | Skipping::Never => format!("    if {is_it} {{ {name}{at} = {value}; }}\n"),
             Skipping::Loops if shapes.is_small() => format!("    {name}{at} = select({name}{at}, {value}, {is_it});\n"),

@@ -137,8 +137,8 @@ impl Structure {
 
     /// The form of a component: its structure with leaves that may be any of these shapes, placed anyhow. Many
     /// structures have one form, and one kernel. `None` where it is too large for one, or has no form: the code of a
-    /// shape stands where further joints keep their size, modifiers have rows of their own, and shapes with loops would run
-    /// them for every leaf.
+    /// shape stands where further operators keep their depth, modifiers have rows of their own, and shapes with loops
+    /// would run them for every leaf.
     pub fn form(flat: &FlatScene, component: &Component, shapes: ShapeSet) -> Option<Self> {
         if !has_form(flat, component) {
             return None;
@@ -249,8 +249,8 @@ impl Structure {
 /// Rows of a leaf in a form: room for the parameters of any shape.
 const FORM_LEAF_ROWS: usize = LEAF_ROWS + SHAPE_FLOATS / 4;
 
-/// Appends the rows of a component as a kernel for its form reads them: every leaf takes as many, and the third number
-/// of its first row is the code of its shape.
+/// Appends the rows of a component as a kernel for its form reads them: every leaf takes as many, and the fourth
+/// number of its first row, the depth that only further operators have, is the code of its shape.
 pub fn form_rows(flat: &FlatScene, component: &Component, out: &mut Vec<Row>) {
     for node in &flat.nodes[component.first as usize..][..component.count as usize] {
         let (rows, first) = (&flat.numbers[node.numbers as usize..], out.len());
@@ -261,7 +261,7 @@ pub fn form_rows(flat: &FlatScene, component: &Component, out: &mut Vec<Row>) {
         let code = node.code & 0xffff;
         out.extend_from_slice(&rows[..LEAF_ROWS + ShapeKind::ALL[code as usize].rows()]);
         out.resize(first + FORM_LEAF_ROWS, [0.0; 4]);
-        out[first][2] = code as f32;
+        out[first][3] = code as f32;
     }
 }
 
@@ -278,11 +278,10 @@ fn has_loop(shape: ShapeKind) -> bool {
     matches!(shape, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian)
 }
 
-/// Whether a component has a form: no modifiers, no joints or blends beyond the first three, no shapes with loops.
+/// Whether a component has a form: no modifiers, no operators beyond the first three, no shapes with loops.
 fn has_form(flat: &FlatScene, component: &Component) -> bool {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
-    let is_further =
-        |node: &FlatNode| Join::ALL[node.join() as usize].is_further() || node.kernel() >= FIRST_FURTHER_KERNEL;
+    let is_further = |node: &FlatNode| Join::ALL[node.join() as usize].is_further();
     let loops = |node: &FlatNode| node.is_leaf() && has_loop(ShapeKind::ALL[(node.code & 0xffff) as usize]);
     !component.modified && !nodes.iter().any(|node| is_further(node) || loops(node))
 }
@@ -344,7 +343,7 @@ mod tests {
             for component in &flat.components {
                 let whole = Structure::whole(&flat, component);
                 let features = whole.features();
-                let plain = !component.modified && features.further == Further::default();
+                let plain = !component.modified && !features.further.joins;
                 let plain = plain && !features.shapes.iter().any(|kind| has_loop(*kind));
                 assert_eq!(Structure::form_key(&flat, component).is_some(), plain && fits(component), "{name}");
                 assert!(plain || Structure::form(&flat, component, whole.shapes()).is_none(), "{name}");
