@@ -81,8 +81,8 @@ impl Targets {
     }
 }
 
-/// The number, or one that is more and no power of two. lavapipe compiles a kernel once for textures with such sides and
-/// once for all others: 3.8 s within a frame where a coarse picture had 8 tiles to a side for the first time.
+/// The number, or one that is more and no power of two. lavapipe seems to compile a kernel once for textures with such sides
+/// and once for all others: 3.8 s within a frame where a coarse picture had 8 tiles to a side for the first time.
 fn no_power_of_two(side: u32) -> u32 {
     if side.is_power_of_two() { side.max(2) + 1 } else { side }
 }
