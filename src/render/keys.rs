@@ -1,10 +1,10 @@
 //! Which components get a kernel, and for what: their structure, or their form.
 //!
 //! A kernel for a structure is the fastest, but a scene may have as many structures as components: each takes a driver
-//! tenths of a second, and lavapipe throws kernels away where they hold more than some 500 000 instructions together,
-//! so that it compiles all of them anew in every frame (137 s instead of 0.14 for 128 groups of 8 leaves). So where there
-//! are many, components whose forms are alike share a kernel for their form, which takes about a fifth longer. What has no form, see
-//! [`Structure::form`], keeps the kernel for its structure, or gets none.
+//! tenths of a second, and lavapipe compiles all of them anew in every frame where they are too many (137 s instead of
+//! 0.14 for 128 groups of 8 leaves), probably because it throws kernels away that hold more than about 500 000
+//! instructions together. So where there are many, components whose forms are alike share a kernel for their form, which
+//! takes about a fifth longer. What has no form, see [`Structure::form`], keeps the kernel for its structure, or gets none.
 
 use std::collections::{HashMap, HashSet};
 
