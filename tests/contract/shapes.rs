@@ -44,7 +44,7 @@ fn check_distance(shape: &Shape, surface: &[super::surfaces::Patch], p: DVec3, f
         return fail("no safe step");
     }
     // Where the rims of sheets pass from tubes to balls the search ends early, a few hundred-thousandths too far off.
-    let seams = if matches!(shape, Shape::Triangle { .. } | Shape::Quad { .. }) { 1e-4 } else { 0.0 };
+    let seams = if matches!(shape, Shape::Triangle { .. } | Shape::Quad { .. }) { 6e-5 } else { 0.0 };
     if is_exact_at(shape, f) && f.abs() < d - tolerance - seams {
         return fail("not the distance");
     }
