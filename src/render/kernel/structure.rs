@@ -1,6 +1,6 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use super::source::{Features, Further};
+use super::source::{Features, Further, shape_loops};
 use crate::flat::{
     Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, Row,
     modifier_rows,
@@ -273,16 +273,11 @@ fn fits(component: &Component) -> bool {
     component.rows <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
 }
 
-/// Whether the function of a shape has a loop.
-fn has_loop(shape: ShapeKind) -> bool {
-    matches!(shape, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian)
-}
-
 /// Whether a component has a form: no modifiers, no operators beyond the first three, no shapes with loops.
 fn has_form(flat: &FlatScene, component: &Component) -> bool {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let is_further = |node: &FlatNode| Join::ALL[node.join() as usize].is_further();
-    let loops = |node: &FlatNode| node.is_leaf() && has_loop(ShapeKind::ALL[(node.code & 0xffff) as usize]);
+    let loops = |node: &FlatNode| node.is_leaf() && shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[0] > 0;
     !component.modified && !nodes.iter().any(|node| is_further(node) || loops(node))
 }
 
@@ -319,21 +314,9 @@ fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
 
 #[cfg(test)]
 mod tests {
-    use super::super::source::FILES;
     use super::*;
     use crate::flat::flatten;
     use crate::gallery;
-
-    #[test]
-    fn shapes_with_loops_are_known() {
-        for &kind in ShapeKind::ALL {
-            let file = format!("sdf/{}.wgsl", kind.function().trim_start_matches("sdf_"));
-            let text = FILES.iter().find(|(name, _)| *name == file).expect("each shape has a file").1;
-            let code = || text.lines().map(|line| line.split("//").next().unwrap_or("").trim_start());
-            let loops = code().any(|line| ["for ", "loop ", "while "].iter().any(|word| line.starts_with(word)));
-            assert_eq!(has_loop(kind), loops, "{kind:?}");
-        }
-    }
 
     #[test]
     fn what_is_modified_or_joined_further_has_no_form() {
@@ -344,7 +327,7 @@ mod tests {
                 let whole = Structure::whole(&flat, component);
                 let features = whole.features();
                 let plain = !component.modified && !features.further.joins;
-                let plain = plain && !features.shapes.iter().any(|kind| has_loop(*kind));
+                let plain = plain && !features.shapes.iter().any(|kind| shape_loops(*kind)[0] > 0);
                 assert_eq!(Structure::form_key(&flat, component).is_some(), plain && fits(component), "{name}");
                 assert!(plain || Structure::form(&flat, component, whole.shapes()).is_none(), "{name}");
                 without += usize::from(!plain);

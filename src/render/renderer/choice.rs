@@ -6,9 +6,11 @@ use std::time::Duration;
 use super::{RenderError, Renderer};
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
+use crate::render::kernel::shape_loops;
 use crate::render::kernels::{Choice, Method, Walk};
 use crate::render::keys::Key;
 use crate::render::schedule::Evaluation;
+use crate::scene::ShapeKind;
 
 /// What [`Renderer::choose`] finds, beside the components.
 pub(super) struct Chosen {
@@ -43,12 +45,14 @@ impl Renderer {
         }
         let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
         let choices = self.kernels.choose(flat, &keys, self.method, &has_lists, &largest_first(flat, camera))?;
+        let loops = self.kernels.loops();
         let evaluation = |i: usize| {
-            let straight = |key: Key| Evaluation::of_straight(&flat.components[i], key.form);
+            let rounds = rounds(flat, &flat.components[i]);
+            let straight = |key: Key| Evaluation::of_straight(&flat.components[i], key.form, rounds);
             let mut now = match (choices[i].walk, &trees[i], keys[i]) {
                 (Walk::Straight, _, Some(key)) => straight(key),
-                (Walk::List, Some(tree), _) => Evaluation::of_lists(tree),
-                _ => Evaluation::of_entries(&flat.components[i]),
+                (Walk::List, Some(tree), _) => Evaluation::of_lists(tree, loops, rounds),
+                _ => Evaluation::of_entries(&flat.components[i], loops, rounds),
             };
             // A kernel that becomes ready takes over within the frame.
             now.iterations = now.iterations.max(keys[i].map_or(0, |key| straight(key).iterations));
@@ -68,4 +72,11 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     let mut order: Vec<(f64, usize)> = flat.components.iter().map(size).zip(0..).collect();
     order.sort_by(|a, b| b.0.total_cmp(&a.0));
     order.into_iter().map(|(_, i)| i).collect()
+}
+
+/// Rounds that the loops of the component's leaves take together, at most.
+fn rounds(flat: &FlatScene, component: &Component) -> u32 {
+    let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
+    let leaves = entries.iter().filter(|node| node.is_leaf());
+    leaves.map(|node| shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[1]).sum()
 }
