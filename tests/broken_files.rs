@@ -89,6 +89,42 @@ const CASES: &[Case] = &[
         "exactly one of",
     ),
     (r#", "camera": {"fov_y": 40, "near": 0.001, "far": 10000}"#, "", "View #7", "nodes[6]", "exactly one of"),
+    // Points.
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "tube", "points": [[0, 0, 0, 1]], "radius": 0.1, "closed": false"#,
+        "Head #2",
+        "nodes[1].object.shape.points",
+        "must be 2 to 256 points, not 1",
+    ),
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "tube", "points": [[0, 0, 0, 1], [0, 1, 0, -1]], "radius": 0.1, "closed": false"#,
+        "Head #2",
+        "nodes[1].object.shape.points[1][3]",
+        "must be 0 to",
+    ),
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "tube", "points": [[0, 0, 0, 1], [0, 1]], "radius": 0.1, "closed": false"#,
+        "Head #2",
+        "nodes[1].object.shape.points[1]",
+        "invalid length 2",
+    ),
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "extrusion", "corners": [[0, 0], [1, 0]], "smooth": false, "depth": 1, "rounding": 0"#,
+        "Head #2",
+        "nodes[1].object.shape.corners",
+        "must be 3 to 256 points, not 2",
+    ),
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "revolution", "corners": [[0, 0], [1, 0], [1, 1e10]], "smooth": false, "offset": 0"#,
+        "Head #2",
+        "nodes[1].object.shape.corners[2][1]",
+        "must be -1e9 to 1e9 m",
+    ),
     // Types.
     (r#""radius": 0.5"#, r#""radius": "big""#, "Head #2", "nodes[1].object.shape.radius", "expected a number"),
     (r#""radius": 0.5"#, r#""radius": null"#, "Head #2", "nodes[1].object.shape.radius", "invalid type: null"),

@@ -103,6 +103,36 @@ pub fn paint_shape(painter: &Painter, rect: Rect, kind: ShapeKind, color: Color3
             pen.line(&[[-0.75, 0.05], [-0.15, 0.25], [0.75, 0.05]]);
             pen.line(&[[0.0, -0.9], [-0.15, 0.25], [0.0, 0.9]]);
         }
+        ShapeKind::Tube => {
+            pen.wave(0.45, [-0.15, -0.3]);
+            pen.wave(0.45, [0.15, 0.3]);
+            pen.ellipse([-0.8, 0.0], [0.17, 0.3], 0.0, 1.0);
+            pen.ellipse([0.8, 0.0], [0.17, 0.3], 0.75, 0.5);
+        }
+        ShapeKind::Extrusion => {
+            let corner = |i: u8, by: f32| {
+                let angle = TAU * f32::from(i) / 10.0;
+                let r = if i % 2 == 0 { 0.75 } else { 0.34 };
+                [r * angle.sin() + by, -r * angle.cos() - by]
+            };
+            pen.line(&std::array::from_fn::<_, 11, _>(|i| corner(i as u8, -0.1)));
+            pen.line(&std::array::from_fn::<_, 5, _>(|i| corner(i as u8, 0.15)));
+        }
+        ShapeKind::Revolution => {
+            pen.line(&[[-0.5, -0.85], [-0.3, -0.45], [-0.65, 0.1], [-0.2, 0.7], [-0.5, 0.85]]);
+            pen.line(&[[0.5, -0.85], [0.3, -0.45], [0.65, 0.1], [0.2, 0.7], [0.5, 0.85]]);
+            pen.ellipse([0.0, -0.85], [0.5, 0.12], 0.0, 1.0);
+            pen.ellipse([0.0, 0.85], [0.5, 0.12], 0.0, 0.5);
+        }
+        ShapeKind::Terrain => {
+            pen.line(&[[-0.95, 0.5], [-0.4, -0.5], [-0.1, 0.0], [0.3, -0.75], [0.95, 0.5], [-0.95, 0.5]]);
+            pen.line(&[[0.05, -0.25], [0.25, -0.1], [0.35, -0.25], [0.55, -0.2]]);
+        }
+        ShapeKind::Ocean => {
+            pen.wave(0.25, [-0.45, -0.45]);
+            pen.wave(0.25, [0.0, 0.0]);
+            pen.wave(0.25, [0.45, 0.45]);
+        }
     }
 }
 
@@ -127,6 +157,15 @@ impl Pen<'_> {
         let points = (0..=32).map(|i| {
             let angle = TAU * (start + share * i as f32 / 32.0);
             self.at([center[0] + radii[0] * angle.cos(), center[1] + radii[1] * angle.sin()])
+        });
+        self.painter.add(Shape::line(points.collect(), self.stroke));
+    }
+
+    /// Two crests from left to right, `height` high, between two heights.
+    fn wave(&self, height: f32, [from, to]: [f32; 2]) {
+        let points = (0..=32).map(|i| {
+            let t = i as f32 / 32.0;
+            self.at([2.0 * t - 1.0, from + (to - from) * t - height * (TAU * 1.5 * t).sin() * 0.5])
         });
         self.painter.add(Shape::line(points.collect(), self.stroke));
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::fields::{self, Field};
 use super::sheet::Sheet;
-use super::{shape_change, theme};
+use super::{inspector_points, shape_change, theme};
 use crate::scene::limits::{ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, RANGE};
 use crate::scene::{
     Attenuation, BlendKernel, CameraNode, Group, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Operator,
@@ -107,7 +107,7 @@ pub fn shape(ui: &mut Ui, sheet: &mut Sheet<'_>) {
 
 fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, default: ParamValue) {
     let label = sentence_case(param.name);
-    let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).copied());
+    let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).cloned());
     let set = |n: &mut Node, v: ParamValue| {
         if let Some(o) = object_mut(n) {
             o.shape.set_value(index, v);
@@ -126,6 +126,14 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
             let same = default.x == default.y && default.y == default.z;
             let field = field(&label, param.help, param.limits, same.then_some(default.x));
             sheet.vector(ui, &field, get, |n, v| set(n, ParamValue::Vector(v)));
+        }
+        ParamValue::Flag(_) => {
+            let get = |n: &Node| matches!(value(n), Some(ParamValue::Flag(true)));
+            sheet.toggle(ui, (&label, "", param.help), get, |n, v| set(n, ParamValue::Flag(v)));
+        }
+        ParamValue::List(_) => {
+            let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };
+            inspector_points::list(ui, sheet, (&label, param), get, |n, v| set(n, ParamValue::List(v)));
         }
     }
 }

@@ -22,6 +22,7 @@ mod insertion;
 mod inspector;
 mod inspector_kinds;
 mod inspector_material;
+mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
 mod messages;

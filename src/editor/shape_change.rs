@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::scene::{Shape, ShapeKind};
+use crate::scene::{ParamValue, Shape, ShapeKind};
 
 /// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
 /// then the kind's defaults.
@@ -10,7 +10,7 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     let bounds = from.bounds();
     let half = bounds.half().max(DVec3::splat(1e-3));
     if from.kind() == kind || !bounds.is_finite() {
-        return if from.kind() == kind { *from } else { kind.default_shape() };
+        return if from.kind() == kind { from.clone() } else { kind.default_shape() };
     }
     let mean = (half.x + half.y + half.z) / 3.0;
     let side = (half.x + half.z) * 0.5;
@@ -43,18 +43,48 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
         ShapeKind::Plane => Shape::Plane {},
         ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
         ShapeKind::Octahedron => Shape::Octahedron { radius: mean },
+        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Terrain | ShapeKind::Ocean => {
+            let shape = kind.default_shape();
+            let factor = half.length() / shape.bounds().half().length();
+            resized(shape, factor)
+        }
     };
     rounded(shape)
 }
 
+/// The shape with all that is a length multiplied.
+fn resized(mut shape: Shape, factor: f64) -> Shape {
+    for (index, (value, param)) in shape.values().into_iter().zip(shape.kind().params()).enumerate() {
+        if param.limits.unit != "m" {
+            continue;
+        }
+        let value = match value {
+            ParamValue::Scalar(v) => ParamValue::Scalar(v * factor),
+            ParamValue::Vector(v) => ParamValue::Vector(v * factor),
+            ParamValue::List(mut list) => {
+                list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
+                ParamValue::List(list)
+            }
+            flag @ ParamValue::Flag(_) => flag,
+        };
+        shape.set_value(index, value);
+    }
+    shape
+}
+
 /// The shape with every number rounded to a micrometre, so that the inspector shows tidy values.
 fn rounded(mut shape: Shape) -> Shape {
-    use crate::scene::ParamValue::{Scalar, Vector};
+    use ParamValue::{Flag, List, Scalar, Vector};
     let tidy = |v: f64| (v * 1e6).round() / 1e6;
     for (index, value) in shape.values().into_iter().enumerate() {
         let value = match value {
             Scalar(v) => Scalar(tidy(v)),
             Vector(v) => Vector(v.map(tidy)),
+            List(mut list) => {
+                list.rows.iter_mut().flatten().for_each(|v| *v = tidy(*v));
+                List(list)
+            }
+            Flag(v) => Flag(v),
         };
         shape.set_value(index, value);
     }
@@ -64,6 +94,7 @@ fn rounded(mut shape: Shape) -> Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{MaterialId, Node, NodeKind, Object, check};
 
     #[test]
     fn every_change_keeps_about_the_size_and_every_value_is_allowed() {
@@ -72,9 +103,9 @@ mod tests {
                 let old = from.default_shape();
                 let new = changed(&old, to);
                 assert_eq!(new.kind(), to);
-                for (param, value) in to.params().iter().zip(new.packed()) {
-                    assert!(param.limits.accept(value), "{from:?} to {to:?}: {} {value}", param.name);
-                }
+                let object = Object { shape: new.clone(), material: MaterialId(1) };
+                let checked = check::node(&Node::new("x", NodeKind::Object(object)));
+                assert_eq!(checked, Ok(()), "{from:?} to {to:?}");
                 if old.bounds().is_finite() && new.bounds().is_finite() {
                     let ratio = new.bounds().half().length() / old.bounds().half().length();
                     assert!((0.4..=1.6).contains(&ratio), "{from:?} to {to:?}: {ratio}");

@@ -75,8 +75,10 @@ pub enum Join {
 
 /// Numbers of an entry, four at a time. Both kinds begin with the joint.
 ///
-/// Leaf: `[support, distance_scale, 0, 0]`, three rows of local-from-component (a point `p` maps to
-/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows).
+/// Leaf: `[support, distance_scale, count, data]`, three rows of local-from-component (a point `p` maps to
+/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has
+/// `count` rows of them, `data` rows behind the leaf's first; they stand behind the rows of all entries of the
+/// component, so that they are no part of what a specialised kernel reads as uniform.
 ///
 /// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
@@ -90,6 +92,12 @@ pub const ROW_ALIGNMENT: usize = 16;
 pub const LEAF_ROWS: usize = 4;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
+
+/// The data of the leaf whose rows `numbers` begins with; empty for most.
+pub fn leaf_data(numbers: &[Row]) -> &[Row] {
+    let [_, _, count, data] = numbers[0].map(|v| v as usize);
+    &numbers[data..data + count]
+}
 
 /// A material as the GPU reads it.
 #[repr(C)]
@@ -151,8 +159,10 @@ pub struct Component {
     pub count: u32,
     /// Its first row in [`FlatScene::numbers`], a multiple of [`ROW_ALIGNMENT`].
     pub numbers: u32,
-    /// How many rows.
+    /// How many rows, data included.
     pub rows: u32,
+    /// How many of the last of them are data of its leaves.
+    pub data: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
     /// Around its surface, relative to `origin`; may be unbounded.

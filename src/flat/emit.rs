@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::arrays::*;
 use super::operands::{Operand, Value, fold_bounds};
 use crate::geometry::Aabb;
-use crate::scene::{BlendKernel, MaterialId, Shape};
+use crate::scene::{BlendKernel, MaterialId, ShapeKind};
 
 /// Appends the component's entries and returns its description.
 pub(super) fn emit(
@@ -19,11 +19,14 @@ pub(super) fn emit(
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
+    let data = flat.numbers.len();
+    emit_data(flat, operands, &mut (first..));
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
         numbers: numbers as u32,
         rows: (flat.numbers.len() - numbers) as u32,
+        data: (flat.numbers.len() - data) as u32,
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
@@ -48,7 +51,10 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
 
 /// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
-    let Value::Leaf { local_from_world, shape: Shape::Plane {}, .. } = &operands[0].value else { return None };
+    let Value::Leaf { local_from_world, body, .. } = &operands[0].value else { return None };
+    if body.kind != ShapeKind::Plane {
+        return None;
+    }
     if operands.iter().any(|o| o.join == Join::Union) {
         return None;
     }
@@ -57,6 +63,28 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let length = row.length();
     let normal = row / length;
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
+}
+
+/// Appends the data of all leaves; `entries` are those from here on, in the order in which they were written.
+fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn Iterator<Item = usize>) {
+    for operand in operands {
+        let mut entry = || entries.next().expect("all were written");
+        let mut at = entry();
+        while flat.nodes[at].is_run() {
+            at = entry();
+        }
+        match &operand.value {
+            Value::Fold(inner) => emit_data(flat, inner, entries),
+            Value::Leaf { body, .. } if !body.rows.is_empty() => {
+                let first = flat.nodes[at].numbers as usize;
+                // Exact: there are far fewer rows than f32 can count.
+                flat.numbers[first][2] = body.rows.len() as f32;
+                flat.numbers[first][3] = (flat.numbers.len() - first) as f32;
+                flat.numbers.extend(body.rows.iter().map(|row| row.map(|v| v as f32)));
+            }
+            Value::Leaf { .. } => {}
+        }
+    }
 }
 
 /// Operands that follow each other and join alike get a run where there are this many.
@@ -141,9 +169,9 @@ fn emit_operand(
     let support = operand.blend.support() as f32;
     flat.ids.push(operand.node.id);
     match &operand.value {
-        Value::Leaf { local_from_world, distance_scale, shape, material: id } => {
+        Value::Leaf { local_from_world, distance_scale, body, material: id } => {
             let material = material(flat, *id);
-            flat.nodes.push(FlatNode { code: code(shape.kind() as u32), extent: 1, numbers, material });
+            flat.nodes.push(FlatNode { code: code(body.kind as u32), extent: 1, numbers, material });
             let m = &local_from_world.matrix3;
             let shift = local_from_world.transform_point3(origin);
             flat.numbers.push([support, *distance_scale as f32, 0.0, 0.0]);
@@ -151,8 +179,8 @@ fn emit_operand(
                 let r = m.row(row);
                 flat.numbers.push([r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]);
             }
-            let packed = shape.packed().map(|v| v as f32);
-            let rows = shape.kind().rows();
+            let packed = body.parameters.map(|v| v as f32);
+            let rows = body.kind.rows();
             flat.numbers.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
             0
         }

@@ -3,6 +3,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | `body` | shape → the numbers that it is evaluated with |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
@@ -17,6 +18,7 @@
 //! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
+mod body;
 mod buffers;
 pub mod compare;
 mod emit;
@@ -34,6 +36,7 @@ pub mod twin;
 mod view;
 
 pub use arrays::*;
+pub use body::Body;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};

@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::{Join, Warning};
+use super::body::Body;
 use crate::geometry::{Aabb, singular_values};
 use crate::scene::{Blend, Group, MaterialId, Node, NodeKind, Operator, Scene, Shape};
 
@@ -30,8 +31,8 @@ pub(super) struct Operand<'a> {
 /// What an operand is.
 #[derive(Clone)]
 pub(super) enum Value<'a> {
-    /// A shape: local-from-world, factor on its local distance, parameters.
-    Leaf { local_from_world: DAffine3, distance_scale: f64, shape: Shape, material: MaterialId },
+    /// A shape: local-from-world, factor on its local distance, what it is evaluated with.
+    Leaf { local_from_world: DAffine3, distance_scale: f64, body: Body, material: MaterialId },
     /// A fold of its own; never of one operand.
     Fold(Vec<Operand<'a>>),
 }
@@ -224,7 +225,8 @@ fn leaf<'a>(
         // A ball looks the same from every side: without a rotation its kernel is shorter.
         world_from_local.matrix3 = DMat3::IDENTITY;
     }
-    let bounds = shape.bounds().transformed(&world_from_local);
+    let body = Body::new(&shape);
+    let bounds = body.bounds.transformed(&world_from_local);
     Operand {
         node,
         outermost,
@@ -233,7 +235,7 @@ fn leaf<'a>(
         bounds,
         skip: bounds,
         slope: if bounds.is_finite() { least / greatest } else { 0.0 },
-        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, shape, material },
+        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, body, material },
     }
 }
 
@@ -253,10 +255,10 @@ fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f6
             let rotation = DMat3::from_cols(m.x_axis / scale.x, m.y_axis / scale.y, m.z_axis / scale.z);
             return (absorbed, DAffine3 { matrix3: rotation, ..*world_from_local }, 1.0, 1.0);
         }
-        return (*shape, *world_from_local, scale.min_element(), scale.max_element());
+        return (shape.clone(), *world_from_local, scale.min_element(), scale.max_element());
     }
     let (least, greatest) = singular_values(m);
-    (*shape, *world_from_local, least, greatest)
+    (shape.clone(), *world_from_local, least, greatest)
 }
 
 /// What encloses a fold.

@@ -8,6 +8,7 @@ mod boolean_operations;
 mod chess_pawn;
 mod crowds;
 mod deep_tree;
+mod drawn;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
 mod random_groups;
@@ -35,6 +36,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("blend-kernels", blend_kernels::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
         ("deep-tree", deep_tree::scene()),
+        ("drawn", drawn::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -8,8 +8,8 @@ use super::limits::{
     SHININESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Light, LightKind, Material, MeshNode, Node, NodeKind, ParamValue,
-    SceneError, Shape,
+    Attenuation, CameraNode, Environment, Group, Light, LightKind, List, Material, MeshNode, Node, NodeKind,
+    ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
 
@@ -149,6 +149,22 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
         match value {
             ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
             ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
+            ParamValue::Flag(_) => {}
+            ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
+        }
+    }
+    Ok(())
+}
+
+/// How many rows a list has, and every number in it.
+fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
+    let [least, most] = list.count;
+    if list.rows.len() < least || list.rows.len() > most {
+        return Err(Fault::new(field, format!("must be {least} to {most} points, not {}", list.rows.len())));
+    }
+    for (i, row) in list.rows.iter().enumerate() {
+        for (column, value) in row[..list.columns.len()].iter().enumerate() {
+            number(&format!("{field}[{i}][{column}]"), *value, &list.limits(column, limits))?;
         }
     }
     Ok(())
@@ -231,8 +247,16 @@ mod tests {
             for (i, param) in kind.params().iter().enumerate() {
                 for bad in [f64::NAN, f64::INFINITY, param.limits.hard[0] - 1.0, param.limits.hard[1] * 1.01] {
                     let mut shape = kind.default_shape();
-                    if !shape.set_value(i, ParamValue::Scalar(bad)) {
-                        assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))));
+                    match &mut shape.values()[i] {
+                        ParamValue::Flag(_) => continue,
+                        ParamValue::Scalar(_) => assert!(shape.set_value(i, ParamValue::Scalar(bad))),
+                        ParamValue::Vector(_) => {
+                            assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))))
+                        }
+                        ParamValue::List(list) => {
+                            list.rows[1][0] = bad;
+                            assert!(shape.set_value(i, ParamValue::List(list.clone())));
+                        }
                     }
                     let object = Object { shape, material: MaterialId(1) };
                     let fault = node(&Node::new("x", NodeKind::Object(object))).unwrap_err();
@@ -242,6 +266,23 @@ mod tests {
             let object = Object { shape: kind.default_shape(), material: MaterialId(1) };
             assert_eq!(node(&Node::new("x", NodeKind::Object(object))), Ok(()));
         }
+    }
+
+    #[test]
+    fn lists_are_held_to_their_lengths_and_columns() {
+        let check = |change: &dyn Fn(&mut List)| {
+            let mut shape = ShapeKind::Tube.default_shape();
+            let ParamValue::List(mut list) = shape.values()[0].clone() else { panic!("a list") };
+            change(&mut list);
+            assert!(shape.set_value(0, ParamValue::List(list)));
+            node(&Node::new("x", NodeKind::Object(Object { shape, material: MaterialId(1) })))
+        };
+        assert_eq!(check(&|_| {}), Ok(()));
+        let fault = check(&|list| list.rows.truncate(1)).unwrap_err();
+        assert_eq!((&*fault.field, &*fault.reason), ("object.shape.points", "must be 2 to 256 points, not 1"));
+        assert!(check(&|list| list.rows = vec![[0.0; 4]; 257]).is_err());
+        assert_eq!(check(&|list| list.rows[2][3] = -1.0).unwrap_err().field, "object.shape.points[2][3]");
+        assert_eq!(check(&|list| list.rows[2][1] = -1.0), Ok(()));
     }
 
     #[test]

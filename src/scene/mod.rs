@@ -3,6 +3,7 @@
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
 pub mod check;
+mod drawn;
 mod error;
 pub mod file;
 mod light;
@@ -10,15 +11,18 @@ pub mod limits;
 mod material;
 mod node;
 mod operator;
+mod param;
 mod shape;
 mod table;
 
+pub use drawn::{Corners, Points, profile_curve, tube_curve};
 pub use error::SceneError;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, Operator};
+pub use param::{LIST_COLUMNS, List, ParamValue};
 pub(crate) use shape::for_each_shape;
-pub use shape::{Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+pub use shape::{Param, SHAPE_FLOATS, Shape, ShapeKind};
 pub use table::Scene;

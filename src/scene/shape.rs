@@ -2,53 +2,22 @@
 //! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
 //! To add one: an entry with its bounds here, `sdf_name` in `flat/twin/sdf.rs`, `sdf_name` in `shaders/sdf/`.
+//! One `with data` is evaluated from numbers that `flat::Body` makes of its parameters.
 
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{Limits, POSITION, SIZE, THICKNESS};
+use super::drawn::{Corners, Points, profile_bounds, tube_bounds};
+use super::limits::{COUNT, Limits, OCTAVES, POSITION, SEED, SIZE, THICKNESS, TURN, UNIT, WAVELENGTH};
+use super::param::{ParamField, ParamValue};
 use crate::geometry::Aabb;
 
 /// Most numbers that the parameters of one shape may take.
 pub const SHAPE_FLOATS: usize = 8;
 
-/// The value of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParamValue {
-    /// One number.
-    Scalar(f64),
-    /// Three numbers: a size or a point.
-    Vector(DVec3),
-}
-
-/// A Rust type that a parameter can have.
-trait ParamField: Copy {
-    /// How many numbers it takes.
-    const FLOATS: usize;
-    fn to_value(self) -> ParamValue;
-    fn from_value(value: ParamValue) -> Option<Self>;
-}
-
-impl ParamField for f64 {
-    const FLOATS: usize = 1;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Scalar(self)
-    }
-    fn from_value(value: ParamValue) -> Option<Self> {
-        if let ParamValue::Scalar(v) = value { Some(v) } else { None }
-    }
-}
-
-impl ParamField for [f64; 3] {
-    const FLOATS: usize = 3;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Vector(self.into())
-    }
-    fn from_value(value: ParamValue) -> Option<Self> {
-        if let ParamValue::Vector(v) = value { Some(v.to_array()) } else { None }
-    }
-}
+/// Rows of the parameters of a shape with data.
+const DATA_PARAMETER_ROWS: usize = 2;
 
 /// What is known about a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -62,11 +31,11 @@ pub struct Param {
 }
 
 macro_rules! shapes {
-    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident, $label:literal {
+    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
         $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
         /// A shape with its parameters, in metres, in local space.
-        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Shape {
             $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ $param: $type, )* }, )+
@@ -107,7 +76,15 @@ macro_rules! shapes {
 
             /// How many rows of four numbers its parameters take, see [`Shape::packed`].
             pub fn rows(self) -> usize {
+                if self.has_data() {
+                    return DATA_PARAMETER_ROWS;
+                }
                 match self { $( Self::$name => const { (0_usize $( + <$type as ParamField>::FLOATS )*).div_ceil(4) }, )+ }
+            }
+
+            /// Whether it is evaluated from numbers made of its parameters, with further rows behind them.
+            pub fn has_data(self) -> bool {
+                match self { $( Self::$name => false $( || stringify!($data) == "data" )?, )+ }
             }
 
             /// The shape with its default parameters.
@@ -124,7 +101,7 @@ macro_rules! shapes {
 
             /// The parameters' values, in the order of [`ShapeKind::params`].
             pub fn values(&self) -> Vec<ParamValue> {
-                match *self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
+                match self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
             }
 
             /// Sets the parameter at `index`; false, and nothing changed, where there is none or the
@@ -144,9 +121,9 @@ macro_rules! shapes {
             }
         }
 
-        /// Calls `$callback!(Name = sdf_name, …)` with every shape.
+        /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` behind those that have data.
         macro_rules! for_each_shape {
-            ($callback:ident) => { $callback! { $( $name = $function, )+ } };
+            ($callback:ident) => { $callback! { $( $name = $function $(with $data)?, )+ } };
         }
         pub(crate) use for_each_shape;
     };
@@ -234,10 +211,74 @@ shapes! {
         /// From the centre to a corner.
         radius: f64 = 0.6, SIZE;
     }
+    /// A round tube along a smooth curve through points; its ends are balls.
+    Tube = sdf_tube with data, "Tube" {
+        /// Points of the curve, each with a radius.
+        points: Points = Points::new([[-0.6, -0.2, 0.0, 0.0], [-0.2, 0.25, 0.15, 0.0], [0.2, -0.25, -0.15, 0.0], [0.6, 0.2, 0.0, 0.0]]), POSITION;
+        /// Added to the radius of each point.
+        radius: f64 = 0.12, SIZE;
+        /// Whether the curve returns to its first point.
+        closed: bool = false, COUNT;
+    }
+    /// A drawn outline in the XY plane, as thick as its depth along Z.
+    Extrusion = sdf_extrusion with data, "Extrusion" {
+        /// Corners of the outline; the last is joined to the first.
+        corners: Corners = Corners::star(5, 0.6, 0.28), POSITION;
+        /// Whether the outline is a smooth curve through the corners.
+        smooth: bool = false, COUNT;
+        /// From face to face.
+        depth: f64 = 0.3, SIZE;
+        /// Radius of the edges of the faces, inwards.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A drawn outline in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
+    Revolution = sdf_revolution with data, "Revolution" {
+        /// Corners of the outline; the last is joined to the first.
+        corners: Corners = Corners::vase(), POSITION;
+        /// Whether the outline is a smooth curve through the corners.
+        smooth: bool = false, COUNT;
+        /// How far the outline is moved away from the axis.
+        offset: f64 = 0.0, POSITION;
+    }
+    /// Hills: fractal noise over a rectangle, solid down to a flat bottom.
+    Terrain = sdf_terrain with data, "Terrain" {
+        /// Width, depth of the ground below the mean height, length.
+        size: [f64; 3] = [2.0, 0.4, 2.0], SIZE;
+        /// Greatest height above and below the mean.
+        amplitude: f64 = 0.35, SIZE;
+        /// Size of the largest hills.
+        wavelength: f64 = 0.8, WAVELENGTH;
+        /// How many layers of ever finer noise.
+        octaves: f64 = 5.0, OCTAVES;
+        /// How high each layer is relative to the one before it.
+        roughness: f64 = 0.45, UNIT;
+        /// Another number, another landscape.
+        seed: f64 = 1.0, SEED;
+    }
+    /// Water with waves over a rectangle, solid down to a flat bottom.
+    Ocean = sdf_ocean with data, "Ocean" {
+        /// Width, depth of the water, length.
+        size: [f64; 3] = [2.0, 0.3, 2.0], SIZE;
+        /// Height of the waves above and below the mean, all together.
+        amplitude: f64 = 0.08, SIZE;
+        /// Length of the longest wave.
+        wavelength: f64 = 0.9, WAVELENGTH;
+        /// How many waves.
+        waves: f64 = 6.0, OCTAVES;
+        /// Where they run to, seen from above: 0 is along X, 90 along Z.
+        direction: f64 = 30.0, TURN;
+        /// How far the waves run apart, to either side of the direction.
+        spread: f64 = 50.0, TURN;
+        /// How pointed the crests are.
+        sharpness: f64 = 0.5, UNIT;
+        /// Where the waves are in their motion: 360 is a whole turn of the longest.
+        phase: f64 = 0.0, TURN;
+    }
 }
 
 impl Shape {
-    /// The parameters in order, as the evaluators read them; unused places are 0.
+    /// The parameters in order, as the evaluators read them; unused places are 0. Of a shape with data `flat::Body`
+    /// makes what is read instead.
     pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
         let mut out = [0.0; SHAPE_FLOATS];
         let mut at = 0;
@@ -251,6 +292,7 @@ impl Shape {
                     out[at..at + 3].copy_from_slice(&v.to_array());
                     at += 3;
                 }
+                ParamValue::Flag(_) | ParamValue::List(_) => {}
             }
         }
         out
@@ -260,6 +302,21 @@ impl Shape {
     pub fn bounds(&self) -> Aabb {
         let around = |half: DVec3| Aabb::from_center_half(DVec3::ZERO, half);
         match *self {
+            Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
+            Self::Extrusion { ref corners, smooth, depth, .. } => {
+                let flat = profile_bounds(corners, smooth);
+                let half = DVec3::Z * (0.5 * depth);
+                Aabb::new(flat.min - half, flat.max + half)
+            }
+            Self::Revolution { ref corners, smooth, offset } => {
+                let flat = profile_bounds(corners, smooth);
+                let r = (flat.max.x + offset).max(0.0);
+                Aabb::new(DVec3::new(-r, flat.min.y, -r), DVec3::new(r, flat.max.y, r))
+            }
+            Self::Terrain { size, amplitude, .. } | Self::Ocean { size, amplitude, .. } => {
+                let [x, depth, z] = size;
+                Aabb::new(DVec3::new(-0.5 * x, -depth, -0.5 * z), DVec3::new(0.5 * x, amplitude, 0.5 * z))
+            }
             Self::Sphere { radius } | Self::Octahedron { radius } => around(DVec3::splat(radius)),
             Self::Ellipsoid { radii } => around(radii.into()),
             Self::Box { size, .. } | Self::BoxFrame { size, .. } => around(DVec3::from(size) * 0.5),
@@ -335,6 +392,7 @@ impl Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::LIST_COLUMNS;
 
     #[test]
     fn every_parameter_can_be_read_written_and_packed() {
@@ -344,13 +402,19 @@ mod tests {
             let values = shape.values();
             assert_eq!(values.len(), kind.params().len());
             let floats: usize = values.iter().map(|v| if matches!(v, ParamValue::Vector(_)) { 3 } else { 1 }).sum();
-            assert!(floats <= SHAPE_FLOATS);
+            assert!(kind.has_data() || floats <= SHAPE_FLOATS);
             for (i, value) in values.iter().enumerate() {
-                let changed = match *value {
+                let changed = match value {
                     ParamValue::Scalar(v) => ParamValue::Scalar(v + 0.25),
-                    ParamValue::Vector(v) => ParamValue::Vector(v + 0.25),
+                    ParamValue::Vector(v) => ParamValue::Vector(*v + 0.25),
+                    ParamValue::Flag(v) => ParamValue::Flag(!v),
+                    ParamValue::List(list) => {
+                        let mut list = list.clone();
+                        list.rows.push([0.0; LIST_COLUMNS]);
+                        ParamValue::List(list)
+                    }
                 };
-                assert!(shape.set_value(i, changed));
+                assert!(shape.set_value(i, changed.clone()));
                 assert_eq!(shape.values()[i], changed);
             }
             assert!(!shape.set_value(values.len(), ParamValue::Scalar(1.0)));

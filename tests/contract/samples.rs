@@ -1,7 +1,9 @@
 //! Reproducible random numbers, points and parameters.
 
 use glam::DVec3;
-use isolith::scene::{ParamValue, Shape, ShapeKind};
+use isolith::flat::Body;
+use isolith::flat::twin::{Real, shape_distance};
+use isolith::scene::{LIST_COLUMNS, ParamValue, Shape, ShapeKind};
 
 /// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
 pub struct Random(u64);
@@ -61,6 +63,19 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut([f64; 2]) -> f64) -> S
         let value = match value {
             ParamValue::Scalar(_) => ParamValue::Scalar(next()),
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
+            ParamValue::Flag(_) => ParamValue::Flag(number([0.0, 1.0]) > 0.5),
+            ParamValue::List(mut list) => {
+                let count = list.count[0] + number([0.0, 2.9]).clamp(0.0, 2.0) as usize;
+                let column = |list: &isolith::scene::List, c: usize| list.limits(c, &limits);
+                list.rows = vec![[0.0; LIST_COLUMNS]; count];
+                for i in 0..count {
+                    for c in 0..list.columns.len() {
+                        let limits = column(&list, c);
+                        list.rows[i][c] = number(limits.soft).clamp(limits.hard[0], limits.hard[1]);
+                    }
+                }
+                ParamValue::List(list)
+            }
         };
         assert!(shape.set_value(i, value));
     }
@@ -86,14 +101,27 @@ pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
     (0..count).map(|_| shape_with(kind, |_| random.pick(&[0.0, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1e3, 1e6, 1e9]))).collect()
 }
 
-/// The size of a shape: the greatest of its numbers.
+/// The field of a shape.
+pub fn evaluate<T: Real>(body: &Body, p: [T; 3]) -> T {
+    shape_distance(body.kind, p, &body.parameters, &|row| body.rows[row])
+}
+
+/// The size of a shape: the greatest of its numbers, or of its bounds' where some are no lengths.
 pub fn size(shape: &Shape) -> f64 {
+    if shape.kind().has_data() {
+        let bounds = shape.bounds();
+        return bounds.min.abs().max(bounds.max.abs()).max_element();
+    }
     shape.packed().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
 /// Points where formulas break: the centre, the axes, planes of symmetry, edges, far away.
 pub fn special_points(shape: &Shape) -> Vec<DVec3> {
-    let q = shape.packed();
+    let q = if shape.kind().has_data() {
+        [shape.bounds().max.to_array(), [0.0; 3]].concat()
+    } else {
+        shape.packed().to_vec()
+    };
     let mut coordinates = vec![0.0, 1e-30, 1e-9, 0.25, 1.0, -1.0, 1e6, -1e9];
     coordinates.extend(q[..3].iter().flat_map(|v| [*v, 0.5 * v, -0.5 * v]));
     let mut points = Vec::new();

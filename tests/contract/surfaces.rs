@@ -6,6 +6,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use isolith::scene::Shape;
 
+use super::drawn;
+
 /// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
 /// surface because it lies inside.
 pub type Patch = Box<dyn Fn(f64, f64) -> Option<DVec3>>;
@@ -47,14 +49,15 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             p.y.abs() < height * 0.5 && (0..6).all(|k| side(f64::from(k)))
         }
         Shape::Octahedron { radius } => p.abs().element_sum() < radius,
+        _ => drawn::inside(shape, p),
     }
 }
 
 /// The surface.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
-        Shape::Sphere { radius } => vec![ball(DVec3::ZERO, DVec3::splat(radius), *shape)],
-        Shape::Ellipsoid { radii } => vec![ball(DVec3::ZERO, radii.into(), *shape)],
+        Shape::Sphere { radius } => vec![ball(DVec3::ZERO, DVec3::splat(radius), shape.clone())],
+        Shape::Ellipsoid { radii } => vec![ball(DVec3::ZERO, radii.into(), shape.clone())],
         Shape::Box { size, rounding } => {
             let half = DVec3::from(size) * 0.5;
             let rounding = rounding.min(half.min_element());
@@ -68,14 +71,14 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
         Shape::BoxFrame { size, thickness } => {
             let bars = bars(size.into(), thickness);
             let faces = bars.iter().flat_map(|b| rectangles(*b)).collect::<Vec<_>>();
-            faces.into_iter().map(|f| outside_only(f, *shape)).collect()
+            faces.into_iter().map(|f| outside_only(f, shape.clone())).collect()
         }
         Shape::Torus { major_radius, minor_radius } => vec![outside_only(
             Box::new(move |u, v| {
                 let (s, c) = (TAU * v).sin_cos();
                 Some(turned(major_radius + minor_radius * c, minor_radius * s, u))
             }),
-            *shape,
+            shape.clone(),
         )],
         Shape::Cylinder { radius, height, rounding } => {
             let rounding = rounding.min(radius).min(height * 0.5);
@@ -94,7 +97,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             let (a, b) = (end - start).try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
             let side: Patch =
                 Box::new(move |u, v| Some(start.lerp(end, v) + (a * (TAU * u).cos() + b * (TAU * u).sin()) * radius));
-            vec![ball(start, DVec3::splat(radius), *shape), ball(end, DVec3::splat(radius), *shape), side]
+            vec![ball(start, DVec3::splat(radius), shape.clone()), ball(end, DVec3::splat(radius), shape.clone()), side]
         }
         Shape::Plane {} => vec![Box::new(|u, v| Some(DVec3::new(64.0 * u - 32.0, 0.0, 64.0 * v - 32.0)))],
         Shape::HexagonalPrism { radius, height } => hexagonal_prism(radius, height * 0.5),
@@ -105,6 +108,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
                 triangle(corners)
             })
             .collect(),
+        _ => drawn::patches(shape),
     }
 }
 
@@ -214,8 +218,10 @@ fn frustum(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
 fn round_cone(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
     let shape = Shape::RoundCone { bottom_radius: bottom, top_radius: top, height };
     let half = 0.5 * height;
-    let mut patches =
-        vec![ball(DVec3::Y * -half, DVec3::splat(bottom), shape), ball(DVec3::Y * half, DVec3::splat(top), shape)];
+    let mut patches = vec![
+        ball(DVec3::Y * -half, DVec3::splat(bottom), shape.clone()),
+        ball(DVec3::Y * half, DVec3::splat(top), shape),
+    ];
     if (bottom - top).abs() < height {
         let tilt = ((bottom - top) / height).asin();
         let touch = move |r: f64, y: f64| (r * tilt.cos(), y + r * tilt.sin());
@@ -248,7 +254,7 @@ fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
 }
 
 /// A ball with one radius per axis, where it is not inside `shape`.
-fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
+pub fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
     outside_only(
         Box::new(move |u, v| {
             let (s, c) = (PI * v - FRAC_PI_2).sin_cos();
@@ -259,14 +265,14 @@ fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
 }
 
 /// The point (radius, y) turned about the Y axis by `u` of a full turn.
-fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
+pub fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
     let (s, c) = (TAU * u).sin_cos();
     DVec3::new(radius * c, y, radius * s)
 }
 
 /// The patch without what lies inside the shape. Points are judged a little farther out than they
 /// are, in the patch's own scale, so that rounding does not tear holes.
-fn outside_only(patch: Patch, shape: Shape) -> Patch {
+pub fn outside_only(patch: Patch, shape: Shape) -> Patch {
     Box::new(move |u, v| patch(u, v).filter(|p| !deep_inside(&shape, *p)))
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::build::{Build, Grid};
 use super::part::Part;
 use super::{CellTree, is_pruned};
-use crate::flat::{Component, FlatNode, FlatScene, Row};
+use crate::flat::{Component, FlatNode, FlatScene, Row, leaf_data};
 use crate::scene::NodeId;
 
 /// The lists of a scene.
@@ -140,7 +140,12 @@ impl Kept {
             let same = match () {
                 () if new.is_run() => true,
                 () if new.is_group() => old.code == new.code && self.numbers[first][0] == new_numbers[first][0],
-                () => old.code == new.code && self.numbers[first..last] == new_numbers[first..last],
+                () => {
+                    let data = |numbers: &[Row]| leaf_data(&numbers[first..]).to_vec();
+                    old.code == new.code
+                        && self.numbers[first..last] == new_numbers[first..last]
+                        && data(&self.numbers) == data(new_numbers)
+                }
             };
             changed[index] = !same;
             count += usize::from(!same);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Dual, Joined, Real, op_join, shape_distance};
-use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, Row};
+use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
 use crate::scene::ShapeKind;
 
 /// The field at `p`, in metres; `p` is relative to the component's origin.
@@ -167,5 +167,6 @@ fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], p: DVec3) -> T {
     for row in 0..kind.rows() {
         parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
     }
-    shape_distance(kind, local, &parameters) * f64::from(numbers[0][1])
+    let data = leaf_data(numbers);
+    shape_distance(kind, local, &parameters, &|row| data[row].map(f64::from)) * f64::from(numbers[0][1])
 }

@@ -4,18 +4,24 @@
 //! | file | what it holds | its twin on the GPU |
 //! |---|---|---|
 //! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
-//! | `sdf`, `ellipsoid` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `sdf`, `ellipsoid`, `tube`, `outline`, `relief` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
 //! | `eval` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
 
 mod ellipsoid;
 mod eval;
 mod op;
+mod outline;
 mod real;
+mod relief;
 mod sdf;
+mod tube;
 
 pub use ellipsoid::sdf_ellipsoid;
 pub use eval::{SurfaceMaterial, SurfacePoint, field, gradient, surface};
 pub use op::{Joined, op_difference, op_intersection, op_join, op_union};
+pub use outline::{sdf_extrusion, sdf_outline, sdf_revolution};
 pub use real::{Dual, Real};
+pub use relief::{ocean_height, sdf_ocean, sdf_terrain, terrain_height};
 pub use sdf::*;
+pub use tube::sdf_tube;

@@ -4,13 +4,29 @@
 
 use super::Real;
 use super::ellipsoid::sdf_ellipsoid;
+use super::outline::{sdf_extrusion, sdf_revolution};
+use super::relief::{sdf_ocean, sdf_terrain};
+use super::tube::sdf_tube;
 use crate::scene::{ShapeKind, for_each_shape};
 
+/// The data of a shape: the row at an index.
+pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
+
+/// Calls the function of a shape, with the data if it takes any.
+macro_rules! call {
+    ($function:ident, $p:ident, $q:ident, $rows:ident) => {
+        $function($p, $q)
+    };
+    ($function:ident, $p:ident, $q:ident, $rows:ident, data) => {
+        $function($p, $q, $rows)
+    };
+}
+
 macro_rules! dispatch {
-    ($( $name:ident = $function:ident, )+) => {
-        /// The field of a shape, by its kind.
-        pub fn shape_distance<T: Real>(kind: ShapeKind, p: [T; 3], q: &[f64; 8]) -> T {
-            match kind { $( ShapeKind::$name => $function(p, q), )+ }
+    ($( $name:ident = $function:ident $(with $data:ident)?, )+) => {
+        /// The field of a shape, by its kind. `rows` are its data, see [`crate::flat::Body`]; most have none.
+        pub fn shape_distance<T: Real>(kind: ShapeKind, p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
+            match kind { $( ShapeKind::$name => call!($function, p, q, rows $(, $data)?), )+ }
         }
     };
 }
@@ -164,7 +180,7 @@ pub fn sdf_octahedron<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 }
 
 /// Distance to a prism or a body of revolution, from the distances to its outline and to its caps.
-fn extruded<T: Real>(d: [T; 2]) -> T {
+pub(super) fn extruded<T: Real>(d: [T; 2]) -> T {
     let most = d[0].max(d[1]);
     if most.value() > 0.0 { length2(d.map(T::positive)) } else { most }
 }
@@ -187,10 +203,10 @@ fn clamp<T: Real>(v: T, low: f64, high: f64) -> T {
     }
 }
 
-fn length2<T: Real>(v: [T; 2]) -> T {
+pub(super) fn length2<T: Real>(v: [T; 2]) -> T {
     (v[0].squared() + v[1].squared()).sqrt()
 }
 
-fn length3<T: Real>(v: [T; 3]) -> T {
+pub(super) fn length3<T: Real>(v: [T; 3]) -> T {
     (v[0].squared() + v[1].squared() + v[2].squared()).sqrt()
 }

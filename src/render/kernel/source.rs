@@ -92,7 +92,8 @@ impl Features {
 /// The arguments of a shape's function, its parameters read from their rows.
 fn read_rows(kind: ShapeKind) -> String {
     let row = |i: usize| if i < kind.rows() { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
-    format!("p, {}, {}", row(0), row(1))
+    let data = if kind.has_data() { ", row - LEAF_ROWS + u32(scene_row(row - LEAF_ROWS).w)" } else { "" };
+    format!("p, {}, {}{data}", row(0), row(1))
 }
 
 /// Why a shader could not be put together.
@@ -127,9 +128,17 @@ fn gradient_wgsl(function: &str) -> Option<String> {
     }
     let text = plain_source(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_")?)).ok()?;
     // A shape without a derivative has no kernel; a test derives every one.
-    let dual = dual(&text, function).ok()?;
+    let dual = dual(&with_rows(&text), function).ok()?;
     derived.insert(function.to_owned(), dual.clone());
     Some(dual)
+}
+
+/// A shape's source with something that stands for the data it reads; their derivative is zero.
+fn with_rows(text: &str) -> String {
+    if !text.contains("scene_row(") {
+        return text.to_owned();
+    }
+    format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
 }
 
 /// The whole source of the shader `entry`, each file included once, before its first user.

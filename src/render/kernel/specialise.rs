@@ -68,8 +68,10 @@ impl Writer<'_> {
         for row in 0..copied {
             self.line(&format!("var<private> q{row}: vec4f;"));
         }
+        self.line("var<private> first_row: u32;");
         let begin = if self.fold == Fold::Value { "field_begin" } else { "surface_begin" };
         self.line(&format!("fn {begin}(component: Component) {{"));
+        self.line("    first_row = component.numbers;");
         if self.fold == Fold::Surface {
             self.line("    surface_first = component.first;");
         }
@@ -206,5 +208,6 @@ pub(super) fn arguments(entry: &Entry, shape: ShapeKind, row: usize) -> String {
         if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
     };
     let (a, b) = (parameter(0), parameter(1));
-    format!("{placed}(p, q{}, q{}, q{}), {a}, {b}", row + 1, row + 2, row + 3)
+    let data = if shape.has_data() { format!(", first_row + {row}u + u32(q{row}.w)") } else { String::new() };
+    format!("{placed}(p, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
 }

@@ -3,6 +3,9 @@
 mod evaluate;
 
 use super::{DUAL_PRELUDE, DualError, dual};
+use crate::flat::Body;
+use crate::flat::twin::shape_distance;
+use crate::scene::{ParamValue, Shape, ShapeKind};
 use evaluate::Machine;
 
 /// Stands for `shaders/sdf/held.wgsl`.
@@ -98,6 +101,73 @@ fn gradients_of_shapes_are_those_of_central_differences() {
     for (name, text) in SHAPES {
         let error = worst(&resolved(text), &format!("sdf_{name}"), 300);
         assert!(error < if name == "ellipsoid" { 1e-3 } else { 1e-6 }, "{name}: {error:e}");
+    }
+}
+
+/// A shape with the given data: its function as one of a shape without.
+fn with_data(name: &str, files: &[&str], shape: &Shape) -> (String, Vec<f64>) {
+    let body = Body::new(shape);
+    let rows: Vec<String> =
+        body.rows.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
+    let mut text = String::from(HELD);
+    for line in files.iter().flat_map(|file| file.lines()).filter(|line| !line.starts_with("#include")) {
+        text.push_str(line);
+        text.push('\n');
+    }
+    let count = rows.len();
+    text += &format!(
+        "fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({}); return rows[at]; }}
+        fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}",
+        rows.join(", ")
+    );
+    (text, body.parameters.to_vec())
+}
+
+#[test]
+fn gradients_of_shapes_with_data_are_those_of_central_differences() {
+    let outline = include_str!("../../../../shaders/sdf/outline.wgsl");
+    let relief = include_str!("../../../../shaders/sdf/relief.wgsl");
+    let smooth = |kind: ShapeKind| {
+        let mut shape = kind.default_shape();
+        shape.set_value(1, ParamValue::Flag(true));
+        shape
+    };
+    for (name, files, shape) in [
+        ("tube", vec![include_str!("../../../../shaders/sdf/tube.wgsl")], ShapeKind::Tube.default_shape()),
+        (
+            "extrusion",
+            vec![outline, include_str!("../../../../shaders/sdf/extrusion.wgsl")],
+            smooth(ShapeKind::Extrusion),
+        ),
+        (
+            "revolution",
+            vec![outline, include_str!("../../../../shaders/sdf/revolution.wgsl")],
+            smooth(ShapeKind::Revolution),
+        ),
+        (
+            "terrain",
+            vec![relief, include_str!("../../../../shaders/sdf/terrain.wgsl")],
+            ShapeKind::Terrain.default_shape(),
+        ),
+        ("ocean", vec![relief, include_str!("../../../../shaders/sdf/ocean.wgsl")], ShapeKind::Ocean.default_shape()),
+    ] {
+        let (text, parameters) = with_data(name, &files, &shape);
+        let machine = machine(&text, name);
+        let (a, b) = parameters.split_at(4);
+        let b = &b[..4];
+        let body = Body::new(&shape);
+        let mut random = Random(5);
+        let mut compared = 0;
+        for _ in 0..60 {
+            let p = random.point(0.8);
+            let twin = machine.call(&format!("dual_{name}"), &[&p, a, b]);
+            let truth = shape_distance(body.kind, p, &body.parameters, &|row| body.rows[row]);
+            assert!((twin[3] - truth).abs() < 1e-5, "{name} at {p:?}: {twin:?}, {truth}");
+            let Some(gradient) = differences(&machine, name, p, a, b) else { continue };
+            compared += 1;
+            assert!(distance([twin[0], twin[1], twin[2]], gradient) < 1e-3, "{name} at {p:?}: {twin:?} {gradient:?}");
+        }
+        assert!(compared > 30, "{name}: {compared}");
     }
 }
 
