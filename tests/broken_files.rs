@@ -106,7 +106,7 @@ const CASES: &[Case] = &[
     ),
     (
         r#""type": "sphere", "radius": 0.5"#,
-        r#""type": "tube", "points": [[0, 0, 0, 1], [0, 1]], "radius": 0.1, "closed": false"#,
+        r#""type": "tube", "points": [[0, 0, 0, 1], [0, 1], [0, 0, 1, 1]], "radius": 0.1, "closed": false"#,
         "Head #2",
         "nodes[1].object.shape.points[1]",
         "invalid length 2",

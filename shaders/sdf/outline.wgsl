@@ -60,8 +60,9 @@ fn sdf_outline_nearest(p: vec2f, groups: u32, data: u32) -> vec2f {
             // the circle.
             let from_circle = arc.x * dot(w, w) - 2.0 * y;
             let from_center = arc.x * w.x + place.w;
-            let bends_left = from_center < 0.0 || from_circle < 0.0;
-            let is_left = select(from_center > 0.0 && from_circle < 0.0, bends_left, arc.x >= 0.0);
+            let is_in = from_circle < 0.0;
+            let is_in_or_beside = is_in || from_center < 0.0;
+            let is_left = select(is_in && from_center > 0.0, is_in_or_beside, arc.x >= 0.0);
             let crosses = !is_right && arc.z <= p.y && p.y < arc.w && is_left;
             turns += select(0.0, select(1.0, -1.0, arc.y < 0.0), crosses);
         }

@@ -103,6 +103,13 @@ pub fn paint_shape(painter: &Painter, rect: Rect, kind: ShapeKind, color: Color3
             pen.line(&[[-0.75, 0.05], [-0.15, 0.25], [0.75, 0.05]]);
             pen.line(&[[0.0, -0.9], [-0.15, 0.25], [0.0, 0.9]]);
         }
+        _ => paint_drawn(&pen, kind),
+    }
+}
+
+/// The silhouettes of shapes that are drawn point by point, and of landscapes.
+fn paint_drawn(pen: &Pen<'_>, kind: ShapeKind) {
+    match kind {
         ShapeKind::Tube => {
             pen.wave(0.45, [-0.15, -0.3]);
             pen.wave(0.45, [0.15, 0.3]);
@@ -133,6 +140,7 @@ pub fn paint_shape(painter: &Painter, rect: Rect, kind: ShapeKind, color: Color3
             pen.wave(0.25, [0.0, 0.0]);
             pen.wave(0.25, [0.45, 0.45]);
         }
+        _ => {}
     }
 }
 

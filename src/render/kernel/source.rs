@@ -128,9 +128,16 @@ fn gradient_wgsl(function: &str) -> Option<String> {
     }
     let text = plain_source(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_")?)).ok()?;
     // A shape without a derivative has no kernel; a test derives every one.
-    let dual = dual(&with_rows(&text), function).ok()?;
+    let dual = own_twins(&dual(&with_rows(&text), function).ok()?, function);
     derived.insert(function.to_owned(), dual.clone());
     Some(dual)
+}
+
+/// The twins with names of their own: shapes may share functions, and a twin depends on what its shape hands over.
+fn own_twins(text: &str, function: &str) -> String {
+    let entry = format!("dual_{function}");
+    let names = text.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).filter(|n| *n != entry);
+    names.fold(text.to_owned(), |out, name| out.replace(&format!("{name}("), &format!("{name}_of_{function}(")))
 }
 
 /// A shape's source with something that stands for the data it reads; their derivative is zero.
