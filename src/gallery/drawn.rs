@@ -36,10 +36,10 @@ pub(super) fn scene() -> Scene {
         size: [2.9, 0.3, 1.9],
         amplitude: 0.14,
         wavelength: 1.0,
-        waves: 7.0,
+        waves: 5.0,
         direction: 35.0,
         spread: 50.0,
-        sharpness: 0.7,
+        sharpness: 0.5,
         phase: 40.0,
     };
     stage.add(None, object("Sea", sea, water).at(v(1.55, 0.3, -1.15)));
@@ -47,7 +47,7 @@ pub(super) fn scene() -> Scene {
     stage.spot("Key", [[-4.0, 6.0, 5.0], [0.0, 0.4, 0.0]], [1.0, 0.94, 0.85], 1.6, [20.0, 40.0]);
     stage.sun("Fill", [1.0, 0.5, 0.6], [0.60, 0.75, 1.0], 0.55);
     stage.sun("Rim", [0.4, 0.5, -1.0], [1.0, 0.9, 0.8], 0.6);
-    stage.camera([0.4, 3.6, 7.2], [0.0, 0.45, -0.1], 38.0);
+    stage.camera([0.48, 4.23, 8.66], [0.0, 0.45, -0.1], 38.0);
     stage.finish()
 }
 
