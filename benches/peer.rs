@@ -20,7 +20,7 @@ use fidget::raster::voxel::{EvalConfig, Image, RenderConfig, RenderSize, render}
 use fidget::render::{CancelToken, ThreadPool, TileSizes};
 use glam::{DAffine3, DMat3, DVec3};
 use isolith::bench::cpu_time;
-use isolith::flat::{BACKGROUND_DEPTH, Buffers, FlatNode, FlatScene, Join, LEAF_ROWS};
+use isolith::flat::{BACKGROUND_DEPTH, Buffers, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS};
 use isolith::geometry::{Aabb, Camera};
 use isolith::scene::ShapeKind;
 
@@ -172,7 +172,7 @@ fn depth_range(flat: &FlatScene, camera: &Camera) -> Option<Range<f64>> {
 }
 
 /// The whole scene as one expression in the camera's space: the components in hard union. `None` where the peer
-/// cannot express it: meshes, what has no end, shapes without a closed form.
+/// cannot express it: meshes, what has no end, shapes without a closed form, operators beyond the first three.
 pub fn tree(flat: &FlatScene, camera: &Camera) -> Option<Tree> {
     if !flat.meshes.is_empty() || flat.components.iter().any(|c| !c.bounds.is_finite()) {
         return None;
@@ -195,6 +195,9 @@ fn fold(flat: &FlatScene, range: Range<usize>, space: &DAffine3) -> Option<Tree>
         if node.is_run() {
             at += 1;
             continue;
+        }
+        if Join::ALL[node.join() as usize].is_further() || node.kernel() >= FIRST_FURTHER_KERNEL {
+            return None;
         }
         let end = at + node.extent as usize;
         let next = if node.is_group() { fold(flat, at + 1..end, space)? } else { leaf(flat, node, space)? };
@@ -255,7 +258,7 @@ fn leaf(flat: &FlatScene, node: &FlatNode, space: &DAffine3) -> Option<Tree> {
         px.clone() * cx + py.clone() * cy + pz.clone() * cz + local.translation[i] as f32
     });
     let mut parameters = [0.0; 8];
-    for (row, four) in parameters.chunks_mut(4).take(kind.rows()).enumerate() {
+    for (row, four) in parameters.chunks_mut(4).take(kind.parameter_rows()).enumerate() {
         four.copy_from_slice(&numbers[LEAF_ROWS + row].map(|v| (f64::from(v) * scale) as f32));
     }
     shape(kind, p, &parameters)
@@ -265,7 +268,7 @@ fn is_rotation(m: &DMat3) -> bool {
     (m.transpose() * *m).abs_diff_eq(DMat3::IDENTITY, 1e-6)
 }
 
-/// The shapes' distances without branches; `None` for those that have no closed form.
+/// The shapes' distances without branches; `None` for those that it is not compared in.
 fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
     let [x, y, z] = p;
     Some(match kind {
@@ -300,7 +303,7 @@ fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
             solid([outline, y.abs() - 0.5 * q[1]])
         }
         ShapeKind::BoxFrame => box_frame([x, y, z], q),
-        ShapeKind::Ellipsoid | ShapeKind::Octahedron => return None,
+        _ => return None,
     })
 }
 

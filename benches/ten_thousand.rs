@@ -18,11 +18,11 @@ const LEAVES: usize = 8;
 pub fn document() -> (Document, NodeId) {
     let mut scene = Scene::new();
     let mut add = |parent, node| scene.insert(parent, usize::MAX, node).expect("the scene has room");
-    let blend = Blend { kernel: BlendKernel::Circular, radius: 0.1 };
+    let blend = Blend::new(BlendKernel::Circular, 0.1);
     let mut dragged = NodeId(0);
     for group in 0..GROUPS {
         let place = DVec3::new((group % 34) as f64, 0.0, (group / 34) as f64) * 2.0;
-        let kind = NodeKind::Group(Group { operator: Operator::Union, blend });
+        let kind = NodeKind::Group(Group::new(Operator::Union, blend));
         let parent = add(None, Node::new("group", kind).at(place));
         for leaf in 0..LEAVES {
             let angle = leaf as f64 * std::f64::consts::TAU / LEAVES as f64;

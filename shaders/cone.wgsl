@@ -8,11 +8,14 @@
 #include "common/tiles.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
+#include "common/counts.wgsl"
 
 @group(2) @binding(0) var farthest_target: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> tiles: array<Tile>;
 // For each list the arguments of an indirect dispatch: tiles, 1, 1, evaluations made here.
 @group(2) @binding(2) var<storage, read_write> tile_counts: array<atomic<u32>>;
+// See `common/counts.wgsl`.
+@group(2) @binding(3) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 // Steps of a cone before it leaves the rest to the rays.
 const CONE_STEPS: u32 = 48u;
@@ -115,7 +118,9 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             steps = 0u;
         }
     }
-    cone_count(evaluations);
+    if COUNTING {
+        cone_count(place, evaluations);
+    }
     let nearest = min(min(start[0], start[1]), min(start[2], start[3]));
     if nearest < CONE_PASSED {
         let slot = atomicAdd(&tile_counts[work.list * 4u], 1u);
@@ -123,8 +128,13 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
-fn cone_count(steps: u32) {
-    if COUNTING {
-        atomicAdd(&tile_counts[work.list * 4u + 3u], steps);
-    }
+// What the cones of a tile took, for the list, the tile and the component.
+fn cone_count(place: vec2u, evaluations: u32) {
+    atomicAdd(&tile_counts[work.list * 4u + 3u], evaluations);
+    let of_tile = counts_of_tile(arrayLength(&march_counts), place);
+    atomicAdd(&march_counts[of_tile], evaluations);
+    atomicAdd(&march_counts[of_tile + 2u], walked.x);
+    atomicAdd(&march_counts[of_tile + 3u], walked.y);
+    atomicAdd(&march_counts[work.component * COMPONENT_COUNTS + 3u], walked.x);
+    atomicAdd(&march_counts[work.component * COMPONENT_COUNTS + 4u], walked.y);
 }

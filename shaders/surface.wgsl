@@ -27,7 +27,7 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let surface = surface(component.eye + direction * t);
     let size = length(surface.gradient);
     let normal = select(-direction, surface.gradient / max(size, 1e-30), size > 0.0);
-    textureStore(normal_target, pixel, vec4f(normal, 0.0));
+    textureStore(normal_target, pixel, vec4f(normal, size));
     textureStore(diffuse_target, pixel, surface.diffuse);
     textureStore(emission_target, pixel, surface.emission);
     textureStore(leaf_target, pixel, vec4u(surface.leaf));

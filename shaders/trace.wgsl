@@ -7,6 +7,7 @@
 #include "common/tiles.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
+#include "common/counts.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_storage_2d<r32float, read_write>;
 @group(2) @binding(1) var owner_target: texture_storage_2d<r32uint, write>;
@@ -20,7 +21,7 @@
 @group(2) @binding(6) var<storage, read_write> rays: array<atomic<u32>>;
 // For each list the arguments of an indirect dispatch over these: groups of 64, 1, 1. Written in the first round.
 @group(2) @binding(7) var<storage, read_write> ray_counts: array<atomic<u32>>;
-// For each component: rays that had not ended after the last round, evaluations, rays marched, unused.
+// See `common/counts.wgsl`.
 @group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 const MARCH_ENDED: f32 = -1.0;
@@ -175,8 +176,7 @@ fn trace(
         }
         trace_leave(pixel, marched);
         if COUNTING {
-            atomicAdd(&march_counts[work.component * 4u + 1u], marched.evaluations);
-            atomicAdd(&march_counts[work.component * 4u + 2u], select(0u, 1u, marched.evaluations > 0u));
+            trace_count(pixel, marched.evaluations);
         }
     }
     if work.packed == 1u {
@@ -195,7 +195,7 @@ fn trace(
 fn trace_leave(pixel: vec2u, marched: March) {
     if work.last_round == 1u {
         if !marched.ended {
-            atomicAdd(&march_counts[work.component * 4u], 1u);
+            atomicAdd(&march_counts[work.component * COMPONENT_COUNTS], 1u);
         }
         return;
     }
@@ -206,5 +206,17 @@ fn trace_leave(pixel: vec2u, marched: March) {
         let at = atomicAdd(&rays[work.list], 1u);
         atomicMax(&ray_counts[work.list * 4u], at / 64u + 1u);
         atomicStore(&rays[work.rays + at], pixel.x | (pixel.y << 16u));
+    }
+}
+
+// What a march took, for its pixel and for its component.
+fn trace_count(pixel: vec2u, evaluations: u32) {
+    let begun = select(0u, 1u, evaluations > 0u && work.packed == 0u);
+    let took = vec4u(evaluations, begun, walked);
+    let of_pixel = counts_of_pixel(arrayLength(&march_counts), pixel);
+    let of_component = work.component * COMPONENT_COUNTS + 1u;
+    for (var i = 0u; i < PIXEL_COUNTS; i += 1u) {
+        atomicAdd(&march_counts[of_pixel + i], took[i]);
+        atomicAdd(&march_counts[of_component + i], took[i]);
     }
 }

@@ -3,14 +3,16 @@
 
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
-use isolith::flat::{CellTree, FlatScene, flatten, pruned_field};
+use isolith::flat::{Body, CellTree, FlatScene, flatten, leaf_data, pruned_field};
 use isolith::gallery;
 use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
 use isolith::render::probe;
 use isolith::scene::{
-    Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator, Scene,
+    Shape, ShapeKind,
 };
 
+use crate::contract::modifiers::{modified, samples};
 use crate::contract::samples::{Random, ordinary};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::shared;
@@ -93,10 +95,15 @@ fn every_shape_agrees() {
 fn every_operator_agrees() {
     for operator in Operator::ALL {
         for kernel in BlendKernel::ALL {
+            if !operator.has_kernel() && kernel != BlendKernel::Circular {
+                continue;
+            }
             let mut random = Random::new(kernel as u64);
             let mut scene = Scene::new();
-            for radius in [0.0, 0.01, 0.2, 3.0] {
-                let group = Group { operator, blend: Blend { kernel, radius } };
+            let radii: &[f64] = if kernel == BlendKernel::Circular { &[0.0, 0.01, 0.2, 3.0] } else { &[0.02, 0.5] };
+            for radius in radii.iter().copied() {
+                let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, radius) };
+                let group = Group { width: 0.3, depth: 0.1, share: 0.3, ..Group::new(operator, blend) };
                 let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
                 for kind in [ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Capsule] {
                     let node = object(kind.default_shape()).at(random.point(0.4));
@@ -122,8 +129,8 @@ fn runs_agree() {
     for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Loops)] {
         let mut random = Random::new(seed);
         let mut scene = Scene::new();
-        let blend = Blend { kernel: BlendKernel::Quadratic, radius: 0.1 };
-        let group = Group { operator: Operator::Union, blend };
+        let blend = Blend::new(BlendKernel::Quadratic, 0.1);
+        let group = Group::new(Operator::Union, blend);
         let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
         for i in 0..45 {
             let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
@@ -175,4 +182,55 @@ fn a_disagreement_is_caught() {
     assert!(compare(&flat, 0, &points, &values(&|f| f * 1.001)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|f| -f)).is_err());
     assert!(compare(&flat, 0, &points, &values(&|_| f64::NAN)).is_err());
+}
+
+/// Every modifier, alone and one upon the other, over lopsided content.
+#[test]
+fn every_modifier_agrees() {
+    for &kind in ModifierKind::ALL {
+        let mut random = Random::new(kind as u64);
+        for (i, modifier) in samples(kind, 2).into_iter().enumerate() {
+            let other = if i == 0 { Modifier::Bend { angle: 30.0 } } else { Modifier::Round { radius: 0.02 } };
+            for modifiers in [vec![modifier], vec![modifier, other]] {
+                if flatten(&modified(&modifiers), 0.0).is_ok() {
+                    agree(&format!("{modifiers:?}"), &modified(&modifiers), &mut random);
+                }
+            }
+        }
+    }
+}
+
+/// What has data, at joints that need all of their numbers, below modifiers and twice below copies.
+#[test]
+fn data_are_found_below_joints_and_modifiers() {
+    let mut scene = Scene::new();
+    let blend = Blend { steps: 3, ..Blend::new(BlendKernel::Stairs, 0.2) };
+    let group = |operator| {
+        let group = Group { width: 0.1, depth: 0.05, ..Group::new(operator, blend) };
+        Node::new("Group", NodeKind::Group(group))
+    };
+    let twisted = group(Operator::Groove).modified(ModifierKind::Twist.default_modifier());
+    let mirrored = group(Operator::Union).modified(ModifierKind::Mirror.default_modifier());
+    let top = add(&mut scene, None, group(Operator::Union));
+    let parents = [top, add(&mut scene, Some(top), twisted.at(DVec3::X)), add(&mut scene, Some(top), mirrored)];
+    let kinds: Vec<ShapeKind> = ShapeKind::ALL.iter().copied().filter(|kind| kind.has_data()).collect();
+    let mut random = Random::new(8);
+    for (i, kind) in kinds.iter().chain([&ShapeKind::Box, &ShapeKind::Tube]).enumerate() {
+        let node = object(kind.default_shape()).at(random.point(0.6)).scaled(DVec3::splat(0.5));
+        add(&mut scene, Some(parents[i % 3]), node);
+    }
+    let flat = flatten(&scene, 0.0).unwrap();
+    let mut rows = 0;
+    for node in flat.nodes.iter().filter(|node| node.is_leaf()) {
+        let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
+        let data = Body::new(&kind.default_shape()).rows;
+        let found = leaf_data(kind, &flat.numbers[node.numbers as usize..]);
+        assert_eq!(found, data.iter().map(|row| row.map(|v| v as f32)).collect::<Vec<_>>(), "{kind:?}");
+        rows += data.len();
+    }
+    let [component] = &flat.components[..] else { panic!("one component") };
+    assert!(component.modified && rows == component.data as usize);
+    let structure = Structure::of(&flat, component).unwrap();
+    assert_eq!(structure.rows(), (component.rows - component.data) as usize);
+    agree("data", &scene, &mut random);
 }

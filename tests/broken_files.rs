@@ -167,6 +167,7 @@ const CASES: &[Case] = &[
     ),
     (r#""radius": 0.5"#, r#""radius": -0.5"#, "Head #2", "nodes[1].object.shape.radius", "must be 0 to"),
     (r#""size": [1, 2, 3]"#, r#""size": [1, 2, -3]"#, "Foot #3", "nodes[2].object.shape.size[2]", "must be 0 to"),
+    (r#""radius": 0.05"#, r#""radius": 0.05, "steps": 0"#, "Pawn #1", "nodes[0].group.blend.steps", "must be 1 to"),
     (r#""radius": 0.05"#, r#""radius": -1"#, "Pawn #1", "nodes[0].group.blend.radius", "must be 0 to"),
     (
         r#"[0, 2, 0]"#,

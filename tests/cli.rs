@@ -137,6 +137,7 @@ fn what_is_not_understood_is_refused_with_a_reason() {
         ("--time", "nan", "finite"),
         ("--depth", "depth.jpg", ".exr or .png"),
         ("-o", "picture.bmp", ".png"),
+        ("--view", "heat", "shaded, steps, evaluations"),
     ] {
         let mut arguments = vec!["render", "scene.json", flag, value];
         if flag != "-o" {
@@ -205,6 +206,25 @@ fn pictures_of_numbers_can_be_looked_at() {
     let id = open(&place.path("id.png")).into_rgb8();
     let [ball, floor, nothing] = [(12, 8), (12, 15), (12, 0)].map(|(x, y)| *id.get_pixel(x, y));
     assert!(ball != floor && ball != nothing && floor != nothing);
+}
+
+#[test]
+fn pictures_show_what_the_view_says() {
+    let place = Place::new();
+    let render = |view: &str| {
+        let done = place.run(&["render", "scene.json", "-o", "out.png", "--size", "24x16", "--view", view]);
+        (done.succeeded().out.clone(), open(&place.path("out.png")).into_rgb8())
+    };
+    let (said, normals) = render("normals");
+    assert!(said.contains("wrote out.png (direction in the world)"), "{said}");
+    assert!(normals.get_pixel(12, 8)[2] > 230, "the ball does not face the camera");
+    let (said, steps) = render("steps");
+    assert!(said.contains("evaluations by rays, per pixel: 0 1 4"), "{said}");
+    assert_ne!(steps.get_pixel(12, 8), steps.get_pixel(12, 0), "the sky takes as many steps as the ball");
+    let (said, shaded) = render("shaded");
+    assert!(said.contains("wrote out.png\n"), "{said}");
+    assert_ne!(shaded, normals);
+    place.run(&["render", "scene.json", "-o", "out.png", "--view", "steps", "--truth"]).failed(2, &["--truth"]);
 }
 
 #[test]
@@ -346,7 +366,10 @@ fn bench_measures_every_method_and_writes_tables_and_charts() {
     let measured: Vec<_> = rows.iter().filter_map(|row| of(row, "method")).collect();
     assert_eq!(measured.join(","), methods);
     for row in &rows {
-        for key in ["cpu_ms", "wall_ms", "steps_per_px", "evals_per_px", "hit_miss_share", "depth_p99", "normal_p99"] {
+        for key in ["cpu_ms", "wall_ms", "steps_per_px", "evals_per_px", "hit_miss_share", "depth_p99", "normal_p99"]
+            .into_iter()
+            .chain(["steps_p99", "steps_max", "cells_per_px", "entries_per_px"])
+        {
             assert!(row[key].as_f64().is_some_and(|v| v >= 0.0), "{key} of {row}");
         }
         assert_eq!(row["hit_miss_share"].as_f64(), Some(0.0), "{row}");

@@ -3,10 +3,14 @@
 //! so that a new variant is tested without a line here, except for its surface in `surfaces`.
 
 mod drawn;
+mod joints;
+pub mod modifiers;
 mod operators;
+mod outlines;
 mod rules;
 pub mod samples;
 mod shapes;
 mod surfaces;
+mod tightness;
 mod tracing;
 pub mod trees;

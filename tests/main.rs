@@ -12,6 +12,7 @@ mod editor;
 mod files;
 mod golden;
 mod gpu;
+mod inspect;
 mod meshes;
 mod methods;
 mod random_scene;

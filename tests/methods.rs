@@ -1,9 +1,11 @@
 //! All methods draw the same picture: equal in hit or miss pixel for pixel, depths within what refinement leaves.
 
-use isolith::flat::Buffers;
+use isolith::flat::{Buffers, flatten};
 use isolith::gallery;
 use isolith::render::Method;
+use isolith::scene::ModifierKind;
 
+use crate::contract::modifiers::{modified, samples};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::{Subject, scenes};
 
@@ -64,6 +66,21 @@ fn random_trees_are_the_same_by_every_method() {
         // Each structure is compiled; every fourth is enough of them.
         let methods: &[Method] = if seed % 4 == 0 { &[Method::Pruned, Method::Specialised] } else { &[Method::Pruned] };
         faults.extend(compare(&subject, SIDE, methods));
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn what_is_modified_is_the_same_by_every_method() {
+    let mut faults = Vec::new();
+    for &kind in ModifierKind::ALL {
+        for modifier in samples(kind, 1) {
+            let scene = modified(&[modifier]);
+            if flatten(&scene, 0.0).is_ok() {
+                let subject = Subject::new(&format!("{modifier:?}"), &scene, None);
+                faults.extend(compare(&subject, SIDE, &[Method::Specialised]));
+            }
+        }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

@@ -3,8 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Limits, Material, MaterialId,
-    MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape, ShapeKind, limits,
+    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
+    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind, Object,
+    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
 
 /// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
@@ -107,6 +108,26 @@ impl Random {
         shape
     }
 
+    /// A modifier within its limits.
+    pub fn modifier(&mut self) -> Modifier {
+        let kind = self.pick(ModifierKind::ALL);
+        let mut modifier = kind.default_modifier();
+        for (i, (param, value)) in kind.params().iter().zip(modifier.values()).enumerate() {
+            let limits = &param.limits;
+            let mut whole = || self.number(limits).round() as u32;
+            let value = match value {
+                ModifierValue::Count(_) => ModifierValue::Count(whole()),
+                ModifierValue::Counts(_) => ModifierValue::Counts([whole(), whole(), whole()]),
+                ModifierValue::Scalar(_) => ModifierValue::Scalar(self.number(limits)),
+                ModifierValue::Vector(_) => ModifierValue::Vector(self.numbers(limits).into()),
+                ModifierValue::Flag(_) => ModifierValue::Flag(self.once_in(2)),
+                ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| self.once_in(2))),
+            };
+            assert!(modifier.set_value(i, value));
+        }
+        modifier
+    }
+
     /// A material within its limits.
     pub fn material(&mut self, id: u64) -> Material {
         let mut material = Material::new(MaterialId(id), self.name(), self.numbers(&limits::UNIT));
@@ -140,8 +161,16 @@ impl Random {
 
     /// Operator and blend of a group.
     pub fn group(&mut self) -> Group {
-        let blend = Blend { kernel: self.pick(&BlendKernel::ALL), radius: self.number(&limits::BLEND_RADIUS) };
-        Group { operator: self.pick(&Operator::ALL), blend }
+        let blend = Blend::new(self.pick(&BlendKernel::ALL), self.number(&limits::BLEND_RADIUS));
+        let mut group = Group::new(self.pick(&Operator::ALL), blend);
+        if self.once_in(2) {
+            group.blend.unit = self.pick(&RadiusUnit::ALL);
+            group.blend.steps = 1 + self.below(64) as u32;
+            group.width = self.number(&limits::THICKNESS);
+            group.depth = self.number(&limits::THICKNESS);
+            group.share = self.number(&limits::UNIT);
+        }
+        group
     }
 
     fn kind(&mut self, materials: &[MaterialId]) -> NodeKind {
@@ -170,6 +199,15 @@ impl Random {
         node.visible = !self.once_in(5);
         node.locked = self.once_in(5);
         node.negative = node.has_field() && self.once_in(4);
+        if node.has_field() && self.once_in(3) {
+            let slot = |r: &mut Self| ModifierSlot { enabled: !r.once_in(4), modifier: r.modifier() };
+            node.modifiers = (0..=self.below(3)).map(|_| slot(self)).collect();
+        }
+        if self.once_in(3) {
+            let radius = self.number(&limits::BLEND_RADIUS);
+            node.joining = self.pick(&[Joining::Hard, Joining::Radius(radius)]);
+            node.apart = (0..self.below(3)).map(|_| NodeId(self.below(1000) as u64)).collect();
+        }
         node
     }
 }

@@ -6,7 +6,7 @@ use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
 use isolith::render::kernel::{Evaluator, FILES, Features, Options, Skipping, Structure, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
-use isolith::render::{Instance, Overlay};
+use isolith::render::{Inspect, Instance, Overlay};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -24,8 +24,10 @@ fn evaluators() -> Vec<Evaluator> {
         .collect();
     structures.sort();
     structures.dedup();
-    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), stack: 1 });
-    let walked: Vec<_> = alone.chain([Features::all()]).collect();
+    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), ..Features::none() });
+    let kinds = Features::all().modifiers;
+    let modified = kinds.iter().map(|kind| Features { modifiers: [*kind].into(), stack: 2, ..Features::none() });
+    let walked: Vec<_> = alone.chain(modified).chain([Features::all()]).collect();
     let interpreted = walked.iter().cloned().map(Evaluator::Interpreted);
     let pruned = walked.iter().cloned().map(Evaluator::Pruned);
     interpreted.chain(pruned).chain(structures.into_iter().map(Evaluator::Specialised)).collect()
@@ -178,6 +180,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
             "Overlay" =
                 Overlay { eye, cell, grid, outline, axis_x, axis_z, leaf_count, padding_0, padding_1, padding_2 }
         ),
+        layout!("Inspect" = Inspect { look, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }),
         layout!(
             "Light" =
                 GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }

@@ -38,7 +38,11 @@ struct Component {
 
 const GROUP: u32 = 0xffffu;
 const RUN: u32 = 0xfffeu;
+// The first of the codes of modifiers; RUN and GROUP come after all of them.
+const MODIFIER: u32 = 0xff00u;
 const LEAF_ROWS: u32 = 4u;
+// Rows of a modifier before its own.
+const MODIFIER_ROWS: u32 = 6u;
 
 @group(1) @binding(0) var<storage, read> nodes: array<FlatNode>;
 // Rows of numbers, as a texture: lavapipe reads a texel at a place that is not constant several times as fast as

@@ -3,11 +3,22 @@
 
 #include "field/leaf.wgsl"
 #include "field/joined_surface.wgsl"
+#if MODIFIERS
+#include "generated/modifiers.wgsl"
+#include "generated/modifier_gradients.wgsl"
+#end
 
 var<private> surface_first: u32;
 var<private> surface_end: u32;
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_group: array<u32, STACK_SIZE>;
+#if MODIFIERS
+// Of modifiers under way, see `interpreted_value.wgsl`.
+var<private> surface_outside: array<vec3f, STACK_SIZE>;
+var<private> surface_local: array<vec3f, STACK_SIZE>;
+var<private> surface_copy: array<u32, STACK_SIZE>;
+var<private> surface_least: array<Surface, STACK_SIZE>;
+#end
 
 // Chooses the component. Before any call of `surface`.
 fn surface_begin(component: Component) {
@@ -15,7 +26,31 @@ fn surface_begin(component: Component) {
     surface_end = component.end;
 }
 
+#if MODIFIERS
+// The k-th copy of what a modifier holds, as seen from outside of it.
+fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Surface) -> Surface {
+    let scale = modifier_scale(modifier, copy, row);
+    var seen = content;
+    seen.distance *= scale;
+    seen.gradient = modifier_pull(modifier, local, copy, content.gradient, row) * scale;
+    return seen;
+}
+
+// What the modifier at the entry makes of the nearest copy.
+fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface) -> Surface {
+    let slopes = modifier_slopes(modifier, content.distance, local, numbers + MODIFIER_ROWS);
+    let d = content.gradient * slopes.w + slopes.xyz;
+    let scale = scene_row(numbers + 1u).w;
+    var seen = content;
+    seen.distance = modifier_value(modifier, content.distance, local, numbers + MODIFIER_ROWS) * scale;
+    seen.gradient = scale
+        * (scene_row(numbers + 3u).xyz * d.x + scene_row(numbers + 4u).xyz * d.y + scene_row(numbers + 5u).xyz * d.z);
+    return seen;
+}
+#end
+
 fn surface(p: vec3f) -> Surface {
+    var q = p;
     var so_far = Surface(0.0, surface_first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
     var depth = 0u;
     var at = surface_first;
@@ -23,19 +58,36 @@ fn surface(p: vec3f) -> Surface {
         let node = nodes[at];
         let joint = scene_row(node.numbers);
         let kind = node.code & 0xffffu;
-        if kind >= RUN {
-            if !field_group_is_out_of_reach(node, joint, so_far.distance, p) {
-                if kind == GROUP {
-                    surface_stack[depth] = so_far;
-                    surface_group[depth] = at;
-                    depth += 1u;
+        if kind >= MODIFIER {
+            var has_content = !field_group_is_out_of_reach(node, joint, so_far.distance, q);
+            if has_content && kind != RUN {
+                surface_stack[depth] = so_far;
+                surface_group[depth] = at;
+#if MODIFIERS
+                if kind < RUN {
+                    let local = leaf_place(node.numbers + 2u, q);
+                    let row = node.numbers + MODIFIER_ROWS;
+                    let least = modifier_start(kind, local, row);
+                    let copy = modifier_next(kind, local, 0u, least, row);
+                    surface_outside[depth] = q;
+                    surface_local[depth] = local;
+                    surface_least[depth] = Surface(least, at, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+                    surface_copy[depth] = copy;
+                    has_content = copy < NO_COPY;
+                    if has_content {
+                        q = modifier_point(kind, local, copy, row);
+                    }
                 }
+#end
+                depth += 1u;
+            }
+            if has_content {
                 at += 1u;
                 continue;
             }
             at += node.extent;
         } else {
-            so_far = joined_surface_leaf(at, node.code & 0xffffu, (node.code >> 16u) & 0xffu, node.code >> 24u, node.numbers, so_far, p);
+            so_far = joined_surface_leaf(at, kind, (node.code >> 16u) & 0xffu, node.code >> 24u, node.numbers, so_far, q);
             at += 1u;
         }
         while depth > 0u {
@@ -43,8 +95,34 @@ fn surface(p: vec3f) -> Surface {
             if surface_group[depth - 1u] + group.extent != at {
                 break;
             }
+#if MODIFIERS
+            let modifier = group.code & 0xffffu;
+            if modifier < RUN {
+                let local = surface_local[depth - 1u];
+                let row = group.numbers + MODIFIER_ROWS;
+                var copy = surface_copy[depth - 1u];
+                var least = surface_least[depth - 1u];
+                if copy < NO_COPY {
+                    let seen = surface_of_copy(modifier, copy, local, row, so_far);
+                    if seen.distance < least.distance {
+                        least = seen;
+                    }
+                    copy = modifier_next(modifier, local, copy + 1u, least.distance, row);
+                }
+                if copy < NO_COPY {
+                    // The content once more, at another point.
+                    surface_least[depth - 1u] = least;
+                    surface_copy[depth - 1u] = copy;
+                    q = modifier_point(modifier, local, copy, row);
+                    at = surface_group[depth - 1u] + 1u;
+                    break;
+                }
+                so_far = surface_modified(modifier, group.numbers, local, least);
+                q = surface_outside[depth - 1u];
+            }
+#end
             depth -= 1u;
-            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers).x, surface_stack[depth], so_far);
+            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers), surface_stack[depth], so_far);
         }
     }
     return so_far;

@@ -1,21 +1,21 @@
-// Surfaces joined one after the other, for evaluators that walk lists. Gradient and material are mixed by
-// the weight of the joint, which is its derivative.
+// Surfaces joined one after the other, for evaluators that walk lists. Gradients are mixed by the derivatives of the
+// joint, materials by the share of what joins.
 
 #include "field/leaf.wgsl"
 #include "field/surface.wgsl"
 #include "generated/gradients.wgsl"
 
 // A group that has ended, `so_far`, joins what stood before it.
-fn joined_surface(join: u32, kernel: u32, support: f32, before: Surface, so_far: Surface) -> Surface {
+fn joined_surface(join: u32, kernel: u32, joint: vec4f, before: Surface, so_far: Surface) -> Surface {
     if join == JOIN_FIRST {
         return so_far;
     }
-    let joined = op_join(join, before.distance, so_far.distance, support, kernel);
-    let w = joined.y;
+    let joined = op_join(join, before.distance, so_far.distance, joint, kernel);
+    let w = joined.w;
     return Surface(
         joined.x,
         select(before.leaf, so_far.leaf, w > 0.5),
-        before.gradient * (1.0 - w) + so_far.gradient * select(w, -w, join == JOIN_DIFFERENCE),
+        before.gradient * joined.y + so_far.gradient * joined.z,
         mix(before.diffuse, so_far.diffuse, w),
         mix(before.emission, so_far.emission, w),
     );
@@ -26,20 +26,20 @@ fn joined_surface(join: u32, kernel: u32, support: f32, before: Surface, so_far:
 fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, before: Surface, p: vec3f) -> Surface {
     let joint = scene_row(row);
     let distance = leaf_distance(shape, row, joint, p);
-    var joined = vec2f(distance, 1.0);
+    var joined = vec4f(distance, 0.0, 1.0, 1.0);
     if join != JOIN_FIRST {
-        joined = op_join(join, before.distance, distance, joint.x, kernel);
+        joined = op_join(join, before.distance, distance, joint, kernel);
     }
-    let w = joined.y;
+    let w = joined.w;
     var so_far = before;
+    so_far.gradient = before.gradient * joined.y;
     so_far.distance = joined.x;
     so_far.leaf = select(before.leaf, at, w > 0.5);
     // A loop of at most one round: lavapipe executes the body of every `if`.
-    var follows = w > 0.0;
+    var follows = w > 0.0 || joined.z != 0.0;
     while follows {
         let m = materials[nodes[at].material];
-        let gradient = joined_surface_gradient(shape, row, joint, p) * select(w, -w, join == JOIN_DIFFERENCE);
-        so_far.gradient = before.gradient * (1.0 - w) + gradient;
+        so_far.gradient += joined_surface_gradient(shape, row, joint, p) * joined.z;
         so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
         so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
         follows = so_far.distance < -1e37;

@@ -1,5 +1,7 @@
 // Cells with pruned lists: in each cell only what can matter there. Twin of `flat::prune`.
 
+#include "common/walked.wgsl"
+
 // Cells, then tokens, two words each; see `CellTree` on the CPU.
 @group(1) @binding(5) var lists: texture_2d<u32>;
 
@@ -37,6 +39,9 @@ fn pruned_find(p: vec3f) {
         let child = min(vec3u(clamp((q - low) / side, vec3f(0.0), vec3f(8.0))), vec3u(3u));
         low += vec3f(child) * side;
         cell = pruned_word(grid.lists + (cell.x & 0x3fffffffu) + child.x + child.y * 4u + child.z * 16u);
+        if COUNTING {
+            walked.x += 1u;
+        }
     }
     let kind = cell.x >> 30u;
     let bound = bitcast<f32>(cell.y);
@@ -44,4 +49,7 @@ fn pruned_find(p: vec3f) {
     pruned_bound = select(select(bound + away, bound - away, bound > 0.0), beyond + GRID_MARGIN * grid.grid_side, beyond > 0.0);
     let first = grid.lists + (cell.x & 0x3fffffffu);
     pruned_list = select(vec2u(0u), vec2u(first, first + cell.y), beyond == 0.0 && kind != CELL_EMPTY);
+    if COUNTING {
+        walked += vec2u(1u, pruned_list.y - pruned_list.x);
+    }
 }

@@ -17,12 +17,12 @@ fn surface(p: vec3f) -> Surface {
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {
         let token = pruned_word(at);
         let op = (token.x >> 8u) & 3u;
-        let join = (token.x >> 10u) & 3u;
-        let kernel = (token.x >> 12u) & 3u;
+        let join = (token.x >> 10u) & 15u;
+        let kernel = (token.x >> 14u) & 7u;
         let row = pruned_component.numbers + token.y;
         var is_leaf = op == TOKEN_LEAF;
         while is_leaf {
-            let entry = pruned_component.first + (token.x >> 14u);
+            let entry = pruned_component.first + (token.x >> 17u);
             so_far = joined_surface_leaf(entry, token.x & 0xffu, join, kernel, row, so_far, p);
             is_leaf = so_far.distance < -1e37;
         }
@@ -32,7 +32,7 @@ fn surface(p: vec3f) -> Surface {
         }
         if op == TOKEN_END {
             depth -= 1u;
-            so_far = joined_surface(join, kernel, scene_row(row).x, surface_stack[depth], so_far);
+            so_far = joined_surface(join, kernel, scene_row(row), surface_stack[depth], so_far);
         }
         if op == TOKEN_NEGATE {
             so_far.distance = -so_far.distance;

@@ -18,8 +18,8 @@ fn field(p: vec3f) -> f32 {
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {
         let token = pruned_word(at);
         let op = (token.x >> 8u) & 3u;
-        var join = (token.x >> 10u) & 3u;
-        let kernel = (token.x >> 12u) & 3u;
+        var join = (token.x >> 10u) & 15u;
+        let kernel = (token.x >> 14u) & 7u;
         let row = pruned_component.numbers + token.y;
         let joint = scene_row(row);
         var before = so_far;
@@ -42,7 +42,7 @@ fn field(p: vec3f) -> f32 {
             so_far = -so_far;
             join = JOIN_FIRST;
         }
-        so_far = select(op_join(join, before, so_far, joint.x, kernel).x, so_far, join == JOIN_FIRST);
+        so_far = select(op_join(join, before, so_far, joint, kernel).x, so_far, join == JOIN_FIRST);
     }
     return so_far;
 }

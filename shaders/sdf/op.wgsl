@@ -1,49 +1,72 @@
-// Operators. Each returns (value, weight of b): the weight is how much the value follows b, from 0 to 1,
-// and is also b's share of the material; a has the rest.
+// Operators. `joint` is the first row of the operand that joins: x the support, z and w what else the operator or
+// the kernel needs. Those of `op_join` return (value, derivative by a, derivative by b, b's share of the material);
+// union, intersection and difference return (value, weight of b): the weight is the size of the derivative by b,
+// and is also b's share of the material; a has the rest. Twin: `flat::twin::op`.
 //
-// Beyond |a - b| >= support the operator is exactly hard. Support 0 is hard everywhere.
+// Beyond |a - b| >= support union, intersection and difference are exactly hard. Support 0 is hard everywhere.
 // The numbers of the joins and kernels are those of `Join` and `BlendKernel` on the CPU.
 
 const JOIN_FIRST: u32 = 0u;
 const JOIN_UNION: u32 = 1u;
 const JOIN_INTERSECTION: u32 = 2u;
 const JOIN_DIFFERENCE: u32 = 3u;
+const JOIN_XOR: u32 = 4u;
+const JOIN_PIPE: u32 = 5u;
+const JOIN_GROOVE: u32 = 6u;
+const JOIN_TONGUE: u32 = 7u;
+const JOIN_ENGRAVE: u32 = 8u;
+const JOIN_MORPH: u32 = 9u;
+const JOIN_PAINT: u32 = 10u;
 
 const KERNEL_CIRCULAR: u32 = 0u;
 const KERNEL_QUADRATIC: u32 = 1u;
 const KERNEL_CUBIC: u32 = 2u;
+const KERNEL_LEAN: u32 = 3u;
+const KERNEL_CHAMFER: u32 = 4u;
+const KERNEL_STAIRS: u32 = 5u;
+const KERNEL_COLUMNS: u32 = 6u;
 
-// The operand b joins what stands so far, a.
-fn op_join(join: u32, a: f32, b: f32, support: f32, kernel: u32) -> vec2f {
+const SQRT_2: f32 = 1.41421356;
+
+// The operand b joins what stands so far, a. `FURTHER_JOINS` and `FURTHER_KERNELS` say whether the component has
+// any beyond the first three: they are left out of all other kernels.
+fn op_join(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+    if FURTHER_JOINS && join > JOIN_DIFFERENCE {
+        return op_further(join, a, b, joint, kernel);
+    }
     let sign_a = select(1.0, -1.0, join >= JOIN_INTERSECTION);
     let sign_b = select(1.0, -1.0, join == JOIN_INTERSECTION);
-    let joined = op_union(sign_a * a, sign_b * b, support, kernel);
-    return vec2f(sign_a * joined.x, joined.y);
+    let joined = op_union(sign_a * a, sign_b * b, joint, kernel);
+    return vec4f(sign_a * joined.x, 1.0 - joined.y, sign_a * sign_b * joined.y, joined.y);
 }
 
-fn op_union(a: f32, b: f32, support: f32, kernel: u32) -> vec2f {
-    let blend = op_blend(abs(a - b), support, kernel);
+fn op_union(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
+    let blend = op_blend(abs(a - b), joint, kernel);
     return vec2f(min(a, b) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
 }
 
-fn op_intersection(a: f32, b: f32, support: f32, kernel: u32) -> vec2f {
-    let joined = op_union(-a, -b, support, kernel);
+fn op_intersection(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
+    let joined = op_union(-a, -b, joint, kernel);
     return vec2f(-joined.x, joined.y);
 }
 
 // a without b.
-fn op_difference(a: f32, b: f32, support: f32, kernel: u32) -> vec2f {
-    let joined = op_union(-a, b, support, kernel);
+fn op_difference(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
+    let joined = op_union(-a, b, joint, kernel);
     return vec2f(-joined.x, joined.y);
 }
 
 // What a blend takes from the lesser of two operands that differ by `difference`, and the weight of the
 // greater. Kernels: Quilez, "smooth minimum", scaled by their supports to one thickening.
-fn op_blend(difference: f32, support: f32, kernel: u32) -> vec2f {
+fn op_blend(difference: f32, joint: vec4f, kernel: u32) -> vec2f {
+    let support = joint.x;
     if difference >= support {
         return vec2f(0.0);
     }
     let h = 1.0 - difference / support;
+    if FURTHER_KERNELS && kernel >= KERNEL_LEAN {
+        return op_further_blend(difference, h, joint, kernel);
+    }
     if kernel == KERNEL_CIRCULAR {
         let root = sqrt(1.0 + h * (2.0 - h));
         return vec2f(0.5 * support * (1.0 + h - root), 0.5 * (1.0 - (1.0 - h) / root));
@@ -52,6 +75,106 @@ fn op_blend(difference: f32, support: f32, kernel: u32) -> vec2f {
         return vec2f(0.25 * support * h * h, 0.5 * h);
     }
     return vec2f(support * h * h * h / 6.0, 0.5 * h * h);
+}
+
+// The same for bevels. Steps and columns: Mercury's hg_sdf (2015) builds its stairs in the same coordinates, the
+// operands' sum and difference; here the columns are arcs of 90 degrees, so that no derivative exceeds 1.
+fn op_further_blend(difference: f32, h: f32, joint: vec4f, kernel: u32) -> vec2f {
+    let support = joint.x;
+    if kernel == KERNEL_LEAN {
+        if h > 0.5 {
+            return vec2f(0.5 * (0.75 * support - difference), 0.5);
+        }
+        return vec2f(0.5 * support * h * h, h);
+    }
+    if kernel == KERNEL_CHAMFER {
+        return vec2f(0.5 * support * h, 0.5);
+    }
+    // Each of joint.z steps is two `half` wide; u is where in its step the point is, from -1 to 1.
+    let half = support / joint.z;
+    let u = clamp(2.0 * fract(0.5 * h * joint.z), 0.0, 2.0);
+    if kernel == KERNEL_STAIRS {
+        return vec2f(0.5 * (support * h + half * (1.0 - abs(1.0 - u))), select(0.0, 1.0, u <= 1.0));
+    }
+    let root = sqrt(2.0 - (1.0 - u) * (1.0 - u));
+    return vec2f(0.5 * (support * h + half * (root - 1.0)), 0.5 * (1.0 + (1.0 - u) / root));
+}
+
+// The operators beyond the first three.
+fn op_further(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+    if join == JOIN_XOR {
+        return op_xor(a, b, joint, kernel);
+    }
+    if join == JOIN_PIPE {
+        return op_pipe(a, b, joint.z);
+    }
+    if join == JOIN_MORPH {
+        return vec4f(mix(a, b, joint.w), 1.0 - joint.w, joint.w, joint.w);
+    }
+    if join == JOIN_PAINT {
+        return vec4f(a, 1.0, 0.0, op_paint(b, joint.x));
+    }
+    if join == JOIN_ENGRAVE {
+        return op_engrave(a, b, joint, kernel);
+    }
+    return op_groove(join, a, b, joint, kernel);
+}
+
+// What is in one but not in both.
+fn op_xor(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+    let outer = op_union(a, b, joint, kernel);
+    let inner = op_intersection(a, b, joint, kernel);
+    if -inner.x > outer.x {
+        return vec4f(-inner.x, inner.y - 1.0, -inner.y, inner.y);
+    }
+    return vec4f(outer.x, 1.0 - outer.y, outer.y, outer.y);
+}
+
+// A round tube along the curve where both are 0. Both terms are bounds of the distance: the first has the surface,
+// and is divided by the greatest slope that it can have; the second is the greater far away. It wears b's material.
+fn op_pipe(a: f32, b: f32, radius: f32) -> vec4f {
+    let greater = max(abs(a), abs(b));
+    let part = min(abs(a), abs(b)) / max(greater, 1e-30);
+    let stretch = sqrt(1.0 + part * part);
+    let round = (greater * stretch - radius) * (0.5 * SQRT_2);
+    if round > greater - radius {
+        let way = 0.5 * SQRT_2 / (stretch * max(greater, 1e-30));
+        return vec4f(round, a * way, b * way, 1.0);
+    }
+    let sign_a = select(1.0, -1.0, a < 0.0);
+    let sign_b = select(1.0, -1.0, b < 0.0);
+    let follows = select(0.0, 1.0, abs(b) > abs(a));
+    return vec4f(greater - radius, (1.0 - follows) * sign_a, follows * sign_b, 1.0);
+}
+
+// A groove or a tongue of half width joint.z along the surface of b, joint.w deep or high.
+fn op_groove(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+    let sign = select(1.0, -1.0, join == JOIN_GROOVE);
+    let side = abs(b) - joint.z;
+    let end = sign * a - joint.w;
+    let joined = op_union(sign * a, max(side, end), joint, kernel);
+    let w = joined.y;
+    if end > side {
+        return vec4f(sign * joined.x, 1.0, 0.0, w);
+    }
+    return vec4f(sign * joined.x, 1.0 - w, sign * select(w, -w, b < 0.0), w);
+}
+
+// A V of 45 degrees along the surface of b, joint.w deep.
+fn op_engrave(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+    let cut = 0.5 * (abs(b) - a - joint.w);
+    let joined = op_difference(a, cut, joint, kernel);
+    let w = joined.y;
+    return vec4f(joined.x, 1.0 - 0.5 * w, 0.5 * select(-w, w, b < 0.0), w);
+}
+
+// The share of the paint b, whose edge fades over `radius` to both sides.
+fn op_paint(b: f32, radius: f32) -> f32 {
+    if abs(b) >= radius {
+        return select(0.0, 1.0, b < 0.0);
+    }
+    let h = 0.5 - 0.5 * b / radius;
+    return h * h * (3.0 - 2.0 * h);
 }
 
 // The hard operators, for kernels that know that nothing is blended.

@@ -9,6 +9,7 @@ use egui::TextureId;
 
 use crate::editor::{Editor, Message, Picture, View};
 use crate::flat::FlatScene;
+use crate::flat::inspect::{Look, Span};
 use crate::mesh::TriangleMesh;
 use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot};
 use crate::scene::NodeId;
@@ -26,7 +27,7 @@ const COARSEST: u32 = 8;
 
 /// See the module.
 pub(super) struct Canvas {
-    renderer: Renderer,
+    renderers: Renderers,
     state: RenderState,
     textures: [Option<(TextureId, [u32; 2])>; 2],
     shown: Option<Slot>,
@@ -37,6 +38,30 @@ pub(super) struct Canvas {
     navigating: bool,
     /// The full picture waits for the end of a drag, or for kernels that are being built.
     waiting: bool,
+}
+
+/// What draws the lit picture, and what draws the looks that count: counting costs time and memory, so the second one
+/// is there only while such a look is shown.
+struct Renderers {
+    plain: Renderer,
+    counting: Option<Renderer>,
+}
+
+impl Renderers {
+    /// The one that draws what is shown now.
+    fn active(&mut self) -> &mut Renderer {
+        self.counting.as_mut().unwrap_or(&mut self.plain)
+    }
+
+    /// From now on this look is shown.
+    fn choose(&mut self, look: Look) -> Result<(), RenderError> {
+        if !look.counts() {
+            self.counting = None;
+        } else if self.counting.is_none() {
+            self.counting = Some(Renderer::counting(self.plain.gpu())?);
+        }
+        Ok(())
+    }
 }
 
 /// Everything that the picture depends on.
@@ -51,7 +76,7 @@ struct Wanted {
 impl Canvas {
     pub fn new(gpu: Gpu, state: RenderState) -> Result<Self, RenderError> {
         Ok(Self {
-            renderer: Renderer::new(&gpu)?,
+            renderers: Renderers { plain: Renderer::new(&gpu)?, counting: None },
             state,
             textures: [None, None],
             shown: None,
@@ -64,7 +89,7 @@ impl Canvas {
     }
 
     pub fn is_lost(&self) -> bool {
-        self.renderer.gpu().is_lost()
+        self.renderers.plain.gpu().is_lost()
     }
 
     /// What there is to show now.
@@ -79,17 +104,14 @@ impl Canvas {
     }
 
     fn status(&self) -> String {
-        let name = short_name(&self.renderer.gpu().info.name);
-        let took = self.took.as_secs_f64() * 1e3;
-        match self.renderer.kernels_building() {
-            0 => format!("{name} · {took:.0} ms"),
-            n => format!("{name} · {took:.0} ms · compiling {n}"),
-        }
+        let renderer = &self.renderers.plain;
+        let name = short_name(&renderer.gpu().info.name);
+        status_text(name, self.took, renderer.kernels_building(), renderer.kernels_failed())
     }
 
     /// Brings the picture nearer to what the editor wants, in bounded time.
     pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
-        self.renderer.gpu().check()?;
+        self.renderers.plain.gpu().check()?;
         let View { navigating, .. } = editor.view();
         // Not part of what the picture depends on: letting go changes nothing in it.
         let view = View { navigating: false, ..editor.view() };
@@ -111,10 +133,10 @@ impl Canvas {
             self.wanted = Some(wanted);
         }
         if let Some((frame, started)) = &mut self.under_way {
-            self.renderer.advance(frame, PER_FRAME)?;
+            self.renderers.active().advance(frame, PER_FRAME)?;
             if frame.is_done() {
                 self.took = started.elapsed();
-                for mut warning in self.renderer.unfinished_rays(frame)? {
+                for mut warning in self.renderers.active().unfinished_rays(frame)? {
                     warning.name =
                         editor.document().scene().node(warning.node).map_or(String::new(), |n| n.name.clone());
                     editor.report(Message::warning(format!("{}: {}", warning.name, warning.reason)));
@@ -127,12 +149,14 @@ impl Canvas {
         Ok(())
     }
 
-    /// Whether the full picture is there and only grid or outline are to change.
+    /// Whether the full picture is there and only grid, outline or look are to change, and the look by what is found
+    /// already.
     fn differs_in_marks_only(&self, wanted: &Wanted) -> bool {
         let complete = self.shown == Some(Slot::Full) && self.under_way.is_none() && !self.waiting;
         let marked_alike = |shown: &Wanted| {
-            let View { show_grid, show_outline, .. } = shown.view;
-            let view = View { show_grid, show_outline, ..wanted.view };
+            let View { show_grid, show_outline, look, .. } = shown.view;
+            let look = if look.counts() == wanted.view.look.counts() { look } else { wanted.view.look };
+            let view = View { show_grid, show_outline, look, ..wanted.view };
             Wanted { view, outline: shown.outline.clone(), ..wanted.clone() }
         };
         complete && self.wanted.as_ref().is_some_and(|shown| *shown == marked_alike(shown))
@@ -140,11 +164,9 @@ impl Canvas {
 
     /// Draws the marks anew over the picture that is there.
     fn restyle(&mut self, wanted: &Wanted, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
-        let overlay = OverlaySettings { grid: wanted.view.show_grid, outline: wanted.outline.clone() };
-        let View { camera, size_px, .. } = wanted.view;
-        let mut frame = self.renderer.begin(Slot::Full, &wanted.flat, meshes, &camera, size_px, overlay)?;
+        let mut frame = self.begin(Slot::Full, wanted, meshes, wanted.view.size_px)?;
         frame.skip_to_shading();
-        self.renderer.advance(&mut frame, Duration::MAX)?;
+        self.renderers.active().advance(&mut frame, Duration::MAX)?;
         self.show(Slot::Full);
         Ok(())
     }
@@ -152,7 +174,7 @@ impl Canvas {
     /// Kernels that are being built are waited for without hurry; those that failed are told of.
     /// True when another one has become ready.
     fn follow_kernels(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
-        let kernels = self.renderer.kernels();
+        let kernels = self.renderers.plain.kernels();
         let news = kernels.collect();
         for failure in kernels.take_failures() {
             editor.report(Message::warning(failure));
@@ -167,25 +189,25 @@ impl Canvas {
     fn start(&mut self, wanted: &Wanted, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
         let View { camera, size_px, .. } = wanted.view;
         let flat = &*wanted.flat;
-        let overlay = OverlaySettings { grid: wanted.view.show_grid, outline: wanted.outline.clone() };
-        let full = self.renderer.estimate(flat, &camera, size_px)?;
+        self.renderers.choose(wanted.view.look)?;
+        let full = self.renderers.active().estimate(flat, &camera, size_px)?;
         let started = Instant::now();
         if full > AT_ONCE {
             let factor = (full.as_secs_f64() / AT_ONCE.as_secs_f64()).sqrt().ceil().min(f64::from(COARSEST)) as u32;
             let size = size_px.map(|v| v.div_ceil(factor).max(1));
-            let mut frame = self.renderer.begin(Slot::Preview, flat, meshes, &camera, size, overlay.clone())?;
-            self.renderer.advance(&mut frame, Duration::MAX)?;
+            let mut frame = self.begin(Slot::Preview, wanted, meshes, size)?;
+            self.renderers.active().advance(&mut frame, Duration::MAX)?;
             self.show(Slot::Preview);
         }
-        let kernels_pay = full > WORTH_WAITING && self.renderer.kernels_building() > 0;
+        let kernels_pay = full > WORTH_WAITING && self.renderers.active().kernels_building() > 0;
         self.waiting = full > AT_ONCE && (self.navigating || kernels_pay);
         if self.waiting {
             self.under_way = None;
             return Ok(());
         }
-        let mut frame = self.renderer.begin(Slot::Full, flat, meshes, &camera, size_px, overlay)?;
+        let mut frame = self.begin(Slot::Full, wanted, meshes, size_px)?;
         if full <= AT_ONCE {
-            self.renderer.advance(&mut frame, Duration::MAX)?;
+            self.renderers.active().advance(&mut frame, Duration::MAX)?;
             self.took = started.elapsed();
             self.under_way = None;
             self.show(Slot::Full);
@@ -195,9 +217,29 @@ impl Canvas {
         Ok(())
     }
 
+    /// Begins a picture of what is wanted.
+    fn begin(
+        &mut self,
+        slot: Slot,
+        wanted: &Wanted,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        size_px: [u32; 2],
+    ) -> Result<Frame, RenderError> {
+        let Wanted { view: View { camera, show_grid, look, .. }, flat, outline, .. } = wanted;
+        // Lines would change the colours that a look is read by.
+        let grid = *show_grid && *look == Look::Shaded;
+        let overlay = OverlaySettings { grid, outline: outline.clone() };
+        let renderer = self.renderers.active();
+        let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
+        if *look != Look::Shaded {
+            renderer.inspect(&mut frame, *look, flat, &Span::of(&flat.content(meshes), camera.position))?;
+        }
+        Ok(frame)
+    }
+
     /// Makes the picture in `slot` the one that egui draws.
     fn show(&mut self, slot: Slot) {
-        let Some((view, size)) = self.renderer.picture(slot) else { return };
+        let Some((view, size)) = self.renderers.active().picture(slot) else { return };
         let filter = match slot {
             Slot::Full => wgpu::FilterMode::Nearest,
             Slot::Preview => wgpu::FilterMode::Linear,
@@ -225,7 +267,33 @@ fn with_descendants(editor: &Editor) -> Vec<NodeId> {
     ranges.flat_map(|range| scene.nodes()[range].iter().map(|n| n.id)).collect()
 }
 
+/// Adapter, time of the last picture, kernels on the way, kernels that failed.
+fn status_text(adapter: &str, took: Duration, building: usize, failed: usize) -> String {
+    let mut text = format!("{adapter} · {:.0} ms", took.as_secs_f64() * 1e3);
+    if building > 0 {
+        text += &format!(" · compiling {building}");
+    }
+    if failed > 0 {
+        text += &format!(" · {failed} kernel{} failed, interpreter in use", if failed == 1 { "" } else { "s" });
+    }
+    text
+}
+
 /// The adapter's name without the parenthesis that many carry.
 fn short_name(name: &str) -> &str {
     name.split(" (").next().unwrap_or(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failed_kernels_stay_in_the_status() {
+        let text = |building, failed| status_text("card", Duration::from_millis(12), building, failed);
+        assert_eq!(text(0, 0), "card · 12 ms");
+        assert_eq!(text(2, 0), "card · 12 ms · compiling 2");
+        assert_eq!(text(0, 1), "card · 12 ms · 1 kernel failed, interpreter in use");
+        assert_eq!(text(1, 3), "card · 12 ms · compiling 1 · 3 kernels failed, interpreter in use");
+    }
 }

@@ -15,7 +15,7 @@ use crate::flat::{Accuracy, Buffers, FlatScene, FlattenError, flatten, flatten_w
 use crate::geometry::Camera;
 use crate::mesh::{MeshLibrary, TriangleMesh};
 use crate::render::kernel::{Options, Quality};
-use crate::render::{Counts, Frame, Gpu, Method, OverlaySettings, RenderError, Renderer, Slot};
+use crate::render::{Counts, Frame, Gpu, Method, OverlaySettings, PixelCounts, RenderError, Renderer, Slot};
 use crate::scene::Scene;
 
 /// Why something could not be measured.
@@ -106,6 +106,7 @@ struct Runs {
     wall: Vec<Duration>,
     buffers: Buffers,
     counts: Counts,
+    pixels: PixelCounts,
 }
 
 impl Bench {
@@ -159,6 +160,10 @@ impl Bench {
             normal_p99: error.normal_p99,
             quality: quality.name().to_owned(),
             cpu_ms_spread: spread(&cpu),
+            steps_p99: counted.pixels.steps().p99,
+            steps_max: counted.pixels.steps().max,
+            cells_per_px: counted.pixels.per_pixel(|took| took.cells),
+            entries_per_px: counted.pixels.per_pixel(|took| took.entries),
         };
         row.check()?;
         Ok(row)
@@ -212,7 +217,7 @@ impl Bench {
             frame = next;
         }
         let counts = renderer.counts(&frame)?;
-        Ok(Runs { cpu, wall, buffers: renderer.read(&frame)?, counts })
+        Ok(Runs { cpu, wall, buffers: renderer.read(&frame)?, counts, pixels: renderer.pixel_counts(&frame)? })
     }
 }
 

@@ -47,6 +47,14 @@ pub struct Row {
     pub quality: String,
     /// The slowest run's `cpu_ms` less the fastest's, in milliseconds: below it, differences say nothing.
     pub cpu_ms_spread: f64,
+    /// Steps that 99 of 100 pixels do not exceed.
+    pub steps_p99: f64,
+    /// Most steps of a pixel.
+    pub steps_max: f64,
+    /// Cells of pruned lists looked up per pixel, by rays and cones.
+    pub cells_per_px: f64,
+    /// Entries of pruned lists read per pixel, by rays and cones.
+    pub entries_per_px: f64,
 }
 
 /// A number of a row that is infinite or not a number, and so says nothing.
@@ -92,7 +100,7 @@ impl Row {
         row
     }
 
-    fn numbers(&mut self) -> [(&'static str, &mut f64); 11] {
+    fn numbers(&mut self) -> [(&'static str, &mut f64); 15] {
         [
             ("cpu_ms", &mut self.cpu_ms),
             ("wall_ms", &mut self.wall_ms),
@@ -105,6 +113,10 @@ impl Row {
             ("normal_p50", &mut self.normal_p50),
             ("normal_p99", &mut self.normal_p99),
             ("cpu_ms_spread", &mut self.cpu_ms_spread),
+            ("steps_p99", &mut self.steps_p99),
+            ("steps_max", &mut self.steps_max),
+            ("cells_per_px", &mut self.cells_per_px),
+            ("entries_per_px", &mut self.entries_per_px),
         ]
     }
 
@@ -143,6 +155,10 @@ mod tests {
             "normal_p99",
             "quality",
             "cpu_ms_spread",
+            "steps_p99",
+            "steps_max",
+            "cells_per_px",
+            "entries_per_px",
         ];
         let places: Vec<usize> = keys.iter().map(|key| line.find(&format!("\"{key}\":")).expect(key)).collect();
         assert!(places.is_sorted(), "{line}");

@@ -21,6 +21,10 @@ pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, 
         depth_max: depth_p99 * 900.0,
         normal_p50: depth_p99 * 8.0,
         normal_p99: depth_p99 * 600.0,
+        steps_p99: 60.0 + cpu_ms.sqrt(),
+        steps_max: 400.0,
+        cells_per_px: 12.0,
+        entries_per_px: 40.0,
     }
 }
 

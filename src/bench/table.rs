@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::row::Row;
 
 /// The heads of the columns of the Markdown tables. The first two hold words, the others numbers.
-const HEADS: [&str; 14] = [
+const HEADS: [&str; 18] = [
     "method",
     "quality",
     "CPU ms",
@@ -13,7 +13,11 @@ const HEADS: [&str; 14] = [
     "× auto",
     "wall ms",
     "steps/px",
+    "p99",
+    "max",
     "evals/px",
+    "cells/px",
+    "entries/px",
     "hit/miss %",
     "depth p50",
     "depth p99",
@@ -25,7 +29,7 @@ const WORDS: usize = 2;
 
 /// One table for each scene and size, in the order in which they first come. "±" is half the spread of the
 /// runs, "× auto" the CPU time over that of `auto` at the default quality in the same table. Depths are in
-/// pixel footprints, normals in degrees.
+/// pixel footprints, normals in degrees. "p99" and "max" are steps, too: of 99 of 100 pixels, and of the worst one.
 pub fn markdown(rows: &[Row]) -> String {
     let tables: Vec<String> = scenes(rows).iter().map(|rows| scene_table(rows)).collect();
     tables.join("\n")
@@ -85,7 +89,11 @@ fn cells(row: &Row, auto: Option<f64>) -> Vec<String> {
         ratio,
         significant(row.wall_ms),
         significant(row.steps_per_px),
+        significant(row.steps_p99),
+        significant(row.steps_max),
         significant(row.evals_per_px),
+        significant(row.cells_per_px),
+        significant(row.entries_per_px),
         format!("{:.4}", row.hit_miss_share * 100.0),
         format!("{:.5}", row.depth_p50),
         format!("{:.5}", row.depth_p99),
@@ -114,7 +122,7 @@ fn in_text(value: f64) -> String {
 pub fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
         "scene,nodes,method,size,cpu_ms,wall_ms,steps_per_px,evals_per_px,hit_miss_share,depth_p50,depth_p99,\
-         depth_max,normal_p50,normal_p99,quality,cpu_ms_spread\n",
+         depth_max,normal_p50,normal_p99,quality,cpu_ms_spread,steps_p99,steps_max,cells_per_px,entries_per_px\n",
     );
     for row in rows.iter().map(Row::clamped) {
         let numbers = [
@@ -131,7 +139,7 @@ pub fn csv(rows: &[Row]) -> String {
         ]
         .map(|number| format!("{number:?}"));
         text += &format!(
-            "{},{},{},{},{},{},{:?}\n",
+            "{},{},{},{},{},{},{:?},{:?},{:?},{:?},{:?}\n",
             quoted(&row.scene),
             row.nodes,
             quoted(&row.method),
@@ -139,6 +147,10 @@ pub fn csv(rows: &[Row]) -> String {
             numbers.join(","),
             quoted(&row.quality),
             row.cpu_ms_spread,
+            row.steps_p99,
+            row.steps_max,
+            row.cells_per_px,
+            row.entries_per_px,
         );
     }
     text
@@ -218,7 +230,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         let json = sample.to_json_line();
         let places: Vec<usize> = lines[0].split(',').map(|n| json.find(&format!("\"{n}\":")).unwrap()).collect();
-        assert!(places.is_sorted() && places.len() == 16);
+        assert!(places.is_sorted() && places.len() == 20);
         assert!(lines[1].starts_with("\"a, \"\"b\"\"\",3,auto,256,1.5,"), "{}", lines[1]);
         assert!(!text.contains("inf"));
         assert_eq!(csv(&[]).lines().count(), 1);

@@ -1,6 +1,7 @@
 //! `isolith render`: a picture, and more outputs beside it, without a window.
 
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -8,6 +9,7 @@ use super::failure::Failure;
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
+use crate::flat::inspect::{Look, Span};
 use crate::flat::mesh_rays::Meshes;
 use crate::flat::truth::truth;
 use crate::flat::{Buffers, FlatScene, Warning, flatten};
@@ -49,6 +51,10 @@ pub struct RenderArguments {
     /// Also write which node is seen: .exr holds its id (background is 0), .png a colour for each
     #[arg(long, value_name = "FILE", value_parser = output_path)]
     node_id: Option<PathBuf>,
+    /// What the picture shows: shaded, steps, evaluations, cells, entries, distance, normals, slope, nodes or
+    /// components
+    #[arg(long, value_name = "LOOK", default_value = "shaded", value_parser = Look::from_str, conflicts_with = "truth")]
+    view: Look,
     /// Render the truth: on the processor, in double precision, every ray to certainty. Slow
     #[arg(long)]
     truth: bool,
@@ -69,6 +75,7 @@ impl RenderArguments {
             depth: None,
             normal: None,
             node_id: None,
+            view: Look::Shaded,
             truth: false,
             quiet: false,
         }
@@ -111,7 +118,10 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
         gpu_picture(arguments, &flat, &meshes, &camera)?
     };
     for (quantity, path) in arguments.outputs() {
-        let note = outputs::write(quantity, path, &buffers, &flat)?;
+        let mut note = outputs::write(quantity, path, &buffers, &flat)?;
+        if quantity == Quantity::Color {
+            note += &arguments.view.note(&Span::of(&flat.content(&meshes), camera.position));
+        }
         if !arguments.quiet {
             say(&format!("wrote {}{note}", path.display()))?;
         }
@@ -144,11 +154,15 @@ fn gpu_picture(
 ) -> Result<Buffers, Failure> {
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
-    let mut renderer = Renderer::new(&gpu)?;
-    // One picture is done before kernels of its own could be built: 4 s against 40 s at 577 nodes on lavapipe.
-    renderer.set_method(Method::Interpreted);
+    let look = arguments.view;
+    let mut renderer = if look.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
+    if !look.counts() {
+        // One picture is done before kernels of its own could be built: 4 s against 40 s at 577 nodes on lavapipe.
+        renderer.set_method(Method::Interpreted);
+    }
     let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
-    let result = renderer.render(flat, meshes, camera, arguments.size, &mut |share| progress.update(f64::from(share)));
+    let mut update = |share| progress.update(f64::from(share));
+    let result = renderer.render_as(look, flat, meshes, camera, arguments.size, &mut update);
     progress.finish();
     let (buffers, unfinished) = result?;
     arguments.warn(&unfinished);

@@ -7,7 +7,10 @@ use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICO
 
 use super::sheet::Sheet;
 use super::workbench::Workbench;
-use super::{fields, glyphs, inspector_kinds, inspector_material, inspector_scene, inspector_transform, theme};
+use super::{
+    fields, glyphs, inspector_joints, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
+    inspector_transform, theme,
+};
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
 use crate::scene::{Node, NodeKind};
@@ -37,15 +40,16 @@ impl Inspector {
         if all.iter().all(|n| n.has_field())
             && let Some(mut sheet) = Sheet::new(bench, all.clone())
         {
-            inspector_kinds::role(ui, &mut sheet);
+            inspector_joints::role(ui, &mut sheet);
         }
         if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
             self.transform.show(ui, &mut sheet);
         }
+        let with_fields = all.iter().all(|n| n.has_field()).then(|| all.clone());
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
         let Some(mut sheet) = Sheet::new(bench, alike) else { return };
         match &active.kind {
-            NodeKind::Group(_) => inspector_kinds::group(ui, &mut sheet),
+            NodeKind::Group(_) => inspector_joints::group(ui, &mut sheet),
             NodeKind::Object(object) => {
                 inspector_kinds::shape(ui, &mut sheet);
                 inspector_material::show(ui, &mut sheet, Some(object.material));
@@ -56,6 +60,9 @@ impl Inspector {
             }
             NodeKind::Light(_) => inspector_kinds::light(ui, &mut sheet),
             NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut sheet),
+        }
+        if let Some(mut sheet) = with_fields.and_then(|nodes| Sheet::new(bench, nodes)) {
+            inspector_modifiers::show(ui, &mut sheet);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The cards of each kind of node: group, shape, mesh, light, camera.
+//! The cards of each kind of node: shape, mesh, light, camera.
 
 use egui::{RichText, TextEdit, Ui};
 use glam::DVec3;
@@ -6,66 +6,17 @@ use glam::DVec3;
 use super::fields::{self, Field};
 use super::sheet::Sheet;
 use super::{inspector_points, shape_change, theme};
-use crate::scene::limits::{ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, RANGE};
+use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, RANGE};
 use crate::scene::{
-    Attenuation, BlendKernel, CameraNode, Group, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Operator,
-    Param, ParamValue, ShapeKind,
+    Attenuation, CameraNode, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Param, ParamValue, ShapeKind,
 };
 
-const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, default: Option<f64>) -> Field<'a> {
+pub(super) const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, default: Option<f64>) -> Field<'a> {
     Field { label, help, limits, default }
 }
 
 fn no_help<T>(_: T) -> &'static str {
     ""
-}
-
-/// Whether the node is joined or cut away; objects and groups.
-pub fn role(ui: &mut Ui, sheet: &mut Sheet<'_>) {
-    let help = "Cut away from what stands before it in its group, instead of joined";
-    sheet.toggle(ui, ("Role", "Negative (cut away)", help), |n| n.negative, |n, on| n.negative = on);
-}
-
-/// Operator and blend.
-pub fn group(ui: &mut Ui, sheet: &mut Sheet<'_>) {
-    fn get(n: &Node) -> Option<Group> {
-        if let NodeKind::Group(g) = n.kind { Some(g) } else { None }
-    }
-    fn with(n: &mut Node, change: impl FnOnce(&mut Group)) {
-        if let NodeKind::Group(g) = &mut n.kind {
-            change(g);
-        }
-    }
-    fields::card(ui, "Group", |ui| {
-        let describe = |o| match o {
-            Operator::Union => "What is in any child",
-            Operator::Intersection => "What is in every child",
-            Operator::Difference => "The first child without the later ones",
-        };
-        sheet.choice(
-            ui,
-            ("Operator", "How each child joins those before it"),
-            &Operator::ALL,
-            (Operator::label, describe),
-            |n| get(n).map(|g| g.operator),
-            |n, v| with(n, |g| g.operator = v),
-        );
-        let radius = field("Blend radius", "How round the joints are; 0 is a sharp edge", BLEND_RADIUS, Some(0.0));
-        sheet.number(ui, &radius, |n| get(n).map(|g| g.blend.radius), |n, v| with(n, |g| g.blend.radius = v));
-        let describe = |k| match k {
-            BlendKernel::Circular => "A fillet with a round section",
-            BlendKernel::Quadratic => "Softer ends, a little wider",
-            BlendKernel::Cubic => "The softest and widest",
-        };
-        sheet.choice(
-            ui,
-            ("Blend curve", "The curve of the rounding; all thicken equally"),
-            &BlendKernel::ALL,
-            (BlendKernel::label, describe),
-            |n| get(n).map(|g| g.blend.kernel),
-            |n, v| with(n, |g| g.blend.kernel = v),
-        );
-    });
 }
 
 fn object(n: &Node) -> Option<&Object> {
@@ -139,7 +90,7 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
 }
 
 /// `bottom_radius` → `Bottom radius`.
-fn sentence_case(name: &str) -> String {
+pub fn sentence_case(name: &str) -> String {
     let spaced = name.replace('_', " ");
     let mut chars = spaced.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())

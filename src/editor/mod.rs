@@ -8,6 +8,7 @@
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
 //! | `sheet`, `fields`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 
 mod bounds;
@@ -20,11 +21,14 @@ mod gizmo;
 mod glyphs;
 mod insertion;
 mod inspector;
+mod inspector_joints;
 mod inspector_kinds;
 mod inspector_material;
+mod inspector_modifiers;
 mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
+mod legend;
 mod messages;
 mod navigation;
 mod outliner;
@@ -34,6 +38,7 @@ mod picking;
 mod selection;
 mod shape_change;
 mod sheet;
+mod silhouettes;
 mod status;
 mod theme;
 mod toolbar;
@@ -51,6 +56,7 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
+use crate::flat::inspect::Look;
 use crate::flat::{FlatMesh, FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
@@ -83,6 +89,8 @@ pub struct View {
     pub show_grid: bool,
     /// Whether the selection is to be marked.
     pub show_outline: bool,
+    /// What the picture is to show.
+    pub look: Look,
 }
 
 /// An example that the File menu offers.
@@ -108,6 +116,7 @@ pub struct Editor {
     examples: Vec<Example>,
     show_grid: bool,
     show_outline: bool,
+    look: Look,
     shown_title: String,
     /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
     typing: bool,
@@ -141,6 +150,7 @@ impl Editor {
             examples: Vec::new(),
             show_grid: true,
             show_outline: true,
+            look: Look::Shaded,
             shown_title: String::new(),
             typing: false,
         };
@@ -216,6 +226,7 @@ impl Editor {
             navigating: self.viewport.is_navigating() || self.bench.is_changing(),
             show_grid: self.show_grid,
             show_outline: self.show_outline,
+            look: self.look,
         }
     }
 

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use crate::scene::{ParamValue, Shape, ShapeKind};
+use crate::geometry::Aabb;
+use crate::scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
 
 /// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
 /// then the kind's defaults.
@@ -12,64 +13,108 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     if from.kind() == kind || !bounds.is_finite() {
         return if from.kind() == kind { from.clone() } else { kind.default_shape() };
     }
-    let mean = (half.x + half.y + half.z) / 3.0;
-    let side = (half.x + half.z) * 0.5;
-    // Of what stands along Y; something flat keeps more of its width than of its height.
-    let upright = side.min(half.y.max(0.6 * side));
-    let shape = match kind {
-        ShapeKind::Sphere => Shape::Sphere { radius: mean },
-        ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half.to_array() },
-        ShapeKind::Box => Shape::Box { size: (half * 2.0).to_array(), rounding: 0.0 },
-        ShapeKind::BoxFrame => Shape::BoxFrame { size: (half * 2.0).to_array(), thickness: 0.2 * half.min_element() },
-        ShapeKind::Torus => {
-            let minor_radius = half.y.min(side * 0.4);
-            Shape::Torus { major_radius: side - minor_radius, minor_radius }
-        }
-        ShapeKind::Cylinder => Shape::Cylinder { radius: side, height: 2.0 * half.y, rounding: 0.0 },
-        ShapeKind::CappedCone => {
-            Shape::CappedCone { bottom_radius: side, top_radius: 0.4 * side, height: 2.0 * half.y }
-        }
-        ShapeKind::RoundCone => {
-            let bottom_radius = upright;
-            let top_radius = 0.5 * bottom_radius;
-            let height = (2.0 * half.y - bottom_radius - top_radius).max(0.0);
-            Shape::RoundCone { bottom_radius, top_radius, height }
-        }
-        ShapeKind::Capsule => {
-            let radius = upright;
-            let (center, reach) = (bounds.center(), DVec3::Y * (half.y - radius).max(0.0));
-            Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius }
-        }
-        ShapeKind::Plane => Shape::Plane {},
-        ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
-        ShapeKind::Octahedron => Shape::Octahedron { radius: mean },
-        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Terrain | ShapeKind::Ocean => {
-            let shape = kind.default_shape();
-            let factor = half.length() / shape.bounds().half().length();
-            resized(shape, factor)
-        }
-    };
-    rounded(shape)
+    let room = Room::new(&bounds, half);
+    let other = || if kind.has_data() { room.drawn(kind) } else { kind.default_shape() };
+    rounded(room.simple(kind).or_else(|| room.cut(kind)).unwrap_or_else(other))
 }
 
-/// The shape with all that is a length multiplied.
-fn resized(mut shape: Shape, factor: f64) -> Shape {
-    for (index, (value, param)) in shape.values().into_iter().zip(shape.kind().params()).enumerate() {
-        if param.limits.unit != "m" {
-            continue;
-        }
-        let value = match value {
-            ParamValue::Scalar(v) => ParamValue::Scalar(v * factor),
-            ParamValue::Vector(v) => ParamValue::Vector(v * factor),
-            ParamValue::List(mut list) => {
-                list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
-                ParamValue::List(list)
-            }
-            flag @ ParamValue::Flag(_) => flag,
-        };
-        shape.set_value(index, value);
+/// The room that a shape takes, and sizes of others that fit into it.
+struct Room {
+    center: DVec3,
+    half: DVec3,
+    /// Half the size, in the mean.
+    mean: f64,
+    /// Half the size across the Y axis.
+    side: f64,
+    /// Half the size of what stands along Y; something flat keeps more of its width than of its height.
+    upright: f64,
+}
+
+impl Room {
+    fn new(bounds: &Aabb, half: DVec3) -> Self {
+        let side = (half.x + half.z) * 0.5;
+        let mean = (half.x + half.y + half.z) / 3.0;
+        Self { center: bounds.center(), half, mean, side, upright: side.min(half.y.max(0.6 * side)) }
     }
-    shape
+
+    /// Balls, boxes, rings, cylinders.
+    fn simple(&self, kind: ShapeKind) -> Option<Shape> {
+        let Self { half, mean, side, upright, .. } = *self;
+        let minor_radius = half.y.min(side * 0.4);
+        let major_radius = side - minor_radius;
+        Some(match kind {
+            ShapeKind::Sphere => Shape::Sphere { radius: mean },
+            ShapeKind::Ellipsoid => Shape::Ellipsoid { radii: half.to_array() },
+            ShapeKind::Box => Shape::Box { size: (half * 2.0).to_array(), rounding: 0.0 },
+            ShapeKind::BoxFrame => {
+                Shape::BoxFrame { size: (half * 2.0).to_array(), thickness: 0.2 * half.min_element() }
+            }
+            ShapeKind::Torus => Shape::Torus { major_radius, minor_radius },
+            ShapeKind::CappedTorus => Shape::CappedTorus { major_radius, minor_radius, half_angle: Degrees(120.0) },
+            ShapeKind::Link => {
+                let minor_radius = half.y.min(half.z * 0.3);
+                let length = 2.0 * (half.x - half.z).max(0.0);
+                Shape::Link { length, major_radius: half.z - minor_radius, minor_radius }
+            }
+            ShapeKind::PolygonRing => Shape::PolygonRing { sides: Sides(6.0), major_radius, minor_radius },
+            ShapeKind::Cylinder => Shape::Cylinder { radius: side, height: 2.0 * half.y, rounding: 0.0 },
+            ShapeKind::CappedCone => {
+                Shape::CappedCone { bottom_radius: side, top_radius: 0.4 * side, height: 2.0 * half.y }
+            }
+            ShapeKind::RoundCone => {
+                let bottom_radius = upright;
+                let top_radius = 0.5 * bottom_radius;
+                let height = (2.0 * half.y - bottom_radius - top_radius).max(0.0);
+                Shape::RoundCone { bottom_radius, top_radius, height }
+            }
+            ShapeKind::Capsule => {
+                let (center, reach) = (self.center, DVec3::Y * (half.y - upright).max(0.0));
+                Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius: upright }
+            }
+            ShapeKind::MengerSponge => Shape::MengerSponge { size: 2.0 * mean, iterations: 3.0 },
+            ShapeKind::Julia | ShapeKind::Kleinian => {
+                let mut shape = kind.default_shape();
+                shape.set_value(0, ParamValue::Scalar(1.2 * mean));
+                shape
+            }
+            ShapeKind::InfiniteCylinder => Shape::InfiniteCylinder { radius: side },
+            ShapeKind::HexagonalPrism => Shape::HexagonalPrism { radius: side, height: 2.0 * half.y },
+            ShapeKind::Octahedron => Shape::Octahedron { radius: mean },
+            _ => return None,
+        })
+    }
+
+    /// Prisms, parts of balls, sheets.
+    fn cut(&self, kind: ShapeKind) -> Option<Shape> {
+        let Self { half, mean, side, upright, .. } = *self;
+        let [width, height, depth] = (half * 2.0).to_array();
+        Some(match kind {
+            ShapeKind::TriangularPrism => Shape::TriangularPrism { width, depth, height },
+            ShapeKind::Prism => Shape::Prism { sides: Sides(5.0), radius: side, height, rounding: 0.0 },
+            ShapeKind::Pyramid => Shape::Pyramid { width: 2.0 * side, height },
+            ShapeKind::Rhombus => Shape::Rhombus { width, depth, height, rounding: 0.0 },
+            ShapeKind::Star => {
+                Shape::Star { points: Sides(5.0), outer_radius: side, inner_radius: 0.45 * side, height, rounding: 0.0 }
+            }
+            ShapeKind::CutSphere => Shape::CutSphere { radius: mean, cut: -0.2 * mean },
+            ShapeKind::HollowCutSphere => {
+                Shape::HollowCutSphere { radius: 0.92 * mean, cut: 0.3 * mean, thickness: 0.16 * mean }
+            }
+            ShapeKind::DeathStar => Shape::DeathStar { radius: mean, cut_radius: 0.75 * mean, distance: 1.15 * mean },
+            ShapeKind::SolidAngle => Shape::SolidAngle { radius: 1.5 * mean, half_angle: Degrees(40.0) },
+            ShapeKind::Vesica => Shape::Vesica { height: 2.0 * half.y.max(side), width: 2.0 * upright },
+            ShapeKind::Triangle => Shape::Triangle { width, depth, skew: 0.0, thickness: 0.1 * side },
+            ShapeKind::Quad => Shape::Quad { width, depth, skew: 0.0, thickness: 0.1 * side },
+            _ => return None,
+        })
+    }
+
+    /// What is drawn point by point, and landscapes: the defaults, larger or smaller.
+    fn drawn(&self, kind: ShapeKind) -> Shape {
+        let shape = kind.default_shape();
+        let factor = self.half.length() / shape.bounds().half().length();
+        shape.with_lengths_times(factor)
+    }
 }
 
 /// The shape with every number rounded to a micrometre, so that the inspector shows tidy values.

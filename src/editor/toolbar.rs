@@ -1,10 +1,12 @@
 //! The bar at the top: menus, then the buttons used most.
 
 use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
+use egui_material_icons::icons::ICON_VISIBILITY;
 
 use super::commands::{self, CommandId, Icon, Menu};
 use super::dialogs::Intent;
-use super::{Editor, glyphs, theme};
+use super::{Editor, glyphs, legend, theme};
+use crate::flat::inspect::Look;
 use crate::scene::ShapeKind;
 
 /// Shows the bar.
@@ -21,6 +23,10 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
                 }
                 if let Some(command) = commands::menu_entries(ui, editor, menu) {
                     chosen = Some(command);
+                }
+                if menu == Menu::View {
+                    ui.separator();
+                    ui.menu_button("Picture shows", |ui| looks(editor, ui, &mut chosen));
                 }
             });
         }
@@ -44,10 +50,23 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         buttons(editor, ui, theme::TEXT, &["Duplicate", "Delete"], &mut chosen);
         divider(ui);
         buttons(editor, ui, theme::TEXT, &["Frame all", "Frame selected"], &mut chosen);
+        divider(ui);
+        let color = if editor.look == Look::Shaded { theme::TEXT } else { theme::ACCENT };
+        let name = legend::capitalised(editor.look.name());
+        let text = (ICON_VISIBILITY.rich_text().size(17.0).color(color), RichText::new(name).color(color));
+        let button = ui.menu_button(text, |ui| looks(editor, ui, &mut chosen)).response;
+        ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Picture shows"));
+        button.on_hover_text("What the picture shows");
     });
     if let Some(command) = chosen {
         command.run(editor, &ui.ctx().clone());
     }
+}
+
+/// The choice of what the picture shows.
+fn looks(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
+    ui.set_min_width(190.0);
+    *chosen = commands::menu_entries(ui, editor, Menu::Look).or(*chosen);
 }
 
 fn divider(ui: &mut Ui) {

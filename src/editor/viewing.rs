@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::{Editor, bounds};
+use crate::flat::inspect::Span;
 
 impl Editor {
     /// Shows all of the selection.
@@ -43,6 +44,12 @@ impl Editor {
         } else {
             self.look_through_camera();
         }
+    }
+
+    /// The distances at which the scene stands, in front of the eye.
+    pub(super) fn span(&mut self) -> Span {
+        let (meshes, _) = self.flat.scene.load_meshes(&mut self.meshes);
+        Span::of(&self.flat.scene.content(&meshes), self.navigation.eye())
     }
 
     /// The middle of the scene.

@@ -8,7 +8,8 @@ use super::navigation::Navigation;
 use super::overlay::{self, Compass, Marker};
 use super::picking::pick_node;
 use super::workbench::Workbench;
-use super::{Editor, Picture, theme};
+use super::{Editor, Picture, legend, theme};
+use crate::flat::inspect::Look;
 use crate::geometry::Camera;
 
 /// What the pointer is dragging.
@@ -293,6 +294,10 @@ fn paint(editor: &mut Editor, ui: &Ui, response: &Response, picture: &Picture) {
     if let Some(arrows) = arrows(editor, &projection) {
         let hovered = pointer.and_then(|p| arrows.handle_at(p)).filter(|_| editor.viewport.dragging.is_none());
         arrows.paint(&painter, dragged.or(hovered));
+    }
+    if editor.look != Look::Shaded {
+        let span = editor.span();
+        legend::paint(&painter, rect, editor.look, &span);
     }
     let compass = Compass::new(rect, editor.navigation.rotation);
     compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));

@@ -5,9 +5,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use crate::geometry::{Aabb, Camera};
-use crate::scene::{Environment, Light, MaterialId, NodeId};
+use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
-/// Entry of the subtree-extent array: a group, a leaf (one shape), or a run.
+/// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
 /// A run stands before operands of the same group that follow each other and join in the same way. It
 /// has no value; it says where none of them can matter, so that all are skipped at once.
@@ -17,7 +17,7 @@ use crate::scene::{Environment, Light, MaterialId, NodeId};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct FlatNode {
-    /// Bits 0–15: shape code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
+    /// Bits 0–15: shape code, [`FlatNode::MODIFIER`] and a modifier's code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
     pub code: u32,
     /// Entries of this node and everything below it; 1 for a leaf.
     pub extent: u32,
@@ -32,6 +32,8 @@ impl FlatNode {
     pub const GROUP: u32 = 0xffff;
     /// The shape code that marks a run.
     pub const RUN: u32 = 0xfffe;
+    /// The first of the shape codes that mark modifiers.
+    pub const MODIFIER: u32 = 0xff00;
 
     /// Whether it is a group.
     pub fn is_group(&self) -> bool {
@@ -45,7 +47,13 @@ impl FlatNode {
 
     /// Whether it is a leaf.
     pub fn is_leaf(&self) -> bool {
-        !self.is_group() && !self.is_run()
+        self.code & 0xffff < Self::MODIFIER
+    }
+
+    /// Which modifier it is, if it is one.
+    pub fn modifier(&self) -> Option<ModifierKind> {
+        let code = (self.code & 0xffff).checked_sub(Self::MODIFIER)?;
+        ModifierKind::ALL.get(code as usize).copied()
     }
 
     /// How it joins what precedes it.
@@ -71,18 +79,85 @@ pub enum Join {
     Intersection,
     /// Cut away.
     Difference,
+    /// What is in one but not in both.
+    Xor,
+    /// A tube where both surfaces meet.
+    Pipe,
+    /// A groove along its surface.
+    Groove,
+    /// A tongue along its surface.
+    Tongue,
+    /// A V cut along its surface.
+    Engrave,
+    /// Between both.
+    Morph,
+    /// Only its material.
+    Paint,
 }
 
-/// Numbers of an entry, four at a time. Both kinds begin with the joint.
+impl Join {
+    /// Every join, by its number.
+    pub const ALL: [Self; 11] = [
+        Self::First,
+        Self::Union,
+        Self::Intersection,
+        Self::Difference,
+        Self::Xor,
+        Self::Pipe,
+        Self::Groove,
+        Self::Tongue,
+        Self::Engrave,
+        Self::Morph,
+        Self::Paint,
+    ];
+
+    /// How the later children of a group join.
+    pub fn of(operator: Operator) -> Self {
+        match operator {
+            Operator::Union => Self::Union,
+            Operator::Intersection => Self::Intersection,
+            Operator::Difference => Self::Difference,
+            Operator::Xor => Self::Xor,
+            Operator::Pipe => Self::Pipe,
+            Operator::Groove => Self::Groove,
+            Operator::Tongue => Self::Tongue,
+            Operator::Engrave => Self::Engrave,
+            Operator::Morph => Self::Morph,
+            Operator::Paint => Self::Paint,
+        }
+    }
+
+    /// Whether it needs more than a sum of shares: derivatives of any sign, or a material of its own.
+    pub fn is_further(self) -> bool {
+        self > Self::Difference
+    }
+
+    /// Whether it only takes from what stands so far, or leaves it as it is.
+    pub fn only_cuts(self) -> bool {
+        matches!(self, Self::Intersection | Self::Difference | Self::Groove | Self::Engrave | Self::Paint)
+    }
+
+    /// Whether an operand that is far off changes nothing, so that it can be skipped by its bounds.
+    pub fn is_skipped_far_off(self) -> bool {
+        matches!(self, Self::Union | Self::Difference)
+    }
+}
+
+/// Kernels from this one on are the further ones: bevels, steps and columns.
+pub const FIRST_FURTHER_KERNEL: u32 = 3;
+
+/// Numbers of an entry, four at a time. Both kinds begin with the joint, see [`super::twin::Joint`].
 ///
-/// Leaf: `[support, distance_scale, count, data]`, three rows of local-from-component (a point `p` maps to
-/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has
-/// `count` rows of them, `data` rows behind the leaf's first; they stand behind the rows of all entries of the
-/// component, so that they are no part of what a specialised kernel reads as uniform.
+/// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
+/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
+/// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
+/// behind the rows of all entries of the component, so that they are no part of what a specialised kernel reads as uniform.
 ///
-/// Group: `[support, slope, 0, 0]`, centre of its bounds, half extent of its bounds. The field of the
+/// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies. A run has the same rows: the largest support of its operands, and bounds
+/// slope 0 and finite dummies. A modifier has the same three, with its distance_scale behind the centre,
+/// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
+/// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.
 pub type Row = [f32; 4];
 
@@ -93,10 +168,33 @@ pub const LEAF_ROWS: usize = 4;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
 
+/// Where the row that says where a leaf's data are stands among its rows; `None` for a shape without data.
+pub fn data_row(kind: ShapeKind) -> Option<usize> {
+    kind.has_data().then(|| LEAF_ROWS + kind.parameter_rows())
+}
+
 /// The data of the leaf whose rows `numbers` begins with; empty for most.
-pub fn leaf_data(numbers: &[Row]) -> &[Row] {
-    let [_, _, count, data] = numbers[0].map(|v| v as usize);
-    &numbers[data..data + count]
+pub fn leaf_data(kind: ShapeKind, numbers: &[Row]) -> &[Row] {
+    let Some(row) = data_row(kind) else { return &[] };
+    let [count, offset, ..] = numbers[row].map(|v| v as usize);
+    &numbers[row + offset..][..count]
+}
+
+/// Rows of a modifier before its own.
+pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
+
+/// How many rows a modifier's own numbers take.
+pub const fn modifier_rows(kind: ModifierKind) -> usize {
+    match kind {
+        // These are written as copies.
+        ModifierKind::Mirror | ModifierKind::Polar => 0,
+        ModifierKind::Repeat => 10,
+        ModifierKind::Recursion => 6,
+        ModifierKind::Bend => 4,
+        ModifierKind::Taper => 3,
+        ModifierKind::Twist | ModifierKind::Noise => 2,
+        ModifierKind::Elongate | ModifierKind::Round | ModifierKind::Onion | ModifierKind::Waves => 1,
+    }
 }
 
 /// A material as the GPU reads it.
@@ -173,6 +271,10 @@ pub struct Component {
     pub half_space: Option<[f64; 4]>,
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
+    /// Whether it holds modifiers.
+    pub modified: bool,
+    /// How often an entry may be evaluated for one point: 1 without repetition.
+    pub copies: u32,
 }
 
 /// Something that the artist should know; the scene is still rendered.

@@ -1,9 +1,10 @@
 //! Writes the fold of one component into the arrays, relative to the component's origin.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
-use super::operands::{Operand, Value, fold_bounds};
+use super::enclosure::fold_bounds;
+use super::operands::{Operand, Value};
 use crate::geometry::Aabb;
 use crate::scene::{BlendKernel, MaterialId, ShapeKind};
 
@@ -19,6 +20,7 @@ pub(super) fn emit(
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
+    let modified = flat.nodes[first..].iter().any(|n| n.modifier().is_some());
     let data = flat.numbers.len();
     emit_data(flat, operands, &mut (first..));
     Component {
@@ -31,6 +33,19 @@ pub(super) fn emit(
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
         stack,
+        modified,
+        copies: operands.iter().map(copies).max().unwrap_or(1),
+    }
+}
+
+/// How often a leaf of the operand may be evaluated for one point.
+fn copies(operand: &Operand<'_>) -> u32 {
+    match &operand.value {
+        Value::Leaf { .. } => 1,
+        Value::Fold(inner) => inner.iter().map(copies).max().unwrap_or(1),
+        Value::Modified { content, modified, .. } => {
+            content.iter().map(copies).max().unwrap_or(1).saturating_mul(modified.copies)
+        }
     }
 }
 
@@ -45,6 +60,7 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
     }
     match &operands[0].value {
         Value::Leaf { local_from_world, .. } => local_from_world.inverse().translation,
+        Value::Modified { local_from_world, .. } => local_from_world.inverse().translation,
         Value::Fold(inner) => origin_of(bounds, inner),
     }
 }
@@ -52,10 +68,7 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
 /// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let Value::Leaf { local_from_world, body, .. } = &operands[0].value else { return None };
-    if body.kind != ShapeKind::Plane {
-        return None;
-    }
-    if operands.iter().any(|o| o.join == Join::Union) {
+    if body.kind != ShapeKind::Plane || !operands[1..].iter().all(|o| o.join.only_cuts()) {
         return None;
     }
     // The plane's inside is local y < 0.
@@ -74,15 +87,15 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
             at = entry();
         }
         match &operand.value {
-            Value::Fold(inner) => emit_data(flat, inner, entries),
-            Value::Leaf { body, .. } if !body.rows.is_empty() => {
-                let first = flat.nodes[at].numbers as usize;
+            Value::Fold(inner) | Value::Modified { content: inner, .. } => emit_data(flat, inner, entries),
+            Value::Leaf { body, .. } => {
+                let Some(behind) = data_row(body.kind) else { continue };
+                let row = flat.nodes[at].numbers as usize + behind;
                 // Exact: there are far fewer rows than f32 can count.
-                flat.numbers[first][2] = body.rows.len() as f32;
-                flat.numbers[first][3] = (flat.numbers.len() - first) as f32;
+                let [count, offset] = [body.rows.len(), flat.numbers.len() - row].map(|v| v as f32);
+                flat.numbers[row] = [count, offset, 0.0, 0.0];
                 flat.numbers.extend(body.rows.iter().map(|row| row.map(|v| v as f32)));
             }
-            Value::Leaf { .. } => {}
         }
     }
 }
@@ -101,7 +114,7 @@ fn emit_fold(
     material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
 ) -> u32 {
     let alike = |a: &Operand<'_>, b: &Operand<'_>| {
-        let skippable = |o: &Operand<'_>| o.slope > 0.0 && matches!(o.join, Join::Union | Join::Difference);
+        let skippable = |o: &Operand<'_>| o.slope > 0.0 && o.join.is_skipped_far_off();
         a.join == b.join && skippable(a) && skippable(b)
     };
     let mut stack = 0;
@@ -132,7 +145,7 @@ fn emit_runs(
         let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.skip)).translated(-origin);
         let slope = run.iter().map(|o| o.slope).fold(f64::INFINITY, f64::min);
         let support = run.iter().map(|o| o.blend.support()).fold(0.0, f64::max);
-        flat.numbers.extend(bounding_rows(support as f32, slope, &bounds));
+        flat.numbers.extend(bounding_rows([support as f32, 0.0, 0.0], slope, &bounds));
         stack = stack.max(if run.len() > RUN_LENGTH {
             emit_runs(flat, run, origin, material)
         } else {
@@ -144,15 +157,24 @@ fn emit_runs(
 }
 
 /// The rows of a group or run. Rounding to f32 must never make the bounds smaller or the slope greater.
-fn bounding_rows(support: f32, slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
+fn bounding_rows([support, size, depth]: [f32; 3], slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
     if slope <= 0.0 {
-        return [[support, 0.0, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+        return [[support, 0.0, size, depth], [0.0; 4], [0.0; 4]];
     }
     let (center, half) = (bounds.center(), bounds.half());
     let half = (half + (half + center.abs()) * 1e-6).as_vec3();
     let center = center.as_vec3();
     let slope = (slope * (1.0 - 1e-6)) as f32;
-    [[support, slope, 0.0, 0.0], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
+    [[support, slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
+}
+
+/// Local from component.
+fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [Row; 3] {
+    let shift = local_from_world.transform_point3(origin);
+    [0, 1, 2].map(|row| {
+        let r = local_from_world.matrix3.row(row);
+        [r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]
+    })
 }
 
 /// Returns how many accumulators have to be put aside within the operand.
@@ -166,28 +188,37 @@ fn emit_operand(
     let numbers = flat.numbers.len() as u32;
     let kernel = BlendKernel::ALL.iter().position(|k| *k == operand.blend.kernel).expect("ALL holds every kernel");
     let code = |what: u32| what | ((operand.join as u32) << 16) | ((kernel as u32) << 24);
-    let support = operand.blend.support() as f32;
+    let joint = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
     flat.ids.push(operand.node.id);
     match &operand.value {
         Value::Leaf { local_from_world, distance_scale, body, material: id } => {
             let material = material(flat, *id);
             flat.nodes.push(FlatNode { code: code(body.kind as u32), extent: 1, numbers, material });
-            let m = &local_from_world.matrix3;
-            let shift = local_from_world.transform_point3(origin);
-            flat.numbers.push([support, *distance_scale as f32, 0.0, 0.0]);
-            for row in 0..3 {
-                let r = m.row(row);
-                flat.numbers.push([r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]);
-            }
+            flat.numbers.push([joint[0], *distance_scale as f32, joint[1], joint[2]]);
+            flat.numbers.extend(placing_rows(local_from_world, origin));
             let packed = body.parameters.map(|v| v as f32);
-            let rows = body.kind.rows();
+            let rows = body.kind.parameter_rows();
             flat.numbers.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
+            // Where its data are, once they are written.
+            flat.numbers.extend(data_row(body.kind).map(|_| [0.0; 4]));
             0
         }
         Value::Fold(inner) => {
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
-            flat.numbers.extend(bounding_rows(support, operand.slope, &operand.skip.translated(-origin)));
+            flat.numbers.extend(bounding_rows(joint, operand.slope, &operand.skip.translated(-origin)));
             let stack = emit_fold(flat, inner, origin, material);
+            flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
+            stack + 1
+        }
+        Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
+            let marker = FlatNode::MODIFIER + *kind as u32;
+            flat.nodes.push(FlatNode { code: code(marker), extent: 0, numbers, material: 0 });
+            let mut bounding = bounding_rows(joint, operand.slope, &operand.skip.translated(-origin));
+            bounding[1][3] = *distance_scale as f32;
+            flat.numbers.extend(bounding);
+            flat.numbers.extend(placing_rows(local_from_world, origin));
+            flat.numbers.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
+            let stack = emit_fold(flat, content, DVec3::ZERO, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }

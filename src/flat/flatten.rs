@@ -13,7 +13,8 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::emit::emit;
-use super::operands::{Operand, collect, fold_bounds, group_of};
+use super::enclosure::fold_bounds;
+use super::operands::{Operand, collect, group_of, is_plain};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 
@@ -51,8 +52,7 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     let components = collect(scene, &mut |_, _| {});
     let mut whole: Vec<Operand<'_>> = Vec::new();
     for mut operands in components.operands {
-        let is_plain = operands[1..].iter().all(|o| o.join == Join::Union && o.blend.radius == 0.0);
-        if is_plain {
+        if is_plain(&operands) {
             for operand in &mut operands {
                 operand.join = Join::Union;
             }
@@ -89,6 +89,9 @@ pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, 
         add_bystander(&mut flat, &mut materials, node, world_from_local);
     });
     flat.warnings = components.warnings;
+    if let Some(problem) = components.problem {
+        return Err(problem);
+    }
     for operands in &components.operands {
         add_component(&mut flat, &mut materials, operands)?;
     }

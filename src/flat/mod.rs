@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `body` | shape → the numbers that it is evaluated with |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modify` | what modifiers do to bounds and steps |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
@@ -15,6 +16,7 @@
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
+//! | `inspect` | ways to look at a picture other than lit, their colours |
 //! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
@@ -22,9 +24,13 @@ mod body;
 mod buffers;
 pub mod compare;
 mod emit;
+mod enclosure;
 mod flatten;
+pub mod inspect;
+mod joints;
 pub mod mesh_rays;
 mod meshes;
+mod modify;
 mod operands;
 pub mod pick;
 mod prune;
@@ -40,6 +46,7 @@ pub use body::Body;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};
+pub use modify::{MAX_NEIGHBOURS, REPEAT_REACH, is_copying};
 pub use prune::*;
 pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};

@@ -2,10 +2,14 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::arrays::{Join, Warning};
+use super::arrays::{Join, MAX_FLAT_NODES, Warning};
 use super::body::Body;
+use super::enclosure::{Enclosure, fold_bounds};
+use super::flatten::FlattenError;
+use super::joints::{Joiner, has_own_radius};
+use super::modify::{MAX_NEIGHBOURS, Modified, Refusal, is_idle, modify};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{Blend, Group, MaterialId, Node, NodeKind, Operator, Scene, Shape};
+use crate::scene::{Blend, Group, MaterialId, Modifier, ModifierKind, Node, NodeKind, Operator, Scene, Shape};
 
 /// One operand of a fold.
 #[derive(Clone)]
@@ -16,8 +20,10 @@ pub(super) struct Operand<'a> {
     pub outermost: &'a Node,
     /// How it joins what precedes it.
     pub join: Join,
-    /// How round the joint is.
+    /// How round the joint is, in metres.
     pub blend: Blend,
+    /// What else the join needs, see [`super::twin::Joint`]: size and depth.
+    pub detail: [f64; 2],
     /// Around its surface, in the world.
     pub bounds: Aabb,
     /// Its field is at least `slope` times the distance to `skip`.
@@ -35,6 +41,14 @@ pub(super) enum Value<'a> {
     Leaf { local_from_world: DAffine3, distance_scale: f64, body: Body, material: MaterialId },
     /// A fold of its own; never of one operand.
     Fold(Vec<Operand<'a>>),
+    /// A fold in the local space of a modifier: local-from-world, factor on its local distance, the modifier.
+    Modified {
+        local_from_world: DAffine3,
+        distance_scale: f64,
+        kind: ModifierKind,
+        modified: Modified,
+        content: Vec<Operand<'a>>,
+    },
 }
 
 /// The folds of all components, and what was noticed on the way.
@@ -43,28 +57,46 @@ pub(super) struct Components<'a> {
     pub warnings: Vec<Warning>,
     /// Whether something at the top is cut away from what precedes it.
     pub has_cuts: bool,
+    /// The first limit that was hit.
+    pub problem: Option<FlattenError>,
 }
 
 /// Whether a node is opened at the top: its children are components of their own.
-pub(super) fn is_opened(node: &Node) -> bool {
+pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
     let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
-    !negative && group.operator == Operator::Union && group.blend.radius == 0.0
+    let is_hard = group.operator == Operator::Union && group.blend.radius == 0.0;
+    !negative && active(node).next().is_none() && is_hard && !scene.children(Some(node.id)).any(has_own_radius)
 }
 
-/// The fold of the component whose outermost node stands at `index`.
+/// The modifiers that do something, in their order.
+fn active(node: &Node) -> impl DoubleEndedIterator<Item = Modifier> {
+    node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| slot.modifier)
+}
+
+/// The fold of the one component whose outermost node stands at `index`; nothing where it is not one, or where
+/// there is something to warn of.
 pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_>>> {
     let node: &Node = &scene.nodes()[index];
     let parent = node.parent.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
-    let mut collector = Collector { scene, bystander: &mut |_, _| {}, warnings: Vec::new(), has_cuts: false };
-    collector.operand(index, &parent, node).map(begin_with)
+    let mut nobody = |_: &Node, _: &DAffine3| {};
+    let mut collector = Collector::new(scene, &mut nobody);
+    let mut parts = apart(collector.operand(index, &parent, node)?);
+    let is_one = parts.len() == 1 && collector.warnings.is_empty() && collector.problem.is_none();
+    if is_one { parts.pop().map(begin_with) } else { None }
+}
+
+/// Whether a fold is a hard union: its operands can be traced alone.
+pub(super) fn is_plain(fold: &[Operand<'_>]) -> bool {
+    fold[1..].iter().all(|o| o.join == Join::Union && o.blend.radius == 0.0)
 }
 
 /// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
 pub(super) fn collect<'a>(scene: &'a Scene, bystander: &mut dyn FnMut(&'a Node, &DAffine3)) -> Components<'a> {
-    let mut collector = Collector { scene, bystander, warnings: Vec::new(), has_cuts: false };
-    let mut components = Vec::new();
-    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut components);
-    Components { operands: components, warnings: collector.warnings, has_cuts: collector.has_cuts }
+    let mut collector = Collector::new(scene, bystander);
+    let mut operands = Vec::new();
+    collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut operands);
+    let Collector { warnings, has_cuts, problem, .. } = collector;
+    Components { operands, warnings, has_cuts, problem }
 }
 
 struct Collector<'a, 'b> {
@@ -72,9 +104,18 @@ struct Collector<'a, 'b> {
     bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
     warnings: Vec<Warning>,
     has_cuts: bool,
+    problem: Option<FlattenError>,
+    /// Leaves so far: copies of copies are many, and must end somewhere.
+    leaves: usize,
+    /// Within a modifier, whose bystanders are known already.
+    is_muted: bool,
 }
 
-impl<'a> Collector<'a, '_> {
+impl<'a, 'b> Collector<'a, 'b> {
+    fn new(scene: &'a Scene, bystander: &'b mut dyn FnMut(&'a Node, &DAffine3)) -> Self {
+        Self { scene, bystander, warnings: Vec::new(), has_cuts: false, problem: None, leaves: 0, is_muted: false }
+    }
+
     /// The children in `range` are joined by hard union: each becomes a component, hard unions among
     /// them are opened. A negative child is cut from those before it that it can reach, since
     /// (a ∪ b) − d = (a − d) ∪ (b − d) exactly.
@@ -89,7 +130,7 @@ impl<'a> Collector<'a, '_> {
             if !node.visible {
                 continue;
             }
-            if is_opened(node) {
+            if is_opened(self.scene, node) {
                 self.split(first + 1..children.end, world * node.transform.to_affine(), out);
                 continue;
             }
@@ -98,7 +139,7 @@ impl<'a> Collector<'a, '_> {
                 self.has_cuts = true;
                 self.cut(&mut out[start..], operand);
             } else {
-                out.push(begin_with(operand));
+                out.extend(apart(operand).into_iter().map(begin_with));
             }
         }
     }
@@ -119,17 +160,39 @@ impl<'a> Collector<'a, '_> {
 
     /// The node at `index` as an operand (its join still to be set), or nothing where nothing is seen.
     fn operand(&mut self, index: usize, parent: &DAffine3, outermost: &'a Node) -> Option<Operand<'a>> {
-        let scene = self.scene;
-        let node: &'a Node = &scene.nodes()[index];
+        let node: &'a Node = &self.scene.nodes()[index];
         if !node.visible {
             return None;
         }
         let world = *parent * node.transform.to_affine();
+        let modifiers: Vec<Modifier> = active(node).collect();
+        if modifiers.is_empty() {
+            return self.content(index, &world, outermost);
+        }
+        // What is no field is not modified, and is there once.
+        self.bystanders(index, &world);
+        let was_muted = std::mem::replace(&mut self.is_muted, true);
+        let operand = self.modified(index, &modifiers, &world, outermost);
+        self.is_muted = was_muted;
+        operand
+    }
+
+    /// The node at `index` without its modifiers.
+    fn content(&mut self, index: usize, world: &DAffine3, outermost: &'a Node) -> Option<Operand<'a>> {
+        let scene = self.scene;
+        let node: &'a Node = &scene.nodes()[index];
         match &node.kind {
-            NodeKind::Object(object) => Some(leaf(node, outermost, &world, &object.shape, object.material)),
+            NodeKind::Object(object) => {
+                self.leaves += 1;
+                if self.leaves > MAX_FLAT_NODES {
+                    self.hit_limit(outermost, "the number of shapes, copies included", self.leaves, MAX_FLAT_NODES);
+                    return None;
+                }
+                Some(leaf(node, outermost, world, &object.shape, object.material))
+            }
             NodeKind::Group(group) => {
                 let range = scene.subtree(index);
-                let fold = self.fold(range.start + 1..range.end, group, &world, outermost);
+                let fold = self.fold(range.start + 1..range.end, group, world, outermost);
                 match fold.len() {
                     0 => None,
                     1 => fold.into_iter().next(),
@@ -137,9 +200,138 @@ impl<'a> Collector<'a, '_> {
                 }
             }
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => {
-                (self.bystander)(node, &world);
+                if !self.is_muted {
+                    (self.bystander)(node, world);
+                }
                 None
             }
+        }
+    }
+
+    /// The bystanders of the subtree at `index`, whose own world transform is given.
+    fn bystanders(&mut self, index: usize, world: &DAffine3) {
+        if self.is_muted {
+            return;
+        }
+        let scene = self.scene;
+        let node: &'a Node = &scene.nodes()[index];
+        if !node.has_field() {
+            (self.bystander)(node, world);
+        }
+        let range = scene.subtree(index);
+        let mut at = range.start + 1;
+        while at < range.end {
+            let child: &'a Node = &scene.nodes()[at];
+            if child.visible {
+                self.bystanders(at, &(*world * child.transform.to_affine()));
+            }
+            at = scene.subtree(at).end;
+        }
+    }
+
+    /// The node at `index` with these modifiers, the last one outermost.
+    fn modified(
+        &mut self,
+        index: usize,
+        modifiers: &[Modifier],
+        world: &DAffine3,
+        outermost: &'a Node,
+    ) -> Option<Operand<'a>> {
+        if self.problem.is_some() {
+            return None;
+        }
+        let Some((last, rest)) = modifiers.split_last() else { return self.content(index, world, outermost) };
+        let copies = match *last {
+            Modifier::Mirror { axes, blend } => {
+                let axes: Vec<usize> = (0..3).filter(|i| axes[*i]).collect();
+                return self.mirrored(index, rest, world, outermost, &axes, blend);
+            }
+            Modifier::Polar { count, radius, mirrored } => polar_copies(count, radius, mirrored),
+            _ => return self.deformed(index, (last, rest), world, outermost),
+        };
+        let copies: Vec<_> =
+            copies.iter().filter_map(|copy| self.modified(index, rest, &(*world * *copy), outermost)).collect();
+        united(&self.scene.nodes()[index], outermost, copies, 0.0)
+    }
+
+    /// The node and its mirror images across the planes at right angles to `axes`.
+    fn mirrored(
+        &mut self,
+        index: usize,
+        rest: &[Modifier],
+        world: &DAffine3,
+        outermost: &'a Node,
+        axes: &[usize],
+        blend: f64,
+    ) -> Option<Operand<'a>> {
+        let Some((axis, axes)) = axes.split_last() else { return self.modified(index, rest, world, outermost) };
+        let mut flip = DVec3::ONE;
+        flip[*axis] = -1.0;
+        let sides = [DAffine3::IDENTITY, DAffine3::from_scale(flip)];
+        let mut side = |copy: &DAffine3| self.mirrored(index, rest, &(*world * *copy), outermost, axes, blend);
+        let sides: Vec<_> = sides.iter().filter_map(&mut side).collect();
+        united(&self.scene.nodes()[index], outermost, sides, blend)
+    }
+
+    /// The node under a modifier that stays in the arrays.
+    fn deformed(
+        &mut self,
+        index: usize,
+        (last, rest): (&Modifier, &[Modifier]),
+        world: &DAffine3,
+        outermost: &'a Node,
+    ) -> Option<Operand<'a>> {
+        let node: &'a Node = &self.scene.nodes()[index];
+        let content = begin_with(self.modified(index, rest, &DAffine3::IDENTITY, outermost)?);
+        let enclosure = fold_bounds(&content);
+        if enclosure.bounds.is_empty() {
+            return None;
+        }
+        let modified = match modify(last, &enclosure) {
+            Ok(modified) => modified,
+            Err(Refusal::Cannot(reason)) => {
+                self.warn(node, reason);
+                return self.modified(index, rest, world, outermost);
+            }
+            Err(Refusal::TooMany(copies)) => {
+                let what = "the number of copies that reach into each other and are evaluated at once";
+                self.hit_limit(node, what, copies, MAX_NEIGHBOURS as usize);
+                return None;
+            }
+        };
+        if let Some(warning) = &modified.warning {
+            self.warn(node, warning.clone());
+        }
+        let (least, greatest) = singular_values(&world.matrix3);
+        let skip = modified.skip.transformed(world);
+        Some(Operand {
+            node,
+            outermost,
+            join: Join::First,
+            blend: Blend::HARD,
+            detail: [0.0; 2],
+            bounds: modified.bounds.transformed(world),
+            skip,
+            slope: if skip.is_finite() { modified.slope * least / greatest } else { 0.0 },
+            value: Value::Modified {
+                local_from_world: world.inverse(),
+                distance_scale: least,
+                kind: last.kind(),
+                modified,
+                content,
+            },
+        })
+    }
+
+    fn hit_limit(&mut self, node: &Node, what: &'static str, value: usize, limit: usize) {
+        self.problem.get_or_insert(FlattenError { node: node.id, name: node.name.clone(), what, value, limit });
+    }
+
+    fn warn(&mut self, node: &Node, reason: String) {
+        let warning = Warning { node: node.id, name: node.name.clone(), reason };
+        // Copies would say the same again.
+        if !self.warnings.contains(&warning) {
+            self.warnings.push(warning);
         }
     }
 
@@ -151,6 +343,8 @@ impl<'a> Collector<'a, '_> {
         outermost: &'a Node,
     ) -> Vec<Operand<'a>> {
         let mut fold: Vec<Operand<'a>> = Vec::new();
+        let keeps = self.scene.children(Some(self.scene.nodes()[range.start - 1].id)).any(|n| !n.apart.is_empty());
+        let mut joiner = Joiner::new(group, keeps);
         let mut at = range.start;
         while at < range.end {
             let child = at;
@@ -161,27 +355,19 @@ impl<'a> Collector<'a, '_> {
                 if node.negative {
                     self.warn_nothing_to_cut(node);
                 } else {
+                    joiner.begin(node, &operand);
                     fold = begin_with(operand);
                 }
                 continue;
             }
-            operand.join = match (node.negative, group.operator) {
-                (true, _) | (_, Operator::Difference) => Join::Difference,
-                (_, Operator::Union) => Join::Union,
-                (_, Operator::Intersection) => Join::Intersection,
-            };
-            operand.blend = group.blend;
-            join(&mut fold, operand);
+            joiner.set_joint(node, &mut operand);
+            joiner.join(node, operand, &mut fold);
         }
         fold
     }
 
     fn warn_nothing_to_cut(&mut self, node: &Node) {
-        self.warnings.push(Warning {
-            node: node.id,
-            name: node.name.clone(),
-            reason: "is negative but comes first in its group, so there is nothing to cut it from".into(),
-        });
+        self.warn(node, "is negative but comes first in its group, so there is nothing to cut it from".into());
     }
 }
 
@@ -189,20 +375,57 @@ impl<'a> Collector<'a, '_> {
 pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
     let Enclosure { bounds, skip, slope } = fold_bounds(&fold);
     let Operand { node, outermost, .. } = fold[0];
-    Operand { node, outermost, join: Join::First, blend: Blend::HARD, bounds, skip, slope, value: Value::Fold(fold) }
+    let (blend, detail) = (Blend::HARD, [0.0; 2]);
+    Operand { node, outermost, join: Join::First, blend, detail, bounds, skip, slope, value: Value::Fold(fold) }
 }
 
 /// A fold that starts with `operand`: a group's fold simply goes on.
-fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
+pub(super) fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
     operand.join = Join::First;
     match operand.value {
-        Value::Fold(fold) => fold,
-        Value::Leaf { .. } => vec![operand],
+        Value::Fold(fold) => {
+            let mut operands = fold.into_iter();
+            let mut fold = operands.next().map_or(Vec::new(), begin_with);
+            fold.extend(operands);
+            fold
+        }
+        Value::Leaf { .. } | Value::Modified { .. } => vec![operand],
     }
 }
 
+/// What can be traced alone: the operands of a hard union.
+fn apart(operand: Operand<'_>) -> Vec<Operand<'_>> {
+    match operand.value {
+        Value::Fold(fold) if is_plain(&fold) => fold,
+        _ => vec![operand],
+    }
+}
+
+/// Operands joined by union; nothing where there are none.
+fn united<'a>(node: &'a Node, outermost: &'a Node, operands: Vec<Operand<'a>>, radius: f64) -> Option<Operand<'a>> {
+    let blend = Blend { radius, ..Blend::HARD };
+    let mut operands = operands.into_iter();
+    let first = Operand { join: Join::First, ..operands.next()? };
+    let mut fold = if radius == 0.0 { apart(first) } else { begin_with(first) };
+    for operand in operands {
+        join(&mut fold, Operand { join: Join::Union, blend, ..operand });
+    }
+    if fold.len() == 1 { fold.pop() } else { Some(Operand { node, outermost, ..group_of(fold) }) }
+}
+
+/// Where the copies around Y stand: the first one out along X.
+fn polar_copies(count: u32, radius: f64, mirrored: bool) -> Vec<DAffine3> {
+    let out = DAffine3::from_translation(DVec3::X * radius);
+    let copy = |i: u32| {
+        let turn = DAffine3::from_rotation_y(-std::f64::consts::TAU * f64::from(i) / f64::from(count));
+        let flip = if mirrored && i % 2 == 1 { DVec3::new(1.0, 1.0, -1.0) } else { DVec3::ONE };
+        turn * out * DAffine3::from_scale(flip)
+    };
+    (0..count).map(copy).collect()
+}
+
 /// Appends an operand. A hard union inside a hard union is opened: min is associative.
-fn join<'a>(fold: &mut Vec<Operand<'a>>, operand: Operand<'a>) {
+pub(super) fn join<'a>(fold: &mut Vec<Operand<'a>>, operand: Operand<'a>) {
     let hard_union = |o: &Operand<'_>| o.join == Join::Union && o.blend.radius == 0.0;
     match operand.value {
         Value::Fold(ref inner) if hard_union(&operand) && inner[1..].iter().all(hard_union) => {
@@ -232,6 +455,7 @@ fn leaf<'a>(
         outermost,
         join: Join::First,
         blend: Blend::HARD,
+        detail: [0.0; 2],
         bounds,
         skip: bounds,
         slope: if bounds.is_finite() { least / greatest } else { 0.0 },
@@ -259,46 +483,4 @@ fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f6
     }
     let (least, greatest) = singular_values(m);
     (shape.clone(), *world_from_local, least, greatest)
-}
-
-/// What encloses a fold.
-pub(super) struct Enclosure {
-    pub bounds: Aabb,
-    pub skip: Aabb,
-    pub slope: f64,
-}
-
-/// Bounds of a fold, and the box and slope below which its field never falls.
-///
-/// A blended union falls below the least operand by at most its thickening, and a row of them by at
-/// most their support. Intersection and difference never fall below their operands.
-pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> Enclosure {
-    let first = &fold[0];
-    let (mut bounds, mut skip, mut slope) = (first.bounds, first.skip, first.slope);
-    let mut growth = 0.0_f64;
-    for operand in &fold[1..] {
-        match operand.join {
-            Join::Union => {
-                bounds = bounds.union(&operand.bounds);
-                skip = skip.union(&operand.skip);
-                slope = slope.min(operand.slope);
-                growth = growth.max((growth + operand.blend.thickening()).min(operand.blend.support()));
-            }
-            Join::Intersection => {
-                bounds = bounds.expanded(growth).intersection(&operand.bounds);
-                skip = skip.expanded(if slope > 0.0 { growth / slope } else { 0.0 });
-                growth = 0.0;
-                // Both are below the field; the smaller one says more.
-                let smaller =
-                    operand.slope > 0.0 && (slope == 0.0 || operand.skip.half().length() < skip.half().length());
-                if smaller {
-                    (skip, slope) = (operand.skip, operand.slope);
-                }
-            }
-            Join::First | Join::Difference => {}
-        }
-    }
-    let skip = skip.expanded(if slope > 0.0 { growth / slope } else { 0.0 });
-    let bounds = bounds.expanded(growth);
-    Enclosure { bounds, skip, slope: if skip.is_finite() { slope } else { 0.0 } }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::arrays::FlatScene;
 use super::emit::emit;
+use super::enclosure::fold_bounds;
 use super::flatten::{FlattenError, flatten_with_cuts};
-use super::operands::{component_of, fold_bounds, is_opened};
+use super::operands::{component_of, is_opened};
 use crate::scene::{Material, Node, NodeKind, Scene};
 
 /// Keeps the arrays of the last scene, and makes those of the next one from them where little has
@@ -69,7 +70,8 @@ impl Last {
         let pairs = self.nodes.iter().zip(scene.nodes()).enumerate();
         let changed: Vec<usize> =
             pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b)).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
-        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(&self.nodes[*i], &scene.nodes()[*i])) {
+        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(scene, &self.nodes[*i], &scene.nodes()[*i]))
+        {
             return false;
         }
         for index in changed {
@@ -89,7 +91,8 @@ impl Last {
         let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
         let old = self.flat.components[at].clone();
         let Some(operands) = component_of(scene, outermost) else { return false };
-        if fold_bounds(&operands).bounds.is_empty() {
+        let had_warnings = old.modified && !self.flat.warnings.is_empty();
+        if fold_bounds(&operands).bounds.is_empty() || had_warnings {
             return false;
         }
         let mut scratch = FlatScene { environment: self.flat.environment, ..FlatScene::default() };
@@ -115,11 +118,17 @@ impl Last {
     }
 }
 
-/// Whether only the values of an object differ, so that the arrays keep their form.
-fn is_small(old: &Node, new: &Node) -> bool {
-    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative);
-    let (NodeKind::Object(a), NodeKind::Object(b)) = (&old.kind, &new.kind) else { return false };
-    form(old) == form(new) && a.material == b.material
+/// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
+fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.joining, n.apart.clone());
+    let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
+    let kinds = match (&old.kind, &new.kind) {
+        (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
+        // An opened group holds more than one component.
+        (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(scene, old) && !is_opened(scene, new),
+        _ => false,
+    };
+    kinds && form(old) == form(new) && modifiers(old) == modifiers(new)
 }
 
 /// The node at the top of the component that the node at `index` is part of.
@@ -131,7 +140,7 @@ fn outermost(scene: &Scene, index: usize) -> Option<usize> {
         path.push(parent);
         at = scene.nodes()[parent].parent;
     }
-    path.into_iter().rev().find(|i| !is_opened(&scene.nodes()[*i]))
+    path.into_iter().rev().find(|i| !is_opened(scene, &scene.nodes()[*i]))
 }
 
 #[cfg(test)]

@@ -14,8 +14,8 @@ pub(super) fn scene() -> Scene {
     let frame = stage.glossy("Frame", [0.06, 0.022, 0.012], 0.3, 40.0);
 
     board(&mut stage, [maple, walnut, frame]);
-    pawn(&mut stage, "White pawn", v(0.0, 0.0, 0.0), ivory);
-    pawn(&mut stage, "Black pawn", v(1.0, 0.0, -1.0), ebony);
+    pawn(&mut stage, None, ("White pawn", ivory), v(0.0, 0.0, 0.0));
+    pawn(&mut stage, None, ("Black pawn", ebony), v(1.0, 0.0, -1.0));
 
     stage.sun("Window", [-0.75, 0.9, 0.65], [1.0, 0.93, 0.82], 0.95);
     stage.sun("Sky", [0.9, 0.35, 0.25], [0.55, 0.70, 1.0], 0.30);
@@ -43,9 +43,14 @@ fn board(stage: &mut Stage, [light, dark, frame]: [MaterialId; 3]) {
 }
 
 /// A pawn that stands at `at`, 1.2 m high.
-fn pawn(stage: &mut Stage, name: &str, at: DVec3, material: MaterialId) -> NodeId {
+pub(super) fn pawn(
+    stage: &mut Stage,
+    parent: Option<NodeId>,
+    (name, material): (&str, MaterialId),
+    at: DVec3,
+) -> NodeId {
     let node = blended(name, Operator::Union, BlendKernel::Circular, 0.07);
-    let pawn = stage.add(None, node.at(at).rotated(turn_y(20.0)));
+    let pawn = stage.add(parent, node.at(at).rotated(turn_y(20.0)));
     let parts = [
         ("Foot", cylinder(0.375, 0.13, 0.05), 0.065),
         ("Bead", torus(0.27, 0.055), 0.185),

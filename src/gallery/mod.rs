@@ -6,12 +6,16 @@
 mod blend_kernels;
 mod boolean_operations;
 mod chess_pawn;
+mod chessboard;
 mod crowds;
 mod deep_tree;
 mod drawn;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
+mod modifiers;
+mod operators;
 mod random_groups;
+mod shapes;
 mod showcase;
 mod stage;
 
@@ -34,8 +38,12 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("pawn", chess_pawn::scene()),
         ("boolean-operations", boolean_operations::scene()),
         ("blend-kernels", blend_kernels::scene()),
+        ("operators", operators::scene()),
         ("ellipsoid-and-plane", ellipsoid_and_plane::scene()),
+        ("shapes", shapes::scene()),
         ("deep-tree", deep_tree::scene()),
+        ("modifiers", modifiers::scene()),
+        ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),

@@ -106,12 +106,12 @@ impl Stage {
 
 /// A group whose children are joined hard.
 pub(super) fn group(name: &str, operator: Operator) -> Node {
-    Node::new(name, NodeKind::Group(Group { operator, blend: Blend::HARD }))
+    Node::new(name, NodeKind::Group(Group::new(operator, Blend::HARD)))
 }
 
 /// A group whose children are blended.
 pub(super) fn blended(name: &str, operator: Operator, kernel: BlendKernel, radius: f64) -> Node {
-    Node::new(name, NodeKind::Group(Group { operator, blend: Blend { kernel, radius } }))
+    Node::new(name, NodeKind::Group(Group::new(operator, Blend::new(kernel, radius))))
 }
 
 /// A shape with a material.

@@ -112,7 +112,7 @@ impl Kernels {
     /// The interpreter, for no shapes yet.
     pub fn new(gpu: &Gpu, layouts: &Layouts, options: Options) -> Result<Self, ShaderError> {
         let field = FieldLayouts::new(&gpu.device);
-        let features = Features { shapes: [].into(), stack: 1 };
+        let features = Features::none();
         let evaluator = Evaluator::Interpreted(features.clone());
         let interpreter = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
         let shared = Arc::new(Shared { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
@@ -142,6 +142,11 @@ impl Kernels {
     /// How many kernels are being built.
     pub fn building(&self) -> usize {
         self.worker.as_ref().map_or(0, |w| w.waiting)
+    }
+
+    /// Kernels that could not be built; the interpreter or pruned lists draw in their place.
+    pub fn failed(&self) -> usize {
+        self.specialised.values().filter(|slot| matches!(slot.state, State::Failed)).count()
     }
 
     /// What went wrong since the last call; the interpreter goes on.
@@ -353,5 +358,22 @@ fn build(shared: &Shared, evaluator: &Evaluator) -> Result<Kernel, String> {
         (Ok(kernel), None) => Ok(kernel),
         (Err(error), _) => Err(error.to_string()),
         (_, Some(error)) => Err(format!("a kernel could not be built, the interpreter goes on: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_kernel_is_counted_and_its_reason_is_told_once() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        let layouts = Layouts::new(&gpu.device);
+        let mut kernels = Kernels::new(&gpu, &layouts, Options::default()).expect("an interpreter");
+        assert_eq!(kernels.failed(), 0);
+        kernels.store(7, Err("the driver refuses".into()));
+        assert_eq!(kernels.failed(), 1);
+        assert_eq!(kernels.take_failures(), ["the driver refuses"]);
+        assert!(kernels.take_failures().is_empty() && kernels.failed() == 1, "it stays failed");
     }
 }

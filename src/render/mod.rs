@@ -9,7 +9,7 @@
 //! | the frame | [`Frame`]: the pieces of work that are still to be done; view, components, lights |
 //!
 //! The frame, in order: mesh (clears, then triangles), farthest (only with meshes), cone and
-//! trace (each component, front to back), surface, shade, overlay. See `schedule` for how it is cut into dispatches.
+//! trace (each component, front to back), surface, shade, inspect (only where a look is asked for), overlay. See `schedule` for how it is cut into dispatches.
 
 mod buffers;
 pub mod driver;
@@ -28,7 +28,8 @@ mod warm;
 
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use kernels::{Kernels, Method};
+pub use passes::inspect::Inspect;
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
-pub use renderer::{Counts, Frame, RenderError, Renderer, Slot};
+pub use renderer::{Counts, Frame, PixelCounts, RenderError, Renderer, Slot, Spread, Took};
 pub use targets::BACKGROUND;

@@ -45,13 +45,18 @@ fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<
 
 /// The first `count` words of a buffer.
 pub fn read_words(gpu: &Gpu, source: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, GpuError> {
+    read_words_at(gpu, source, 0, count)
+}
+
+/// `count` words of a buffer from the word `first` on.
+pub fn read_words_at(gpu: &Gpu, source: &wgpu::Buffer, first: usize, count: usize) -> Result<Vec<u32>, GpuError> {
     if count == 0 {
         return Ok(Vec::new());
     }
     let size = count as u64 * 4;
     let buffer = landing(gpu, size);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_buffer_to_buffer(source, 0, &buffer, 0, size);
+    encoder.copy_buffer_to_buffer(source, first as u64 * 4, &buffer, 0, size);
     gpu.queue.submit([encoder.finish()]);
     Ok(bytemuck::pod_collect_to_vec(&read_mapped(gpu, &buffer)?))
 }

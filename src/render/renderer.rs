@@ -3,6 +3,8 @@
 mod choice;
 mod frame;
 mod measure;
+mod picture;
+mod pixel_counts;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -17,20 +19,22 @@ use super::kernels::{Kernels, Method};
 use super::layouts::{Layouts, bind, window};
 use super::passes::farthest::FarthestPass;
 use super::passes::field::{FieldGroups, Lists};
+use super::passes::inspect::InspectPass;
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::{ShadePass, mesh_emissions};
-use super::readback::read_buffers;
 use super::schedule::{DISPATCH_TARGET, Effort, Pace, Piece, Plan, Stage, TILE, plan};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
-use crate::flat::{Buffers, CellTree, Component, FlatScene, Pruner, Row, Warning, gpu_lights};
+use crate::flat::inspect::Look;
+use crate::flat::{CellTree, Component, FlatScene, Pruner, Row, gpu_lights};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 
 use choice::Chosen;
 pub use frame::Frame;
 pub use measure::Counts;
+pub use pixel_counts::{PixelCounts, Spread, Took};
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -44,6 +48,9 @@ pub enum RenderError {
     /// The picture is larger than the device allows.
     #[error("a picture of {0} by {1} pixels is not possible; the device's limit is {2} a side")]
     Size(u32, u32, u32),
+    /// What each pixel takes cannot be counted in one buffer of the device.
+    #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
+    Counts(u32, u32),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -86,6 +93,8 @@ pub struct Renderer {
     shade: ShadePass,
     mesh: MeshPass,
     overlay: OverlayPass,
+    /// Built where somebody looks.
+    inspect: Option<InspectPass>,
     nodes: Mirror,
     numbers: TextureMirror,
     /// The same numbers once more, for the windows of specialised kernels.
@@ -104,6 +113,8 @@ pub struct Renderer {
     ray_counts: Mirror,
     nothing: Mirror,
     march_counts: Mirror,
+    /// Whether kernels count.
+    counting: bool,
     slots: [Option<SlotState>; 2],
     pace: Pace,
 }
@@ -130,7 +141,7 @@ pub(super) const NUMBERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba
 pub(super) const LISTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of a tile in a list.
 const TILE_BYTES: usize = 20;
-/// Words that are counted for each component.
+/// Words for each list of tiles.
 const COUNTS: usize = 4;
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
@@ -159,6 +170,7 @@ impl Renderer {
             shade: ShadePass::new(device, &layouts)?,
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
+            inspect: None,
             nodes: storage("nodes"),
             numbers: TextureMirror::new(device, "numbers", NUMBERS_FORMAT),
             rows: Mirror::uniform(device, "rows"),
@@ -176,6 +188,7 @@ impl Renderer {
             nothing: storage("nothing"),
             ray_counts: Mirror::indirect(device, "ray counts"),
             march_counts: Mirror::read_back(device, "march counts"),
+            counting: options.counting,
             slots: [None, None],
             pace: Pace::new(gpu.is_software()),
             layouts,
@@ -193,6 +206,11 @@ impl Renderer {
     /// How many kernels are being built.
     pub fn kernels_building(&self) -> usize {
         self.kernels.building()
+    }
+
+    /// How many kernels could not be built.
+    pub fn kernels_failed(&self) -> usize {
+        self.kernels.failed()
     }
 
     /// The kernels.
@@ -218,28 +236,6 @@ impl Renderer {
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
 
-    /// The picture of a whole scene. `progress` is told the share that is done, between dispatches, and
-    /// answers whether to go on.
-    pub fn render(
-        &mut self,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(Buffers, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        while !frame.is_done() {
-            if !progress(frame.progress()) {
-                return Err(RenderError::Cancelled);
-            }
-            self.advance(&mut frame, Duration::ZERO)?;
-        }
-        progress(1.0);
-        let buffers = read_buffers(&self.gpu, &self.slot(Slot::Full).targets)?;
-        Ok((buffers, self.unfinished_rays(&frame)?))
-    }
-
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
     pub fn begin(
         &mut self,
@@ -254,6 +250,7 @@ impl Renderer {
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
+        self.check_counts(flat.components.len(), size)?;
         let Chosen { keys, choices, evaluations, trees } = self.choose(flat)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
@@ -286,6 +283,7 @@ impl Renderer {
             seconds_done: 0.0,
             slot,
             overlay,
+            look: Look::Shaded,
             rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
         })
@@ -375,9 +373,8 @@ impl Renderer {
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
             self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
-            self.march_counts.reset(device, queue, &vec![0; flat.components.len() * COUNTS * 4]),
         ];
-        uploads.contains(&true)
+        self.reset_counts(flat.components.len(), size) || uploads.contains(&true)
     }
 
     fn bind_all(&self, targets: &Targets) -> Groups {
@@ -421,6 +418,7 @@ impl Renderer {
             if pieces[at].stage == Stage::Mesh {
                 // No ray is left over yet.
                 encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
+                self.clear_pixel_counts(&mut encoder, targets.size);
                 self.mesh.record(&mut encoder, targets, &groups.view);
                 at += 1;
                 continue;
@@ -429,8 +427,11 @@ impl Renderer {
             self.record_compute(&mut encoder, groups, frame, at..end);
             at = end;
         }
-        if range.end == pieces.len() && !frame.overlay.is_empty() {
-            self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+        if range.end == pieces.len() {
+            self.record_look(&mut encoder, frame);
+            if !frame.overlay.is_empty() {
+                self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+            }
         }
         self.gpu.queue.submit([encoder.finish()]);
     }

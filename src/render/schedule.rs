@@ -140,17 +140,31 @@ impl Pace {
     }
 }
 
+/// Loop iterations for each copy of an entry, about: a modifier's own loops (layers of noise, steps of a recursion).
+const LOOPS_OF_COPIES: u32 = 2;
+
 impl Evaluation {
     /// Of a component that is walked through, entry by entry.
     pub fn of_entries(component: &Component) -> Self {
-        // For each entry an iteration, one for the choice of its shape, one for a group that ends.
-        Self { straight: false, iterations: 4 * component.count + 2, leaves: f64::from(component.count) }
+        // For each entry an iteration, one for the choice of its shape, one for a group that ends. Of copies most are
+        // out of reach.
+        let rounds = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+        Self {
+            straight: false,
+            iterations: (4 * component.count + 2).saturating_mul(rounds),
+            leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
+        }
     }
 
     /// Of straight-line code for a component: at most an iteration for each group or run of at least four
     /// entries, and for each leaf where its share is looked at.
     pub fn of_straight(component: &Component) -> Self {
-        Self { straight: true, iterations: 2 + 2 * component.count, leaves: f64::from(component.count) }
+        let rounds = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+        Self {
+            straight: true,
+            iterations: (2 + 2 * component.count).saturating_mul(rounds),
+            leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
+        }
     }
 
     /// Of a component with pruned lists.

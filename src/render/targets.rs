@@ -6,11 +6,11 @@
 //! | owner | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
 //! | march | R32Float | trace | where a march goes on in the next round |
 //! | farthest | R32Float | farthest, trace | the farthest depth in each tile of 8 by 8 pixels |
-//! | normal | Rgba32Float | mesh, surface | unit normal in the world |
+//! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
 //! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
 //! | emission | Rgba16Float | surface | emission, shininess |
 //! | leaf | R32Uint | surface, shade | entry of the subtree-extent array; where no field is, as owner |
-//! | color | Rgba8Unorm | shade, overlay | the picture, sRGB encoded |
+//! | color | Rgba8Unorm | shade, inspect, overlay | the picture, sRGB encoded |
 //! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
 //!
 //! `shaders/common/depth.wgsl` is the twin of the conventions.

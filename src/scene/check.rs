@@ -4,12 +4,12 @@
 use glam::DQuat;
 
 use super::limits::{
-    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_NAME, MAX_PATH, POSITION, RANGE, SCALE,
-    SHININESS, UNIT,
+    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, POSITION, RANGE,
+    SCALE, SHININESS, STEPS, THICKNESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Light, LightKind, List, Material, MeshNode, Node, NodeKind,
-    ParamValue, SceneError, Shape,
+    Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, List, MAX_MODIFIERS, Material, MeshNode,
+    Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
 
@@ -45,7 +45,22 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     if node.negative && !node.has_field() {
         return Err(Fault::new("negative", "only objects and groups can be negative"));
     }
+    if let Joining::Radius(radius) = node.joining {
+        number("joining.radius", radius, &BLEND_RADIUS)?;
+    }
+    if node.apart.len() > MAX_APART {
+        return Err(Fault::new("apart", format!("must name at most {MAX_APART} nodes, not {}", node.apart.len())));
+    }
     transform(&node.transform).map_err(|f| f.below("transform"))?;
+    if !node.modifiers.is_empty() && !node.has_field() {
+        return Err(Fault::new("modifiers", "only objects and groups can have modifiers"));
+    }
+    if node.modifiers.len() > MAX_MODIFIERS {
+        return Err(Fault::new("modifiers", format!("must be at most {MAX_MODIFIERS} of them")));
+    }
+    for (i, slot) in node.modifiers.iter().enumerate() {
+        modifier(&slot.modifier).map_err(|f| f.below(&format!("modifiers[{i}].modifier")))?;
+    }
     match &node.kind {
         NodeKind::Group(g) => group(g).map_err(|f| f.below("group")),
         NodeKind::Object(o) => shape(&o.shape).map_err(|f| f.below("object.shape")),
@@ -140,7 +155,11 @@ fn transform(transform: &Transform) -> Result<(), Fault> {
 }
 
 fn group(group: &Group) -> Result<(), Fault> {
-    number("blend.radius", group.blend.radius, &BLEND_RADIUS)
+    number("blend.radius", group.blend.radius, &BLEND_RADIUS)?;
+    number("blend.steps", group.blend.steps.into(), &STEPS)?;
+    number("width", group.width, &THICKNESS)?;
+    number("depth", group.depth, &THICKNESS)?;
+    number("share", group.share, &UNIT)
 }
 
 /// Every parameter against the limits in its shape's own table.
@@ -165,6 +184,20 @@ fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
     for (i, row) in list.rows.iter().enumerate() {
         for (column, value) in row[..list.columns.len()].iter().enumerate() {
             number(&format!("{field}[{i}][{column}]"), *value, &list.limits(column, limits))?;
+        }
+    }
+    Ok(())
+}
+
+/// Every parameter against the limits in its modifier's own table.
+fn modifier(modifier: &Modifier) -> Result<(), Fault> {
+    for (param, value) in modifier.kind().params().iter().zip(modifier.values()) {
+        match value {
+            ModifierValue::Scalar(v) => number(param.name, v, &param.limits)?,
+            ModifierValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
+            ModifierValue::Count(n) => number(param.name, n.into(), &param.limits)?,
+            ModifierValue::Counts(n) => vector(param.name, n.map(f64::from), &param.limits)?,
+            ModifierValue::Flag(_) | ModifierValue::Flags(_) => {}
         }
     }
     Ok(())
@@ -283,6 +316,30 @@ mod tests {
         assert!(check(&|list| list.rows = vec![[0.0; 4]; 257]).is_err());
         assert_eq!(check(&|list| list.rows[2][3] = -1.0).unwrap_err().field, "object.shape.points[2][3]");
         assert_eq!(check(&|list| list.rows[2][1] = -1.0), Ok(()));
+    }
+
+    #[test]
+    fn every_parameter_of_every_modifier_is_held_to_its_limits() {
+        use crate::scene::{ModifierKind, Shape};
+        let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
+        for &kind in ModifierKind::ALL {
+            let with = |modifier| Node::new("x", NodeKind::Object(object.clone())).modified(modifier);
+            assert_eq!(node(&with(kind.default_modifier())), Ok(()));
+            for (i, param) in kind.params().iter().enumerate() {
+                let bad = param.limits.hard[1] * 1.01 + 1.0;
+                let mut modifier = kind.default_modifier();
+                let value = match modifier.values()[i] {
+                    ModifierValue::Scalar(_) => ModifierValue::Scalar(f64::NAN),
+                    ModifierValue::Vector(_) => ModifierValue::Vector(glam::DVec3::new(1.0, bad, 1.0)),
+                    ModifierValue::Count(_) => ModifierValue::Count(bad as u32),
+                    ModifierValue::Counts(_) => ModifierValue::Counts([1, 1, bad as u32]),
+                    ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
+                };
+                assert!(modifier.set_value(i, value));
+                let fault = node(&with(modifier)).unwrap_err();
+                assert!(fault.field.starts_with(&format!("modifiers[0].modifier.{}", param.name)), "{fault:?}");
+            }
+        }
     }
 
     #[test]

@@ -58,6 +58,10 @@ pub const TURN: Limits = Limits { soft: [-180.0, 180.0], hard: [-3600.0, 3600.0]
 pub const COUNT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
 /// Blend radius.
 pub const BLEND_RADIUS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
+/// Steps and columns of a joint.
+pub const STEPS: Limits = Limits { soft: [1.0, 12.0], hard: [1.0, 64.0], unit: "" };
+/// Most siblings that a node names as not to be blended with.
+pub const MAX_APART: usize = 64;
 /// Shares and reflectances.
 pub const UNIT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
 /// Light intensities and emitted colours.
@@ -70,7 +74,35 @@ pub const RANGE: Limits = Limits { soft: [0.1, 100.0], hard: [1e-3, 1e9], unit: 
 pub const ATTENUATION: Limits = Limits { soft: [0.0, 2.0], hard: [0.0, 1e6], unit: "" };
 /// Half angle of a spot light's cone, in degrees.
 pub const CONE: Limits = Limits { soft: [0.0, 89.0], hard: [0.0, 89.9], unit: "°" };
+/// Half of an arc, in degrees.
+pub const ARC: Limits = Limits { soft: [0.0, 180.0], hard: [0.0, 180.0], unit: "°" };
+/// Half angle of a part of a ball, in degrees: less than all of it, whose sides would meet.
+pub const SECTOR: Limits = Limits { soft: [0.0, 179.0], hard: [0.0, 179.9], unit: "°" };
+/// Sides of a polygon, points of a star.
+pub const SIDES: Limits = Limits { soft: [3.0, 12.0], hard: [3.0, 64.0], unit: "" };
+/// How often a fractal repeats itself.
+pub const ITERATIONS: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 8.0], unit: "" };
+/// How often a Julia set squares.
+pub const SQUARES: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 16.0], unit: "" };
+/// Each number of a Julia set's constant.
+pub const CONSTANT: Limits = Limits { soft: [-1.0, 1.0], hard: [-2.0, 2.0], unit: "" };
+/// Sizes of a Kleinian set, in its own unit.
+pub const FOLD: Limits = Limits { soft: [0.0, 1.5], hard: [0.0, 10.0], unit: "" };
+/// How much of a Kleinian set is shown, in its own unit.
+pub const REACH: Limits = Limits { soft: [0.5, 4.0], hard: [0.1, 10.0], unit: "" };
 /// Vertical angle of view, in degrees.
 pub const FOV: Limits = Limits { soft: [10.0, 120.0], hard: [0.1, 170.0], unit: "°" };
 /// Near and far limits of a camera.
 pub const CLIP: Limits = Limits { soft: [1e-3, 1e4], hard: [1e-6, 1e9], unit: "m" };
+/// Distance from one copy to the next, and lengths of waves.
+pub const SPACING: Limits = Limits { soft: [0.01, 5.0], hard: [1e-6, 1e6], unit: "m" };
+/// Numbers of copies.
+pub const COPIES: Limits = Limits { soft: [0.0, 16.0], hard: [0.0, 1e6], unit: "" };
+/// Angles in degrees.
+pub const ANGLE: Limits = Limits { soft: [-180.0, 180.0], hard: [-1e4, 1e4], unit: "°" };
+/// Angles per length, in degrees per metre.
+pub const CURVATURE: Limits = Limits { soft: [-360.0, 360.0], hard: [-3.6e4, 3.6e4], unit: "°/m" };
+/// Change of width per height.
+pub const TAPER: Limits = Limits { soft: [-1.0, 1.0], hard: [-1e3, 1e3], unit: "/m" };
+/// How far a displacement moves the surface.
+pub const AMPLITUDE: Limits = Limits { soft: [0.0, 0.5], hard: [0.0, 1e6], unit: "m" };

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Blend, Light, MaterialId, Operator, Shape};
+use super::{Blend, Joining, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape};
 use crate::geometry::Transform;
 
 /// Stable identity of a node; never reused within a document.
@@ -33,8 +33,15 @@ pub struct Node {
     pub locked: bool,
     /// Cut away from what precedes it in its group instead of joined; objects and groups only.
     pub negative: bool,
+    /// How it blends with its siblings; objects and groups only.
+    pub joining: Joining,
+    /// Siblings with which it does not blend, nor they with it; what is no sibling does not count. Objects and
+    /// groups only.
+    pub apart: Vec<NodeId>,
     /// Parent from local.
     pub transform: Transform,
+    /// What it does to itself and all below it, in its own space, the first one first; objects and groups only.
+    pub modifiers: Vec<ModifierSlot>,
     /// What it is.
     pub kind: NodeKind,
 }
@@ -49,7 +56,10 @@ impl Node {
             visible: true,
             locked: false,
             negative: false,
+            joining: Joining::Inherit,
+            apart: Vec::new(),
             transform: Transform::IDENTITY,
+            modifiers: Vec::new(),
             kind,
         }
     }
@@ -75,6 +85,12 @@ impl Node {
     /// The same node cut away instead of joined.
     pub fn negative(mut self) -> Self {
         self.negative = true;
+        self
+    }
+
+    /// The same node with one more modifier, after those that it has.
+    pub fn modified(mut self, modifier: Modifier) -> Self {
+        self.modifiers.push(modifier.into());
         self
     }
 
@@ -107,11 +123,49 @@ pub struct Group {
     pub operator: Operator,
     /// How round the joints are, those of negative children too.
     pub blend: Blend,
+    /// Full width of grooves and tongues, diameter of pipes, in metres.
+    #[serde(default = "usual_width", skip_serializing_if = "is_usual_width")]
+    pub width: f64,
+    /// Depth of grooves and engravings, height of tongues, in metres.
+    #[serde(default = "usual_depth", skip_serializing_if = "is_usual_depth")]
+    pub depth: f64,
+    /// How far a morph has come, from 0, the first child, to 1, the next.
+    #[serde(default = "half", skip_serializing_if = "is_half")]
+    pub share: f64,
+}
+
+const fn usual_width() -> f64 {
+    0.1
+}
+
+fn is_usual_width(width: &f64) -> bool {
+    *width == usual_width()
+}
+
+const fn usual_depth() -> f64 {
+    0.05
+}
+
+fn is_usual_depth(depth: &f64) -> bool {
+    *depth == usual_depth()
+}
+
+const fn half() -> f64 {
+    0.5
+}
+
+fn is_half(share: &f64) -> bool {
+    *share == half()
 }
 
 impl Group {
     /// A hard union: what a new group is.
-    pub const UNION: Self = Self { operator: Operator::Union, blend: Blend::HARD };
+    pub const UNION: Self = Self::new(Operator::Union, Blend::HARD);
+
+    /// A group with the usual width, depth and share.
+    pub const fn new(operator: Operator, blend: Blend) -> Self {
+        Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half() }
+    }
 }
 
 /// A shape with a material.

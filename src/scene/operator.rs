@@ -3,8 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A Boolean operator. It folds over the children in the artist's order: the first child is the
-/// start, each later child is joined to what stands so far.
+/// An operator. It folds over the children in the artist's order: the first child is the start, `a`; each
+/// later child, `b`, is joined to what stands so far.
+///
+/// The formulas of pipe, groove, tongue and engraving follow Mercury's hg_sdf (2015), halved or divided where
+/// that makes them safe to step by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Operator {
@@ -14,11 +17,38 @@ pub enum Operator {
     Intersection,
     /// What is in the first child and in no later one.
     Difference,
+    /// What is in exactly one of a and b.
+    Xor,
+    /// A round tube along the curve in which the surfaces of a and b meet.
+    Pipe,
+    /// a with a groove cut along the surface of b.
+    Groove,
+    /// a with a tongue raised along the surface of b.
+    Tongue,
+    /// a with a V of 45° cut along the surface of b.
+    Engrave,
+    /// Between a and b: the share of b's field, the rest of a's.
+    Morph,
+    /// a, wearing the material of b where it is in b.
+    Paint,
 }
 
 impl Operator {
     /// Every operator, in the order of the user interface.
-    pub const ALL: [Self; 3] = [Self::Union, Self::Intersection, Self::Difference];
+    pub const ALL: [Self; 10] = [
+        Self::Union,
+        Self::Intersection,
+        Self::Difference,
+        Self::Xor,
+        Self::Pipe,
+        Self::Groove,
+        Self::Tongue,
+        Self::Engrave,
+        Self::Morph,
+        Self::Paint,
+    ];
+    /// The operators on sets: with a radius of 0 they know only inside and outside.
+    pub const SETS: [Self; 4] = [Self::Union, Self::Intersection, Self::Difference, Self::Xor];
 
     /// Name for people.
     pub fn label(self) -> &'static str {
@@ -26,11 +56,60 @@ impl Operator {
             Self::Union => "Union",
             Self::Intersection => "Intersection",
             Self::Difference => "Difference",
+            Self::Xor => "Exclusive or",
+            Self::Pipe => "Pipe",
+            Self::Groove => "Groove",
+            Self::Tongue => "Tongue",
+            Self::Engrave => "Engrave",
+            Self::Morph => "Morph",
+            Self::Paint => "Paint",
         }
+    }
+
+    /// What it makes, for people.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Union => "What is in any child",
+            Self::Intersection => "What is in every child",
+            Self::Difference => "The first child without the later ones",
+            Self::Xor => "What is in one child but not in the next",
+            Self::Pipe => "A tube along the curve where the surfaces meet",
+            Self::Groove => "The first child with a groove along the surface of each later one",
+            Self::Tongue => "The first child with a tongue along the surface of each later one",
+            Self::Engrave => "The first child with a V cut along the surface of each later one",
+            Self::Morph => "Between the first child and the next",
+            Self::Paint => "The shape of the first child in the colours of the later ones",
+        }
+    }
+
+    /// Whether its joints have a kernel and a radius; for [`Operator::Paint`] the radius is that of the soft edge.
+    pub fn has_radius(self) -> bool {
+        !matches!(self, Self::Pipe | Self::Morph)
+    }
+
+    /// Whether its joints have a kernel.
+    pub fn has_kernel(self) -> bool {
+        self.has_radius() && self != Self::Paint
+    }
+
+    /// Whether a [`BlendKernel`] with steps has its steps here. Grooves and tongues have the plain bevel instead.
+    pub fn has_steps(self) -> bool {
+        self.has_kernel() && !matches!(self, Self::Groove | Self::Tongue)
+    }
+
+    /// Whether it has a width: the full width of groove or tongue, the diameter of a pipe.
+    pub fn has_width(self) -> bool {
+        matches!(self, Self::Pipe | Self::Groove | Self::Tongue)
+    }
+
+    /// Whether it has a depth: how deep groove or V are cut, how high a tongue rises.
+    pub fn has_depth(self) -> bool {
+        matches!(self, Self::Groove | Self::Tongue | Self::Engrave)
     }
 }
 
-/// The curve with which a blend rounds the joint. All give the same thickening at equal radius.
+/// The curve with which a blend rounds or cuts the joint. All are convex combinations of the operands, so the
+/// field stays safe to step by, and all give the same greatest thickening at equal radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BlendKernel {
@@ -40,14 +119,24 @@ pub enum BlendKernel {
     Quadratic,
     /// A cubic: curvature without a jump, widest.
     Cubic,
+    /// A flat bevel with softened ends. Of all smooth joints of one thickening it adds the least volume but for 4 %:
+    /// a joint's profile is convex and leaves the middle at 45°, so that it never lies below the bevel.
+    Lean,
+    /// A flat bevel of 45° that touches the fillet of the same radius in its middle.
+    Chamfer,
+    /// Steps, whose edges lie on the bevel.
+    Stairs,
+    /// Columns with round fronts, which touch the bevel.
+    Columns,
 }
 
 impl BlendKernel {
     /// Every kernel, in the order of the user interface.
-    pub const ALL: [Self; 3] = [Self::Circular, Self::Quadratic, Self::Cubic];
+    pub const ALL: [Self; 7] =
+        [Self::Circular, Self::Quadratic, Self::Cubic, Self::Lean, Self::Chamfer, Self::Stairs, Self::Columns];
 
     /// Thickening at a joint of equal distances, per blend radius, for every kernel: 1 − 1/√2, what a
-    /// fillet of radius 1 adds at the middle of a right-angled joint.
+    /// fillet of radius 1 adds at the middle of a right-angled joint. For steps and columns the greatest.
     pub const THICKENING: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
     /// Name for people.
@@ -56,17 +145,76 @@ impl BlendKernel {
             Self::Circular => "Circular",
             Self::Quadratic => "Quadratic",
             Self::Cubic => "Cubic",
+            Self::Lean => "Lean",
+            Self::Chamfer => "Chamfer",
+            Self::Stairs => "Stairs",
+            Self::Columns => "Columns",
         }
+    }
+
+    /// What the joint looks like, for people.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Circular => "A fillet with a round section",
+            Self::Quadratic => "Softer ends, a little wider",
+            Self::Cubic => "The softest and widest",
+            Self::Lean => "A smooth bevel that adds the least volume",
+            Self::Chamfer => "A flat bevel of 45°",
+            Self::Stairs => "Steps whose edges lie on the bevel",
+            Self::Columns => "Round columns that touch the bevel",
+        }
+    }
+
+    /// Whether it has a number of steps.
+    pub fn has_steps(self) -> bool {
+        matches!(self, Self::Stairs | Self::Columns)
+    }
+
+    /// Whether the joint is smooth: its derivative has no jump.
+    pub fn is_smooth(self) -> bool {
+        matches!(self, Self::Circular | Self::Quadratic | Self::Cubic | Self::Lean)
     }
 
     /// Support per blend radius: where the operands' distances differ by more than this times the
     /// radius, the blend is exactly the hard operator. Thickening times 1/(1 − 1/√2), 4 and 6 (the
-    /// normalisation of Quilez, "smooth minimum", 2013–2024).
-    pub fn support(self) -> f64 {
+    /// normalisation of Quilez, "smooth minimum", 2013–2024); for the lean kernel 8/3, for the bevel 2; for m
+    /// steps 2m/(m + 1), for m columns 2m/(m + √2 − 1), so that edges and fronts lie on the bevel.
+    pub fn support(self, steps: u32) -> f64 {
+        let m = f64::from(steps);
+        Self::THICKENING
+            * match self {
+                Self::Circular => return 1.0,
+                Self::Quadratic => 4.0,
+                Self::Cubic => 6.0,
+                Self::Lean => 8.0 / 3.0,
+                Self::Chamfer => 2.0,
+                Self::Stairs => 2.0 * m / (m + 1.0),
+                Self::Columns => 2.0 * m / (m + std::f64::consts::SQRT_2 - 1.0),
+            }
+    }
+}
+
+/// What a blend radius is measured in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RadiusUnit {
+    /// Metres.
+    #[default]
+    Metres,
+    /// The size of the operands: of what joins and of what stands so far, the lesser of the largest half extents
+    /// of their bounds in the world. What has no end does not count; 1 m where neither has one.
+    Size,
+}
+
+impl RadiusUnit {
+    /// Every unit, in the order of the user interface.
+    pub const ALL: [Self; 2] = [Self::Metres, Self::Size];
+
+    /// Name for people.
+    pub fn label(self) -> &'static str {
         match self {
-            Self::Circular => 1.0,
-            Self::Quadratic => 4.0 * Self::THICKENING,
-            Self::Cubic => 6.0 * Self::THICKENING,
+            Self::Metres => "Metres",
+            Self::Size => "Share of the size",
         }
     }
 }
@@ -77,21 +225,64 @@ impl BlendKernel {
 pub struct Blend {
     /// The curve.
     pub kernel: BlendKernel,
-    /// Fillet radius in metres, see [`BlendKernel::THICKENING`].
+    /// Fillet radius, see [`BlendKernel::THICKENING`].
     pub radius: f64,
+    /// What the radius is measured in.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub unit: RadiusUnit,
+    /// How many steps or columns; only those kernels have them.
+    #[serde(default = "few_steps", skip_serializing_if = "is_few_steps")]
+    pub steps: u32,
 }
 
 impl Blend {
     /// No blend.
-    pub const HARD: Self = Self { kernel: BlendKernel::Circular, radius: 0.0 };
+    pub const HARD: Self =
+        Self { kernel: BlendKernel::Circular, radius: 0.0, unit: RadiusUnit::Metres, steps: few_steps() };
 
-    /// How far apart two distances may be and still blend.
-    pub fn support(&self) -> f64 {
-        self.kernel.support() * self.radius
+    /// A blend with a radius in metres.
+    pub const fn new(kernel: BlendKernel, radius: f64) -> Self {
+        Self { kernel, radius, ..Self::HARD }
     }
 
-    /// The most that the blend can add to or take from the hard operator's value.
+    /// How far apart two distances may be and still blend. The radius must be in metres.
+    pub fn support(&self) -> f64 {
+        self.kernel.support(self.steps) * self.radius
+    }
+
+    /// The most that the blend can add to or take from the hard operator's value. The radius must be in metres.
     pub fn thickening(&self) -> f64 {
         BlendKernel::THICKENING * self.radius
     }
+
+    /// The same in metres, between operands of this size, see [`RadiusUnit::Size`].
+    pub fn in_metres(self, size: f64) -> Self {
+        let factor = if self.unit == RadiusUnit::Size { size } else { 1.0 };
+        Self { radius: self.radius * factor, unit: RadiusUnit::Metres, ..self }
+    }
+}
+
+/// How a node blends with its siblings; it counts inside of groups.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Joining {
+    /// As its group says.
+    #[default]
+    Inherit,
+    /// Not at all: it is joined without a blend.
+    Hard,
+    /// With this radius, in the unit of its group.
+    Radius(f64),
+}
+
+const fn few_steps() -> u32 {
+    4
+}
+
+fn is_few_steps(steps: &u32) -> bool {
+    *steps == few_steps()
+}
+
+fn is_default(unit: &RadiusUnit) -> bool {
+    *unit == RadiusUnit::default()
 }

@@ -1,34 +1,30 @@
 //! Shapes, each with its named parameters. The table below is the only list of them: the enum, the
 //! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
-//! To add one: an entry with its bounds here, `sdf_name` in `flat/twin/sdf.rs`, `sdf_name` in `shaders/sdf/`.
-//! One `with data` is evaluated from numbers that `flat::Body` makes of its parameters.
+//! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/twin/sdf/`, `sdf_name` in
+//! `shaders/sdf/`. `src/README.md` shows one. One `with data` is evaluated from numbers that `flat::Body` makes of its
+//! parameters.
 
-use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drawn::{Corners, Points, profile_bounds, tube_bounds};
-use super::limits::{COUNT, Limits, OCTAVES, POSITION, SEED, SIZE, THICKNESS, TURN, UNIT, WAVELENGTH};
-use super::param::{ParamField, ParamValue};
-use crate::geometry::Aabb;
+use super::drawn::{Corners, Points};
+use super::limits::{
+    ARC, CONE, CONSTANT, COUNT, FOLD, ITERATIONS, OCTAVES, POSITION, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES,
+    THICKNESS, TURN, UNIT, WAVELENGTH,
+};
 
-/// Most numbers that the parameters of one shape may take.
-pub const SHAPE_FLOATS: usize = 8;
+mod extent;
+mod param;
+
+#[cfg(test)]
+mod tests;
+
+use param::ParamField;
+pub use param::{Degrees, LIST_COLUMNS, List, Param, ParamValue, SHAPE_FLOATS, Sides};
 
 /// Rows of the parameters of a shape with data.
 const DATA_PARAMETER_ROWS: usize = 2;
-
-/// What is known about a parameter.
-#[derive(Clone, Copy, Debug)]
-pub struct Param {
-    /// Its name in files and, with spaces for underscores, in the inspector.
-    pub name: &'static str,
-    /// One sentence for people.
-    pub help: &'static str,
-    /// Accepted and offered ranges.
-    pub limits: Limits,
-}
 
 macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
@@ -74,8 +70,23 @@ macro_rules! shapes {
                 }, )*] }, )+ }
             }
 
-            /// How many rows of four numbers its parameters take, see [`Shape::packed`].
+            /// The shape of these packed parameters, see [`Shape::packed`]; nothing for one with data.
+            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Option<Shape> {
+                if self.has_data() {
+                    return None;
+                }
+                let mut rest = packed.as_slice();
+                Some(match self { $( Self::$name => Shape::$name { $( $param: ParamField::unpack(&mut rest), )* }, )+ })
+            }
+
+            /// How many rows of four numbers it takes: its parameters, and behind them where its data are.
             pub fn rows(self) -> usize {
+                self.parameter_rows() + usize::from(self.has_data())
+            }
+
+            /// How many rows of four numbers its parameters take, see [`Shape::packed`].
+            pub fn parameter_rows(self) -> usize {
                 if self.has_data() {
                     return DATA_PARAMETER_ROWS;
                 }
@@ -102,6 +113,20 @@ macro_rules! shapes {
             /// The parameters' values, in the order of [`ShapeKind::params`].
             pub fn values(&self) -> Vec<ParamValue> {
                 match self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
+            }
+
+            /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
+            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one. Of a shape with
+            /// data all are 0: `flat::Body` makes what is read instead.
+            #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
+            pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
+                let mut out = [0.0; SHAPE_FLOATS];
+                if self.kind().has_data() {
+                    return out;
+                }
+                let mut rest = out.as_mut_slice();
+                match self { $( Self::$name { $( $param, )* } => { $( $param.pack(&mut rest); )* } )+ }
+                out
             }
 
             /// Sets the parameter at `index`; false, and nothing changed, where there is none or the
@@ -198,7 +223,7 @@ shapes! {
         radius: f64 = 0.25, SIZE;
     }
     /// Everything below the XZ plane; has no end.
-    Plane = sdf_plane, "Plane" {}
+    Plane = sdf_plane, "Plane (half space)" {}
     /// A hexagonal prism along the Y axis.
     HexagonalPrism = sdf_hexagonal_prism, "Hexagonal prism" {
         /// From the axis to the middle of a side; two sides face along X.
@@ -210,6 +235,188 @@ shapes! {
     Octahedron = sdf_octahedron, "Octahedron" {
         /// From the centre to a corner.
         radius: f64 = 0.6, SIZE;
+    }
+    /// A ring of which only an arc is left, with round ends.
+    CappedTorus = sdf_capped_torus, "Capped torus" {
+        /// From the axis to the middle of the tube.
+        major_radius: f64 = 0.5, SIZE;
+        /// Of the tube.
+        minor_radius: f64 = 0.13, SIZE;
+        /// From the middle of the arc, which lies on X, to either end.
+        half_angle: Degrees = Degrees(120.0), ARC;
+    }
+    /// A link of a chain: a ring around the Y axis, pulled apart along X.
+    Link = sdf_link, "Link" {
+        /// Of the straight part.
+        length: f64 = 0.5, SIZE;
+        /// From the middle of a bend to the middle of the tube.
+        major_radius: f64 = 0.3, SIZE;
+        /// Of the tube.
+        minor_radius: f64 = 0.1, SIZE;
+    }
+    /// A cone that opens downwards from its tip at the origin; has no end.
+    Cone = sdf_cone, "Infinite cone" {
+        /// Between the axis and the side.
+        half_angle: Degrees = Degrees(30.0), CONE;
+    }
+    /// A cylinder along the Y axis; has no ends.
+    InfiniteCylinder = sdf_infinite_cylinder, "Infinite cylinder" {
+        /// From the axis to the side.
+        radius: f64 = 0.35, SIZE;
+    }
+    /// A prism along the Y axis over an isosceles triangle.
+    TriangularPrism = sdf_triangular_prism, "Triangular prism" {
+        /// Of the side along X, which lies towards -Z.
+        width: f64 = 1.0, SIZE;
+        /// From that side to the corner, along Z.
+        depth: f64 = 0.87, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.6, SIZE;
+    }
+    /// A prism along the Y axis over a regular polygon, its edges rounded inwards.
+    Prism = sdf_prism, "Prism" {
+        /// Of the polygon; a whole number.
+        sides: Sides = Sides(5.0), SIDES;
+        /// From the axis to the middle of a side; one of them faces along X.
+        radius: f64 = 0.5, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.7, SIZE;
+        /// Radius of the edges; at most the radius and half the height take effect.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A pyramid over a square, its tip on the Y axis.
+    Pyramid = sdf_pyramid, "Pyramid" {
+        /// Edge length of the square.
+        width: f64 = 1.1, SIZE;
+        /// From the square to the tip; the origin is half-way.
+        height: f64 = 0.9, SIZE;
+    }
+    /// A prism along the Y axis over a rhombus with its corners on X and Z, its edges rounded inwards.
+    Rhombus = sdf_rhombus, "Rhombus" {
+        /// From corner to corner along X.
+        width: f64 = 1.2, SIZE;
+        /// From corner to corner along Z.
+        depth: f64 = 0.8, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.4, SIZE;
+        /// Radius of the edges; at most what fits into the rhombus and half the height take effect.
+        rounding: f64 = 0.06, THICKNESS;
+    }
+    /// A ball cut flat; what is above the cut stays.
+    CutSphere = sdf_cut_sphere, "Cut sphere" {
+        /// Of the ball.
+        radius: f64 = 0.6, SIZE;
+        /// Height of the cut over the ball's centre, within the ball.
+        cut: f64 = -0.1, POSITION;
+    }
+    /// A bowl: the skin of a ball, cut open above, with a round rim.
+    HollowCutSphere = sdf_hollow_cut_sphere, "Hollow cut sphere" {
+        /// Of the ball, to the middle of the skin.
+        radius: f64 = 0.55, SIZE;
+        /// Height of the cut over the ball's centre, within the ball.
+        cut: f64 = 0.15, POSITION;
+        /// Of the skin.
+        thickness: f64 = 0.1, THICKNESS;
+    }
+    /// A ball out of which another ball above it is cut.
+    DeathStar = sdf_death_star, "Death star" {
+        /// Of the ball.
+        radius: f64 = 0.6, SIZE;
+        /// Of the ball that is cut out; never takes all.
+        cut_radius: f64 = 0.45, SIZE;
+        /// Between the centres, along Y.
+        distance: f64 = 0.7, SIZE;
+    }
+    /// The part of a ball within an angle around the Y axis.
+    SolidAngle = sdf_solid_angle, "Solid angle" {
+        /// Of the ball.
+        radius: f64 = 0.9, SIZE;
+        /// Between the axis and the side.
+        half_angle: Degrees = Degrees(35.0), SECTOR;
+    }
+    /// A spindle along the Y axis: an arc turned about its chord.
+    Vesica = sdf_vesica, "Vesica" {
+        /// From tip to tip.
+        height: f64 = 1.3, SIZE;
+        /// Where it is thickest; at most the height takes effect.
+        width: f64 = 0.7, SIZE;
+    }
+    /// A triangle in the XZ plane, with a thickness and round edges.
+    Triangle = sdf_triangle, "Triangle" {
+        /// Of the side along X, which lies towards -Z.
+        width: f64 = 1.1, SIZE;
+        /// From that side to the corner, along Z.
+        depth: f64 = 1.0, SIZE;
+        /// How far the corner is off the middle, along X.
+        skew: f64 = 0.0, POSITION;
+        /// From face to face.
+        thickness: f64 = 0.08, THICKNESS;
+    }
+    /// A rectangle or parallelogram in the XZ plane, with a thickness and round edges.
+    Quad = sdf_quad, "Quad" {
+        /// Of the sides along X.
+        width: f64 = 1.0, SIZE;
+        /// Between these sides, along Z.
+        depth: f64 = 0.8, SIZE;
+        /// How far the side towards +Z is shifted against the other, along X.
+        skew: f64 = 0.2, POSITION;
+        /// From face to face.
+        thickness: f64 = 0.08, THICKNESS;
+    }
+    /// A prism along the Y axis over a star, its edges rounded inwards.
+    Star = sdf_star, "Star" {
+        /// Points of the star, one of them on X; a whole number.
+        points: Sides = Sides(5.0), SIDES;
+        /// From the axis to a point.
+        outer_radius: f64 = 0.65, SIZE;
+        /// From the axis to a notch.
+        inner_radius: f64 = 0.3, SIZE;
+        /// From cap to cap.
+        height: f64 = 0.3, SIZE;
+        /// Radius of the edges; at most what fits into the star and half the height take effect.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A ring around the Y axis with a regular polygon as its section.
+    PolygonRing = sdf_polygon_ring, "Polygon ring" {
+        /// Of the polygon; a whole number.
+        sides: Sides = Sides(6.0), SIDES;
+        /// From the axis to the middle of the polygon.
+        major_radius: f64 = 0.5, SIZE;
+        /// From the middle of the polygon to the middle of a side; one of them faces outwards.
+        minor_radius: f64 = 0.14, SIZE;
+    }
+    /// A cube with square holes, in each of its parts again.
+    MengerSponge = sdf_menger_sponge, "Menger sponge" {
+        /// Edge length.
+        size: f64 = 1.0, SIZE;
+        /// How often holes are made, each time a third as wide; a whole number.
+        iterations: f64 = 3.0, ITERATIONS;
+    }
+    /// A Julia set of quaternions: where z² + c, repeated, stays near.
+    Julia = sdf_julia, "Julia set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// The first three numbers of the quaternion c.
+        constant: [f64; 3] = [-0.2, 0.8, 0.0], CONSTANT;
+        /// The fourth number of c, along the axis that is not seen.
+        fourth: f64 = 0.0, CONSTANT;
+        /// How often it is repeated; a whole number.
+        iterations: f64 = 9.0, SQUARES;
+    }
+    /// A pseudo-Kleinian set: folded at a box and turned inside out, again and again.
+    Kleinian = sdf_kleinian, "Kleinian set" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.8, SIZE;
+        /// How much of the set the ball shows: its radius in the set's own unit.
+        reach: f64 = 1.6, REACH;
+        /// Half the box at which space is folded, in that unit.
+        fold: [f64; 3] = [0.92, 0.9, 0.92], FOLD;
+        /// Square of the radius within which space is turned inside out, in that unit.
+        inversion: f64 = 1.0, FOLD;
+        /// How thick the set is drawn, in that unit.
+        thickness: f64 = 0.03, FOLD;
+        /// How often it is folded; a whole number.
+        iterations: f64 = 5.0, ITERATIONS;
     }
     /// A round tube along a smooth curve through points; its ends are balls.
     Tube = sdf_tube with data, "Tube" {
@@ -273,151 +480,5 @@ shapes! {
         sharpness: f64 = 0.5, UNIT;
         /// Where the waves are in their motion: 360 is a whole turn of the longest.
         phase: f64 = 0.0, TURN;
-    }
-}
-
-impl Shape {
-    /// The parameters in order, as the evaluators read them; unused places are 0. Of a shape with data `flat::Body`
-    /// makes what is read instead.
-    pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
-        let mut out = [0.0; SHAPE_FLOATS];
-        let mut at = 0;
-        for value in self.values() {
-            match value {
-                ParamValue::Scalar(v) => {
-                    out[at] = v;
-                    at += 1;
-                }
-                ParamValue::Vector(v) => {
-                    out[at..at + 3].copy_from_slice(&v.to_array());
-                    at += 3;
-                }
-                ParamValue::Flag(_) | ParamValue::List(_) => {}
-            }
-        }
-        out
-    }
-
-    /// A box around the surface, in local space.
-    pub fn bounds(&self) -> Aabb {
-        let around = |half: DVec3| Aabb::from_center_half(DVec3::ZERO, half);
-        match *self {
-            Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
-            Self::Extrusion { ref corners, smooth, depth, .. } => {
-                let flat = profile_bounds(corners, smooth);
-                let half = DVec3::Z * (0.5 * depth);
-                Aabb::new(flat.min - half, flat.max + half)
-            }
-            Self::Revolution { ref corners, smooth, offset } => {
-                let flat = profile_bounds(corners, smooth);
-                let r = (flat.max.x + offset).max(0.0);
-                Aabb::new(DVec3::new(-r, flat.min.y, -r), DVec3::new(r, flat.max.y, r))
-            }
-            Self::Terrain { size, amplitude, .. } | Self::Ocean { size, amplitude, .. } => {
-                let [x, depth, z] = size;
-                Aabb::new(DVec3::new(-0.5 * x, -depth, -0.5 * z), DVec3::new(0.5 * x, amplitude, 0.5 * z))
-            }
-            Self::Sphere { radius } | Self::Octahedron { radius } => around(DVec3::splat(radius)),
-            Self::Ellipsoid { radii } => around(radii.into()),
-            Self::Box { size, .. } | Self::BoxFrame { size, .. } => around(DVec3::from(size) * 0.5),
-            Self::Torus { major_radius, minor_radius } => {
-                let r = major_radius + minor_radius;
-                around(DVec3::new(r, minor_radius, r))
-            }
-            Self::Cylinder { radius, height, .. } => around(DVec3::new(radius, height * 0.5, radius)),
-            Self::CappedCone { bottom_radius, top_radius, height } => {
-                let r = bottom_radius.max(top_radius);
-                around(DVec3::new(r, height * 0.5, r))
-            }
-            Self::RoundCone { bottom_radius, top_radius, height } => {
-                let r = bottom_radius.max(top_radius);
-                let low = (-0.5 * height - bottom_radius).min(0.5 * height - top_radius);
-                let high = (0.5 * height + top_radius).max(-0.5 * height + bottom_radius);
-                Aabb::new(DVec3::new(-r, low, -r), DVec3::new(r, high, r))
-            }
-            Self::Capsule { start, end, radius } => Aabb::from_points([start.into(), end.into()]).expanded(radius),
-            Self::Plane {} => Aabb::new(DVec3::NEG_INFINITY, DVec3::new(f64::INFINITY, 0.0, f64::INFINITY)),
-            Self::HexagonalPrism { radius, height } => {
-                // Two sides face along X, so corners lie on Z, 2/√3 farther out than the sides.
-                around(DVec3::new(radius, height * 0.5, radius * 2.0 / 3.0_f64.sqrt()))
-            }
-        }
-    }
-
-    /// The shape whose field is exactly that of this one scaled by `s` (all positive) along its own
-    /// axes, where there is one: non-uniform scale then costs nothing and loosens nothing.
-    pub fn absorb_scale(&self, s: DVec3) -> Option<Self> {
-        let uniform = s.x == s.y && s.y == s.z;
-        let round = s.x == s.z;
-        let times = |v: [f64; 3]| (DVec3::from(v) * s).to_array();
-        Some(match *self {
-            Self::Sphere { radius } if uniform => Self::Sphere { radius: radius * s.x },
-            Self::Sphere { radius } => Self::Ellipsoid { radii: (s * radius).to_array() },
-            Self::Ellipsoid { radii } => Self::Ellipsoid { radii: times(radii) },
-            Self::Box { size, rounding } if uniform || rounding == 0.0 => {
-                Self::Box { size: times(size), rounding: rounding * s.x }
-            }
-            Self::BoxFrame { size, thickness } if uniform => {
-                Self::BoxFrame { size: times(size), thickness: thickness * s.x }
-            }
-            Self::Torus { major_radius, minor_radius } if uniform => {
-                Self::Torus { major_radius: major_radius * s.x, minor_radius: minor_radius * s.x }
-            }
-            Self::Cylinder { radius, height, rounding } if uniform || (round && rounding == 0.0) => {
-                Self::Cylinder { radius: radius * s.x, height: height * s.y, rounding: rounding * s.x }
-            }
-            Self::CappedCone { bottom_radius, top_radius, height } if round => Self::CappedCone {
-                bottom_radius: bottom_radius * s.x,
-                top_radius: top_radius * s.x,
-                height: height * s.y,
-            },
-            Self::RoundCone { bottom_radius, top_radius, height } if uniform => Self::RoundCone {
-                bottom_radius: bottom_radius * s.x,
-                top_radius: top_radius * s.x,
-                height: height * s.y,
-            },
-            Self::Capsule { start, end, radius } if uniform => {
-                Self::Capsule { start: times(start), end: times(end), radius: radius * s.x }
-            }
-            Self::Plane {} => Self::Plane {},
-            Self::HexagonalPrism { radius, height } if round => {
-                Self::HexagonalPrism { radius: radius * s.x, height: height * s.y }
-            }
-            Self::Octahedron { radius } if uniform => Self::Octahedron { radius: radius * s.x },
-            _ => return None,
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::scene::LIST_COLUMNS;
-
-    #[test]
-    fn every_parameter_can_be_read_written_and_packed() {
-        for &kind in ShapeKind::ALL {
-            let mut shape = kind.default_shape();
-            assert_eq!(shape.kind(), kind);
-            let values = shape.values();
-            assert_eq!(values.len(), kind.params().len());
-            let floats: usize = values.iter().map(|v| if matches!(v, ParamValue::Vector(_)) { 3 } else { 1 }).sum();
-            assert!(kind.has_data() || floats <= SHAPE_FLOATS);
-            for (i, value) in values.iter().enumerate() {
-                let changed = match value {
-                    ParamValue::Scalar(v) => ParamValue::Scalar(v + 0.25),
-                    ParamValue::Vector(v) => ParamValue::Vector(*v + 0.25),
-                    ParamValue::Flag(v) => ParamValue::Flag(!v),
-                    ParamValue::List(list) => {
-                        let mut list = list.clone();
-                        list.rows.push([0.0; LIST_COLUMNS]);
-                        ParamValue::List(list)
-                    }
-                };
-                assert!(shape.set_value(i, changed.clone()));
-                assert_eq!(shape.values()[i], changed);
-            }
-            assert!(!shape.set_value(values.len(), ParamValue::Scalar(1.0)));
-        }
     }
 }

@@ -1,45 +1,71 @@
 //! Every operator with every kernel.
 
 use isolith::flat::Join;
-use isolith::flat::twin::{op_difference, op_intersection, op_join, op_union};
+use isolith::flat::twin::{Joined, Joint, op_join};
 use isolith::scene::{Blend, BlendKernel, Operator};
 
 use super::samples::Random;
+
+/// The first three: those that a kernel rounds alike.
+const PLAIN: [Join; 3] = [Join::Union, Join::Intersection, Join::Difference];
 
 fn kernels() -> impl Iterator<Item = (u32, BlendKernel)> {
     BlendKernel::ALL.into_iter().enumerate().map(|(i, kernel)| (i as u32, kernel))
 }
 
-/// The operator, with b's sign turned so that all of them look alike: the result has the sign of a.
-fn apply(operator: Operator, a: f64, b: f64, support: f64, kernel: u32) -> (f64, f64) {
-    let joined = match operator {
-        Operator::Union => op_union(a, b, support, kernel),
-        Operator::Intersection => op_intersection(a, b, support, kernel),
-        Operator::Difference => op_difference(a, b, support, kernel),
-    };
-    (joined.value, joined.weight)
+/// A joint as flattening writes it.
+fn joint(join: Join, blend: &Blend, [half_width, depth]: [f64; 2]) -> Joint {
+    let has_width = matches!(join, Join::Pipe | Join::Groove | Join::Tongue);
+    Joint { support: blend.support(), size: if has_width { half_width } else { blend.steps.into() }, depth }
 }
 
-fn hard(operator: Operator, a: f64, b: f64) -> f64 {
-    match operator {
-        Operator::Union => a.min(b),
-        Operator::Intersection => a.max(b),
-        Operator::Difference => a.max(-b),
+/// Grooves and tongues have no steps.
+fn applies(join: Join, kernel: BlendKernel) -> bool {
+    !(kernel.has_steps() && matches!(join, Join::Groove | Join::Tongue))
+}
+
+fn apply(join: Join, a: f64, b: f64, blend: &Blend, kernel: u32) -> Joined<f64> {
+    op_join(join as u32, a, b, &joint(join, blend, [0.2, 0.3]), kernel)
+}
+
+fn hard(join: Join, a: f64, b: f64) -> f64 {
+    match join {
+        Join::Union => a.min(b),
+        Join::Intersection => a.max(b),
+        Join::Difference => a.max(-b),
+        Join::Xor => a.min(b).max(-a.max(b)),
+        other => panic!("{other:?} is no operator on sets"),
     }
 }
 
 #[test]
 fn equal_radii_thicken_equally() {
-    for operator in Operator::ALL {
+    for join in PLAIN {
         for (number, kernel) in kernels() {
             for radius in [1e-3, 0.1, 1.0, 50.0] {
-                let blend = Blend { kernel, radius };
-                for a in [-0.7, 0.0, 2.0] {
-                    let b = if operator == Operator::Difference { -a } else { a };
-                    let (value, weight) = apply(operator, a, b, blend.support(), number);
-                    let change = (value - hard(operator, a, b)).abs();
-                    assert!((change - blend.thickening()).abs() < 1e-9 * radius, "{operator:?} {kernel:?} {radius}");
-                    assert_eq!(weight, 0.5);
+                for steps in [1, 2, 5] {
+                    let blend = Blend { steps, ..Blend::new(kernel, radius) };
+                    for a in [-0.7, 0.0, 2.0] {
+                        // The thickening measured along the diagonal, where the operands are equal; steps and columns
+                        // have it at their edges and fronts.
+                        let places = if kernel.has_steps() { 2 * steps } else { 1 };
+                        let change = |i: u32| {
+                            let apart = if kernel.has_steps() {
+                                blend.support() * (1.0 - f64::from(2 * i + 1) / f64::from(steps)).abs()
+                            } else {
+                                0.0
+                            };
+                            let b = if join == Join::Intersection { a - apart } else { a + apart };
+                            let b = if join == Join::Difference { -a + apart } else { b };
+                            let joined = apply(join, a, b, &blend, number);
+                            (joined.value - hard(join, a, b)).abs() + 0.5 * apart
+                        };
+                        for i in 0..places.div_ceil(2) {
+                            let found = change(i);
+                            let right = (found - blend.thickening()).abs() < 1e-9 * (radius + a.abs());
+                            assert!(right, "{join:?} {kernel:?} {radius} {steps}: {found}, not {}", blend.thickening());
+                        }
+                    }
                 }
             }
         }
@@ -49,72 +75,147 @@ fn equal_radii_thicken_equally() {
 #[test]
 fn beyond_the_support_the_operators_are_hard() {
     let mut random = Random::new(1);
-    for operator in Operator::ALL {
+    for join in PLAIN {
         for (number, kernel) in kernels() {
             for radius in [0.0, 1e-6, 0.3, 1e6] {
-                let support = Blend { kernel, radius }.support();
+                let blend = Blend::new(kernel, radius);
                 for _ in 0..500 {
                     let a = random.range(-2.0, 2.0) * (1.0 + radius);
-                    let distance = support * random.range(1.0 + 1e-9, 3.0) + random.range(1e-9, 1.0);
+                    let distance = blend.support() * random.range(1.0 + 1e-9, 3.0) + random.range(1e-9, 1.0);
                     let b = if random.chance(0.5) { a + distance } else { a - distance };
-                    let b = if operator == Operator::Difference { -b } else { b };
-                    let (value, weight) = apply(operator, a, b, support, number);
-                    assert_eq!(value, hard(operator, a, b));
-                    assert!(weight == 0.0 || weight == 1.0);
-                    assert_eq!(weight == 1.0, value != a);
+                    let b = if join == Join::Difference { -b } else { b };
+                    let joined = apply(join, a, b, &blend, number);
+                    assert_eq!(joined.value, hard(join, a, b));
+                    assert!(joined.weight == 0.0 || joined.weight == 1.0);
+                    assert_eq!(joined.weight == 1.0, joined.value != a);
                 }
             }
         }
     }
 }
 
+/// What flattening and pruning rely upon.
 #[test]
-fn values_step_safely_and_weights_are_shares() {
-    let mut random = Random::new(2);
-    for operator in Operator::ALL {
-        for (number, kernel) in kernels() {
-            for _ in 0..20_000 {
-                let radius = random.pick(&[0.0, 0.05, 1.0, 20.0]);
-                let support = Blend { kernel, radius }.support();
-                let (a, b) = (random.range(-2.0, 2.0), random.range(-2.0, 2.0));
-                let step = random.range(0.0, 1.0);
-                let (da, db) = (random.range(-step, step), random.range(-step, step));
-                let (from, weight) = apply(operator, a, b, support, number);
-                let (to, _) = apply(operator, a + da, b + db, support, number);
-                assert!((from - to).abs() <= da.abs().max(db.abs()) + 1e-12, "{operator:?} {kernel:?} {a} {b}");
-                assert!((0.0..=1.0).contains(&weight));
-                // A blend only ever adds to a union and only ever takes from the others.
-                let change = from - hard(operator, a, b);
-                assert!(if operator == Operator::Union { change <= 0.0 } else { change >= 0.0 });
-                assert!(change.abs() <= Blend { kernel, radius }.thickening() + 1e-12);
+fn far_from_the_second_operand_the_first_is_left_as_it_is() {
+    let mut random = Random::new(4);
+    for (number, kernel) in kernels() {
+        for _ in 0..2_000 {
+            let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, random.range(0.0, 2.0)) };
+            let a = random.range(-2.0, 2.0);
+            let (support, more) = (blend.support(), random.range(1e-9, 1.0));
+            for (join, b) in [
+                (Join::Xor, a.abs() + support),
+                (Join::Groove, 0.2 + support - a),
+                (Join::Tongue, a + 0.2 + support),
+                (Join::Engrave, 0.3 + 2.0 * support - a),
+                (Join::Paint, support),
+            ] {
+                if !applies(join, kernel) {
+                    continue;
+                }
+                let joined = apply(join, a, b.max(0.0) + more, &blend, number);
+                assert_eq!((joined.value, joined.by_a, joined.by_b, joined.weight), (a, 1.0, 0.0, 0.0), "{join:?}");
             }
         }
     }
 }
 
 #[test]
-fn a_blend_is_continuous_with_its_slope_at_the_end_of_its_support() {
-    for (number, kernel) in kernels() {
-        let support = Blend { kernel, radius: 0.5 }.support();
-        let at = |difference: f64| op_union(0.0, difference, support, number);
-        assert!(at(support - 1e-6).value.abs() < 1e-9, "{kernel:?}");
-        assert!(at(support - 1e-6).weight < 1e-4, "{kernel:?}");
+fn values_step_safely_and_derivatives_are_right() {
+    const H: f64 = 1e-6;
+    let mut random = Random::new(2);
+    for join in Join::ALL {
+        for (number, kernel) in kernels().filter(|(_, kernel)| applies(join, *kernel)) {
+            let (mut compared, mut count) = (0, 0);
+            for _ in 0..10_000 {
+                let radius = random.pick(&[0.0, 0.05, 1.0, 20.0]);
+                let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, radius) };
+                let (a, b) = (random.range(-2.0, 2.0), random.range(-2.0, 2.0));
+                let step = random.range(0.0, 1.0);
+                let (da, db) = (random.range(-step, step), random.range(-step, step));
+                let at = |a: f64, b: f64| apply(join, a, b, &blend, number);
+                let (from, to) = (at(a, b), at(a + da, b + db));
+                let change = (from.value - to.value).abs();
+                assert!(change <= da.abs().max(db.abs()) + 1e-12, "{join:?} {kernel:?} {a} {b}");
+                assert!((0.0..=1.0).contains(&from.weight));
+                assert!(from.by_a.abs() + from.by_b.abs() <= 1.0 + 1e-12);
+                let sides = [
+                    [at(a + H, b).value - from.value, from.value - at(a - H, b).value],
+                    [at(a, b + H).value - from.value, from.value - at(a, b - H).value],
+                ];
+                count += 1;
+                if sides.iter().all(|[ahead, behind]| (ahead - behind).abs() < 1e-3 * H) {
+                    compared += 1;
+                    for (derivative, [ahead, behind]) in [from.by_a, from.by_b].into_iter().zip(sides) {
+                        assert!((derivative - 0.5 * (ahead + behind) / H).abs() < 1e-3, "{join:?} {kernel:?} {a} {b}");
+                    }
+                }
+            }
+            assert!(compared * 2 > count, "{join:?} {kernel:?}: {compared}");
+        }
     }
 }
 
 #[test]
-fn a_join_is_the_operator_of_its_number() {
-    let mut random = Random::new(3);
-    for _ in 0..100 {
-        let (a, b) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-        for (number, _) in kernels() {
-            let join = |join: Join| op_join(join as u32, a, b, 0.4, number);
-            assert_eq!(join(Join::First).value, b);
-            assert_eq!(join(Join::Union), op_union(a, b, 0.4, number));
-            assert_eq!(join(Join::Intersection), op_intersection(a, b, 0.4, number));
-            assert_eq!(join(Join::Difference), op_difference(a, b, 0.4, number));
+fn blends_only_add_to_unions_and_only_take_from_cuts() {
+    let mut random = Random::new(6);
+    for join in PLAIN {
+        for (number, kernel) in kernels() {
+            for _ in 0..5_000 {
+                let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, random.range(0.0, 3.0)) };
+                let (a, b) = (random.range(-2.0, 2.0), random.range(-2.0, 2.0));
+                let change = apply(join, a, b, &blend, number).value - hard(join, a, b);
+                assert!(if join == Join::Union { change <= 1e-12 } else { change >= -1e-12 });
+                assert!(change.abs() <= blend.thickening() + 1e-12);
+            }
         }
     }
+}
+
+#[test]
+fn signs_are_what_the_operators_mean() {
+    let mut random = Random::new(5);
+    let (half_width, depth) = (0.2, 0.3);
+    for _ in 0..20_000 {
+        let (a, b) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+        let near = b.abs() < half_width;
+        for (join, inside) in [
+            (Join::Union, a < 0.0 || b < 0.0),
+            (Join::Intersection, a < 0.0 && b < 0.0),
+            (Join::Difference, a < 0.0 && b > 0.0),
+            (Join::Xor, (a < 0.0) != (b < 0.0)),
+            (Join::Pipe, a.hypot(b) < half_width),
+            (Join::Groove, a < 0.0 && !(near && a > -depth)),
+            (Join::Tongue, a < 0.0 || (near && a < depth)),
+            (Join::Engrave, a < 0.0 && a + depth < b.abs()),
+            (Join::Morph, (1.0 - depth) * a + depth * b < 0.0),
+            (Join::Paint, a < 0.0),
+        ] {
+            let value = op_join(join as u32, a, b, &joint(join, &Blend::HARD, [half_width, depth]), 0).value;
+            assert_eq!(value < 0.0, inside, "{join:?} at {a}, {b}: {value}");
+        }
+    }
+}
+
+#[test]
+fn a_smooth_blend_is_continuous_with_its_slope_at_the_end_of_its_support_and_in_its_middle() {
+    for (number, kernel) in kernels().filter(|(_, kernel)| kernel.is_smooth()) {
+        let blend = Blend::new(kernel, 0.5);
+        let at = |difference: f64| apply(Join::Union, 0.0, difference, &blend, number);
+        assert!(at(blend.support() - 1e-6).value.abs() < 1e-9, "{kernel:?}");
+        assert!(at(blend.support() - 1e-6).weight < 1e-4, "{kernel:?}");
+        assert!((at(1e-9).weight - 0.5).abs() < 1e-6 && (at(-1e-9).weight - 0.5).abs() < 1e-6, "{kernel:?}");
+    }
+}
+
+#[test]
+fn paint_is_whole_inside_and_fades_over_its_edge() {
+    let blend = Blend::new(BlendKernel::Circular, 0.1);
+    let share = |b: f64| apply(Join::Paint, 0.7, b, &blend, 0).weight;
+    assert_eq!([share(-0.1), share(0.0), share(0.1)], [1.0, 0.5, 0.0]);
+    assert!(share(-0.03) > share(0.03));
+    let hard = |b: f64| apply(Join::Paint, 0.7, b, &Blend::HARD, 0).weight;
+    assert_eq!([hard(-1e-9), hard(1e-9)], [1.0, 0.0]);
 }
 
 #[test]
@@ -124,4 +225,11 @@ fn the_shader_numbers_joins_and_kernels_alike() {
         let name = format!("{kernel:?}").to_uppercase();
         assert!(shader.contains(&format!("const KERNEL_{name}: u32 = {number}u;")), "{name}");
     }
+    for (number, join) in Join::ALL.into_iter().enumerate() {
+        assert_eq!(join as usize, number);
+        let name = format!("{join:?}").to_uppercase();
+        assert!(shader.contains(&format!("const JOIN_{name}: u32 = {number}u;")), "{name}");
+    }
+    let joins: Vec<Join> = Operator::ALL.into_iter().map(Join::of).collect();
+    assert_eq!(joins, Join::ALL[1..]);
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use isolith::flat::Body;
 use isolith::flat::twin::{Real, shape_distance};
-use isolith::scene::{LIST_COLUMNS, ParamValue, Shape, ShapeKind};
+use isolith::scene::{Limits, ParamValue, Shape, ShapeKind};
 
 /// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
 pub struct Random(u64);
@@ -54,26 +54,22 @@ impl Random {
     }
 }
 
-/// A shape whose numbers all come from `number`, which is given the limits' soft range.
-pub fn shape_with(kind: ShapeKind, mut number: impl FnMut([f64; 2]) -> f64) -> Shape {
+/// A shape whose numbers all come from `number`, which is given their limits.
+pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Shape {
     let mut shape = kind.default_shape();
     for (i, value) in shape.values().into_iter().enumerate() {
         let limits = kind.params()[i].limits;
-        let mut next = || number(limits.soft).clamp(limits.hard[0], limits.hard[1]);
+        let mut within = |limits: &Limits| number(limits).clamp(limits.hard[0], limits.hard[1]);
+        let mut next = || within(&limits);
         let value = match value {
             ParamValue::Scalar(_) => ParamValue::Scalar(next()),
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
-            ParamValue::Flag(_) => ParamValue::Flag(number([0.0, 1.0]) > 0.5),
+            ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
             ParamValue::List(mut list) => {
-                let count = list.count[0] + number([0.0, 2.9]).clamp(0.0, 2.0) as usize;
-                let column = |list: &isolith::scene::List, c: usize| list.limits(c, &limits);
-                list.rows = vec![[0.0; LIST_COLUMNS]; count];
-                for i in 0..count {
-                    for c in 0..list.columns.len() {
-                        let limits = column(&list, c);
-                        list.rows[i][c] = number(limits.soft).clamp(limits.hard[0], limits.hard[1]);
-                    }
-                }
+                let more = within(&Limits { soft: [0.0, 2.9], hard: [0.0, 2.0], unit: "" }) as usize;
+                let limits: Vec<Limits> = (0..list.columns.len()).map(|c| list.limits(c, &limits)).collect();
+                let mut row = || std::array::from_fn(|c| limits.get(c).map_or(0.0, &mut within));
+                list.rows = (0..list.count[0] + more).map(|_| row()).collect();
                 ParamValue::List(list)
             }
         };
@@ -82,15 +78,20 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut([f64; 2]) -> f64) -> S
     shape
 }
 
+/// A number from the soft range; lengths up to `longest` metres.
+pub fn usual(random: &mut Random, limits: &Limits, longest: f64) -> f64 {
+    let [low, high] = limits.soft;
+    if limits.unit == "m" { random.range(low.max(-longest), high.min(longest)) } else { random.range(low, high) }
+}
+
 /// Ordinary shapes: the default, random ones, random ones with zeros, all zero.
 pub fn ordinary(kind: ShapeKind, count: usize) -> Vec<Shape> {
     let mut random = Random::new(kind as u64);
     let mut shapes = vec![kind.default_shape(), shape_with(kind, |_| 0.0)];
     for i in 0..count {
         let zeros = if i % 3 == 2 { 0.4 } else { 0.0 };
-        shapes.push(shape_with(kind, |[low, high]| {
-            if random.chance(zeros) { 0.0 } else { random.range(low.max(-2.0), high.min(2.0)) }
-        }));
+        shapes
+            .push(shape_with(kind, |limits| if random.chance(zeros) { 0.0 } else { usual(&mut random, limits, 2.0) }));
     }
     shapes
 }

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use isolith::scene::Shape;
 
-use super::drawn;
+use super::{drawn, outlines};
 
 /// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
 /// surface because it lies inside.
@@ -49,7 +49,8 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             p.y.abs() < height * 0.5 && (0..6).all(|k| side(f64::from(k)))
         }
         Shape::Octahedron { radius } => p.abs().element_sum() < radius,
-        _ => drawn::inside(shape, p),
+        _ if shape.kind().has_data() => drawn::inside(shape, p),
+        _ => outlines::inside(shape, p),
     }
 }
 
@@ -108,7 +109,8 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
                 triangle(corners)
             })
             .collect(),
-        _ => drawn::patches(shape),
+        _ if shape.kind().has_data() => drawn::patches(shape),
+        _ => outlines::patches(shape),
     }
 }
 
@@ -129,7 +131,7 @@ pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     // Patches without extent give the same point many times.
     starts.dedup_by(|a, b| (a.0 - b.0).abs() < 1e-12);
-    let refined = starts.iter().take(9).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
+    let refined = starts.iter().take(24).map(|(_, patch, uv)| refine(&|uv| measure(patch, uv), *uv, 0.5 / grid as f64));
     refined.fold(f64::INFINITY, f64::min)
 }
 
@@ -249,7 +251,7 @@ fn hexagonal_prism(radius: f64, half: f64) -> Vec<Patch> {
     patches
 }
 
-fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
+pub fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
     Box::new(move |u, v| Some(a.lerp(b, u).lerp(a.lerp(c, u), v)))
 }
 
@@ -282,7 +284,7 @@ fn deep_inside(shape: &Shape, p: DVec3) -> bool {
     inside(shape, p) && DVec3::AXES.iter().all(|a| inside(shape, p + *a * e) && inside(shape, p - *a * e))
 }
 
-fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
+pub fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
     Box::new(move |u, v| patch(u, v).map(&map))
 }
 

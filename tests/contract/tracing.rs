@@ -113,7 +113,7 @@ fn the_nearest_of_many_is_picked() {
 fn a_blend_belongs_to_the_object_that_weighs_most() {
     let mut scene = Scene::new();
     let blend = Blend { radius: 0.3, ..Blend::HARD };
-    let group = Node::new("Group", NodeKind::Group(Group { operator: Operator::Union, blend }));
+    let group = Node::new("Group", NodeKind::Group(Group::new(Operator::Union, blend)));
     let parent = scene.insert(None, 0, group).unwrap();
     let ball = |x: f64| object(Shape::Sphere { radius: 0.5 }).at(DVec3::X * x);
     let ids = [-0.4, 0.4].map(|x| scene.insert(Some(parent), usize::MAX, ball(x)).unwrap());

@@ -4,11 +4,12 @@ use glam::{DAffine3, DQuat, DVec3};
 use isolith::flat::twin::{field, gradient, surface};
 use isolith::flat::{Component, FlatScene, flatten};
 use isolith::scene::{
-    Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, ShapeKind,
+    Blend, BlendKernel, Group, Joining, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, RadiusUnit,
+    Scene, ShapeKind,
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, ordinary, shape_with};
+use super::samples::{Random, ordinary, shape_with, usual};
 use super::surfaces::inside;
 
 const TREES: u64 = 60;
@@ -37,10 +38,22 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
     let is_group = depth < 4 && random.chance(if depth == 0 { 0.9 } else { 0.5 });
     let kind = if is_group {
         let radius = if recipe.blends && random.chance(0.7) { random.range(0.01, 0.5) } else { 0.0 };
-        let blend = Blend { kernel: random.pick(&BlendKernel::ALL), radius };
-        NodeKind::Group(Group { operator: random.pick(&Operator::ALL), blend })
+        let unit = random.pick(&[RadiusUnit::Metres, RadiusUnit::Metres, RadiusUnit::Size]);
+        let steps = 1 + random.index(5) as u32;
+        let blend = Blend { unit, steps, ..Blend::new(random.pick(&BlendKernel::ALL), radius) };
+        // Without blends every operator is one on sets, so that a point is inside or outside by its meaning. The
+        // others are rarer: what is cut and only that is often nothing.
+        let operator = match () {
+            () if !recipe.blends => random.pick(&[Operator::SETS.as_slice(), &[Operator::Paint]].concat()),
+            () if random.chance(0.5) => random.pick(&Operator::SETS),
+            () => random.pick(&Operator::ALL),
+        };
+        let (width, depth, share) = (random.range(0.0, 0.6), random.range(0.0, 0.3), random.range(0.0, 1.0));
+        NodeKind::Group(Group { width, depth, share, ..Group::new(operator, blend) })
     } else {
-        let shape = shape_with(random.pick(ShapeKind::ALL), |_| random.range(0.05, 1.2));
+        let shape = shape_with(random.pick(ShapeKind::ALL), |limits| {
+            if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
+        });
         NodeKind::Object(Object { shape, material: MaterialId(2 + random.index(3) as u64) })
     };
     let mut node = Node::new("Node", kind).at(random.point(0.8));
@@ -53,6 +66,10 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
     }
     node.negative = random.chance(0.2);
     node.visible = !random.chance(0.08);
+    if recipe.blends && parent.is_some() && random.chance(0.2) {
+        node.joining = random.pick(&[Joining::Hard, Joining::Radius(0.1)]);
+        node.apart = scene.children(parent).take(1).map(|n| n.id).collect();
+    }
     let id = scene.insert(parent, usize::MAX, node).unwrap();
     if is_group {
         for _ in 0..1 + random.index(4) {
@@ -109,6 +126,9 @@ fn fold(scene: &Scene, parent: Option<NodeId>, operator: Operator, world: &DAffi
             (Some(before), true, _) | (Some(before), false, Operator::Difference) => Some(before && !holds),
             (Some(before), false, Operator::Union) => Some(before || holds),
             (Some(before), false, Operator::Intersection) => Some(before && holds),
+            (Some(before), false, Operator::Xor) => Some(before != holds),
+            (Some(before), false, Operator::Paint) => Some(before),
+            (Some(_), false, other) => panic!("{other:?} is no operator on sets"),
         };
     }
     so_far
@@ -242,8 +262,8 @@ fn every_shape_in_a_blend_with_every_other_steps_safely() {
         for &second in ShapeKind::ALL {
             let mut random = Random::new(first as u64 * 64 + second as u64);
             let mut scene = Scene::new();
-            let blend = Blend { kernel: random.pick(&BlendKernel::ALL), radius: 0.2 };
-            let group = Group { operator: random.pick(&Operator::ALL), blend };
+            let blend = Blend::new(random.pick(&BlendKernel::ALL), 0.2);
+            let group = Group::new(random.pick(&Operator::ALL), blend);
             let parent = scene.insert(None, 0, Node::new("Group", NodeKind::Group(group))).unwrap();
             for kind in [first, second] {
                 let shape = ordinary(kind, 5).swap_remove(random.index(7));

@@ -2,6 +2,7 @@
 
 use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::Queryable;
+use isolith::flat::inspect::Look;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
 
@@ -108,6 +109,27 @@ fn a_monkey_finds_no_panic_and_undo_leads_back() {
     harness.run_ok();
     harness.state().document().scene().assert_invariants();
     undo_all(&mut harness);
+    assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn the_look_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    assert_eq!(harness.state().view().look, Look::Shaded);
+    for (name, look) in [("Show steps", Look::Steps), ("Show normals", Look::Normals), ("Show shaded", Look::Shaded)] {
+        harness.get_by_label("Picture shows").click();
+        harness.run();
+        harness.get_by_label(name).click();
+        harness.run();
+        assert_eq!(harness.state().view().look, look);
+    }
+    press(&mut harness, Modifiers::NONE, Key::F3);
+    harness.event(Event::Text("show slope".into()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    assert_eq!(harness.state().view().look, Look::Slope);
+    assert_eq!(undo_all(&mut harness), 0, "looking changes nothing");
     assert_eq!(*harness.state().document().scene(), scene);
 }
 

@@ -3,9 +3,10 @@
 use egui::{Context, Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF,
-    ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LOCK, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL,
-    ICON_UNDO, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
+    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER,
+    ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LOCK,
+    ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM,
+    ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
 };
 
 use super::{Command, Icon, Menu};
@@ -23,6 +24,7 @@ pub(super) fn commands() -> Vec<Command> {
     let mut all = history();
     all.extend(structure());
     all.extend(roles());
+    all.extend(further_operators());
     all.extend(showing());
     all
 }
@@ -100,6 +102,34 @@ fn roles() -> Vec<Command> {
             selection::toggle_negative(&mut e.bench);
         })
         .key(Modifiers::NONE, Key::N),
+    ]
+}
+
+/// Operators without a key; the palette finds them.
+fn further_operators() -> Vec<Command> {
+    vec![
+        new(ICON_JOIN, "Exclude", "Keeps what is in one of the selection but not in the next", |e, _| {
+            selection::join(&mut e.bench, Operator::Xor, false);
+        })
+        .group(),
+        new(ICON_PLUMBING, "Pipe", "A tube along the curve where the surfaces of the selection meet", |e, _| {
+            selection::join(&mut e.bench, Operator::Pipe, false);
+        }),
+        new(ICON_VERTICAL_ALIGN_BOTTOM, "Groove", "Cuts a groove along the surfaces of all later ones", |e, _| {
+            selection::join(&mut e.bench, Operator::Groove, false);
+        }),
+        new(ICON_VERTICAL_ALIGN_TOP, "Tongue", "Raises a tongue along the surfaces of all later ones", |e, _| {
+            selection::join(&mut e.bench, Operator::Tongue, false);
+        }),
+        new(ICON_STYLUS, "Engrave", "Cuts a V along the surfaces of all later ones", |e, _| {
+            selection::join(&mut e.bench, Operator::Engrave, false);
+        }),
+        new(ICON_ANIMATION, "Morph", "A shape between those of the selection", |e, _| {
+            selection::join(&mut e.bench, Operator::Morph, false);
+        }),
+        new(ICON_FORMAT_PAINT, "Paint", "The first of the selection in the colours of the others", |e, _| {
+            selection::join(&mut e.bench, Operator::Paint, false);
+        }),
     ]
 }
 

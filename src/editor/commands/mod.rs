@@ -25,6 +25,8 @@ pub enum Menu {
     Add,
     /// The camera and what is shown.
     View,
+    /// What the picture shows; a part of the menu View.
+    Look,
 }
 
 /// A picture of a command.
@@ -43,6 +45,7 @@ impl From<MaterialIcon> for Icon {
 }
 
 type Run = Box<dyn Fn(&mut Editor, &Context) + Send + Sync>;
+type IsOn = Box<dyn Fn(&Editor) -> bool + Send + Sync>;
 
 /// Something that the artist can order.
 pub struct Command {
@@ -59,6 +62,8 @@ pub struct Command {
     /// Its keys; the first is shown.
     pub keys: Vec<KeyboardShortcut>,
     enabled: fn(&Editor) -> bool,
+    /// Whether what it switches is on.
+    on: IsOn,
     run: Run,
 }
 
@@ -87,6 +92,7 @@ impl Command {
             help: help.into(),
             keys: Vec::new(),
             enabled: |_| true,
+            on: Box::new(|_| false),
             run: Box::new(run),
         }
     }
@@ -98,6 +104,11 @@ impl Command {
 
     fn when(mut self, enabled: fn(&Editor) -> bool) -> Self {
         self.enabled = enabled;
+        self
+    }
+
+    fn switch(mut self, on: impl Fn(&Editor) -> bool + Send + Sync + 'static) -> Self {
+        self.on = Box::new(on);
         self
     }
 
@@ -133,6 +144,11 @@ impl CommandId {
     /// Whether it can be run now.
     pub fn enabled(self, editor: &Editor) -> bool {
         (self.get().enabled)(editor)
+    }
+
+    /// Whether what it switches is on.
+    fn is_on(self, editor: &Editor) -> bool {
+        (self.get().on)(editor)
     }
 
     /// Runs it, where it can be run.
@@ -179,7 +195,7 @@ pub fn menu_entries(ui: &mut Ui, editor: &Editor, menu: Menu) -> Option<CommandI
         if command.get().starts_group && index > 0 {
             ui.separator();
         }
-        if entry(ui, command, command.enabled(editor)).clicked() {
+        if entry(ui, command, command.enabled(editor), command.is_on(editor)).clicked() {
             chosen = Some(command);
         }
     }
@@ -201,7 +217,7 @@ pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
         }
         for name in *names {
             let command = CommandId::named(name);
-            if entry(ui, command, true).clicked() {
+            if entry(ui, command, true, false).clicked() {
                 chosen = Some(command);
             }
         }
@@ -209,13 +225,13 @@ pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
     chosen
 }
 
-fn entry(ui: &mut Ui, id: CommandId, enabled: bool) -> Response {
+fn entry(ui: &mut Ui, id: CommandId, enabled: bool, on: bool) -> Response {
     let command = id.get();
     let mut button = Button::new((RichText::new(ICON_ROOM), command.name.as_str())).min_size(egui::vec2(190.0, 0.0));
     if let Some(key) = command.keys.first() {
         button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
     }
-    let response = ui.add_enabled(enabled, button);
+    let response = ui.add_enabled(enabled, button.selected(on));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(command.name.clone()));
     command.paint_icon(ui, response.rect, enabled);
     if response.hovered() {

@@ -9,6 +9,7 @@ use egui_material_icons::icons::{
 use super::{Command, Icon, Menu};
 use crate::editor::Editor;
 use crate::editor::navigation::Side;
+use crate::flat::inspect::Look;
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
     Command::new(Menu::View, Icon::from(icon), name, help, run)
@@ -50,15 +51,28 @@ pub(super) fn commands() -> Vec<Command> {
         all.push(if index == 0 { command.group() } else { command });
     }
     all.extend([
-        new(ICON_GRID_ON, "Grid", "Shows or hides the ground grid", |e, _| e.show_grid ^= true).group(),
+        new(ICON_GRID_ON, "Grid", "Shows or hides the ground grid", |e, _| e.show_grid ^= true)
+            .switch(|e| e.show_grid)
+            .group(),
         new(ICON_SELECT, "Selection outline", "Shows or hides what marks the selection", |e, _| {
             e.show_outline ^= true;
-        }),
+        })
+        .switch(|e| e.show_outline),
         new(ICON_SEARCH, "Find command…", "Every command by its name", |e, _| e.palette.open())
             .key(NONE, Key::F3)
             .key(Modifiers::COMMAND, Key::P)
             .group(),
         new(ICON_LIST, "Messages", "Everything that was said", |e, _| e.bench.messages.show_log ^= true),
     ]);
+    all.extend(Look::ALL.into_iter().map(|look| {
+        let command = Command::new(Menu::Look, None, look_command(look), look.help(), move |e, _| e.look = look);
+        let command = command.switch(move |e| e.look == look);
+        if matches!(look, Look::Steps | Look::Distance | Look::Nodes) { command.group() } else { command }
+    }));
     all
+}
+
+/// The name of the command that has the picture show `look`.
+fn look_command(look: Look) -> String {
+    format!("Show {}", look.name())
 }

@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::flat::twin::shape_distance;
+use crate::flat::twin::{Joint, shape_distance};
 use crate::flat::{Component, FlatScene, LEAF_ROWS, Row, leaf_data};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{ParamValue, SHAPE_FLOATS, Shape, ShapeKind};
+use crate::scene::{SHAPE_FLOATS, ShapeKind};
 
 /// A leaf, evaluated exactly as the twin does it.
 #[derive(Clone)]
@@ -26,10 +26,10 @@ impl Leaf {
             (DVec3::new(x, y, z), shift)
         });
         let mut parameters = [0.0; SHAPE_FLOATS];
-        for row in 0..kind.rows() {
+        for row in 0..kind.parameter_rows() {
             parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
         }
-        let data = leaf_data(numbers).iter().map(|row| row.map(f64::from)).collect();
+        let data = leaf_data(kind, numbers).iter().map(|row| row.map(f64::from)).collect();
         Self { kind, rows, scale: numbers[0][1].into(), parameters, data }
     }
 
@@ -54,10 +54,12 @@ impl Leaf {
     }
 
     fn ball(&self) -> Ball {
-        let (middle, radius) = self.around().unwrap_or_else(|| {
-            let bounds = shape(self.kind, &self.parameters).bounds();
-            (bounds.center(), bounds.half().length())
+        let around = self.around().or_else(|| {
+            let bounds = self.kind.unpacked(&self.parameters)?.bounds();
+            Some((bounds.center(), bounds.half().length()))
         });
+        // What has data begins them with its ball.
+        let Some((middle, radius)) = around else { return Ball::NONE };
         let local_from_component = DAffine3 {
             matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
             translation: self.rows.map(|(_, shift)| shift).into(),
@@ -66,22 +68,6 @@ impl Leaf {
         let (least, _) = singular_values(&local_from_component.matrix3);
         Ball::new(center, least * self.scale, radius * self.scale)
     }
-}
-
-/// The shape of these packed parameters, see [`Shape::packed`]; one without data.
-fn shape(kind: ShapeKind, packed: &[f64; SHAPE_FLOATS]) -> Shape {
-    let mut shape = kind.default_shape();
-    let mut at = 0;
-    for (index, value) in shape.values().into_iter().enumerate() {
-        let value = match value {
-            ParamValue::Scalar(_) => ParamValue::Scalar(packed[at]),
-            ParamValue::Vector(_) => ParamValue::Vector(DVec3::from_slice(&packed[at..at + 3])),
-            ParamValue::Flag(_) | ParamValue::List(_) => continue,
-        };
-        at += if matches!(value, ParamValue::Scalar(_)) { 1 } else { 3 };
-        shape.set_value(index, value);
-    }
-    shape
 }
 
 /// Around an entry: its field at p is at least `slope` |p − `center`| − `reach`.
@@ -122,8 +108,8 @@ pub(super) struct Entries {
     pub leaves: Vec<Leaf>,
     /// Around leaves and groups.
     pub balls: Vec<Ball>,
-    /// Supports of the joints, in metres.
-    pub supports: Vec<f64>,
+    /// The numbers of the joints.
+    pub joints: Vec<Joint>,
     /// How large coordinates get in the component, in metres, rounded up to a power of two so that
     /// edits rarely change it.
     pub size: f64,
@@ -135,12 +121,16 @@ impl Entries {
         let count = component.count as usize;
         let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
         let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data };
-        let mut entries =
-            Self { leaves: vec![none; count], balls: vec![Ball::NONE; count], supports: vec![0.0; count], size: 0.0 };
+        let mut entries = Self {
+            leaves: vec![none; count],
+            balls: vec![Ball::NONE; count],
+            joints: vec![Joint::blend(0.0); count],
+            size: 0.0,
+        };
         let mut size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
         for (index, node) in flat.nodes[component.first as usize..][..count].iter().enumerate() {
             let numbers = &flat.numbers[node.numbers as usize..];
-            entries.supports[index] = numbers[0][0].into();
+            entries.joints[index] = Joint::read(&numbers[0]);
             if node.is_leaf() {
                 let leaf = Leaf::read(node.code & 0xffff, numbers);
                 size = size.max(leaf.size());

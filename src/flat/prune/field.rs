@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::entry::Leaf;
 use super::token::{Token, TokenOp};
 use super::{Cell, CellTree};
-use crate::flat::twin::op_join;
+use crate::flat::twin::{Joint, op_join};
 use crate::flat::{Component, FlatScene, Join};
 
 /// The field of `component` at `p` by its lists, in metres; `p` is relative to the component's origin.
@@ -26,7 +26,8 @@ pub(super) fn fold(flat: &FlatScene, component: &Component, tokens: &[[u32; 2]],
     let mut aside = Vec::with_capacity(component.stack as usize);
     for token in tokens.iter().map(|words| Token(*words)) {
         let numbers = &flat.numbers[component.numbers as usize + token.row()..];
-        let join = |a, b| op_join(token.join(), a, b, numbers[0][0].into(), token.kernel()).value;
+        let joint = Joint::read(&numbers[0]);
+        let join = |a, b| op_join(token.join(), a, b, &joint, token.kernel()).value;
         match token.op() {
             TokenOp::Leaf => {
                 let distance = Leaf::read(token.shape(), numbers).distance(p);

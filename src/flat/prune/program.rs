@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::entry::Entries;
 use super::token::{Token, TokenOp};
-use crate::flat::twin::op_join;
+use crate::flat::twin::{Joint, op_join};
 use crate::flat::{Component, FlatScene, Join};
 
 /// A token on its way from a cell to its children.
@@ -51,18 +51,25 @@ enum Keep {
 }
 
 impl Keep {
-    /// `far` is how much farther apart than in the hard operator the operands must be.
-    fn of(join: u32, a: f64, b: f64, far: f64) -> Self {
-        const UNION: u32 = Join::Union as u32;
-        const INTERSECTION: u32 = Join::Intersection as u32;
-        let lead = match join {
-            UNION => b - a,
-            INTERSECTION => a - b,
-            _ => a + b,
+    /// `reach` is how much closer to each other than here the operands, or their sizes, may come around the point.
+    fn of(token: Token, entries: &Entries, a: f64, b: f64, reach: f64) -> Self {
+        let Joint { support, size, depth } = entries.joints[token.entry()];
+        // By how much the first, or the second, is alone.
+        let [first, second] = match Join::ALL[token.join() as usize] {
+            Join::First => [f64::NEG_INFINITY, f64::INFINITY],
+            Join::Union => [b - a - support, a - b - support],
+            Join::Intersection => [a - b - support, b - a - support],
+            Join::Difference => [a + b - support, -(a + b) - support],
+            Join::Xor => [b - a.abs() - support, a - b.abs() - support],
+            Join::Groove => [a + b.abs() - size - support, f64::NEG_INFINITY],
+            Join::Tongue => [b.abs() - a - size - support, f64::NEG_INFINITY],
+            Join::Engrave => [a + b.abs() - depth - 2.0 * support, f64::NEG_INFINITY],
+            Join::Paint => [b - support, f64::NEG_INFINITY],
+            Join::Pipe | Join::Morph => [f64::NEG_INFINITY; 2],
         };
         match () {
-            () if lead >= far => Self::First,
-            () if -lead >= far => Self::Second,
+            () if first >= reach => Self::First,
+            () if second >= reach => Self::Second,
             () => Self::Both,
         }
     }
@@ -130,7 +137,7 @@ impl Pruning {
 fn is_out_of_reach(token: Token, entries: &Entries, p: DVec3, value: f64, reach: f64) -> bool {
     const UNION: u32 = Join::Union as u32;
     const DIFFERENCE: u32 = Join::Difference as u32;
-    let far = entries.supports[token.entry()] + reach;
+    let far = entries.joints[token.entry()].support + reach;
     match token.join() {
         UNION => entries.balls[token.entry()].is_beyond(p, value + far),
         DIFFERENCE => entries.balls[token.entry()].is_beyond(p, far - value),
@@ -140,8 +147,7 @@ fn is_out_of_reach(token: Token, entries: &Entries, p: DVec3, value: f64, reach:
 
 /// Joins the leaf `b` to the accumulator `a`, which begins at `start`.
 fn join_leaf(token: Token, entries: &Entries, [a, b]: [f64; 2], reach: f64, start: usize, out: &mut Vec<Step>) -> f64 {
-    let support = entries.supports[token.entry()];
-    match Keep::of(token.join(), a, b, support + reach) {
+    match Keep::of(token, entries, a, b, reach) {
         Keep::First => return a,
         Keep::Second => {
             out.truncate(start);
@@ -154,13 +160,12 @@ fn join_leaf(token: Token, entries: &Entries, [a, b]: [f64; 2], reach: f64, star
         }
         Keep::Both => out.push(Step { token, span: 0 }),
     }
-    op_join(token.join(), a, b, support, token.kernel()).value
+    op_join(token.join(), a, b, &entries.joints[token.entry()], token.kernel()).value
 }
 
 /// Joins the group that ends, whose value is `b`, to what was put aside when it began.
 fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64, out: &mut Vec<Step>) -> f64 {
-    let support = entries.supports[token.entry()];
-    match Keep::of(token.join(), frame.value, b, support + reach) {
+    match Keep::of(token, entries, frame.value, b, reach) {
         Keep::First => {
             out.truncate(frame.begin);
             return frame.value;
@@ -175,16 +180,16 @@ fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64
         }
         Keep::Both => {}
     }
-    // One leaf is all that is left of the group: it can be joined itself, where its own number for the
-    // support is the group's.
+    // One leaf is all that is left of the group: it can be joined itself, where its own numbers for the
+    // joint are the group's.
     match out[frame.begin + 1..] {
-        [leaf] if entries.supports[leaf.token.entry()] == support => {
+        [leaf] if entries.joints[leaf.token.entry()] == entries.joints[token.entry()] => {
             out.truncate(frame.begin);
             out.push(Step { token: leaf.token.joined_as(token), span: 0 });
         }
         _ => close(out, frame.begin, token),
     }
-    op_join(token.join(), frame.value, b, support, token.kernel()).value
+    op_join(token.join(), frame.value, b, &entries.joints[token.entry()], token.kernel()).value
 }
 
 /// Changes the sign of the accumulator that begins at `start`; twice is not at all.

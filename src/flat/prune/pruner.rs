@@ -6,8 +6,9 @@ use std::sync::Arc;
 use super::build::{Build, Grid};
 use super::part::Part;
 use super::{CellTree, is_pruned};
-use crate::flat::{Component, FlatNode, FlatScene, Row, leaf_data};
-use crate::scene::NodeId;
+use crate::flat::twin::Joint;
+use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
+use crate::scene::{NodeId, ShapeKind};
 
 /// The lists of a scene.
 #[derive(Clone, Debug, Default)]
@@ -134,14 +135,17 @@ impl Kept {
                 return Change::All;
             }
             let first = new.numbers as usize;
-            let last = self.nodes.get(index + 1).map_or(self.numbers.len(), |next| next.numbers as usize);
-            // Lists do not depend on a run at all, and of a group's numbers only on its support: bounds
+            // Lists do not depend on a run at all, and of a group's numbers only on its joint: bounds
             // merely tell sooner what the leaves would.
             let same = match () {
                 () if new.is_run() => true,
-                () if new.is_group() => old.code == new.code && self.numbers[first][0] == new_numbers[first][0],
+                () if new.is_group() => {
+                    old.code == new.code && Joint::read(&self.numbers[first]) == Joint::read(&new_numbers[first])
+                }
                 () => {
-                    let data = |numbers: &[Row]| leaf_data(&numbers[first..]).to_vec();
+                    let kind = ShapeKind::ALL[(new.code & 0xffff) as usize];
+                    let last = first + LEAF_ROWS + kind.rows();
+                    let data = |numbers: &[Row]| leaf_data(kind, &numbers[first..]).to_vec();
                     old.code == new.code
                         && self.numbers[first..last] == new_numbers[first..last]
                         && data(&self.numbers) == data(new_numbers)

@@ -42,10 +42,22 @@ impl Random {
         ShapeKind::ALL[self.below(ShapeKind::ALL.len())].default_shape()
     }
 
+    /// A half space or what has no end would leave nothing bounded, or nothing.
+    fn bounded_shape(&mut self) -> Shape {
+        let shape = self.shape();
+        if shape.bounds().is_finite() { shape } else { Shape::Sphere { radius: 0.6 } }
+    }
+
+    fn kernel(&mut self) -> BlendKernel {
+        BlendKernel::ALL[self.below(BlendKernel::ALL.len())]
+    }
+
     fn group(&mut self, most_radius: f64) -> NodeKind {
-        let operator = if self.once_in(2) { Operator::Union } else { Operator::ALL[self.below(3)] };
+        let operator = if self.once_in(2) { Operator::Union } else { Operator::ALL[self.below(Operator::ALL.len())] };
         let radius = if self.once_in(3) { 0.0 } else { self.between(0.0, most_radius) };
-        NodeKind::Group(Group { operator, blend: Blend { kernel: BlendKernel::ALL[self.below(3)], radius } })
+        let blend = Blend { steps: 1 + self.below(5) as u32, ..Blend::new(self.kernel(), radius) };
+        let (width, depth, share) = (self.between(0.0, 0.3), self.between(0.0, 0.2), self.between(0.0, 1.0));
+        NodeKind::Group(Group { width, depth, share, ..Group::new(operator, blend) })
     }
 }
 
@@ -72,8 +84,8 @@ fn object(shape: Shape) -> Node {
 fn random_tree(seed: u64, count: usize) -> Scene {
     let random = &mut Random(seed);
     let mut scene = empty_scene();
-    let blend = Blend { kernel: BlendKernel::ALL[random.below(3)], radius: 0.1 };
-    let root = NodeKind::Group(Group { operator: Operator::Union, blend });
+    let blend = Blend::new(random.kernel(), 0.1);
+    let root = NodeKind::Group(Group::new(Operator::Union, blend));
     let mut groups = vec![add(&mut scene, None, Node::new("", root))];
     add(&mut scene, Some(groups[0]), object(Shape::Sphere { radius: 0.5 }));
     while scene.nodes().len() < count {
@@ -85,18 +97,13 @@ fn random_tree(seed: u64, count: usize) -> Scene {
         let mut node = if random.once_in(5) {
             Node::new("", random.group(0.3)).at(0.5 * place)
         } else {
-            let shape = random.shape();
-            // A half space would leave nothing bounded, or nothing.
-            object(if matches!(shape, Shape::Plane {}) { Shape::Sphere { radius: 0.6 } } else { shape })
-                .at(place)
-                .rotated(turned)
-                .scaled(scale)
+            object(random.bounded_shape()).at(place).rotated(turned).scaled(scale)
         };
         let is_group = !matches!(node.kind, NodeKind::Object(_));
         node.negative = random.once_in(5);
         let id = add(&mut scene, Some(parent), node);
         if is_group {
-            add(&mut scene, Some(id), object(random.shape()).at(place).scaled(DVec3::splat(0.8)));
+            add(&mut scene, Some(id), object(random.bounded_shape()).at(place).scaled(DVec3::splat(0.8)));
             groups.push(id);
         }
     }
@@ -107,8 +114,8 @@ fn random_tree(seed: u64, count: usize) -> Scene {
 fn crowd(seed: u64, count: usize, spread: f64, radius: f64) -> Scene {
     let random = &mut Random(seed);
     let mut scene = empty_scene();
-    let blend = Blend { kernel: BlendKernel::Circular, radius };
-    let root = add(&mut scene, None, Node::new("", NodeKind::Group(Group { operator: Operator::Union, blend })));
+    let blend = Blend::new(BlendKernel::Circular, radius);
+    let root = add(&mut scene, None, Node::new("", NodeKind::Group(Group::new(Operator::Union, blend))));
     for _ in 0..count {
         let place = random.point(DVec3::splat(-0.5 * spread), DVec3::splat(0.5 * spread));
         add(&mut scene, Some(root), object(Shape::Sphere { radius: random.between(0.1, 0.2) }).at(place));
@@ -256,8 +263,8 @@ fn what_an_edit_reached_is_made_anew_and_all_else_is_as_in_a_fresh_tree() {
 fn an_unchanged_component_keeps_its_tree() {
     let mut scene = crowd(1, 60, 2.0, 0.1);
     // Far from the first, so that neither is moved by what happens to the other.
-    let blend = Blend { kernel: BlendKernel::Cubic, radius: 0.1 };
-    let other = Node::new("", NodeKind::Group(Group { operator: Operator::Union, blend })).at(DVec3::splat(9.0));
+    let blend = Blend::new(BlendKernel::Cubic, 0.1);
+    let other = Node::new("", NodeKind::Group(Group::new(Operator::Union, blend))).at(DVec3::splat(9.0));
     let other = add(&mut scene, None, other);
     for i in 0..40 {
         add(&mut scene, Some(other), object(Shape::Sphere { radius: 0.2 }).at(DVec3::X * 0.1 * f64::from(i)));

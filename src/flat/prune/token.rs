@@ -1,6 +1,7 @@
 //! The words of a list. An interpreter holds an accumulator and walks them in order.
 
 use crate::flat::{FlatNode, Join};
+use crate::scene::BlendKernel;
 
 /// What a token tells the interpreter to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,10 +19,10 @@ pub enum TokenOp {
 
 /// A token: two words.
 ///
-/// First word: bits 0–7 the shape's code (of no meaning unless a leaf), 8–9 the [`TokenOp`], 10–11 the [`Join`]
-/// (the group's for both of its ends), 12–13 the blend kernel, 14–31 the entry, counted from the
+/// First word: bits 0–7 the shape's code (of no meaning unless a leaf), 8–9 the [`TokenOp`], 10–13 the [`Join`]
+/// (the group's for both of its ends), 14–16 the blend kernel, 17–31 the entry, counted from the
 /// component's first. Second word: the entry's first row, counted from the component's first; the
-/// support of the joint stands there.
+/// numbers of the joint stand there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token(pub [u32; 2]);
 
@@ -30,8 +31,11 @@ pub const MAX_PRUNED_ENTRIES: u32 = 1 << (32 - ENTRY_SHIFT);
 
 const OP_SHIFT: u32 = 8;
 const JOIN_SHIFT: u32 = 10;
-const KERNEL_SHIFT: u32 = 12;
-const ENTRY_SHIFT: u32 = 14;
+const KERNEL_SHIFT: u32 = 14;
+const ENTRY_SHIFT: u32 = 17;
+const JOIN_MASK: u32 = (1 << (KERNEL_SHIFT - JOIN_SHIFT)) - 1;
+const KERNEL_MASK: u32 = (1 << (ENTRY_SHIFT - KERNEL_SHIFT)) - 1;
+const _: () = assert!(Join::ALL.len() <= JOIN_MASK as usize + 1 && BlendKernel::ALL.len() <= KERNEL_MASK as usize + 1);
 
 impl Token {
     /// The token of `node`, which is the component's entry `entry` with its first row at `row`.
@@ -48,12 +52,12 @@ impl Token {
     /// The same leaf as the start of an accumulator.
     pub(super) fn as_first(self) -> Self {
         const _: () = assert!(Join::First as u32 == 0);
-        Self([self.0[0] & !(3 << JOIN_SHIFT), self.0[1]])
+        Self([self.0[0] & !(JOIN_MASK << JOIN_SHIFT), self.0[1]])
     }
 
     /// The same leaf, joined as `other` is.
     pub(super) fn joined_as(self, other: Self) -> Self {
-        let joint = (3 << JOIN_SHIFT) | (3 << KERNEL_SHIFT);
+        let joint = (JOIN_MASK << JOIN_SHIFT) | (KERNEL_MASK << KERNEL_SHIFT);
         Self([(self.0[0] & !joint) | (other.0[0] & joint), self.0[1]])
     }
 
@@ -74,12 +78,12 @@ impl Token {
 
     /// The joint's [`Join`] as a number.
     pub fn join(self) -> u32 {
-        (self.0[0] >> JOIN_SHIFT) & 3
+        (self.0[0] >> JOIN_SHIFT) & JOIN_MASK
     }
 
     /// The joint's kernel, as a number of [`crate::scene::BlendKernel::ALL`].
     pub fn kernel(self) -> u32 {
-        (self.0[0] >> KERNEL_SHIFT) & 3
+        (self.0[0] >> KERNEL_SHIFT) & KERNEL_MASK
     }
 
     /// The entry, counted from the component's first.

@@ -4,19 +4,20 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Dual, Joined, Real, op_join, shape_distance};
-use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
-use crate::scene::ShapeKind;
+use super::modifier::*;
+use super::{Dual, Joined, Joint, Real, op_join, shape_distance};
+use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// The field at `p`, in metres; `p` is relative to the component's origin.
 pub fn field(flat: &FlatScene, component: &Component, p: DVec3) -> f64 {
-    fold(flat, entries(component), p)
+    fold(flat, entries(component), at(p))
 }
 
 /// The field and its gradient at `p`. The gradient is exact where the field is smooth, one of the
 /// one-sided ones on a ridge, and may vanish on an axis or at a centre.
 pub fn gradient(flat: &FlatScene, component: &Component, p: DVec3) -> (f64, DVec3) {
-    let Dual { v, d } = fold(flat, entries(component), p);
+    let Dual { v, d } = fold(flat, entries(component), at(p));
     (v, d)
 }
 
@@ -35,7 +36,7 @@ pub struct SurfacePoint {
 
 /// The field at `p` with everything that the surface there needs.
 pub fn surface(flat: &FlatScene, component: &Component, p: DVec3) -> SurfacePoint {
-    let Surface { distance, leaf, material } = fold(flat, entries(component), p);
+    let Surface { distance, leaf, material } = fold(flat, entries(component), at(p));
     SurfacePoint { distance: distance.v, gradient: distance.d, leaf, material }
 }
 
@@ -80,11 +81,18 @@ fn entries(component: &Component) -> Range<usize> {
     component.first as usize..(component.first + component.count) as usize
 }
 
+/// The point that derivatives are taken for.
+fn at<T: Real>(p: DVec3) -> [T; 3] {
+    [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| T::coordinate(axis, 0.0, p))
+}
+
 /// What the fold carries along: a number, or more.
 trait Operand: Copy {
     type Number: Real;
     fn leaf(flat: &FlatScene, index: usize, distance: Self::Number) -> Self;
     fn distance(&self) -> Self::Number;
+    /// The same with another distance.
+    fn with_distance(self, distance: Self::Number) -> Self;
     /// `self` and `operand` joined, with the result at hand.
     fn joined(self, operand: Self, result: Joined<Self::Number>) -> Self;
 }
@@ -96,6 +104,9 @@ impl<T: Real> Operand for T {
     }
     fn distance(&self) -> T {
         *self
+    }
+    fn with_distance(self, distance: T) -> Self {
+        distance
     }
     fn joined(self, _: Self, result: Joined<T>) -> Self {
         result.value
@@ -118,6 +129,9 @@ impl Operand for Surface {
     fn distance(&self) -> Dual {
         self.distance
     }
+    fn with_distance(self, distance: Dual) -> Self {
+        Self { distance, ..self }
+    }
     fn joined(self, operand: Self, result: Joined<Dual>) -> Self {
         Self {
             distance: result.value,
@@ -129,7 +143,7 @@ impl Operand for Surface {
 
 /// Folds the siblings in `range`. Recursion is as deep as groups are nested after flattening, at most
 /// [`crate::flat::MAX_STACK`].
-fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: DVec3) -> O {
+fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: [O::Number; 3]) -> O {
     let mut so_far: O = operand(flat, range.start, p);
     let mut at = range.start + flat.nodes[range.start].extent as usize;
     while at < range.end {
@@ -140,33 +154,71 @@ fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: DVec3) -> O {
             continue;
         }
         let next: O = operand(flat, at, p);
-        let support = f64::from(flat.numbers[node.numbers as usize][0]);
-        let result = op_join(node.join(), so_far.distance(), next.distance(), support, node.kernel());
+        let joint = Joint::read(&flat.numbers[node.numbers as usize]);
+        let result = op_join(node.join(), so_far.distance(), next.distance(), &joint, node.kernel());
         so_far = so_far.joined(next, result);
         at += node.extent as usize;
     }
     so_far
 }
 
-fn operand<O: Operand>(flat: &FlatScene, index: usize, p: DVec3) -> O {
+fn operand<O: Operand>(flat: &FlatScene, index: usize, p: [O::Number; 3]) -> O {
     let node = &flat.nodes[index];
-    if node.is_group() {
-        fold(flat, index + 1..index + node.extent as usize, p)
-    } else {
-        O::leaf(flat, index, leaf_distance(node, &flat.numbers[node.numbers as usize..], p))
+    let numbers = &flat.numbers[node.numbers as usize..];
+    let content = index + 1..index + node.extent as usize;
+    match node.modifier() {
+        Some(kind) => modified(flat, content, kind, numbers, p),
+        None if node.is_group() => fold(flat, content, p),
+        None => O::leaf(flat, index, leaf_distance(node, numbers, p)),
     }
 }
 
-fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], p: DVec3) -> T {
+/// The content of a modifier, in as many copies as it evaluates.
+fn modified<O: Operand>(
+    flat: &FlatScene,
+    content: Range<usize>,
+    kind: ModifierKind,
+    numbers: &[Row],
+    p: [O::Number; 3],
+) -> O {
+    let local = placed(&numbers[3..6], p);
+    let rows = &numbers[MODIFIER_ROWS..];
+    let start = modifier_start(kind, local, rows);
+    let mut nearest: Option<O> = None;
+    for k in 0..modifier_count(kind, rows) {
+        if !modifier_exists(kind, local, k, rows) {
+            continue;
+        }
+        let copy: O = fold(flat, content.clone(), modifier_point(kind, local, k, rows));
+        let copy = copy.with_distance(copy.distance() * modifier_scale(kind, k, rows));
+        let is_nearer = |other: O| copy.distance().value() < other.distance().value();
+        if nearest.is_none_or(is_nearer) {
+            nearest = Some(copy);
+        }
+    }
+    // Where no copy is near, something must still say what the surface would be.
+    let (carrier, found) = match nearest {
+        Some(copy) => (copy, start.min(copy.distance())),
+        None => (fold(flat, content, modifier_point(kind, local, 0, rows)), start),
+    };
+    carrier.with_distance(modifier_value(kind, found, local, rows) * f64::from(numbers[1][3]))
+}
+
+/// The point mapped by three rows.
+fn placed<T: Real>(rows: &[Row], p: [T; 3]) -> [T; 3] {
+    std::array::from_fn(|i| {
+        let [x, y, z, shift] = rows[i].map(f64::from);
+        p[0] * x + p[1] * y + p[2] * z + shift
+    })
+}
+
+fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], p: [T; 3]) -> T {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
-    let local = [1, 2, 3].map(|i| {
-        let [x, y, z, shift] = numbers[i].map(f64::from);
-        T::coordinate(DVec3::new(x, y, z), shift, p)
-    });
+    let local = placed(&numbers[1..4], p);
     let mut parameters = [0.0; 8];
-    for row in 0..kind.rows() {
+    for row in 0..kind.parameter_rows() {
         parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
     }
-    let data = leaf_data(numbers);
+    let data = leaf_data(kind, numbers);
     shape_distance(kind, local, &parameters, &|row| data[row].map(f64::from)) * f64::from(numbers[0][1])
 }

@@ -37,7 +37,7 @@ pub fn sdf_outline<T: Real>(p: [T; 2], groups: usize, any: bool, rows: Data<'_>)
         }
     }
     let place = Place::new(p, rows(nearest), rows(nearest + 1));
-    let d = if place.is_between() { place.aside().abs() } else { length2(place.from_end()) };
+    let d = if place.is_between() { place.aside().abs() } else { length2(place.way_from_end()) };
     let inside = if any { turns != 0 } else { turns % 2 != 0 };
     if inside { -d } else { d }
 }
@@ -80,14 +80,14 @@ impl<T: Real> Place<T> {
     }
 
     /// From the nearer end.
-    fn from_end(&self) -> [T; 2] {
+    fn way_from_end(&self) -> [T; 2] {
         let lambda = self.foot.clamp(-self.reach, self.reach);
         let share = 2.0 * lambda / (1.0 + self.bend * self.bend * lambda * lambda);
         [self.x - share, self.y - share * self.bend * lambda]
     }
 
     fn distance(&self) -> f64 {
-        if self.is_between() { self.aside().value().abs() } else { length2(self.from_end()).value() }
+        if self.is_between() { self.aside().value().abs() } else { length2(self.way_from_end()).value() }
     }
 
     /// Whether a point between the piece's heights is left of it. What bends to the left is the right side of a circle:

@@ -25,6 +25,12 @@ pub trait Real:
     fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self;
     /// The square root; its derivative at 0 is taken to be 0.
     fn sqrt(self) -> Self;
+    /// The sine.
+    fn sin(self) -> Self;
+    /// The cosine.
+    fn cos(self) -> Self;
+    /// The angle of the vector (`x`, `self`) from the x axis; its derivative at 0 is taken to be 0.
+    fn atan2(self, x: Self) -> Self;
 
     /// The absolute value.
     fn abs(self) -> Self {
@@ -65,6 +71,15 @@ impl Real for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
+    fn sin(self) -> Self {
+        f64::sin(self)
+    }
+    fn cos(self) -> Self {
+        f64::cos(self)
+    }
+    fn atan2(self, x: Self) -> Self {
+        f64::atan2(self, x)
+    }
 }
 
 /// A value with its gradient (forward differentiation).
@@ -89,6 +104,17 @@ impl Real for Dual {
     fn sqrt(self) -> Self {
         let root = self.v.sqrt();
         Self { v: root, d: if root > 0.0 { self.d / (2.0 * root) } else { DVec3::ZERO } }
+    }
+    fn sin(self) -> Self {
+        Self { v: self.v.sin(), d: self.d * self.v.cos() }
+    }
+    fn cos(self) -> Self {
+        Self { v: self.v.cos(), d: self.d * -self.v.sin() }
+    }
+    fn atan2(self, x: Self) -> Self {
+        let square = self.v * self.v + x.v * x.v;
+        let d = if square > 0.0 { (self.d * x.v - x.d * self.v) / square } else { DVec3::ZERO };
+        Self { v: self.v.atan2(x.v), d }
     }
 }
 

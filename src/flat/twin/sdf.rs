@@ -2,12 +2,29 @@
 //! point and the packed parameters ([`crate::scene::Shape::packed`]), and is finite for every finite
 //! point and every parameter within its hard limits.
 
+mod ball;
+mod cone;
+mod fractal;
+mod planar;
+mod prism;
+mod ring;
+mod sheet;
+
+pub use ball::{sdf_cut_sphere, sdf_death_star, sdf_hollow_cut_sphere, sdf_solid_angle, sdf_vesica};
+pub use cone::{sdf_cone, sdf_infinite_cylinder, sdf_pyramid};
+pub use fractal::{sdf_julia, sdf_kleinian, sdf_menger_sponge};
+pub use prism::{sdf_prism, sdf_rhombus, sdf_star, sdf_triangular_prism};
+pub use ring::{sdf_capped_torus, sdf_link, sdf_polygon_ring};
+pub use sheet::{sdf_quad, sdf_triangle};
+
 use super::Real;
 use super::ellipsoid::sdf_ellipsoid;
 use super::outline::{sdf_extrusion, sdf_revolution};
 use super::relief::{sdf_ocean, sdf_terrain};
 use super::tube::sdf_tube;
 use crate::scene::{ShapeKind, for_each_shape};
+use planar::{clamp, from_segment, trapezoid};
+pub(super) use planar::{extruded, length2, length3};
 
 /// The data of a shape: the row at an index.
 pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
@@ -89,25 +106,8 @@ pub fn sdf_cylinder<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 }
 
 /// A cone along the Y axis, cut flat at both ends.
-///
-/// In the half plane through the axis the nearest point lies on the nearer cap or on the slanted side
-/// (idea: Quilez, "distance functions").
 pub fn sdf_capped_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
-    let (bottom, top, half_height) = (q[0], q[1], 0.5 * q[2]);
-    let at = [length2([p[0], p[2]]), p[1]];
-    let cap_radius = if at[1].value() < 0.0 { bottom } else { top };
-    let cap = [(at[0] - cap_radius).positive(), at[1].abs() - half_height];
-    let slope = [bottom - top, -q[2]];
-    let from_top = [at[0] - top, at[1] - half_height];
-    let side = from_segment(from_top, slope);
-    let inside = side[0].value() < 0.0 && cap[1].value() < 0.0;
-    // Within the cap's radius the way to it is straight: its length keeps a derivative at 0.
-    let to_cap = if cap[0].value() > 0.0 { length2(cap) } else { cap[1].abs() };
-    let to_side = length2(side);
-    if to_cap.value() <= to_side.value() {
-        return if inside { -to_cap } else { to_cap };
-    }
-    if inside { -to_side } else { to_side }
+    trapezoid([length2([p[0], p[2]]), p[1]], q[0], q[1], q[2])
 }
 
 /// The hull of two balls on the Y axis.
@@ -177,36 +177,4 @@ pub fn sdf_octahedron<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     };
     let t = clamp((edge[1] - edge[0] + radius) * 0.5_f64, 0.0, radius);
     length3([least, edge[0] - radius + t, edge[1] - t])
-}
-
-/// Distance to a prism or a body of revolution, from the distances to its outline and to its caps.
-pub(super) fn extruded<T: Real>(d: [T; 2]) -> T {
-    let most = d[0].max(d[1]);
-    if most.value() > 0.0 { length2(d.map(T::positive)) } else { most }
-}
-
-/// From the nearest point of a segment to a point given from the segment's start.
-fn from_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> [T; N] {
-    let square: f64 = axis.iter().map(|a| a * a).sum();
-    let dot = from_start.iter().zip(axis).fold(T::constant(0.0), |sum, (p, a)| sum + *p * a);
-    let t = clamp(dot * square.max(1e-30).recip(), 0.0, 1.0);
-    std::array::from_fn(|i| from_start[i] - t * axis[i])
-}
-
-fn clamp<T: Real>(v: T, low: f64, high: f64) -> T {
-    if v.value() < low {
-        T::constant(low)
-    } else if v.value() > high {
-        T::constant(high)
-    } else {
-        v
-    }
-}
-
-pub(super) fn length2<T: Real>(v: [T; 2]) -> T {
-    (v[0].squared() + v[1].squared()).sqrt()
-}
-
-pub(super) fn length3<T: Real>(v: [T; 3]) -> T {
-    (v[0].squared() + v[1].squared() + v[2].squared()).sqrt()
 }

@@ -4,12 +4,14 @@
 //! [`Structure`] of one. Both call the same functions of `shaders/sdf/`.
 
 mod dual;
+mod gradients;
+mod modifiers;
 mod shares;
 mod source;
 mod specialise;
 mod structure;
 
-pub use source::{FILES, Features, ShaderError, plain_source, source};
+pub use source::{FILES, Features, Further, ShaderError, plain_source, source};
 pub use structure::{MAX_KERNEL_ROWS, Structure};
 
 /// A way to evaluate components; decides the source of the kernels.
@@ -24,6 +26,16 @@ pub enum Evaluator {
     /// Straight-line code for one component, with its numbers (bits of f32) written into it: what the benches
     /// compare with. Every changed value would compile another one.
     Generated(Structure, Vec<[u32; 4]>),
+}
+
+impl Evaluator {
+    /// What its interpreter's parts must be able to evaluate.
+    fn features(&self) -> Features {
+        match self {
+            Self::Interpreted(features) | Self::Pruned(features) => features.clone(),
+            Self::Specialised(structure) | Self::Generated(structure, _) => structure.features(),
+        }
+    }
 }
 
 /// How code leaves out what cannot matter.

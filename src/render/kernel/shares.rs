@@ -2,6 +2,9 @@
 //! of every joint in `w…`; gradient and material are the sums over the leaves of what they are there, each
 //! times the product of the weights on its way (reverse mode: a joint's weight is its derivative). So only
 //! leaves that the surface really follows are looked at, most often one.
+//!
+//! With operators beyond the first three a joint has two derivatives of any sign, and a share of the material that is
+//! neither. `w…` holds them all then, and `wear…` is carried along beside `share…`.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -18,11 +21,15 @@ pub fn shares(structure: &Structure, skipping: Skipping) -> String {
         *row += entry.rows();
         Some(first)
     });
-    let mut writer = Shares { structure, rows: rows.collect(), skipping, out: String::new() };
+    let general = structure.has_further_joins();
+    let mut writer = Shares { structure, rows: rows.collect(), skipping, general, out: String::new() };
     writer.out.push_str(
         "    var gradient = vec3f(0.0);\n    var diffuse = vec4f(0.0);\n    var emission = vec4f(0.0);\n    \
          var rest0 = 1.0;\n",
     );
+    if general {
+        writer.line("    var worn0 = 1.0;");
+    }
     writer.siblings(0..structure.entries.len(), 0, 1.0);
     writer.out
 }
@@ -31,6 +38,7 @@ struct Shares<'a> {
     structure: &'a Structure,
     rows: Vec<usize>,
     skipping: Skipping,
+    general: bool,
     out: String,
 }
 
@@ -52,6 +60,11 @@ impl Shares<'_> {
         }
         for at in operands.into_iter().rev() {
             let entry = self.structure.entries[at];
+            if self.general {
+                self.general_share(at, &entry, level);
+                self.operand(at, &entry, level, 1.0);
+                continue;
+            }
             let share = if entry.join == Join::First { format!("rest{level}") } else { format!("rest{level} * w{at}") };
             self.line(&format!("    let share{at} = {share};"));
             if entry.join != Join::First {
@@ -62,11 +75,24 @@ impl Shares<'_> {
         }
     }
 
+    /// What an operand has of the gradient, and what of the material.
+    fn general_share(&mut self, at: usize, entry: &Entry, level: usize) {
+        if entry.join == Join::First {
+            self.line(&format!("    let share{at} = rest{level};\n    let wear{at} = worn{level};"));
+            return;
+        }
+        self.line(&format!("    let share{at} = rest{level} * w{at}.z;\n    let wear{at} = worn{level} * w{at}.w;"));
+        self.line(&format!("    rest{level} *= w{at}.y;\n    worn{level} -= wear{at};"));
+    }
+
     /// One operand, left out where it has no share.
     fn operand(&mut self, at: usize, entry: &Entry, level: usize, sign: f32) {
+        let wear = if self.general { "wear" } else { "share" };
+        let has = format!("share{at} {} 0.0", if self.general { "!=" } else { ">" });
+        let has = if self.general { format!("{has} || wear{at} > 0.0") } else { has };
         match self.skipping {
-            Skipping::Branches | Skipping::Never => self.line(&format!("    if share{at} > 0.0 {{")),
-            Skipping::Loops => self.line(&format!("    var has{at} = share{at} > 0.0;\n    while has{at} {{")),
+            Skipping::Branches | Skipping::Never => self.line(&format!("    if {has} {{")),
+            Skipping::Loops => self.line(&format!("    var has{at} = {has};\n    while has{at} {{")),
         }
         if let EntryKind::Leaf(shape) = entry.kind {
             let row = self.rows[at];
@@ -75,16 +101,19 @@ impl Shares<'_> {
             self.line(&format!(
                 "    gradient += share{at} * {factor} * {moved}(dual_{}({}), q{}, q{}, q{});",
                 shape.function(),
-                arguments(entry, shape, row),
+                arguments("p", entry, shape, row),
                 row + 1,
                 row + 2,
                 row + 3
             ));
             self.line(&format!("    let material{at} = materials[nodes[surface_first + {at}u].material];"));
-            self.line(&format!("    diffuse += share{at} * vec4f(material{at}.albedo, material{at}.specular);"));
-            self.line(&format!("    emission += share{at} * vec4f(material{at}.emission, material{at}.shininess);"));
+            self.line(&format!("    diffuse += {wear}{at} * vec4f(material{at}.albedo, material{at}.specular);"));
+            self.line(&format!("    emission += {wear}{at} * vec4f(material{at}.emission, material{at}.shininess);"));
         } else {
             self.line(&format!("    var rest{} = share{at};", level + 1));
+            if self.general {
+                self.line(&format!("    var worn{} = wear{at};", level + 1));
+            }
             self.siblings(at + 1..at + entry.extent as usize, level + 1, sign);
         }
         if self.skipping == Skipping::Loops {

@@ -1,16 +1,17 @@
 //! WGSL source of each pass: includes resolved, and what depends on the evaluator generated.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
-use std::sync::{LazyLock, Mutex, PoisonError};
 
 use thiserror::Error;
 
-use super::dual::{DUAL_PRELUDE, dual};
+use super::dual::DUAL_PRELUDE;
+use super::gradients::gradient_wgsl;
+use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::specialise::{Fold, specialise};
 use super::{Evaluator, Options, Skipping};
-use crate::flat::{FlatScene, MAX_STACK};
-use crate::scene::ShapeKind;
+use crate::flat::{FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS, MAX_STACK, data_row, modifier_rows};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// Every file of `shaders/`, by its path there.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
@@ -21,37 +22,86 @@ pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.r
 pub struct Features {
     /// Shapes in use.
     pub shapes: BTreeSet<ShapeKind>,
+    /// Modifiers in use.
+    pub modifiers: BTreeSet<ModifierKind>,
     /// Accumulators that can be put aside: a power of two.
     pub stack: u32,
+    /// Operators and blend kernels beyond the first three.
+    pub further: Further,
+}
+
+/// Which of the operators a kernel holds: those beyond the first three are left out where nothing needs them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Further {
+    /// Whether there are operators beyond union, intersection and difference.
+    pub joins: bool,
+    /// Whether there are blends beyond circular, quadratic and cubic ones.
+    pub kernels: bool,
+}
+
+impl Further {
+    /// What these entries need.
+    fn of(nodes: &[FlatNode]) -> Self {
+        Self {
+            joins: nodes.iter().any(|node| Join::ALL[node.join() as usize].is_further()),
+            kernels: nodes.iter().any(|node| node.kernel() >= FIRST_FURTHER_KERNEL),
+        }
+    }
 }
 
 impl Features {
     /// What `flat` uses.
     pub fn of(flat: &FlatScene) -> Self {
         let mut used = vec![false; ShapeKind::ALL.len()];
+        let mut modifiers = BTreeSet::new();
         for node in &flat.nodes {
-            if node.is_leaf() {
+            if let Some(kind) = node.modifier() {
+                modifiers.insert(kind);
+            } else if node.is_leaf() {
                 used[(node.code & 0xffff) as usize] = true;
             }
         }
         let shapes = ShapeKind::ALL.iter().filter(|k| used[**k as usize]).copied().collect();
         let stack = flat.components.iter().map(|c| c.stack).max().unwrap_or(0);
-        Self { shapes, stack: stack.max(1).next_power_of_two() }
+        Self { shapes, modifiers, stack: stack.max(1).next_power_of_two(), further: Further::of(&flat.nodes) }
+    }
+
+    /// Nothing.
+    pub fn none() -> Self {
+        Self { shapes: BTreeSet::new(), modifiers: BTreeSet::new(), stack: 1, further: Further::default() }
     }
 
     /// Everything there is.
     pub fn all() -> Self {
-        Self { shapes: ShapeKind::ALL.iter().copied().collect(), stack: MAX_STACK }
+        Self {
+            shapes: ShapeKind::ALL.iter().copied().collect(),
+            modifiers: ModifierKind::ALL.iter().copied().filter(|kind| modifier_rows(*kind) > 0).collect(),
+            stack: MAX_STACK,
+            further: Further { joins: true, kernels: true },
+        }
     }
 
     /// Whether a kernel for `self` also serves `other`.
     pub fn covers(&self, other: &Self) -> bool {
-        self.stack >= other.stack && self.shapes.is_superset(&other.shapes)
+        let has = |a: bool, b: bool| a || !b;
+        self.stack >= other.stack
+            && self.shapes.is_superset(&other.shapes)
+            && self.modifiers.is_superset(&other.modifiers)
+            && has(self.further.joins, other.further.joins)
+            && has(self.further.kernels, other.further.kernels)
     }
 
     /// What serves both.
     pub fn union(&self, other: &Self) -> Self {
-        Self { shapes: self.shapes.union(&other.shapes).copied().collect(), stack: self.stack.max(other.stack) }
+        Self {
+            shapes: self.shapes.union(&other.shapes).copied().collect(),
+            modifiers: self.modifiers.union(&other.modifiers).copied().collect(),
+            stack: self.stack.max(other.stack),
+            further: Further {
+                joins: self.further.joins || other.further.joins,
+                kernels: self.further.kernels || other.further.kernels,
+            },
+        }
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
@@ -89,10 +139,12 @@ impl Features {
     }
 }
 
-/// The arguments of a shape's function, its parameters read from their rows.
+/// The arguments of a shape's function, its parameters read from their rows, and where its data begin.
 fn read_rows(kind: ShapeKind) -> String {
-    let row = |i: usize| if i < kind.rows() { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
-    let data = if kind.has_data() { ", row - LEAF_ROWS + u32(scene_row(row - LEAF_ROWS).w)" } else { "" };
+    let parameters = kind.parameter_rows();
+    let row = |i: usize| if i < parameters { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
+    let data = |at: usize| format!(", row + {at}u + u32(scene_row(row + {at}u).y)");
+    let data = data_row(kind).map_or(String::new(), |at| data(at - LEAF_ROWS));
     format!("p, {}, {}{data}", row(0), row(1))
 }
 
@@ -119,47 +171,20 @@ pub(super) fn gradient_include(kind: ShapeKind) -> String {
     format!("#include \"generated/dual/{}.wgsl\"", kind.function())
 }
 
-/// A shape's function with its gradient; derived once, however many kernels hold it.
-fn gradient_wgsl(function: &str) -> Option<String> {
-    static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
-    let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(text) = derived.get(function) {
-        return Some(text.clone());
-    }
-    let text = plain_source(&format!("sdf/{}.wgsl", function.strip_prefix("sdf_")?)).ok()?;
-    // A shape without a derivative has no kernel; a test derives every one.
-    let dual = own_twins(&dual(&with_rows(&text), function).ok()?, function);
-    derived.insert(function.to_owned(), dual.clone());
-    Some(dual)
-}
-
-/// The twins with names of their own: shapes may share functions, and a twin depends on what its shape hands over.
-fn own_twins(text: &str, function: &str) -> String {
-    let entry = format!("dual_{function}");
-    let names = text.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).filter(|n| *n != entry);
-    names.fold(text.to_owned(), |out, name| out.replace(&format!("{name}("), &format!("{name}_of_{function}(")))
-}
-
-/// A shape's source with something that stands for the data it reads; their derivative is zero.
-fn with_rows(text: &str) -> String {
-    if !text.contains("scene_row(") {
-        return text.to_owned();
-    }
-    format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
-}
-
 /// The whole source of the shader `entry`, each file included once, before its first user.
 pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
-    let fineness = options.quality.fineness();
+    let (fineness, further) = (options.quality.fineness(), evaluator.features().further);
     write!(
         resolver.out,
         "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst FINENESS: f32 = \
-         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\n",
+         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
         options.counting,
         options.cones,
         options.skipping != Skipping::Never,
-        fineness.sqrt()
+        fineness.sqrt(),
+        further.joins,
+        further.kernels
     )
     .expect("strings take all");
     resolver.include(entry, entry)?;
@@ -168,7 +193,7 @@ pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<St
 
 /// The same for a shader that evaluates no field.
 pub fn plain_source(entry: &str) -> Result<String, ShaderError> {
-    let nothing = Evaluator::Interpreted(Features { shapes: BTreeSet::new(), stack: 1 });
+    let nothing = Evaluator::Interpreted(Features::none());
     source(entry, &nothing, Options::default())
 }
 
@@ -184,7 +209,12 @@ impl Resolver<'_> {
         if !self.seen.insert(name.to_owned()) {
             return Ok(());
         }
-        let generated = self.generated(name);
+        let mut generated = self.generated(name);
+        if let Some(text) = generated.as_mut().filter(|_| name.starts_with("generated/dual/")) {
+            // Twins of functions that several shapes call stand in each of their texts, and are written once.
+            let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));
+            *text = fresh.collect::<Vec<_>>().join("\n\n");
+        }
         let text = match &generated {
             Some(text) => text,
             None => {
@@ -192,16 +222,29 @@ impl Resolver<'_> {
                 FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
             }
         };
+        // What stands between `#if MODIFIERS` and `#end` is for scenes that have some.
+        let has_modifiers = !self.evaluator.features().modifiers.is_empty();
+        let mut is_wanted = true;
         for line in text.lines() {
-            match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
-                Some(included) => self.include(included, name)?,
-                None => {
-                    self.out.push_str(line);
-                    self.out.push('\n');
-                }
+            match line {
+                "#if MODIFIERS" => is_wanted = has_modifiers,
+                "#end" => is_wanted = true,
+                _ if is_wanted => self.line(line, name)?,
+                _ => {}
             }
         }
         Ok(())
+    }
+
+    fn line(&mut self, line: &str, name: &str) -> Result<(), ShaderError> {
+        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+            Some(included) => self.include(included, name),
+            None => {
+                self.out.push_str(line);
+                self.out.push('\n');
+                Ok(())
+            }
+        }
     }
 
     /// Files that do not exist: the evaluator decides what is in them.
@@ -215,11 +258,18 @@ impl Resolver<'_> {
             ("generated/value.wgsl", Pruned(_)) => include("pruned_value"),
             ("generated/surface.wgsl", Pruned(_)) => include("pruned_surface"),
             ("generated/value.wgsl", Specialised(structure)) => special(structure, None, Fold::Value),
+            ("generated/surface.wgsl", Specialised(s) | Generated(s, _)) if s.is_modified() => {
+                include("interpreted_surface")
+            }
             ("generated/surface.wgsl", Specialised(structure)) => special(structure, None, Fold::Surface),
             ("generated/value.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Value),
             ("generated/surface.wgsl", Generated(structure, rows)) => special(structure, Some(rows), Fold::Surface),
-            ("generated/shapes.wgsl", Interpreted(f) | Pruned(f)) => Some(f.shapes_wgsl()),
-            ("generated/gradients.wgsl", Interpreted(f) | Pruned(f)) => Some(f.gradients_wgsl()),
+            ("generated/shapes.wgsl", _) => Some(self.evaluator.features().shapes_wgsl()),
+            ("generated/gradients.wgsl", _) => Some(self.evaluator.features().gradients_wgsl()),
+            ("generated/modifiers.wgsl", _) => Some(modifiers_wgsl(&self.evaluator.features().modifiers)),
+            ("generated/modifier_gradients.wgsl", _) => {
+                Some(modifier_gradients_wgsl(&self.evaluator.features().modifiers))
+            }
             ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
             _ => {
                 let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;
@@ -244,7 +294,7 @@ mod tests {
 
     #[test]
     fn a_kernel_holds_only_the_shapes_in_use() {
-        let features = Features { shapes: [ShapeKind::Sphere].into(), stack: 1 };
+        let features = Features { shapes: [ShapeKind::Sphere].into(), ..Features::none() };
         let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
         assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
     }

@@ -1,10 +1,13 @@
 //! Straight-line WGSL for a structure. Emits calls only: no formula of a distance stands here.
 
+use std::collections::BTreeSet;
+
+use super::modifiers::{file, has_point, has_value, modifier_include};
 use super::shares::shares;
 use super::structure::{Entry, EntryKind, Structure};
 use super::{Options, Skipping};
-use crate::flat::{Join, LEAF_ROWS};
-use crate::scene::ShapeKind;
+use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, data_row, is_copying, modifier_rows};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -20,7 +23,7 @@ const LEAST_SKIPPED: u32 = 4;
 
 /// The generated file for one fold over `structure`; with `baked` rows they are written into it, as bits.
 pub fn specialise(structure: &Structure, baked: Option<&Vec<[u32; 4]>>, fold: Fold, options: Options) -> String {
-    let mut writer = Writer { structure, baked, fold, options, out: String::new() };
+    let mut writer = Writer { structure, baked, fold, options, points: vec!["p".to_owned()], out: String::new() };
     writer.head();
     writer.body();
     writer.out
@@ -31,6 +34,8 @@ struct Writer<'a> {
     baked: Option<&'a Vec<[u32; 4]>>,
     fold: Fold,
     options: Options,
+    /// Names of the point outside and in each modifier under way.
+    points: Vec<String>,
     out: String,
 }
 
@@ -46,6 +51,11 @@ impl Writer<'_> {
         self.line("#include \"field/placed.wgsl\"");
         let shape = |e: &Entry| if let EntryKind::Leaf(shape) = e.kind { Some(shape) } else { None };
         let mut shapes: Vec<_> = self.structure.entries.iter().filter_map(shape).collect();
+        let modifier = |e: &Entry| if let EntryKind::Modified(kind) = e.kind { Some(kind) } else { None };
+        let modifiers: BTreeSet<_> = self.structure.entries.iter().filter_map(modifier).collect();
+        for kind in modifiers {
+            self.line(&modifier_include(kind));
+        }
         shapes.sort_unstable();
         shapes.dedup();
         for shape in shapes {
@@ -90,7 +100,9 @@ impl Writer<'_> {
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
                 if entry.join != Join::First && entry.kind != EntryKind::Run {
-                    self.line(&format!("    var w{at} = 0.0;"));
+                    // The weight of what joins; in general what `op_join` returns.
+                    let nothing = if self.is_general() { "vec4f(0.0, 1.0, 0.0, 0.0)" } else { "0.0" };
+                    self.line(&format!("    var w{at} = {nothing};"));
                 }
             }
         } else {
@@ -105,15 +117,18 @@ impl Writer<'_> {
                 let value = self.leaf(entry, shape, row);
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
-                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join != Join::Intersection;
+                let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join.is_skipped_far_off();
                 let skipped = skipped && self.options.skipping != Skipping::Never;
                 self.open_block(level, at, entry, row, skipped);
-                if entry.kind == EntryKind::Nested {
+                if entry.kind != EntryKind::Run {
                     level += 1;
                     self.line(&format!("    var s{level}: f32;"));
                     if surface {
                         self.line(&format!("    var l{level}: u32;"));
                     }
+                }
+                if let EntryKind::Modified(kind) = entry.kind {
+                    self.open_modifier(at, entry, kind, row);
                 }
                 open.push((at, *entry, row, skipped));
             }
@@ -123,7 +138,10 @@ impl Writer<'_> {
                     break;
                 }
                 open.pop();
-                if group.kind == EntryKind::Nested {
+                if let EntryKind::Modified(kind) = group.kind {
+                    self.close_modifier(level, begin, &group, kind, first);
+                }
+                if group.kind != EntryKind::Run {
                     level -= 1;
                     let [value, leaf] = ["s", "l"].map(|name| format!("{name}{}", level + 1));
                     self.join(level, begin, &group, first, &value, &leaf);
@@ -140,9 +158,14 @@ impl Writer<'_> {
         }
     }
 
+    /// Whether surfaces need derivatives and shares of the material apart.
+    fn is_general(&self) -> bool {
+        self.fold == Fold::Surface && self.structure.has_further_joins()
+    }
+
     /// The value of a leaf whose rows begin at `row`.
     fn leaf(&self, entry: &Entry, shape: ShapeKind, row: usize) -> String {
-        let value = format!("{}({})", shape.function(), arguments(entry, shape, row));
+        let value = format!("{}({})", shape.function(), arguments(self.point(), entry, shape, row));
         if entry.unscaled { value } else { format!("{value} * q{row}.y") }
     }
 
@@ -160,17 +183,66 @@ impl Writer<'_> {
             Join::Union => "union",
             Join::Intersection => "intersection",
             Join::Difference => "difference",
+            _ => "further",
         };
+        let general = self.is_general() || entry.join.is_further();
         let joined = match entry.kernel {
-            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}.x, {kernel}u)"),
+            _ if general => {
+                let (join, kernel) = (entry.join as u32, entry.kernel.unwrap_or(0));
+                format!("op_join({join}u, s{level}, {value}, q{row}, {kernel}u)")
+            }
+            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}, {kernel}u)"),
             None => format!("op_hard_{name}(s{level}, {value})"),
         };
-        if surface {
+        if surface && general {
+            self.line(&format!("    w{at} = {joined}; s{level} = w{at}.x;"));
+            self.line(&format!("    l{level} = select(l{level}, {leaf}, w{at}.w > 0.5);"));
+        } else if surface {
             self.line(&format!("    {{ let joined = {joined};"));
             self.line(&format!("      l{level} = select(l{level}, {leaf}, joined.y > 0.5);"));
             self.line(&format!("      w{at} = joined.y; s{level} = joined.x; }}"));
         } else {
             self.line(&format!("    s{level} = {joined}.x;"));
+        }
+    }
+
+    /// The name of the point where the fold stands.
+    fn point(&self) -> &str {
+        self.points.last().map_or("p", String::as_str)
+    }
+
+    /// The point in the modifier's space and in its content, and the loop over copies where there are several.
+    fn open_modifier(&mut self, at: usize, entry: &Entry, kind: ModifierKind, row: usize) {
+        let placed = if entry.moved { "placed_moved" } else { "placed" };
+        let [x, y, z] = [0, 1, 2].map(|i| row + GROUP_ROWS + i);
+        let outside = self.point().to_owned();
+        self.line(&format!("    let a{at} = {placed}({outside}, q{x}, q{y}, q{z});"));
+        let (name, rows) = (file(kind), own_rows(kind, row));
+        if is_copying(kind) {
+            self.line(&format!("    var v{at} = mod_{name}_start(a{at}{rows});"));
+            self.line(&format!("    var k{at} = 0u;\n    loop {{"));
+            self.line(&format!("    while k{at} < mod_{name}_count({})", rows.trim_start_matches(", ")));
+            self.line(&format!("        && mod_{name}_bound(a{at}, k{at}{rows}) >= v{at} {{ k{at} += 1u; }}"));
+            self.line(&format!("    if k{at} >= mod_{name}_count({}) {{ break; }}", rows.trim_start_matches(", ")));
+            self.line(&format!("    let b{at} = mod_{name}_point(a{at}, k{at}{rows});"));
+        } else if has_point(kind) {
+            self.line(&format!("    let b{at} = mod_{name}_point(a{at}, 0u{rows});"));
+        }
+        self.points.push(if has_point(kind) { format!("b{at}") } else { format!("a{at}") });
+    }
+
+    fn close_modifier(&mut self, level: usize, at: usize, entry: &Entry, kind: ModifierKind, row: usize) {
+        self.points.pop();
+        let (name, rows) = (file(kind), own_rows(kind, row));
+        if is_copying(kind) {
+            self.line(&format!("    v{at} = min(v{at}, s{level} * mod_{name}_scale(k{at}{rows}));"));
+            self.line(&format!("    k{at} += 1u;\n    }}\n    s{level} = v{at};"));
+        }
+        if has_value(kind) {
+            self.line(&format!("    s{level} = mod_{name}_value(s{level}, a{at}{rows});"));
+        }
+        if !entry.unscaled {
+            self.line(&format!("    s{level} *= q{}.w;", row + 1));
         }
     }
 
@@ -185,7 +257,8 @@ impl Writer<'_> {
             Join::Union => format!("s{level} + q{row}.x"),
             _ => format!("q{row}.x - s{level}"),
         };
-        let reached = format!("placed_bounds(p, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
+        let point = self.point();
+        let reached = format!("placed_bounds({point}, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         match self.options.skipping {
             Skipping::Branches | Skipping::Never => self.line(&format!("    if {reached} {{")),
             Skipping::Loops => self.line(&format!("    var once{at} = {reached};\n    while once{at} {{")),
@@ -201,13 +274,19 @@ impl Writer<'_> {
     }
 }
 
-/// The point in the leaf's own space, and the parameters of its shape.
-pub(super) fn arguments(entry: &Entry, shape: ShapeKind, row: usize) -> String {
+/// A modifier's own rows as further arguments.
+fn own_rows(kind: ModifierKind, row: usize) -> String {
+    (0..modifier_rows(kind)).map(|i| format!(", q{}", row + MODIFIER_ROWS + i)).collect()
+}
+
+/// The place of `point` in the leaf's own space, the parameters of its shape, and where its data begin.
+pub(super) fn arguments(point: &str, entry: &Entry, shape: ShapeKind, row: usize) -> String {
     let placed = if entry.moved { "placed_moved" } else { "placed" };
     let parameter = |i: usize| {
-        if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
+        if i < shape.parameter_rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
     };
     let (a, b) = (parameter(0), parameter(1));
-    let data = if shape.has_data() { format!(", first_row + {row}u + u32(q{row}.w)") } else { String::new() };
-    format!("{placed}(p, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
+    let data = data_row(shape).map(|i| row + i);
+    let data = data.map_or(String::new(), |at| format!(", first_row + {at}u + u32(q{at}.y)"));
+    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
 }

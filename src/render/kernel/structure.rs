@@ -1,7 +1,10 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use crate::flat::{Component, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS};
-use crate::scene::ShapeKind;
+use super::source::{Features, Further};
+use crate::flat::{
+    Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, modifier_rows,
+};
+use crate::scene::{ModifierKind, ShapeKind};
 
 /// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
 pub const MAX_KERNEL_ROWS: u32 = 768;
@@ -17,6 +20,8 @@ pub enum EntryKind {
     Leaf(ShapeKind),
     /// Operands with an accumulator of their own.
     Nested,
+    /// What a modifier holds.
+    Modified(ModifierKind),
     /// Operands that may be skipped together.
     Run,
 }
@@ -32,11 +37,11 @@ pub struct Entry {
     pub join: Join,
     /// Kernel of the blend; `None` where the joint is hard.
     pub kernel: Option<u8>,
-    /// Only moved, not turned or scaled; leaves only.
+    /// Only moved, not turned or scaled; leaves and modifiers only.
     pub moved: bool,
-    /// Its field is the shape's, without a factor; leaves only.
+    /// Its field is taken without a factor; leaves and modifiers only.
     pub unscaled: bool,
-    /// Whether it may be skipped by its bounds; groups and runs only.
+    /// Whether it may be skipped by its bounds; all but leaves.
     pub bounded: bool,
 }
 
@@ -45,6 +50,7 @@ impl Entry {
     pub fn rows(&self) -> usize {
         match self.kind {
             EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
+            EntryKind::Modified(kind) => MODIFIER_ROWS + modifier_rows(kind),
             EntryKind::Nested | EntryKind::Run => GROUP_ROWS,
         }
     }
@@ -99,6 +105,43 @@ impl Structure {
         codes.chain(numbers).fold(FNV_START, |hash, word| (hash ^ u128::from(word)).wrapping_mul(FNV_PRIME))
     }
 
+    /// Whether it holds modifiers.
+    pub fn is_modified(&self) -> bool {
+        self.entries.iter().any(|e| matches!(e.kind, EntryKind::Modified(_)))
+    }
+
+    /// Whether it has operators beyond union, intersection and difference.
+    pub fn has_further_joins(&self) -> bool {
+        self.entries.iter().any(|entry| entry.join.is_further())
+    }
+
+    /// What an interpreter must know to evaluate it.
+    pub fn features(&self) -> Features {
+        let mut features = Features::none();
+        features.further = Further {
+            joins: self.has_further_joins(),
+            kernels: self.entries.iter().any(|e| e.kernel.is_some_and(|k| u32::from(k) >= FIRST_FURTHER_KERNEL)),
+        };
+        // Where the groups and modifiers under way end.
+        let mut open: Vec<usize> = Vec::new();
+        for (at, entry) in self.entries.iter().enumerate() {
+            open.retain(|end| *end > at);
+            match entry.kind {
+                EntryKind::Leaf(shape) => {
+                    features.shapes.insert(shape);
+                }
+                EntryKind::Modified(kind) => {
+                    features.modifiers.insert(kind);
+                    open.push(at + entry.extent as usize);
+                }
+                EntryKind::Nested => open.push(at + entry.extent as usize),
+                EntryKind::Run => {}
+            }
+            features.stack = features.stack.max((open.len() as u32).next_power_of_two());
+        }
+        features
+    }
+
     /// Rows of numbers of a component of this structure.
     pub fn rows(&self) -> usize {
         self.entries.iter().map(Entry::rows).sum()
@@ -116,25 +159,30 @@ fn fits(component: &Component) -> bool {
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
     let rows = &flat.numbers[node.numbers as usize..];
     let joint = rows[0];
-    let join = [Join::First, Join::Union, Join::Intersection, Join::Difference][node.join() as usize];
+    let join = Join::ALL[node.join() as usize];
     let blended = joint[0] > 0.0 && join != Join::First;
+    let leaf = node.is_leaf();
+    let modifier = node.modifier().is_some();
+    let placing = if leaf { 1 } else { GROUP_ROWS };
     let identity = |i: usize| {
         let mut unit = [0.0; 3];
         unit[i] = 1.0;
-        rows[1 + i][..3] == unit
+        rows[placing + i][..3] == unit
     };
-    let leaf = node.is_leaf();
     Entry {
         kind: match node.code & 0xffff {
             FlatNode::GROUP => EntryKind::Nested,
             FlatNode::RUN => EntryKind::Run,
-            shape => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
+            shape => match node.modifier() {
+                Some(kind) => EntryKind::Modified(kind),
+                None => EntryKind::Leaf(ShapeKind::ALL[shape as usize]),
+            },
         },
         extent: node.extent,
         join,
         kernel: blended.then_some(node.kernel() as u8),
-        moved: leaf && identity(0) && identity(1) && identity(2),
-        unscaled: leaf && joint[1] == 1.0,
+        moved: (leaf || modifier) && identity(0) && identity(1) && identity(2),
+        unscaled: if leaf { joint[1] == 1.0 } else { modifier && rows[1][3] == 1.0 },
         bounded: !leaf && joint[1] > 0.0,
     }
 }

@@ -64,7 +64,7 @@ pub struct Lists<'a> {
     pub ray_counts: &'a wgpu::Buffer,
     /// Any other buffer.
     pub nothing: &'a wgpu::Buffer,
-    /// For each component, what was counted.
+    /// What was counted: see `shaders/common/counts.wgsl`.
     pub march_counts: &'a wgpu::Buffer,
 }
 
@@ -75,7 +75,7 @@ impl FieldLayouts {
             let stage = ShaderStages::COMPUTE;
             types.iter().enumerate().map(|(i, ty)| entry(i as u32, stage, *ty)).collect()
         };
-        let cone = [read_texture(false), write_storage(), write_storage()];
+        let cone = [read_texture(false), write_storage(), write_storage(), write_storage()];
         let trace = [
             read_write_texture(TextureFormat::R32Float),
             write_texture(TextureFormat::R32Uint),
@@ -129,8 +129,12 @@ impl FieldLayouts {
     /// Binds the targets.
     pub fn bind(&self, device: &wgpu::Device, targets: &Targets, lists: Lists<'_>) -> FieldGroups {
         let texture = wgpu::BindingResource::TextureView;
-        let cone =
-            [texture(&targets.farthest.view), lists.tiles.as_entire_binding(), lists.tile_counts.as_entire_binding()];
+        let cone = [
+            texture(&targets.farthest.view),
+            lists.tiles.as_entire_binding(),
+            lists.tile_counts.as_entire_binding(),
+            lists.march_counts.as_entire_binding(),
+        ];
         let trace = [
             texture(&targets.depth.view),
             texture(&targets.owner.view),

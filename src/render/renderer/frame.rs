@@ -1,6 +1,7 @@
 //! A picture under way: what is still to be done, by which kernels.
 
 use super::Slot;
+use crate::flat::inspect::Look;
 use crate::render::kernels::Choice;
 use crate::render::passes::overlay::OverlaySettings;
 use crate::render::schedule::{Pace, Piece, Plan, Stage};
@@ -18,6 +19,7 @@ pub struct Frame {
     pub(super) seconds: f64,
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
+    pub(super) look: Look,
     pub(super) rows: Vec<u32>,
     pub(super) origins: Vec<crate::scene::NodeId>,
 }

@@ -1,10 +1,11 @@
 //! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
 
+use super::pixel_counts::COMPONENT_COUNTS;
 use super::{COUNTS, Frame, RenderError, Renderer, work_bytes};
 use crate::flat::{Buffers, Warning};
 use crate::render::gpu::Gpu;
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::readback::{read_buffers, read_words};
+use crate::render::readback::{read_buffers, read_words_at};
 use crate::render::schedule::{Piece, Stage};
 use crate::render::uniforms::Work;
 
@@ -13,7 +14,7 @@ use crate::render::uniforms::Work;
 pub struct Counts {
     /// Evaluations of fields by rays.
     pub steps: u64,
-    /// Rays that were marched, once for each component that they meet.
+    /// Rays that were begun, once for each component that they meet.
     pub rays: u64,
     /// Evaluations of fields by cones.
     pub cone_steps: u64,
@@ -21,6 +22,10 @@ pub struct Counts {
     pub tiles: u64,
     /// Evaluations by rays and cones, for each component.
     pub of_components: Vec<u64>,
+    /// Cells of pruned lists that rays and cones looked up, for each component.
+    pub cells: Vec<u64>,
+    /// Entries of pruned lists that they read, for each component.
+    pub entries: Vec<u64>,
 }
 
 impl Renderer {
@@ -51,26 +56,39 @@ impl Renderer {
 
     /// Sets what a frame has counted to nothing.
     pub fn forget_counts(&mut self, frame: &Frame) {
-        let Gpu { device, queue, .. } = &self.gpu;
-        self.march_counts.reset(device, queue, &vec![0; frame.origins.len() * COUNTS * 4]);
+        let size = self.slot(frame.slot).targets.size;
+        self.reset_counts(frame.origins.len(), size);
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        self.clear_pixel_counts(&mut encoder, size);
+        self.gpu.queue.submit([encoder.finish()]);
     }
 
     /// What a frame has counted, with kernels that count.
     pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
-        let lists = read_words(&self.gpu, self.tile_counts.buffer(), frame.plan.lists as usize * COUNTS)?;
-        let sum = |words: &[u32], i: usize| words.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
-        let mut of_components: Vec<u64> = words.chunks_exact(COUNTS).map(|c| u64::from(c[1])).collect();
+        let words = self.component_counts(frame)?;
+        let lists = read_words_at(&self.gpu, self.tile_counts.buffer(), 0, frame.plan.lists as usize * COUNTS)?;
+        let sum = |i: usize| lists.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
+        let of_each = |i: usize| words.iter().map(|c| u64::from(c[i])).collect::<Vec<_>>();
+        let mut of_components = of_each(1);
         for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
             of_components[piece.work.component as usize] += u64::from(lists[piece.work.list as usize * COUNTS + 3]);
         }
         Ok(Counts {
-            steps: sum(&words, 1),
-            rays: sum(&words, 2),
-            cone_steps: sum(&lists, 3),
-            tiles: sum(&lists, 0),
+            steps: of_each(1).iter().sum(),
+            rays: of_each(2).iter().sum(),
+            cone_steps: sum(3),
+            tiles: sum(0),
             of_components,
+            cells: of_each(3),
+            entries: of_each(4),
         })
+    }
+
+    /// What was counted for each component.
+    fn component_counts(&self, frame: &Frame) -> Result<Vec<[u32; COMPONENT_COUNTS]>, RenderError> {
+        let count = frame.origins.len() * COMPONENT_COUNTS;
+        let words = read_words_at(&self.gpu, self.march_counts.buffer(), 0, count)?;
+        Ok(words.as_chunks().0.to_vec())
     }
 
     /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
@@ -80,8 +98,7 @@ impl Renderer {
 
     /// Which components had rays that did not come to an end within the steps allowed.
     pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
-        let words = read_words(&self.gpu, self.march_counts.buffer(), frame.origins.len() * COUNTS)?;
-        let counts: Vec<u32> = words.chunks_exact(COUNTS).map(|c| c[0]).collect();
+        let counts: Vec<u32> = self.component_counts(frame)?.iter().map(|c| c[0]).collect();
         let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
             node: *id,
             name: String::new(),

@@ -12,9 +12,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use crate::geometry::Transform;
-use crate::scene::limits::{MAX_MATERIALS, MAX_NODES};
+use crate::scene::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{
-    CameraNode, Environment, Group, Light, Material, MaterialId, MeshNode, Node, NodeId, NodeKind, Object,
+    CameraNode, Environment, Group, Joining, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node,
+    NodeId, NodeKind, Object,
 };
 
 /// The version that is written; every version up to it is read.
@@ -61,9 +62,18 @@ pub(super) struct NodeV1 {
     /// Cut away from what precedes it in its group.
     #[serde(default, skip_serializing_if = "is_false")]
     pub negative: bool,
+    /// How it blends with its siblings.
+    #[serde(default, skip_serializing_if = "is_inherited")]
+    pub joining: Joining,
+    /// Ids of siblings with which it does not blend.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_APART>")]
+    pub apart: Vec<NodeId>,
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformV1::is_identity")]
     pub transform: TransformV1,
+    /// What it does to itself and all below it, the first one first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
+    pub modifiers: Vec<ModifierSlot>,
     /// Joins its children.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub group: Option<Group>,
@@ -133,7 +143,10 @@ impl From<&Node> for NodeV1 {
             visible: node.visible,
             locked: node.locked,
             negative: node.negative,
+            joining: node.joining,
+            apart: node.apart.clone(),
             transform: node.transform.into(),
+            modifiers: node.modifiers.clone(),
             group: None,
             object: None,
             mesh: None,
@@ -170,7 +183,10 @@ impl NodeV1 {
             visible: self.visible,
             locked: self.locked,
             negative: self.negative,
+            joining: self.joining,
+            apart: self.apart,
             transform: self.transform.into(),
+            modifiers: self.modifiers,
             kind,
         })
     }
@@ -229,6 +245,10 @@ fn yes() -> bool {
 
 fn is_true(value: &bool) -> bool {
     *value
+}
+
+fn is_inherited(value: &Joining) -> bool {
+    *value == Joining::Inherit
 }
 
 fn is_false(value: &bool) -> bool {

@@ -5,33 +5,19 @@ mod evaluate;
 use super::{DUAL_PRELUDE, DualError, dual};
 use crate::flat::Body;
 use crate::flat::twin::shape_distance;
-use crate::scene::{ParamValue, Shape, ShapeKind};
+use crate::render::kernel::{Evaluator, Features, Options, plain_source, source};
+use crate::scene::{Limits, ParamValue, Shape, ShapeKind};
 use evaluate::Machine;
 
-/// Stands for `shaders/sdf/held.wgsl`.
 const HELD: &str = include_str!("../../../../shaders/sdf/held.wgsl");
-const INCLUDE: &str = "#include \"sdf/held.wgsl\"";
 
-macro_rules! shape {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../../../shaders/sdf/", $name, ".wgsl")))
-    };
+/// Every shape without data, with its source and all that it includes.
+fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
+    let source = |name| plain_source(&format!("sdf/{name}.wgsl")).unwrap();
+    let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
+    let without_data = ShapeKind::ALL.iter().filter(|kind| !kind.has_data());
+    without_data.map(named).map(move |(kind, name)| (kind, name, source(name)))
 }
-
-const SHAPES: [(&str, &str); 12] = [
-    shape!("box"),
-    shape!("box_frame"),
-    shape!("capped_cone"),
-    shape!("capsule"),
-    shape!("cylinder"),
-    shape!("ellipsoid"),
-    shape!("hexagonal_prism"),
-    shape!("octahedron"),
-    shape!("plane"),
-    shape!("round_cone"),
-    shape!("sphere"),
-    shape!("torus"),
-];
 
 /// Numbers that look random, between 0 and 1.
 struct Random(u64);
@@ -47,8 +33,20 @@ impl Random {
     }
 }
 
-fn resolved(text: &str) -> String {
-    text.replace(INCLUDE, HELD)
+/// Parameters of a shape, packed: lengths between 0.1 and 1.1, all angles and numbers of sides.
+fn parameters(kind: ShapeKind, random: &mut Random) -> [f64; 8] {
+    let mut shape = kind.default_shape();
+    for (i, value) in shape.values().into_iter().enumerate() {
+        let Limits { soft: [low, high], unit, .. } = kind.params()[i].limits;
+        let mut number = || if unit == "m" { 0.1 + random.next() } else { low + (high - low) * random.next() };
+        let value = match value {
+            ParamValue::Scalar(_) => ParamValue::Scalar(number()),
+            ParamValue::Vector(_) => ParamValue::Vector([number(), number(), number()].into()),
+            ParamValue::Flag(_) | ParamValue::List(_) => panic!("{kind:?} has data"),
+        };
+        assert!(shape.set_value(i, value));
+    }
+    shape.packed()
 }
 
 /// The source, the prelude and the twin.
@@ -77,11 +75,16 @@ fn differences(machine: &Machine, function: &str, p: [f64; 3], a: &[f64], b: &[f
 
 /// The greatest difference between the twin's gradient and the differences, over random points.
 fn worst(source: &str, function: &str, tries: usize) -> f64 {
+    worst_with(source, function, tries, |random| std::array::from_fn(|_| 0.1 + random.next()))
+}
+
+/// The same, with parameters made from random numbers.
+fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&mut Random) -> [f64; 8]) -> f64 {
     let machine = machine(source, function);
     let mut random = Random(7);
     let (mut worst, mut compared): (f64, _) = (0.0, 0);
     for _ in 0..tries {
-        let numbers: [f64; 8] = std::array::from_fn(|_| 0.1 + random.next());
+        let numbers = parameters(&mut random);
         let (a, b) = numbers.split_at(4);
         let p = random.point(1.5);
         let twin = machine.call(&format!("dual_{function}"), &[&p, a, b]);
@@ -98,64 +101,39 @@ fn worst(source: &str, function: &str, tries: usize) -> f64 {
 
 #[test]
 fn gradients_of_shapes_are_those_of_central_differences() {
-    for (name, text) in SHAPES {
-        let error = worst(&resolved(text), &format!("sdf_{name}"), 300);
-        assert!(error < if name == "ellipsoid" { 1e-3 } else { 1e-6 }, "{name}: {error:e}");
+    for (kind, name, text) in shapes() {
+        let error = worst_with(&text, kind.function(), 300, |random| parameters(kind, random));
+        // Fractals bend as finely as they are.
+        assert!(
+            error < if matches!(name, "ellipsoid" | "julia" | "kleinian") { 1e-3 } else { 1e-6 },
+            "{name}: {error:e}"
+        );
     }
 }
 
-/// A shape with the given data: its function as one of a shape without.
-fn with_data(name: &str, files: &[&str], shape: &Shape) -> (String, Vec<f64>) {
-    let body = Body::new(shape);
+/// A shape with its data: its source, in which `name` is its function as one of a shape without.
+fn with_data(name: &str, body: &Body) -> String {
     let rows: Vec<String> =
         body.rows.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
-    let mut text = String::from(HELD);
-    for line in files.iter().flat_map(|file| file.lines()).filter(|line| !line.starts_with("#include")) {
-        text.push_str(line);
-        text.push('\n');
-    }
-    let count = rows.len();
-    text += &format!(
-        "fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({}); return rows[at]; }}
-        fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}",
-        rows.join(", ")
-    );
-    (text, body.parameters.to_vec())
+    let (count, rows) = (rows.len(), rows.join(", "));
+    let source = plain_source(&format!("sdf/{name}.wgsl")).unwrap();
+    format!(
+        "{source}fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}
+        fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}"
+    )
 }
 
 #[test]
 fn gradients_of_shapes_with_data_are_those_of_central_differences() {
-    let outline = include_str!("../../../../shaders/sdf/outline.wgsl");
-    let relief = include_str!("../../../../shaders/sdf/relief.wgsl");
-    let smooth = |kind: ShapeKind| {
-        let mut shape = kind.default_shape();
-        shape.set_value(1, ParamValue::Flag(true));
-        shape
-    };
-    for (name, files, shape) in [
-        ("tube", vec![include_str!("../../../../shaders/sdf/tube.wgsl")], ShapeKind::Tube.default_shape()),
-        (
-            "extrusion",
-            vec![outline, include_str!("../../../../shaders/sdf/extrusion.wgsl")],
-            smooth(ShapeKind::Extrusion),
-        ),
-        (
-            "revolution",
-            vec![outline, include_str!("../../../../shaders/sdf/revolution.wgsl")],
-            smooth(ShapeKind::Revolution),
-        ),
-        (
-            "terrain",
-            vec![relief, include_str!("../../../../shaders/sdf/terrain.wgsl")],
-            ShapeKind::Terrain.default_shape(),
-        ),
-        ("ocean", vec![relief, include_str!("../../../../shaders/sdf/ocean.wgsl")], ShapeKind::Ocean.default_shape()),
-    ] {
-        let (text, parameters) = with_data(name, &files, &shape);
-        let machine = machine(&text, name);
-        let (a, b) = parameters.split_at(4);
-        let b = &b[..4];
+    for &kind in ShapeKind::ALL.iter().filter(|kind| kind.has_data()) {
+        let name = kind.function().strip_prefix("sdf_").unwrap();
+        let mut shape: Shape = kind.default_shape();
+        if matches!(kind, ShapeKind::Extrusion | ShapeKind::Revolution) {
+            assert!(shape.set_value(1, ParamValue::Flag(true)));
+        }
         let body = Body::new(&shape);
+        let machine = machine(&with_data(name, &body), name);
+        let (a, b) = body.parameters.split_at(4);
         let mut random = Random(5);
         let mut compared = 0;
         for _ in 0..60 {
@@ -173,14 +151,13 @@ fn gradients_of_shapes_with_data_are_those_of_central_differences() {
 
 #[test]
 fn all_twins_stand_in_one_shader() {
-    let mut text = format!("{HELD}{DUAL_PRELUDE}");
-    for (name, source) in SHAPES {
-        text.push_str(&source.replace(INCLUDE, ""));
-        text.push_str(&dual(&resolved(source), &format!("sdf_{name}")).unwrap());
-        let signature = format!("fn dual_sdf_{name}(p: vec3f, a: vec4f, b: vec4f) -> vec4f {{");
-        assert_eq!(text.matches(&signature).count(), 1, "{name}");
+    let everything = Evaluator::Interpreted(Features::all());
+    let text = source("surface.wgsl", &everything, Options::default()).unwrap();
+    for &kind in ShapeKind::ALL {
+        let data = if kind.has_data() { ", data: u32" } else { "" };
+        let signature = format!("fn dual_{}(p: vec3f, a: vec4f, b: vec4f{data}) -> vec4f {{", kind.function());
+        assert_eq!(text.matches(&signature).count(), 1, "{kind:?}");
     }
-    Machine::new(&text);
 }
 
 /// The gradient's direction, or zero where there is none.
@@ -195,14 +172,18 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 #[test]
 fn normals_at_surfaces_are_right_in_f32() {
-    for (name, text) in SHAPES {
-        let (text, twin) = (resolved(text), format!("dual_sdf_{name}"));
+    for (kind, name, text) in shapes() {
+        if matches!(kind, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian) {
+            // Fractals have edges everywhere, and no distance to reach the surface by in a few steps.
+            continue;
+        }
+        let twin = format!("dual_sdf_{name}");
         let exact = machine(&text, &format!("sdf_{name}"));
         let rounded = machine(&text, &format!("sdf_{name}")).rounded();
         let mut random = Random(3);
         let mut compared = 0;
-        for _ in 0..150 {
-            let numbers: [f64; 8] = std::array::from_fn(|_| f64::from((0.1 + random.next()) as f32));
+        for _ in 0..200 {
+            let numbers = parameters(kind, &mut random).map(|v| f64::from(v as f32));
             let (a, b) = numbers.split_at(4);
             let mut p = random.point(1.0);
             for _ in 0..8 {
@@ -246,8 +227,8 @@ fn a_face_has_a_normal_where_the_distance_is_exactly_zero() {
         ("hexagonal_prism", [0.1, 0.5, 0.1], [0.5, 1.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
         ("plane", [3.0, 0.0, 1.0], zero, [0.0, 1.0, 0.0]),
     ] {
-        let (_, text) = SHAPES.iter().find(|(n, _)| *n == name).unwrap();
-        let twin = machine(&resolved(text), &format!("sdf_{name}")).call(&format!("dual_sdf_{name}"), &[&p, &a, &zero]);
+        let (_, _, text) = shapes().find(|(_, n, _)| *n == name).unwrap();
+        let twin = machine(&text, &format!("sdf_{name}")).call(&format!("dual_sdf_{name}"), &[&p, &a, &zero]);
         assert_eq!(twin[3], 0.0, "{name}");
         assert!(distance(direction(&twin), normal) < 1e-7, "{name} at {p:?}: {twin:?}");
     }

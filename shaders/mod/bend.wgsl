@@ -1,0 +1,42 @@
+// What lies along X becomes an arc around a point on Y. a: radius of the arc, 1 / largest stretch, margin, 1 for up
+// and -1 for down; b: half the angle of the content, its heights away from the centre and towards it; c, d: middle and
+// half extent of the bounds.
+
+#include "mod/enclosed.wgsl"
+
+// The angle of (x, y) from the y axis towards x. Two reductions and a polynomial, right to 2e-7 (Moshier, "Methods and
+// Programs for Mathematical Functions", 1989): the drivers' own is allowed to be thousands of times worse.
+fn bend_angle(x: f32, y: f32) -> f32 {
+    let wide = max(abs(x), abs(y));
+    let ratio = min(abs(x), abs(y)) / max(wide, 1e-30);
+    // Beyond tan(π/8) around π/4.
+    let is_far = ratio > 0.41421357;
+    let t = select(ratio, (ratio - 1.0) / (ratio + 1.0), is_far);
+    let z = t * t;
+    let series = (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * t + t;
+    let first = select(series, series + 0.78539816, is_far);
+    let second = select(first, 1.57079633 - first, abs(x) > abs(y));
+    let third = select(second, 3.14159265 - second, y < 0.0);
+    return select(third, -third, x < 0.0);
+}
+
+// Along the arc, and from it towards the centre.
+fn bend_place(p: vec3f, a: vec4f) -> vec2f {
+    let height = p.y * a.w;
+    let r = length(vec2f(p.x, a.x - height));
+    // The radius less r, without the difference of two large numbers.
+    return vec2f(bend_angle(p.x, a.x - height), (2.0 * a.x * height - p.x * p.x - height * height) / (a.x + r));
+}
+
+fn mod_bend_point(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> vec3f {
+    let at = bend_place(p, a);
+    return vec3f(at.x * a.x, at.y * a.w, p.z);
+}
+
+fn mod_bend_value(f: f32, p: vec3f, a: vec4f, b: vec4f, c: vec4f, d: vec4f) -> f32 {
+    let at = bend_place(p, a);
+    let open = clamp(abs(at.x) - b.x, -1.57079633, 1.57079633);
+    let of_arc = max(max(at.y - b.z, b.y - at.y), (a.x - at.y) * sin(open));
+    let q = abs(p - c.xyz) - d.xyz;
+    return mod_enclosed(f * a.y, max(of_arc, max(max(q.x, q.y), q.z)), a.z);
+}

@@ -1,0 +1,31 @@
+// A ball without another: radius a.x, radius of the other a.y, distance of the centres a.z along Y.
+//
+// Outside the nearest point is that on the ball or that in the hollow, where such a point belongs to the surface,
+// else on the circle where both meet; inside the nearer of both is exact.
+
+fn sdf_death_star(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let radius = a.x;
+    let distance = a.z;
+    let cut_radius = min(a.y, radius + distance);
+    let q = vec2f(length(p.xz), p.y);
+    let from_cut = q - vec2f(0.0, distance);
+    let far = length(q);
+    let cut_far = length(from_cut);
+    let over = far - radius;
+    let within = cut_radius - cut_far;
+    if over <= 0.0 && within <= 0.0 {
+        return max(over, within);
+    }
+    // Twice the distance times the height of the circle over either centre.
+    let height = radius * radius + (distance - cut_radius) * (distance + cut_radius);
+    let cut_height = (radius - cut_radius) * (radius + cut_radius) - distance * distance;
+    let twice = 2.0 * distance;
+    if over > 0.0 && twice * radius * q.y <= height * far {
+        return over;
+    }
+    if within > 0.0 && twice * cut_radius * from_cut.y <= cut_height * cut_far {
+        return within;
+    }
+    let circle = clamp(height / max(twice, 1e-30), -radius, radius);
+    return length(q - vec2f(sqrt((radius - circle) * (radius + circle)), circle));
+}

@@ -1,0 +1,32 @@
+// A Julia set of quaternions (Norton, "Julia sets in the quaternions", 1989): radius a.x of the ball that holds it,
+// constant c (a.yzw, b.x), steps b.y. Where z² + c, repeated, does not leave the ball of radius
+// R = (1 + sqrt(1 + 4|c|)) / 2, outside of which every step leads farther out.
+//
+// The field is the radius of a ball around the point that is certainly on one side: |w² - z²| <= 2|z|s + s² where
+// |w - z| <= s. So if the ball of radius t around z² + c is on one side, that of radius sqrt(|z|² + t) - |z| around z
+// is; from the last step back to the first these radii follow from the orbit.
+
+fn sdf_julia(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let constant = vec4f(a.yzw, b.x);
+    let escape = 0.5 + sqrt(0.25 + length(constant));
+    let scale = max(a.x, 1e-9) / escape;
+    var at = vec4f(p / scale, 0.0);
+    var radii: array<f32, 17>;
+    var last = 0;
+    loop {
+        radii[last] = length(at);
+        // So far out the distance to the ball is more than what later steps say.
+        if last == 16 || f32(last) + 0.5 > b.y || radii[last] > 4.0 * escape {
+            break;
+        }
+        at = vec4f(at.x * at.x - dot(at.yzw, at.yzw), 2.0 * at.x * at.yzw) + constant;
+        last += 1;
+    }
+    var field = radii[last] - escape;
+    for (var i = last - 1; i >= 0; i--) {
+        let radius = radii[i];
+        let sum = sqrt(radius * radius + abs(field)) + radius;
+        field = max(radius - escape, field / max(sum, 1e-30));
+    }
+    return field * scale;
+}

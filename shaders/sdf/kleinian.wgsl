@@ -1,0 +1,41 @@
+// A pseudo-Kleinian set (Knighty, fractalforums.com, 2011): radius a.x of the ball that holds it, that ball in the set's
+// own unit a.y, box (a.zw, b.x), inversion b.y, thickness b.z, steps b.w. Space is folded at the box, turned inside out
+// within a ball, again and again; what then lies near a disc is the set.
+//
+// The field is the radius of a ball around the point that is certainly on one side, from the distance to the disc back
+// through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² where that is more than
+// 1, so a way of s from r inwards becomes at most k / (r - s) - k / r; solved for s this is what it gives back.
+
+fn sdf_kleinian(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let corner = vec3f(a.zw, b.x);
+    let inversion = b.y;
+    let scale = max(a.x, 1e-9) / a.y;
+    var at = p / scale;
+    var radii: array<f32, 8>;
+    var count = 0;
+    loop {
+        if count == 8 || f32(count) + 0.5 >= b.w {
+            break;
+        }
+        at = 2.0 * clamp(at, -corner, corner) - at;
+        radii[count] = length(at);
+        at *= max(inversion / max(dot(at, at), 1e-30), 1.0);
+        count += 1;
+    }
+    let around = length(at.xz);
+    let to_plane = abs(around * at.y / max(length(at), 1e-30));
+    var field = max(to_plane, around - 0.92) - b.z;
+    let edge = sqrt(inversion);
+    for (var i = count - 1; i >= 0; i--) {
+        let radius = radii[i];
+        let way = abs(field);
+        var back = way;
+        if radius < edge {
+            back = way * radius * radius / max(way * radius + inversion, 1e-30);
+        } else if way > radius - edge {
+            back = radius - inversion / max(way - radius + 2.0 * edge, 1e-30);
+        }
+        field = select(back, -back, field < 0.0);
+    }
+    return max(length(p) - a.x, field * scale);
+}

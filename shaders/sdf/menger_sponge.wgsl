@@ -1,0 +1,21 @@
+// A Menger sponge (Menger, "Dimensionstheorie", 1928): edge length a.x, iterations a.y. A cube without bars that fill
+// the middle thirds of its cells along each axis.
+//
+// The field is the greatest of the distance to the cube and of how deep the point is in the bars of each size.
+
+fn sdf_menger_sponge(p: vec3f, a: vec4f, b: vec4f) -> f32 {
+    let d = abs(p) - 0.5 * a.x;
+    var field = length(max(d, vec3f(0.0))) + min(max(d.x, max(d.y, d.z)), 0.0);
+    var side = a.x;
+    for (var step = 0; step < 8; step++) {
+        if f32(step) + 0.5 > a.y {
+            break;
+        }
+        // From the middle of the cell. The point is as deep in the bars as the second least coordinate says.
+        let t = abs(p - side * round(p / max(side, 1e-30)));
+        let second = max(min(t.x, t.y), min(max(t.x, t.y), t.z));
+        field = max(field, side / 6.0 - second);
+        side /= 3.0;
+    }
+    return field;
+}

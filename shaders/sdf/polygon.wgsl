@@ -1,0 +1,21 @@
+// Regular polygons. `sides` is their number, then cosine and sine of half the angle that a side takes.
+
+// Turns and mirrors the plane so that all sides fall onto half of the one that faces X.
+fn sdf_polygon_sector(q: vec2f, sides: vec3f) -> vec2f {
+    let step = 6.2831853 / sides.x;
+    let x = select(q.x, 1.0, q.x == 0.0 && q.y == 0.0);
+    let turn = step * round(atan2(q.y, x) / step);
+    let c = cos(turn);
+    let s = sin(turn);
+    let turned = vec2f(c * q.x + s * q.y, abs(c * q.y - s * q.x));
+    // Arc tangents are not exact: what lies beyond the mirror comes back.
+    let mirror = vec2f(-sides.z, sides.y);
+    return turned - 2.0 * max(dot(turned, mirror), 0.0) * mirror;
+}
+
+// `radius` from the centre to the middle of a side.
+fn sdf_polygon(q: vec2f, sides: vec3f, radius: f32) -> f32 {
+    let t = sdf_polygon_sector(q, sides);
+    let beside = vec2f(t.x - radius, max(t.y - radius * sides.z / sides.y, 0.0));
+    return select(beside.x, length(beside), beside.x > 0.0);
+}

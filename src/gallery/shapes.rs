@@ -1,0 +1,62 @@
+//! The golden sheet: every shape there is, on a tile of its own. A new shape gets one by itself.
+
+use glam::DVec3;
+
+use super::stage::{Stage, cuboid, group, object, turn_y, v};
+use crate::geometry::Aabb;
+use crate::scene::{Operator, Scene, ShapeKind};
+
+/// Tiles in a row.
+const COLUMNS: usize = 7;
+/// From tile to tile, in metres.
+const SPACING: f64 = 1.7;
+/// Half the largest side of every shape, in metres.
+const HALF: f64 = 0.6;
+
+pub(super) fn scene() -> Scene {
+    let mut stage = Stage::new([0.03, 0.045, 0.07], [0.10, 0.12, 0.15], [0.27, 0.29, 0.33]);
+    let colors = [
+        ("Coral", [0.80, 0.19, 0.10]),
+        ("Amber", [0.80, 0.42, 0.06]),
+        ("Leaf", [0.27, 0.50, 0.08]),
+        ("Teal", [0.03, 0.36, 0.34]),
+        ("Sky", [0.12, 0.36, 0.74]),
+        ("Violet", [0.32, 0.17, 0.62]),
+    ]
+    .map(|(name, albedo)| stage.glossy(name, albedo, 0.25, 50.0));
+    let tile = stage.matt("Slate", [0.10, 0.11, 0.135]);
+    let rows = ShapeKind::ALL.len().div_ceil(COLUMNS);
+    for (index, &kind) in ShapeKind::ALL.iter().enumerate() {
+        let (column, row) = (index % COLUMNS, index / COLUMNS);
+        let x = SPACING * (column as f64 - 0.5 * (COLUMNS - 1) as f64);
+        let z = SPACING * (row as f64 - 0.5 * (rows - 1) as f64);
+        let name = format!("{} tile", kind.label());
+        stage.add(None, object(&name, cuboid(1.5, 0.1, 1.5, 0.04), tile).at(v(x, -0.05, z)));
+        add_shape(&mut stage, kind, colors[(column + 2 * row) % colors.len()], v(x, 0.0, z));
+    }
+    stage.sun("Key", [-0.65, 0.9, 0.6], [1.0, 0.95, 0.88], 0.95);
+    stage.sun("Fill", [0.8, 0.5, 0.7], [0.72, 0.82, 1.0], 0.3);
+    stage.sun("Rim", [0.4, 0.5, -1.0], [0.95, 0.97, 1.0], 0.5);
+    stage.camera([0.0, 13.5, 11.0], [0.0, 0.0, 0.35], 46.0);
+    stage.finish()
+}
+
+/// The shape with its default parameters, as large as the others, standing on its tile. Of one without end the part
+/// in a box is shown.
+fn add_shape(stage: &mut Stage, kind: ShapeKind, color: crate::scene::MaterialId, at: DVec3) {
+    let shape = kind.default_shape();
+    let bounds = shape.bounds();
+    if bounds.is_finite() {
+        let scale = HALF / bounds.half().max_element();
+        let center = bounds.center();
+        let foot = at - DVec3::new(center.x, bounds.min.y, center.z) * scale;
+        stage.add(None, object(kind.label(), shape, color).at(foot).scaled(DVec3::splat(scale)));
+        return;
+    }
+    let part = Aabb::new(bounds.min.max(DVec3::splat(-HALF)), bounds.max.min(DVec3::splat(HALF)));
+    let foot = at - DVec3::Y * part.min.y;
+    let cut = stage.add(None, group(kind.label(), Operator::Intersection).at(foot).rotated(turn_y(25.0)));
+    let side = 1.7 * HALF;
+    stage.add(cut, object(kind.label(), shape, color));
+    stage.add(cut, object("Part", cuboid(side, 2.0 * HALF, side, 0.0), color));
+}

@@ -1,0 +1,126 @@
+//! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without kernels
+//! that count there is no room for them, and nothing is written.
+
+use super::{Frame, RenderError, Renderer};
+use crate::render::readback::read_words_at;
+use crate::render::schedule::TILE;
+
+/// Words that are counted for each component: rays without an end, evaluations by rays, rays begun, and by rays and
+/// cones cells and list entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
+pub(super) const COMPONENT_COUNTS: usize = 5;
+/// Words that are counted for each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
+const PIXEL_COUNTS: usize = 4;
+
+/// What rays or cones took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Took {
+    /// Evaluations of fields.
+    pub evaluations: u32,
+    /// Rays begun, one for each component that is met; 0 for cones.
+    pub rays: u32,
+    /// Cells of pruned lists that were looked up.
+    pub cells: u32,
+    /// Entries of pruned lists that were read.
+    pub entries: u32,
+}
+
+/// What each pixel of a picture took, of all components together. Normals are not counted: they are one evaluation
+/// for each pixel that shows a field.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct PixelCounts {
+    /// Width and height of the picture.
+    pub size: [u32; 2],
+    /// By rays, for each pixel, row by row from the upper left corner.
+    pub pixels: Vec<Took>,
+    /// By cones, for each tile of 8 by 8 pixels; a cone looks for all of them, so they are counted apart.
+    pub tiles: Vec<Took>,
+}
+
+/// How a number is spread over the pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Of all pixels.
+    pub mean: f64,
+    /// 99 of 100 pixels have no more.
+    pub p99: f64,
+    /// The most.
+    pub max: f64,
+}
+
+impl PixelCounts {
+    /// Evaluations by the rays of a pixel.
+    pub fn steps(&self) -> Spread {
+        let mut all: Vec<u32> = self.pixels.iter().map(|pixel| pixel.evaluations).collect();
+        all.sort_unstable();
+        let Some(max) = all.last() else { return Spread::default() };
+        let mean = all.iter().map(|v| f64::from(*v)).sum::<f64>() / all.len() as f64;
+        Spread { mean, p99: f64::from(all[(all.len() - 1) * 99 / 100]), max: f64::from(*max) }
+    }
+
+    /// A pixel's share, a 64th, of what the cones of its tile took, with what its own rays took.
+    pub fn with_cones(&self, x: u32, y: u32, of: impl Fn(&Took) -> u32) -> f64 {
+        let [width, _] = self.size;
+        let tile = (y / TILE * width.div_ceil(TILE) + x / TILE) as usize;
+        let own = of(&self.pixels[(y * width + x) as usize]);
+        f64::from(own) + f64::from(of(&self.tiles[tile])) / f64::from(TILE * TILE)
+    }
+
+    /// By rays and cones, over all pixels.
+    pub fn per_pixel(&self, of: impl Fn(&Took) -> u32) -> f64 {
+        let sum: u64 = self.pixels.iter().chain(&self.tiles).map(|took| u64::from(of(took))).sum();
+        sum as f64 / self.pixels.len().max(1) as f64
+    }
+}
+
+impl Renderer {
+    /// Words that a picture of this size needs for its pixels and tiles; none where nobody counts.
+    fn pixel_words(&self, size: [u32; 2]) -> usize {
+        let of = |sides: [u32; 2]| sides[0] as usize * sides[1] as usize;
+        if self.counting { (of(size) + of(size.map(|side| side.div_ceil(TILE)))) * PIXEL_COUNTS } else { 0 }
+    }
+
+    /// Bytes that hold what is counted.
+    pub fn counts_bytes(&self) -> u64 {
+        self.march_counts.buffer().size()
+    }
+
+    /// Whether the device can hold the counts of such a picture.
+    pub(super) fn check_counts(&self, components: usize, size: [u32; 2]) -> Result<(), RenderError> {
+        let most = self.gpu.device.limits().max_storage_buffer_binding_size;
+        let words = components * COMPONENT_COUNTS + self.pixel_words(size);
+        if (words as u64 * 4).next_power_of_two() > most {
+            return Err(RenderError::Counts(size[0], size[1]));
+        }
+        Ok(())
+    }
+
+    /// Makes room for the counts of so many components and a picture of this size, and sets those of the components
+    /// to nothing. True where the buffer is another one.
+    pub(super) fn reset_counts(&mut self, components: usize, size: [u32; 2]) -> bool {
+        let nothing = vec![0; components * COMPONENT_COUNTS * 4];
+        let bytes = nothing.len() + self.pixel_words(size) * 4;
+        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
+        let grown = self.march_counts.reserve(device, bytes);
+        self.march_counts.reset(device, queue, &nothing) || grown
+    }
+
+    /// Sets what pixels and tiles took to nothing.
+    pub(super) fn clear_pixel_counts(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
+        let bytes = self.pixel_words(size) as u64 * 4;
+        if bytes > 0 {
+            encoder.clear_buffer(self.march_counts.buffer(), self.counts_bytes() - bytes, Some(bytes));
+        }
+    }
+
+    /// What each pixel of the frame took that was drawn last; empty where kernels do not count.
+    pub fn pixel_counts(&self, frame: &Frame) -> Result<PixelCounts, RenderError> {
+        let size = self.slot(frame.slot).targets.size;
+        let count = self.pixel_words(size);
+        let first = self.march_counts.buffer().size() as usize / 4 - count;
+        let words = read_words_at(&self.gpu, self.march_counts.buffer(), first, count)?;
+        let took = |w: &[u32]| Took { evaluations: w[0], rays: w[1], cells: w[2], entries: w[3] };
+        let mut pixels: Vec<Took> = words.chunks_exact(PIXEL_COUNTS).map(took).collect();
+        let tiles = pixels.split_off(if count == 0 { 0 } else { size[0] as usize * size[1] as usize });
+        Ok(PixelCounts { size, pixels, tiles })
+    }
+}

@@ -1,0 +1,260 @@
+//! The contract of every modifier, over content that is not symmetric.
+
+use glam::{DQuat, DVec3};
+use isolith::flat::twin::{field, gradient};
+use isolith::flat::{Component, FlatScene, flatten};
+use isolith::scene::{
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, ModifierValue, Node, NodeId, NodeKind, Object,
+    Operator, Scene, Shape,
+};
+
+use super::rules::{gradient_is_right, steps_are_safe};
+use super::samples::Random;
+
+/// Something lopsided: an L of two boxes, and a ball blended to it.
+fn content(scene: &mut Scene, group: Node) -> NodeId {
+    let parent = scene.insert(None, usize::MAX, group).unwrap();
+    let boxed = |size: [f64; 3]| Shape::Box { size, rounding: 0.05 };
+    let parts = [
+        (boxed([0.9, 0.3, 0.2]), DVec3::new(0.1, -0.2, 0.0)),
+        (boxed([0.2, 0.8, 0.3]), DVec3::new(-0.3, 0.15, 0.05)),
+        (Shape::Sphere { radius: 0.2 }, DVec3::new(0.4, 0.1, 0.1)),
+    ];
+    for (shape, at) in parts {
+        let object = Object { shape, material: MaterialId(1) };
+        scene.insert(Some(parent), usize::MAX, Node::new("Part", NodeKind::Object(object)).at(at)).unwrap();
+    }
+    parent
+}
+
+fn blended() -> Node {
+    let blend = Blend::new(BlendKernel::Circular, 0.1);
+    Node::new("Content", NodeKind::Group(Group::new(Operator::Union, blend)))
+}
+
+/// A scene of the lopsided content with these modifiers.
+pub fn modified(modifiers: &[Modifier]) -> Scene {
+    let mut scene = Scene::new();
+    let node = modifiers.iter().fold(blended(), |node, modifier| node.modified(*modifier));
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
+    content(&mut scene, node.at(DVec3::new(0.3, -0.2, 0.1)).rotated(turn).scaled(DVec3::splat(1.2)));
+    scene
+}
+
+/// The default, one with random numbers within the range that is offered, others at the limits of that range.
+pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
+    let mut random = Random::new(50 + kind as u64);
+    let mut all = vec![kind.default_modifier()];
+    for i in 0..count {
+        let mut modifier = kind.default_modifier();
+        for (index, (param, value)) in kind.params().iter().zip(modifier.values()).enumerate() {
+            if param.name.starts_with("carve") {
+                continue;
+            }
+            let [low, high] = param.limits.soft;
+            let mut number = || if i % 3 == 2 { random.pick(&[low, high]) } else { random.range(low, high) };
+            let value = match value {
+                ModifierValue::Scalar(_) => ModifierValue::Scalar(number()),
+                ModifierValue::Vector(_) => ModifierValue::Vector(DVec3::new(number(), number(), number())),
+                ModifierValue::Count(_) => ModifierValue::Count(number().round() as u32),
+                ModifierValue::Counts(_) => ModifierValue::Counts([0, 1, 2].map(|_| random.index(4) as u32)),
+                ModifierValue::Flag(_) => ModifierValue::Flag(random.chance(0.5)),
+                ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| random.chance(0.5))),
+            };
+            assert!(modifier.set_value(index, value), "{kind:?}.{}", param.name);
+        }
+        if let Modifier::Repeat { spacing, .. } = &mut modifier {
+            *spacing = spacing.map(|s| s.max(0.6));
+        }
+        all.push(modifier);
+    }
+    all
+}
+
+/// Every component of every modifier's samples, twice the samples alone and once on top of a twist.
+fn for_each(count: usize, mut visit: impl FnMut(&str, ModifierKind, &FlatScene, &Component)) {
+    for &kind in ModifierKind::ALL {
+        for (i, modifier) in samples(kind, count).into_iter().enumerate() {
+            let lists = [vec![modifier], vec![Modifier::Twist { angle: 40.0 }, modifier]];
+            for (list, modifiers) in lists.iter().enumerate().take(if i < 2 { 2 } else { 1 }) {
+                let flat = match flatten(&modified(modifiers), 0.0) {
+                    Ok(flat) => flat,
+                    // Copies that reach too far into each other are refused by name.
+                    Err(error) => {
+                        assert!(kind == ModifierKind::Repeat && error.what.contains("copies"), "{modifier:?}: {error}");
+                        continue;
+                    }
+                };
+                for component in &flat.components {
+                    visit(&format!("{modifier:?}, list {list}"), kind, &flat, component);
+                }
+            }
+        }
+    }
+}
+
+/// A sphere around what is to be looked at.
+fn surroundings(component: &Component) -> (DVec3, f64) {
+    let bounds = component.bounds;
+    if bounds.is_finite() && bounds.half().length() < 20.0 {
+        (bounds.center(), 0.3 + bounds.half().length())
+    } else {
+        (DVec3::ZERO, 4.0)
+    }
+}
+
+#[test]
+fn steps_through_modifiers_are_safe() {
+    for_each(8, |what, kind, flat, component| {
+        if kind == ModifierKind::Repeat {
+            // Neighbours are looked at by place, so the field may rise at once where it is far from the surface; that
+            // it never exceeds the distance is tested against copies.
+            return;
+        }
+        let (center, reach) = surroundings(component);
+        let safe = steps_are_safe(&|p| field(flat, component, p), center, reach, 1_500, 4e-6 * reach);
+        safe.unwrap_or_else(|e| panic!("{what}: {e}"));
+    });
+}
+
+#[test]
+fn bounds_enclose_what_is_modified() {
+    for_each(8, |what, _, flat, component| {
+        let (center, reach) = surroundings(component);
+        let mut random = Random::new(9);
+        for _ in 0..1_500 {
+            let p = center + random.point(1.3 * reach);
+            let f = field(flat, component, p);
+            assert!(f.is_finite(), "{what}: {f} at {p}");
+            assert!(component.bounds.contains(p) || f > -1e-5, "{what}: {f} at {p} outside {:?}", component.bounds);
+        }
+    });
+}
+
+#[test]
+fn gradients_through_modifiers_are_those_of_central_differences() {
+    for_each(3, |what, kind, flat, component| {
+        // Layers of noise bend faster than differences can follow, and walls fold the field.
+        if matches!(kind, ModifierKind::Noise | ModifierKind::Onion | ModifierKind::Recursion | ModifierKind::Waves) {
+            return;
+        }
+        let (center, reach) = surroundings(component);
+        let mut random = Random::new(11);
+        let points: Vec<DVec3> = (0..60).map(|_| center + random.point(reach)).collect();
+        let right = gradient_is_right(&|p| gradient(flat, component, p), points.into_iter(), 1e-5);
+        right.unwrap_or_else(|e| panic!("{what}: {e}"));
+    });
+}
+
+#[test]
+fn a_modifier_rises_with_the_distance_from_its_bounds() {
+    let mut count = 0;
+    for_each(6, |what, _, flat, component| {
+        let (center, reach) = surroundings(component);
+        let mut random = Random::new(13);
+        let first = &flat.nodes[component.first as usize];
+        let [joint, middle, half] = [0, 1, 2].map(|row| flat.numbers[first.numbers as usize + row].map(f64::from));
+        if first.modifier().is_none() || first.extent != component.count || joint[1] == 0.0 {
+            return;
+        }
+        count += 1;
+        let [middle, half] = [middle, half].map(|[x, y, z, _]| DVec3::new(x, y, z));
+        for _ in 0..400 {
+            let p = center + random.point(2.5 * reach);
+            let least = joint[1] * ((p - middle).abs() - half).max(DVec3::ZERO).length();
+            let f = field(flat, component, p);
+            assert!(least == 0.0 || f >= least - 2e-6 * reach, "{what}: {f} at {p}, said to be at least {least}");
+        }
+    });
+    assert!(count > 20, "{count}");
+}
+
+/// The copies of a repetition as nodes of their own.
+fn explicit(modifier: &Modifier) -> Scene {
+    let Modifier::Repeat { counts, spacing, offset, turn, mirrored, carve_from, carve_to } = *modifier else {
+        panic!("a repetition")
+    };
+    let mut scene = Scene::new();
+    for x in 0..counts[0] {
+        for y in 0..counts[1] {
+            for z in 0..counts[2] {
+                let cell = [x, y, z];
+                if (0..3).all(|i| cell[i] >= carve_from[i] && cell[i] < carve_to[i]) {
+                    continue;
+                }
+                let [fx, fy, fz] = cell.map(f64::from);
+                let mut at = DVec3::new(fx, fy, fz) * DVec3::from(spacing);
+                at.y += if counts[1] == 1 { offset[1] * fx } else { 0.0 };
+                at.z += if counts[2] == 1 { offset[2] * fx } else { 0.0 };
+                at.x += if counts[0] != 1 && counts[1] != 1 { offset[0] * fy } else { 0.0 };
+                let flip = |i: usize| if mirrored[i] && cell[i] % 2 == 1 { -1.0 } else { 1.0 };
+                let turn = DQuat::from_rotation_y((turn * (fx + fy + fz)).to_radians());
+                let node = blended().at(at).rotated(turn).scaled(DVec3::new(flip(0), flip(1), flip(2)));
+                content(&mut scene, node);
+            }
+        }
+    }
+    scene
+}
+
+fn repetitions() -> Vec<Modifier> {
+    let repeat = |counts, spacing, offset, turn, mirrored, carve: [[u32; 3]; 2]| Modifier::Repeat {
+        counts,
+        spacing,
+        offset,
+        turn,
+        mirrored,
+        carve_from: carve[0],
+        carve_to: carve[1],
+    };
+    let (none, off, zero) = ([[0; 3]; 2], [false; 3], [0.0; 3]);
+    vec![
+        // Clear of the walls, touching them, through several cells.
+        repeat([4, 1, 1], [2.0; 3], zero, 0.0, off, none),
+        repeat([3, 2, 3], [0.9, 1.1, 0.5], zero, 0.0, off, none),
+        repeat([9, 1, 1], [0.25, 1.0, 1.0], zero, 0.0, off, none),
+        repeat([4, 3, 1], [0.7, 0.6, 1.0], zero, 0.0, [true, true, false], none),
+        repeat([5, 1, 1], [0.8, 1.0, 1.0], [0.0, 0.3, -0.2], 25.0, off, none),
+        repeat([4, 4, 1], [1.0, 0.7, 1.0], [0.5, 0.0, 0.0], 0.0, off, none),
+        repeat([4, 1, 4], [1.1, 1.0, 1.1], zero, 0.0, off, [[1, 0, 1], [3, 1, 3]]),
+        repeat([3, 3, 3], [1.3; 3], zero, 90.0, [false, false, true], none),
+    ]
+}
+
+#[test]
+fn a_repetition_is_the_union_of_its_copies() {
+    for modifier in repetitions() {
+        let mut scene = Scene::new();
+        content(&mut scene, blended().modified(modifier));
+        let (one, many) = (flatten(&scene, 0.0).unwrap(), flatten(&explicit(&modifier), 0.0).unwrap());
+        assert!(one.components.len() == 1 && many.components.len() > 1);
+        let bounds = one.components[0].bounds.translated(one.components[0].origin);
+        let mut random = Random::new(17);
+        let (mut inside, mut short) = (0, 0);
+        for _ in 0..6_000 {
+            let p = bounds.center() + random.point(0.6) * (2.0 * bounds.half() + 0.6);
+            let f = field(&one, &one.components[0], p - one.components[0].origin);
+            let union = many.components.iter().map(|c| field(&many, c, p - c.origin)).fold(f64::INFINITY, f64::min);
+            // Never more than the true field outside, of the same sign everywhere.
+            assert!(f <= union.max(0.0) + 1e-5, "{modifier:?} at {p}: {f}, the copies say {union}");
+            assert!(union.abs() < 1e-5 || (f < 0.0) == (union < 0.0), "{modifier:?} at {p}: {f} {union}");
+            inside += usize::from(union < 0.0);
+            short += usize::from((f - union).abs() > 1e-5);
+        }
+        assert!(inside > 20, "{modifier:?}: {inside} points inside");
+        // Near the surface it is the same to the last bits; away from it most are.
+        assert!(short < 4_500, "{modifier:?}: {short} of 6000 are only a bound");
+    }
+}
+
+#[test]
+fn a_mirror_and_a_ring_are_the_copies_they_stand_for() {
+    let mirror = Modifier::Mirror { axes: [true, false, true], blend: 0.0 };
+    let ring = Modifier::Polar { count: 5, radius: 1.5, mirrored: false };
+    for (modifier, count) in [(mirror, 4), (ring, 5)] {
+        let flat = flatten(&modified(&[modifier]), 0.0).unwrap();
+        assert_eq!(flat.components.len(), count, "{modifier:?}");
+    }
+    let seam = Modifier::Mirror { axes: [true, false, false], blend: 0.2 };
+    assert_eq!(flatten(&modified(&[seam]), 0.0).unwrap().components.len(), 1);
+}
