@@ -5,9 +5,8 @@
 // (idea: Quilez, "distance functions").
 
 fn sdf_capped_torus(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    let q = vec2f(p.x, abs(p.z));
-    if q.x * a.z - q.y * a.w > 0.0 {
-        return length(vec2f(length(q) - a.x, p.y)) - a.y;
-    }
-    return length(vec3f(q - a.x * a.wz, p.y)) - a.y;
+    let z = abs(p.z);
+    let ring = length(vec2f(length(p.xz) - a.x, p.y));
+    let end = length(vec3f(p.x - a.x * a.w, z - a.x * a.z, p.y));
+    return select(end, ring, p.x * a.z - z * a.w > 0.0) - a.y;
 }

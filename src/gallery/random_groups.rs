@@ -36,7 +36,8 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
             let middle = (cells[axis] as f64 - 1.0) * 0.5;
             (cell[axis] as f64 - middle + random.between(-0.22, 0.22)) * SPACING
         });
-        let kernel = BlendKernel::ALL[random.below(BlendKernel::ALL.len())];
+        let kernels = [BlendKernel::Circular, BlendKernel::Quadratic, BlendKernel::Cubic];
+        let kernel = kernels[random.below(kernels.len())];
         let radius = random.between(0.08, 0.22);
         let node = blended(&format!("Group {}", index + 1), Operator::Union, kernel, radius);
         let id = stage.add(all, node.at(place.into()));

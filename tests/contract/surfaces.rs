@@ -135,10 +135,40 @@ pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     refined.fold(f64::INFINITY, f64::min)
 }
 
-/// The least value around `uv`, by moves of `step` in eight directions, halved where none helps.
-fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], mut step: f64) -> f64 {
-    const MOVES: [[f64; 2]; 8] =
-        [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+/// The least value around `uv`: again from where the last search ended, since in a narrow valley across the
+/// parameters one search ends early.
+fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], step: f64) -> f64 {
+    let mut least = f64::INFINITY;
+    for _ in 0..6 {
+        let before = least;
+        (least, uv) = refine_once(measure, uv, step);
+        if before - least < 1e-9 {
+            break;
+        }
+    }
+    least
+}
+
+/// By moves of `step` in sixteen directions, halved where none helps.
+fn refine_once(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], mut step: f64) -> (f64, [f64; 2]) {
+    const MOVES: [[f64; 2]; 16] = [
+        [1.0, 0.0],
+        [-1.0, 0.0],
+        [0.0, 1.0],
+        [0.0, -1.0],
+        [1.0, 1.0],
+        [-1.0, -1.0],
+        [1.0, -1.0],
+        [-1.0, 1.0],
+        [1.0, 0.3],
+        [-1.0, -0.3],
+        [1.0, -0.3],
+        [-1.0, 0.3],
+        [0.3, 1.0],
+        [-0.3, -1.0],
+        [0.3, -1.0],
+        [-0.3, 1.0],
+    ];
     let mut least = measure(uv);
     while step > 2e-8 {
         let moved = MOVES.iter().map(|m| [0, 1].map(|i| (uv[i] + m[i] * step).clamp(0.0, 1.0)));
@@ -147,7 +177,7 @@ fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], mut step: f64) ->
             None => step *= 0.5,
         }
     }
-    least
+    (least, uv)
 }
 
 /// A cuboid.
