@@ -45,14 +45,23 @@ pub const MAX_KERNELS: usize = 1024;
 #[derive(Debug)]
 pub struct Kernels {
     shared: Arc<Shared>,
-    interpreter: Arc<Kernel>,
-    pruned: Option<Arc<Kernel>>,
-    features: Features,
+    walkers: Vec<Walker>,
     specialised: HashMap<u128, Slot>,
     worker: Option<Worker>,
     clock: u64,
     built: u32,
     failures: Vec<String>,
+}
+
+/// Most kernels for walking that are kept for scenes of other shapes.
+const MAX_WALKERS: usize = 8;
+
+/// Kernels that walk, for scenes with certain shapes.
+#[derive(Debug)]
+struct Walker {
+    features: Features,
+    interpreter: Arc<Kernel>,
+    pruned: Option<Arc<Kernel>>,
 }
 
 /// What the worker needs too.
@@ -115,12 +124,11 @@ impl Kernels {
         let features = Features::none();
         let evaluator = Evaluator::Interpreted(features.clone());
         let interpreter = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
+        let walkers = vec![Walker { features, interpreter, pruned: None }];
         let shared = Arc::new(Shared { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
         Ok(Self {
             shared,
-            interpreter,
-            pruned: None,
-            features,
+            walkers,
             specialised: HashMap::new(),
             worker: None,
             clock: 0,
@@ -137,6 +145,11 @@ impl Kernels {
     /// Kernels built so far.
     pub fn built(&self) -> u32 {
         self.built
+    }
+
+    /// Loops in the code that walks, see [`Features::loops`].
+    pub fn loops(&self) -> u32 {
+        self.walkers.first().map_or(0, |walker| walker.features.loops())
     }
 
     /// How many kernels are being built.
@@ -213,12 +226,13 @@ impl Kernels {
         let open = |i: &usize| choices[*i].is_none();
         let needs_lists = (0..choices.len()).filter(open).any(prunes);
         if (0..choices.len()).any(|i| open(&i)) {
-            self.learn_features(flat, needs_lists)?;
+            self.choose_walker(flat, needs_lists)?;
         }
         self.forget_oldest();
-        let walked = |i: usize| match &self.pruned {
+        let walker = &self.walkers[0];
+        let walked = |i: usize| match &walker.pruned {
             Some(kernel) if prunes(i) => Choice { kernel: kernel.clone(), walk: Walk::List },
-            _ => Choice { kernel: self.interpreter.clone(), walk: Walk::Entries },
+            _ => Choice { kernel: walker.interpreter.clone(), walk: Walk::Entries },
         };
         let ready = |kernel| Choice { kernel, walk: Walk::Straight };
         Ok(choices.into_iter().enumerate().map(|(i, own)| own.map_or_else(|| walked(i), ready)).collect())
@@ -271,20 +285,25 @@ impl Kernels {
         self.specialised.insert(key, Slot { state, used: self.clock });
     }
 
-    /// Makes sure that the kernels that walk know all shapes of the scene.
-    fn learn_features(&mut self, flat: &FlatScene, needs_lists: bool) -> Result<(), ShaderError> {
+    /// Puts the kernels first that walk and know all shapes of the scene, and not many more: what a kernel holds is
+    /// paid for by every scene, because lavapipe executes every arm of a `switch`.
+    fn choose_walker(&mut self, flat: &FlatScene, needs_lists: bool) -> Result<(), ShaderError> {
         let wanted = Features::of(flat);
         let Shared { gpu, layouts, field, options } = &*self.shared;
         let build = |evaluator| field.build(&gpu.device, layouts, &evaluator, *options).map(Arc::new);
-        if !self.features.covers(&wanted) {
-            // Only ever more: going back and forth between scenes builds nothing twice.
-            self.features = self.features.union(&wanted);
-            self.interpreter = build(Evaluator::Interpreted(self.features.clone()))?;
-            self.pruned = None;
-            self.built += 1;
+        let fits = |walker: &Walker| walker.features.covers(&wanted) && walker.features.is_near(&wanted);
+        match self.walkers.iter().position(fits) {
+            Some(at) => self.walkers[..=at].rotate_right(1),
+            None => {
+                let interpreter = build(Evaluator::Interpreted(wanted.clone()))?;
+                self.walkers.insert(0, Walker { features: wanted, interpreter, pruned: None });
+                self.walkers.truncate(MAX_WALKERS);
+                self.built += 1;
+            }
         }
-        if needs_lists && self.pruned.is_none() {
-            self.pruned = Some(build(Evaluator::Pruned(self.features.clone()))?);
+        let walker = &mut self.walkers[0];
+        if needs_lists && walker.pruned.is_none() {
+            walker.pruned = Some(build(Evaluator::Pruned(walker.features.clone()))?);
             self.built += 1;
         }
         Ok(())

@@ -144,33 +144,38 @@ impl Pace {
 const LOOPS_OF_COPIES: u32 = 2;
 
 impl Evaluation {
-    /// Of a component that is walked through, entry by entry.
-    pub fn of_entries(component: &Component) -> Self {
+    /// Of a component that is walked through, entry by entry, by code that holds `loops` besides; `rounds` is
+    /// how many its own leaves take.
+    pub fn of_entries(component: &Component, loops: u32, rounds: u32) -> Self {
         // For each entry an iteration, one for the choice of its shape, one for a group that ends. Of copies most are
         // out of reach.
-        let rounds = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+        let copies = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
         Self {
             straight: false,
-            iterations: (4 * component.count + 2).saturating_mul(rounds),
+            iterations: ((4 + loops) * component.count + rounds + 2).saturating_mul(copies),
             leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
         }
     }
 
     /// Of straight-line code for a component: at most an iteration for each group or run of at least four
     /// entries, and for each leaf where its share is looked at.
-    pub fn of_straight(component: &Component) -> Self {
-        let rounds = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+    pub fn of_straight(component: &Component, rounds: u32) -> Self {
+        let copies = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
         Self {
             straight: true,
-            iterations: (2 + 2 * component.count).saturating_mul(rounds),
+            iterations: (2 + 2 * component.count + rounds).saturating_mul(copies),
             leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
         }
     }
 
     /// Of a component with pruned lists.
-    pub fn of_lists(tree: &CellTree) -> Self {
+    pub fn of_lists(tree: &CellTree, loops: u32, rounds: u32) -> Self {
         // Two iterations find the cell.
-        Self { straight: false, iterations: 4 * tree.longest() + 8, leaves: tree.mean_length() + 2.0 }
+        Self {
+            straight: false,
+            iterations: (4 + loops) * tree.longest() + rounds + 8,
+            leaves: tree.mean_length() + 2.0,
+        }
     }
 }
 

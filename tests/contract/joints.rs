@@ -165,9 +165,6 @@ fn the_lean_kernel_adds_the_least_of_all_smooth_ones() {
         let of = |kernel| added(shapes, kernel, half);
         use BlendKernel::{Chamfer, Circular, Cubic, Lean, Quadratic};
         let [chamfer, lean, circular, quadratic, cubic] = [Chamfer, Lean, Circular, Quadratic, Cubic].map(of);
-        println!(
-            "{name}: chamfer {chamfer:.5} lean {lean:.5} circular {circular:.5} quadratic {quadratic:.5} cubic {cubic:.5}"
-        );
         assert!(chamfer < lean && lean < circular && circular < quadratic && quadratic < cubic);
         assert!(lean < 1.1 * chamfer, "{name}: {lean} {chamfer}");
     }

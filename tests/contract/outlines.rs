@@ -350,7 +350,7 @@ fn corners(shape: &Shape, scale: f64) -> Vec<DVec2> {
         }
         Shape::Star { points, outer_radius, inner_radius, .. } => {
             let corner = |k: u32| {
-                let far = if k % 2 == 0 { outer_radius } else { inner_radius };
+                let far = if k.is_multiple_of(2) { outer_radius } else { inner_radius };
                 DVec2::from_angle(points.half_angle() * f64::from(k)) * far * scale
             };
             (0..2 * points.0.round() as u32).map(corner).collect()

@@ -81,6 +81,13 @@ impl Features {
         }
     }
 
+    /// Loops that the code holds besides the walk itself. lavapipe counts one iteration of each for every entry
+    /// that is walked, also where no lane enters it.
+    pub fn loops(&self) -> u32 {
+        let modifiers = if self.modifiers.is_empty() { 0 } else { MODIFIER_LOOPS };
+        modifiers + self.shapes.iter().map(|kind| shape_loops(*kind)[0]).sum::<u32>()
+    }
+
     /// Whether a kernel for `self` also serves `other`.
     pub fn covers(&self, other: &Self) -> bool {
         let has = |a: bool, b: bool| a || !b;
@@ -91,17 +98,10 @@ impl Features {
             && has(self.further.kernels, other.further.kernels)
     }
 
-    /// What serves both.
-    pub fn union(&self, other: &Self) -> Self {
-        Self {
-            shapes: self.shapes.union(&other.shapes).copied().collect(),
-            modifiers: self.modifiers.union(&other.modifiers).copied().collect(),
-            stack: self.stack.max(other.stack),
-            further: Further {
-                joins: self.further.joins || other.further.joins,
-                kernels: self.further.kernels || other.further.kernels,
-            },
-        }
+    /// Whether it holds hardly more than `other`: a few shapes, no loops.
+    pub fn is_near(&self, other: &Self) -> bool {
+        const FEW: usize = 3;
+        self.loops() == other.loops() && self.shapes.len() <= other.shapes.len() + FEW
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
@@ -136,6 +136,22 @@ impl Features {
             writeln!(out, "        case {}u: {{ return {}; }}", *kind as u32, call(*kind)).expect("strings take all");
         }
         writeln!(out, "        default: {{ return {nothing}; }}\n    }}\n}}").expect("strings take all");
+    }
+}
+
+/// Loops in the code about modifiers: the choice of the next copy, steps of recursions, layers of noise, each for
+/// every place it is called from.
+const MODIFIER_LOOPS: u32 = 16;
+
+/// Loops in a shape's function, and how many rounds they take together at most; those over data come on top, at most
+/// one for each of the shape's rows.
+pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
+    match kind {
+        ShapeKind::MengerSponge => [1, 8],
+        ShapeKind::Julia | ShapeKind::Kleinian => [2, 64],
+        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution => [3, 0],
+        ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
+        _ => [0, 0],
     }
 }
 
@@ -290,6 +306,15 @@ mod tests {
         assert!(!text.contains("#include"));
         let error = plain_source("no_such.wgsl").unwrap_err();
         assert!(error.to_string().contains("no_such.wgsl"));
+    }
+
+    #[test]
+    fn loops_of_shapes_are_known() {
+        for kind in ShapeKind::ALL {
+            let text = plain_source(&format!("sdf/{}.wgsl", kind.function().trim_start_matches("sdf_"))).unwrap();
+            let found: usize = ["for (", "while ", "loop {"].map(|word| text.matches(word).count()).iter().sum();
+            assert_eq!(shape_loops(*kind)[0] as usize, found, "{kind:?}");
+        }
     }
 
     #[test]

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use super::{RenderError, Renderer};
 use crate::flat::{CellTree, Component, FlatScene};
+use crate::render::kernel::shape_loops;
 use crate::render::kernels::{Choice, Kernels, Method, Walk};
 use crate::render::schedule::Evaluation;
+use crate::scene::ShapeKind;
 
 /// What [`Renderer::choose`] finds, beside the components.
 pub(super) struct Chosen {
@@ -33,14 +35,24 @@ impl Renderer {
         }
         let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
         let choices = self.kernels.choose(flat, &keys, self.method, &has_lists)?;
-        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| match choice
-            .walk
-        {
-            Walk::Straight => Evaluation::of_straight(component),
-            Walk::Entries => Evaluation::of_entries(component),
-            Walk::List => tree.as_ref().map_or(Evaluation::of_entries(component), |tree| Evaluation::of_lists(tree)),
+        let loops = self.kernels.loops();
+        let evaluation = |((component, choice), tree): ((&Component, &Choice), &Option<Arc<CellTree>>)| {
+            let rounds = rounds(flat, component);
+            match (choice.walk, tree) {
+                (Walk::Straight, _) => Evaluation::of_straight(component, rounds),
+                (Walk::List, Some(tree)) => Evaluation::of_lists(tree, loops, rounds),
+                _ => Evaluation::of_entries(component, loops, rounds),
+            }
         };
         let evaluations = flat.components.iter().zip(&choices).zip(&trees).map(evaluation).collect();
         Ok(Chosen { keys, choices, evaluations, trees })
     }
+}
+
+/// Rounds that the loops of the component's leaves take together, at most.
+fn rounds(flat: &FlatScene, component: &Component) -> u32 {
+    let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
+    let leaves = entries.iter().filter(|node| node.is_leaf());
+    let own = leaves.map(|node| shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[1]).sum::<u32>();
+    own + component.data
 }
