@@ -125,6 +125,13 @@ const CASES: &[Case] = &[
         "nodes[1].object.shape.corners[2][1]",
         "must be -1e9 to 1e9 m",
     ),
+    (
+        r#""type": "sphere", "radius": 0.5"#,
+        r#""type": "text", "text": "a\tb", "size": 1, "depth": 1, "rounding": 0"#,
+        "Head #2",
+        "nodes[1].object.shape.text",
+        "must not hold control characters",
+    ),
     // Types.
     (r#""radius": 0.5"#, r#""radius": "big""#, "Head #2", "nodes[1].object.shape.radius", "expected a number"),
     (r#""radius": 0.5"#, r#""radius": null"#, "Head #2", "nodes[1].object.shape.radius", "invalid type: null"),

@@ -95,6 +95,7 @@ impl Random {
                 ParamValue::Scalar(_) => ParamValue::Scalar(self.number(&param.limits)),
                 ParamValue::Vector(_) => ParamValue::Vector(self.numbers(&param.limits).into()),
                 ParamValue::Flag(_) => ParamValue::Flag(self.once_in(2)),
+                ParamValue::Text(_) => ParamValue::Text(self.pick(&["", "a\nb", "\"ß\" {7}"]).to_owned()),
                 ParamValue::List(mut list) => {
                     let count = list.count[0] + self.below(5);
                     let limits: Vec<_> = (0..list.columns.len()).map(|c| list.limits(c, &param.limits)).collect();

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::fields::{self, Field};
 use super::sheet::Sheet;
 use super::{inspector_points, shape_change, theme};
-use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, RANGE};
+use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, MAX_TEXT, RANGE};
 use crate::scene::{
     Attenuation, CameraNode, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Param, ParamValue, ShapeKind,
 };
@@ -81,6 +81,21 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
         ParamValue::Flag(_) => {
             let get = |n: &Node| matches!(value(n), Some(ParamValue::Flag(true)));
             sheet.toggle(ui, (&label, "", param.help), get, |n, v| set(n, ParamValue::Flag(v)));
+        }
+        ParamValue::Text(_) => {
+            let Some(ParamValue::Text(mut text)) = value(sheet.active()) else { return };
+            let response = fields::row(ui, &label, param.help, |ui| {
+                ui.add(
+                    TextEdit::multiline(&mut text)
+                        .desired_rows(1)
+                        .desired_width(ui.available_width())
+                        .char_limit(MAX_TEXT),
+                )
+            });
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label.clone()));
+            if response.changed() {
+                sheet.change(response.id, |n| set(n, ParamValue::Text(text.clone())));
+            }
         }
         ParamValue::List(_) => {
             let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };

@@ -1,4 +1,4 @@
-//! What is drawn point by point: a knot of a tube, a turned vase, a star, hills and the sea.
+//! What is drawn point by point: a knot of a tube, a turned vase, a star, a word, hills and the sea.
 
 use std::f64::consts::TAU;
 
@@ -13,6 +13,7 @@ pub(super) fn scene() -> Scene {
     let brass = stage.glossy("Brass", [0.70, 0.42, 0.12], 0.8, 70.0);
     let clay = stage.glossy("Glaze", [0.09, 0.30, 0.34], 0.6, 60.0);
     let red = stage.glossy("Lacquer", [0.62, 0.05, 0.06], 0.5, 80.0);
+    let ivory = stage.glossy("Ivory", [0.72, 0.68, 0.58], 0.4, 50.0);
     let grass = stage.matt("Grass", [0.20, 0.30, 0.10]);
     let water = stage.glossy("Water", [0.03, 0.14, 0.22], 0.9, 120.0);
     let stone = stage.matt("Stone", [0.34, 0.33, 0.32]);
@@ -23,6 +24,8 @@ pub(super) fn scene() -> Scene {
     stage.add(None, object("Vase", vase, clay).at(v(0.0, 0.64, 0.9)));
     let star = Shape::Extrusion { corners: Corners::star(5, 0.75, 0.32), smooth: false, depth: 0.3, rounding: 0.06 };
     stage.add(None, object("Star", star, red).at(v(1.9, 0.62, 0.8)).rotated(turn_y(-24.0)));
+    let text = Shape::Text { text: "Isolith".to_owned(), size: 0.85, depth: 0.22, rounding: 0.02 };
+    stage.add(None, object("Word", text, ivory).at(v(0.0, 0.30, 1.85)).rotated(turn_x(-8.0)));
     let hills = Shape::Terrain {
         size: [2.9, 0.2, 1.9],
         amplitude: 0.55,

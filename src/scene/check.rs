@@ -4,8 +4,8 @@
 use glam::DQuat;
 
 use super::limits::{
-    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, POSITION, RANGE,
-    SCALE, SHININESS, STEPS, THICKNESS, UNIT,
+    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, MAX_TEXT, POSITION,
+    RANGE, SCALE, SHININESS, STEPS, THICKNESS, UNIT,
 };
 use super::{
     Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, List, MAX_MODIFIERS, Material, MeshNode,
@@ -169,8 +169,20 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
             ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
             ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
             ParamValue::Flag(_) => {}
+            ParamValue::Text(text) => letters(param.name, &text)?,
             ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
         }
+    }
+    Ok(())
+}
+
+fn letters(field: &str, text: &str) -> Result<(), Fault> {
+    let count = text.chars().count();
+    if count > MAX_TEXT {
+        return Err(Fault::new(field, format!("must be at most {MAX_TEXT} letters long, not {count}")));
+    }
+    if text.chars().any(|c| c.is_control() && c != '\n') {
+        return Err(Fault::new(field, format!("must not hold control characters, such as in {text:?}")));
     }
     Ok(())
 }
@@ -281,7 +293,7 @@ mod tests {
                 for bad in [f64::NAN, f64::INFINITY, param.limits.hard[0] - 1.0, param.limits.hard[1] * 1.01] {
                     let mut shape = kind.default_shape();
                     match &mut shape.values()[i] {
-                        ParamValue::Flag(_) => continue,
+                        ParamValue::Flag(_) | ParamValue::Text(_) => continue,
                         ParamValue::Scalar(_) => assert!(shape.set_value(i, ParamValue::Scalar(bad))),
                         ParamValue::Vector(_) => {
                             assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))))

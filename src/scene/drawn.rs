@@ -8,7 +8,11 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::font::text_curve;
 use crate::geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
+
+/// Smaller letters are no letters, in metres.
+const LEAST_TEXT: f64 = 1e-6;
 
 /// Points of a curve in space: x, y, z, radius. Copies share them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -102,7 +106,28 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
     })
 }
 
+/// The outlines of a text whose font is `size` metres high.
+pub fn text_outline(text: &str, size: f64) -> Vec<ArcPiece> {
+    // Without a size, or without ink, a point is left.
+    if size < LEAST_TEXT {
+        return Vec::new();
+    }
+    let sized =
+        |arc: ArcPiece| ArcPiece { middle: arc.middle * size, bend: arc.bend / size, reach: arc.reach * size, ..arc };
+    text_curve(text).into_iter().map(sized).collect()
+}
+
+/// A box around a text; flat along Z.
+pub(super) fn text_bounds(text: &str, size: f64) -> Aabb {
+    let arcs = text_outline(text, size);
+    if arcs.is_empty() { Aabb::from_points([DVec3::ZERO]) } else { around(&arcs) }
+}
+
 /// A box around an outline; flat along Z.
 pub(super) fn profile_bounds(corners: &[[f64; 2]], smooth: bool) -> Aabb {
-    profile_curve(corners, smooth).iter().fold(Aabb::EMPTY, |all, arc| all.union(&arc.bounds()))
+    around(&profile_curve(corners, smooth))
+}
+
+fn around(arcs: &[ArcPiece]) -> Aabb {
+    arcs.iter().fold(Aabb::EMPTY, |all, arc| all.union(&arc.bounds()))
 }

@@ -38,6 +38,9 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of an outline.
 pub const CORNERS: [usize; 2] = [3, 256];
 
+/// Longest text, in letters.
+pub const MAX_TEXT: usize = 64;
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 1e6], unit: "m" };
 /// Thicknesses and roundings.

@@ -15,7 +15,7 @@ mod operator;
 mod shape;
 mod table;
 
-pub use drawn::{Corners, Points, profile_curve, tube_curve};
+pub use drawn::{Corners, Points, profile_curve, text_outline, tube_curve};
 pub use error::SceneError;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;

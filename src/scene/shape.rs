@@ -447,6 +447,17 @@ shapes! {
         /// How far the outline is moved away from the axis.
         offset: f64 = 0.0, POSITION;
     }
+    /// A text of solid letters in the XY plane, as thick as its depth along Z.
+    Text = sdf_text with data, "Text" {
+        /// What is written; `\n` begins a line.
+        text: String = "Text".to_owned(), COUNT;
+        /// Height of the font; capital letters have seven tenths of it.
+        size: f64 = 0.6, SIZE;
+        /// From face to face.
+        depth: f64 = 0.15, SIZE;
+        /// Radius of the edges of the faces, inwards.
+        rounding: f64 = 0.0, THICKNESS;
+    }
     /// Hills: fractal noise over a rectangle, solid down to a flat bottom.
     Terrain = sdf_terrain with data, "Terrain" {
         /// Width, depth of the ground below the mean height, length.

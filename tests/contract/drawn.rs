@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use isolith::flat::Body;
 use isolith::flat::twin::{ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
-use isolith::scene::{Shape, profile_curve, tube_curve};
+use isolith::scene::{Shape, profile_curve, text_outline, tube_curve};
 
 use super::samples::evaluate;
 use super::surfaces::{Patch, ball, outside_only, turned};
@@ -59,8 +59,10 @@ fn lambda_at(arc: &ArcPiece, share: f64) -> f64 {
 /// Whether the curves go around the point an odd number of times: chords of fine samples against a ray upwards.
 fn is_odd(arcs: &[ArcPiece], p: DVec2) -> bool {
     let mut crossings = 0;
+    // Letters have many short arcs.
+    let per_arc = if arcs.len() > 20 { 40 } else { 400 };
     for arc in arcs {
-        let count = if arc.bend == DVec3::ZERO { 1 } else { 400 };
+        let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
         for i in 0..count {
             let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate();
             let (a, b) = (at(i), at(i + 1));
@@ -74,8 +76,13 @@ fn is_odd(arcs: &[ArcPiece], p: DVec2) -> bool {
 
 /// How deep a point of the plane is in a profile, by a prism without end.
 fn depth_in(shape: &Shape, p: DVec2) -> f64 {
-    let Shape::Extrusion { corners, smooth, .. } = shape else { panic!("a profile") };
-    let prism = Shape::Extrusion { corners: corners.clone(), smooth: *smooth, depth: 1e4, rounding: 0.0 };
+    let mut prism = shape.clone();
+    match &mut prism {
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
+            (*depth, *rounding) = (1e4, 0.0);
+        }
+        _ => panic!("a profile"),
+    }
     evaluate(&Body::new(&prism), [p.x, p.y, 0.0])
 }
 
@@ -94,11 +101,11 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
         Shape::Tube { points, radius, closed } => {
             pieces(points, *radius, *closed).iter().any(|piece| to_piece(piece, p) < 0.0)
         }
-        Shape::Extrusion { corners, smooth, depth, rounding } => {
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
             let half = 0.5 * depth;
             let rounding = rounding.min(half);
             if rounding == 0.0 {
-                return p.z.abs() < half && is_odd(&profile_curve(corners, *smooth), p.truncate());
+                return p.z.abs() < half && is_odd(&outline_of(shape), p.truncate());
             }
             let d = DVec2::new(depth_in(shape, p.truncate()) + rounding, p.z.abs() - half + rounding);
             d.max(DVec2::ZERO).length() < rounding
@@ -117,7 +124,9 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match shape {
         Shape::Tube { points, radius, closed } => tube(shape, pieces(points, *radius, *closed)),
-        Shape::Extrusion { .. } => extrusion(shape),
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
+            extrusion(shape, 0.5 * depth, rounding.min(0.5 * depth))
+        }
         Shape::Revolution { corners, smooth, offset } => {
             let offset = *offset;
             let turn = |arc: ArcPiece| -> Patch {
@@ -159,12 +168,21 @@ fn tube(shape: &Shape, pieces: Vec<Piece>) -> Vec<Patch> {
     patches
 }
 
-fn extrusion(shape: &Shape) -> Vec<Patch> {
-    let Shape::Extrusion { corners, smooth, depth, rounding } = shape else { panic!("a profile") };
-    let half = 0.5 * depth;
-    let rounding = rounding.min(half);
+/// The arcs of a profile. Letters have outlines that do not overlap.
+fn outline_of(shape: &Shape) -> Vec<ArcPiece> {
+    match shape {
+        Shape::Extrusion { corners, smooth, .. } => profile_curve(corners, *smooth),
+        Shape::Text { text, size, .. } => text_outline(text, *size),
+        _ => panic!("a profile"),
+    }
+}
+
+fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
     let mut patches: Vec<Patch> = Vec::new();
-    let arcs = profile_curve(corners, *smooth);
+    let mut arcs = outline_of(shape);
+    if arcs.is_empty() {
+        arcs.push(ArcPiece::straight(DVec3::ZERO, DVec3::ZERO));
+    }
     for arc in arcs.clone() {
         patches.push(Box::new(move |u, v| {
             Some(arc.at(lambda_at(&arc, u)) + DVec3::Z * (2.0 * v - 1.0) * (half - rounding))

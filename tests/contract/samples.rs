@@ -65,6 +65,11 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
             ParamValue::Scalar(_) => ParamValue::Scalar(next()),
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
             ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
+            ParamValue::Text(_) => {
+                // Up to three letters: an empty text, one outline, outlines with holes.
+                let count = within(&Limits { soft: [0.0, 3.9], hard: [0.0, 3.0], unit: "" }) as usize;
+                ParamValue::Text("oi8".chars().take(count).collect())
+            }
             ParamValue::List(mut list) => {
                 let more = within(&Limits { soft: [0.0, 2.9], hard: [0.0, 2.0], unit: "" }) as usize;
                 let limits: Vec<Limits> = (0..list.columns.len()).map(|c| list.limits(c, &limits)).collect();

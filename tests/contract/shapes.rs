@@ -24,7 +24,7 @@ fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
         Shape::Terrain { .. } | Shape::Ocean { .. } => return false,
-        Shape::Extrusion { rounding, .. } => return rounding == 0.0,
+        Shape::Extrusion { rounding, .. } | Shape::Text { rounding, .. } => return rounding == 0.0,
         Shape::Torus { major_radius, minor_radius } | Shape::Link { major_radius, minor_radius, .. } => {
             minor_radius > major_radius
         }
@@ -66,8 +66,8 @@ fn distances_are_those_of_a_sampled_surface() {
                 continue;
             }
             let reach = 0.3 + size(&shape).min(2.5);
-            // The balls of a tube are many patches.
-            for i in 0..if kind == ShapeKind::Tube { 6 } else { 24 } {
+            // The balls of a tube and the arcs of letters are many patches.
+            for i in 0..if matches!(kind, ShapeKind::Tube | ShapeKind::Text) { 6 } else { 24 } {
                 // Some points on planes of symmetry, where the nearest point is not unique.
                 let mut p = random.point(reach);
                 if i % 4 == 3 {

@@ -13,7 +13,7 @@ mod tube;
 use glam::DVec3;
 
 use crate::geometry::Aabb;
-use crate::scene::{SHAPE_FLOATS, Shape, ShapeKind};
+use crate::scene::{SHAPE_FLOATS, Shape, ShapeKind, text_outline};
 
 /// A shape, ready to be evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +37,7 @@ impl Body {
             Shape::Extrusion { corners, smooth, depth, rounding } => {
                 outline::extrusion(corners, *smooth, *depth, *rounding)
             }
+            Shape::Text { text, size, depth, rounding } => outline::text(&text_outline(text, *size), *depth, *rounding),
             Shape::Revolution { corners, smooth, offset } => outline::revolution(corners, *smooth, *offset),
             Shape::Terrain { size, amplitude, wavelength, octaves, roughness, seed } => {
                 relief::terrain(*size, *amplitude, *wavelength, *octaves, *roughness, *seed)

@@ -20,6 +20,14 @@ pub fn extrusion(corners: &[[f64; 2]], smooth: bool, depth: f64, rounding: f64) 
     Numbers::new([groups as f64, 0.0, half, rounding.min(half)], [0.0; 4], rows)
 }
 
+/// The numbers of letters between two faces. Where outlines overlap it is solid.
+pub fn text(arcs: &[ArcPiece], depth: f64, rounding: f64) -> Numbers {
+    let nothing = [ArcPiece::straight(DVec3::ZERO, DVec3::ZERO)];
+    let (rows, groups) = outline(if arcs.is_empty() { &nothing } else { arcs });
+    let half = 0.5 * depth;
+    Numbers::new([groups as f64, 1.0, half, rounding.min(half)], [0.0; 4], rows)
+}
+
 /// The numbers of a profile turned around the Y axis.
 pub fn revolution(corners: &[[f64; 2]], smooth: bool, offset: f64) -> Numbers {
     let mut kept = Vec::new();

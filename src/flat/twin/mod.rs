@@ -25,7 +25,7 @@ pub use modifier::*;
 pub use op::{
     Joined, Joint, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe, op_union, op_xor,
 };
-pub use outline::{sdf_extrusion, sdf_outline, sdf_revolution};
+pub use outline::{sdf_extrusion, sdf_outline, sdf_revolution, sdf_text};
 pub use real::{Dual, Real};
 pub use relief::{ocean_height, sdf_ocean, sdf_terrain, terrain_height};
 pub use sdf::*;

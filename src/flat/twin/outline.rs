@@ -10,6 +10,11 @@ pub fn sdf_extrusion<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     extruded([d + rounding, p[2].abs() - (half - rounding)]) - rounding
 }
 
+/// A text between two faces.
+pub fn sdf_text<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
+    sdf_extrusion(p, q, rows)
+}
+
 /// A profile turned around the Y axis; exact.
 pub fn sdf_revolution<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     sdf_outline([length2([p[0], p[2]]), p[1]], q[0] as usize, q[1] != 0.0, rows)

@@ -149,7 +149,7 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     match kind {
         ShapeKind::MengerSponge => [1, 8],
         ShapeKind::Julia | ShapeKind::Kleinian => [2, 64],
-        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution => [3, 0],
+        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
         ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
         _ => [0, 0],
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Degrees, ParamValue, Shape};
 use crate::geometry::Aabb;
-use crate::scene::drawn::{profile_bounds, tube_bounds};
+use crate::scene::drawn::{profile_bounds, text_bounds, tube_bounds};
 
 const INFINITY: f64 = f64::INFINITY;
 
@@ -17,6 +17,11 @@ impl Shape {
             Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
             Self::Extrusion { ref corners, smooth, depth, .. } => {
                 let flat = profile_bounds(corners, smooth);
+                let half = DVec3::Z * (0.5 * depth);
+                Aabb::new(flat.min - half, flat.max + half)
+            }
+            Self::Text { ref text, size, depth, .. } => {
+                let flat = text_bounds(text, size);
                 let half = DVec3::Z * (0.5 * depth);
                 Aabb::new(flat.min - half, flat.max + half)
             }
@@ -172,7 +177,7 @@ impl Shape {
                         list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
                         ParamValue::List(list)
                     }
-                    flag @ ParamValue::Flag(_) => flag,
+                    other @ (ParamValue::Flag(_) | ParamValue::Text(_)) => other,
                 };
                 self.set_value(index, value);
             }

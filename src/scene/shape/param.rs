@@ -24,6 +24,8 @@ pub enum ParamValue {
     Flag(bool),
     /// Points.
     List(List),
+    /// Letters.
+    Text(String),
 }
 
 /// Points as rows of numbers.
@@ -178,6 +180,20 @@ impl ParamField for bool {
     fn pack(&self, _: &mut &mut [f64]) {}
     fn unpack(_: &mut &[f64]) -> Self {
         false
+    }
+}
+
+impl ParamField for String {
+    const FLOATS: usize = 0;
+    fn to_value(&self) -> ParamValue {
+        ParamValue::Text(self.clone())
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::Text(v) = value { Some(v) } else { None }
+    }
+    fn pack(&self, _: &mut &mut [f64]) {}
+    fn unpack(_: &mut &[f64]) -> Self {
+        Self::new()
     }
 }
 
