@@ -258,7 +258,7 @@ fn leaf(flat: &FlatScene, node: &FlatNode, space: &DAffine3) -> Option<Tree> {
         px.clone() * cx + py.clone() * cy + pz.clone() * cz + local.translation[i] as f32
     });
     let mut parameters = [0.0; 8];
-    for (row, four) in parameters.chunks_mut(4).take(kind.rows()).enumerate() {
+    for (row, four) in parameters.chunks_mut(4).take(kind.parameter_rows()).enumerate() {
         four.copy_from_slice(&numbers[LEAF_ROWS + row].map(|v| (f64::from(v) * scale) as f32));
     }
     shape(kind, p, &parameters)

@@ -8,6 +8,7 @@ pub mod cli;
 pub mod document;
 pub mod editor;
 pub mod flat;
+pub mod font;
 pub mod gallery;
 pub mod geometry;
 pub mod mesh;

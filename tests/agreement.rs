@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
-use isolith::flat::{CellTree, FlatScene, flatten, pruned_field};
+use isolith::flat::{Body, CellTree, FlatScene, flatten, leaf_data, pruned_field};
 use isolith::gallery;
 use isolith::render::kernel::{Evaluator, Features, Options, ShapeSet, Skipping, Structure};
 use isolith::render::probe;
@@ -223,4 +223,39 @@ fn every_modifier_agrees() {
             }
         }
     }
+}
+
+/// What has data, at joints that need all of their numbers, below modifiers and twice below copies.
+#[test]
+fn data_are_found_below_joints_and_modifiers() {
+    let mut scene = Scene::new();
+    let blend = Blend { steps: 3, ..Blend::new(BlendKernel::Stairs, 0.2) };
+    let group = |operator| {
+        let group = Group { width: 0.1, depth: 0.05, ..Group::new(operator, blend) };
+        Node::new("Group", NodeKind::Group(group))
+    };
+    let twisted = group(Operator::Groove).modified(ModifierKind::Twist.default_modifier());
+    let mirrored = group(Operator::Union).modified(ModifierKind::Mirror.default_modifier());
+    let top = add(&mut scene, None, group(Operator::Union));
+    let parents = [top, add(&mut scene, Some(top), twisted.at(DVec3::X)), add(&mut scene, Some(top), mirrored)];
+    let kinds: Vec<ShapeKind> = ShapeKind::ALL.iter().copied().filter(|kind| kind.has_data()).collect();
+    let mut random = Random::new(8);
+    for (i, kind) in kinds.iter().chain([&ShapeKind::Box, &ShapeKind::Tube]).enumerate() {
+        let node = object(kind.default_shape()).at(random.point(0.6)).scaled(DVec3::splat(0.5));
+        add(&mut scene, Some(parents[i % 3]), node);
+    }
+    let flat = flatten(&scene, 0.0).unwrap();
+    let mut rows = 0;
+    for node in flat.nodes.iter().filter(|node| node.is_leaf()) {
+        let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
+        let data = Body::new(&kind.default_shape()).rows;
+        let found = leaf_data(kind, &flat.numbers[node.numbers as usize..]);
+        assert_eq!(found, data.iter().map(|row| row.map(|v| v as f32)).collect::<Vec<_>>(), "{kind:?}");
+        rows += data.len();
+    }
+    let [component] = &flat.components[..] else { panic!("one component") };
+    assert!(component.modified && rows == component.data as usize);
+    let structure = Structure::of(&flat, component).unwrap();
+    assert_eq!(structure.rows(), (component.rows - component.data) as usize);
+    agree("data", &scene, &mut random);
 }

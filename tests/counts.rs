@@ -37,8 +37,8 @@ fn what_is_hidden_or_out_of_view_costs_nothing() {
     let ball = Shape::Sphere { radius: 0.5 };
     for node in [
         object(wall, DVec3::ZERO),
-        object(ball, DVec3::new(0.0, 0.0, -3.0)),
-        object(ball, DVec3::new(0.0, 0.0, 12.0)),
+        object(ball.clone(), DVec3::new(0.0, 0.0, -3.0)),
+        object(ball.clone(), DVec3::new(0.0, 0.0, 12.0)),
         object(ball, DVec3::new(0.5, 0.0, 1.0)),
     ] {
         scene.insert(None, usize::MAX, node).expect("the scene has room");

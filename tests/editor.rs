@@ -86,7 +86,7 @@ fn undo_all(harness: &mut Harness<'_, Editor>) -> usize {
 
 fn shape(harness: &Harness<'_, Editor>, id: NodeId) -> Shape {
     match &harness.state().document().scene().node(id).unwrap().kind {
-        NodeKind::Object(object) => object.shape,
+        NodeKind::Object(object) => object.shape.clone(),
         _ => panic!("not an object"),
     }
 }

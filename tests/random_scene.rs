@@ -91,10 +91,20 @@ impl Random {
         let kind = self.pick(ShapeKind::ALL);
         let mut shape = kind.default_shape();
         for (i, param) in kind.params().iter().enumerate() {
-            let scalar = ParamValue::Scalar(self.number(&param.limits));
-            if !shape.set_value(i, scalar) {
-                assert!(shape.set_value(i, ParamValue::Vector(self.numbers(&param.limits).into())));
-            }
+            let value = match shape.values().swap_remove(i) {
+                ParamValue::Scalar(_) => ParamValue::Scalar(self.number(&param.limits)),
+                ParamValue::Vector(_) => ParamValue::Vector(self.numbers(&param.limits).into()),
+                ParamValue::Flag(_) => ParamValue::Flag(self.once_in(2)),
+                ParamValue::Text(_) => ParamValue::Text(self.pick(&["", "a\nb", "\"ß\" {7}"]).to_owned()),
+                ParamValue::List(mut list) => {
+                    let count = list.count[0] + self.below(5);
+                    let limits: Vec<_> = (0..list.columns.len()).map(|c| list.limits(c, &param.limits)).collect();
+                    let mut row = || std::array::from_fn(|c| limits.get(c).map_or(0.0, |l| self.number(l)));
+                    list.rows = (0..count).map(|_| row()).collect();
+                    ParamValue::List(list)
+                }
+            };
+            assert!(shape.set_value(i, value));
         }
         shape
     }

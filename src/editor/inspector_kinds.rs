@@ -5,8 +5,8 @@ use glam::DVec3;
 
 use super::fields::{self, Field};
 use super::sheet::Sheet;
-use super::{shape_change, theme};
-use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, RANGE};
+use super::{inspector_points, shape_change, theme};
+use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, MAX_TEXT, RANGE};
 use crate::scene::{
     Attenuation, CameraNode, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Param, ParamValue, ShapeKind,
 };
@@ -58,7 +58,7 @@ pub fn shape(ui: &mut Ui, sheet: &mut Sheet<'_>) {
 
 fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, default: ParamValue) {
     let label = sentence_case(param.name);
-    let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).copied());
+    let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).cloned());
     let set = |n: &mut Node, v: ParamValue| {
         if let Some(o) = object_mut(n) {
             o.shape.set_value(index, v);
@@ -77,6 +77,29 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
             let same = default.x == default.y && default.y == default.z;
             let field = field(&label, param.help, param.limits, same.then_some(default.x));
             sheet.vector(ui, &field, get, |n, v| set(n, ParamValue::Vector(v)));
+        }
+        ParamValue::Flag(_) => {
+            let get = |n: &Node| matches!(value(n), Some(ParamValue::Flag(true)));
+            sheet.toggle(ui, (&label, "", param.help), get, |n, v| set(n, ParamValue::Flag(v)));
+        }
+        ParamValue::Text(_) => {
+            let Some(ParamValue::Text(mut text)) = value(sheet.active()) else { return };
+            let response = fields::row(ui, &label, param.help, |ui| {
+                ui.add(
+                    TextEdit::multiline(&mut text)
+                        .desired_rows(1)
+                        .desired_width(ui.available_width())
+                        .char_limit(MAX_TEXT),
+                )
+            });
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label.clone()));
+            if response.changed() {
+                sheet.change(response.id, |n| set(n, ParamValue::Text(text.clone())));
+            }
+        }
+        ParamValue::List(_) => {
+            let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };
+            inspector_points::list(ui, sheet, (&label, param), get, |n, v| set(n, ParamValue::List(v)));
         }
     }
 }

@@ -25,6 +25,7 @@ mod inspector_joints;
 mod inspector_kinds;
 mod inspector_material;
 mod inspector_modifiers;
+mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
 mod legend;

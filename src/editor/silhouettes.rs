@@ -9,7 +9,7 @@ use crate::scene::ShapeKind;
 /// Paints the silhouette of a shape, seen a little from above.
 pub fn paint_shape(painter: &Painter, rect: Rect, kind: ShapeKind, color: Color32) {
     let pen = Pen { painter, rect, stroke: Stroke::new((rect.height() / 13.0).max(1.0), color) };
-    if !(pen.balls(kind) || pen.rings(kind) || pen.prisms(kind) || pen.tips(kind)) {
+    if !(pen.balls(kind) || pen.rings(kind) || pen.prisms(kind) || pen.tips(kind) || pen.drawn(kind)) {
         pen.ellipse([0.0, 0.0], [0.8, 0.8], 0.0, 1.0);
     }
 }
@@ -197,6 +197,48 @@ impl Pen<'_> {
         true
     }
 
+    /// What is drawn point by point, and landscapes.
+    fn drawn(&self, kind: ShapeKind) -> bool {
+        match kind {
+            ShapeKind::Tube => {
+                self.wave(0.45, [-0.15, -0.3]);
+                self.wave(0.45, [0.15, 0.3]);
+                self.ellipse([-0.8, 0.0], [0.17, 0.3], 0.0, 1.0);
+                self.ellipse([0.8, 0.0], [0.17, 0.3], 0.75, 0.5);
+            }
+            ShapeKind::Extrusion => {
+                let corner = |i: u8, by: f32| {
+                    let angle = TAU * f32::from(i) / 10.0;
+                    let r = if i.is_multiple_of(2) { 0.75 } else { 0.34 };
+                    [r * angle.sin() + by, -r * angle.cos() - by]
+                };
+                self.line(&std::array::from_fn::<_, 11, _>(|i| corner(i as u8, -0.1)));
+                self.line(&std::array::from_fn::<_, 5, _>(|i| corner(i as u8, 0.15)));
+            }
+            ShapeKind::Revolution => {
+                self.line(&[[-0.5, -0.85], [-0.3, -0.45], [-0.65, 0.1], [-0.2, 0.7], [-0.5, 0.85]]);
+                self.line(&[[0.5, -0.85], [0.3, -0.45], [0.65, 0.1], [0.2, 0.7], [0.5, 0.85]]);
+                self.ellipse([0.0, -0.85], [0.5, 0.12], 0.0, 1.0);
+                self.ellipse([0.0, 0.85], [0.5, 0.12], 0.0, 0.5);
+            }
+            ShapeKind::Text => {
+                self.line(&[[-0.75, 0.8], [0.0, -0.85], [0.75, 0.8]]);
+                self.line(&[[-0.45, 0.2], [0.45, 0.2]]);
+            }
+            ShapeKind::Terrain => {
+                self.line(&[[-0.95, 0.5], [-0.4, -0.5], [-0.1, 0.0], [0.3, -0.75], [0.95, 0.5], [-0.95, 0.5]]);
+                self.line(&[[0.05, -0.25], [0.25, -0.1], [0.35, -0.25], [0.55, -0.2]]);
+            }
+            ShapeKind::Ocean => {
+                self.wave(0.25, [-0.45, -0.45]);
+                self.wave(0.25, [0.0, 0.0]);
+                self.wave(0.25, [0.45, 0.45]);
+            }
+            _ => return false,
+        }
+        true
+    }
+
     fn at(&self, [x, y]: [f32; 2]) -> Pos2 {
         self.rect.center() + vec2(x, y) * self.rect.height() * 0.5
     }
@@ -210,6 +252,15 @@ impl Pen<'_> {
         let points = (0..=32).map(|i| {
             let angle = TAU * (start + share * i as f32 / 32.0);
             self.at([center[0] + radii[0] * angle.cos(), center[1] + radii[1] * angle.sin()])
+        });
+        self.painter.add(Shape::line(points.collect(), self.stroke));
+    }
+
+    /// Two crests from left to right, `height` high, between two heights.
+    fn wave(&self, height: f32, [from, to]: [f32; 2]) {
+        let points = (0..=32).map(|i| {
+            let t = i as f32 / 32.0;
+            self.at([2.0 * t - 1.0, from + (to - from) * t - height * (TAU * 1.5 * t).sin() * 0.5])
         });
         self.painter.add(Shape::line(points.collect(), self.stroke));
     }

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use crate::geometry::{Aabb, Camera};
-use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator};
+use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -149,7 +149,9 @@ pub const FIRST_FURTHER_KERNEL: u32 = 3;
 /// Numbers of an entry, four at a time. Both kinds begin with the joint, see [`super::twin::Joint`].
 ///
 /// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
-/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows).
+/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
+/// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
+/// behind the rows of all entries of the component, so that they are no part of what a specialised kernel reads as uniform.
 ///
 /// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
@@ -165,6 +167,18 @@ pub const ROW_ALIGNMENT: usize = 16;
 pub const LEAF_ROWS: usize = 4;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
+
+/// Where the row that says where a leaf's data are stands among its rows; `None` for a shape without data.
+pub fn data_row(kind: ShapeKind) -> Option<usize> {
+    kind.has_data().then(|| LEAF_ROWS + kind.parameter_rows())
+}
+
+/// The data of the leaf whose rows `numbers` begins with; empty for most.
+pub fn leaf_data(kind: ShapeKind, numbers: &[Row]) -> &[Row] {
+    let Some(row) = data_row(kind) else { return &[] };
+    let [count, offset, ..] = numbers[row].map(|v| v as usize);
+    &numbers[row + offset..][..count]
+}
 
 /// Rows of a modifier before its own.
 pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
@@ -243,8 +257,10 @@ pub struct Component {
     pub count: u32,
     /// Its first row in [`FlatScene::numbers`], a multiple of [`ROW_ALIGNMENT`].
     pub numbers: u32,
-    /// How many rows.
+    /// How many rows, data included.
     pub rows: u32,
+    /// How many of the last of them are data of its leaves.
+    pub data: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
     /// Around its surface, relative to `origin`; may be unbounded.

@@ -6,7 +6,7 @@ use super::arrays::*;
 use super::enclosure::fold_bounds;
 use super::operands::{Operand, Value};
 use crate::geometry::Aabb;
-use crate::scene::{BlendKernel, MaterialId, Shape};
+use crate::scene::{BlendKernel, MaterialId, ShapeKind};
 
 /// Appends the component's entries and returns its description.
 pub(super) fn emit(
@@ -21,11 +21,14 @@ pub(super) fn emit(
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
     let modified = flat.nodes[first..].iter().any(|n| n.modifier().is_some());
+    let data = flat.numbers.len();
+    emit_data(flat, operands, &mut (first..));
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
         numbers: numbers as u32,
         rows: (flat.numbers.len() - numbers) as u32,
+        data: (flat.numbers.len() - data) as u32,
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
@@ -64,8 +67,8 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
 
 /// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
-    let Value::Leaf { local_from_world, shape: Shape::Plane {}, .. } = &operands[0].value else { return None };
-    if !operands[1..].iter().all(|o| o.join.only_cuts()) {
+    let Value::Leaf { local_from_world, body, .. } = &operands[0].value else { return None };
+    if body.kind != ShapeKind::Plane || !operands[1..].iter().all(|o| o.join.only_cuts()) {
         return None;
     }
     // The plane's inside is local y < 0.
@@ -73,6 +76,28 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let length = row.length();
     let normal = row / length;
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
+}
+
+/// Appends the data of all leaves; `entries` are those from here on, in the order in which they were written.
+fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn Iterator<Item = usize>) {
+    for operand in operands {
+        let mut entry = || entries.next().expect("all were written");
+        let mut at = entry();
+        while flat.nodes[at].is_run() {
+            at = entry();
+        }
+        match &operand.value {
+            Value::Fold(inner) | Value::Modified { content: inner, .. } => emit_data(flat, inner, entries),
+            Value::Leaf { body, .. } => {
+                let Some(behind) = data_row(body.kind) else { continue };
+                let row = flat.nodes[at].numbers as usize + behind;
+                // Exact: there are far fewer rows than f32 can count.
+                let [count, offset] = [body.rows.len(), flat.numbers.len() - row].map(|v| v as f32);
+                flat.numbers[row] = [count, offset, 0.0, 0.0];
+                flat.numbers.extend(body.rows.iter().map(|row| row.map(|v| v as f32)));
+            }
+        }
+    }
 }
 
 /// Operands that follow each other and join alike get a run where there are this many.
@@ -166,14 +191,16 @@ fn emit_operand(
     let joint = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
     flat.ids.push(operand.node.id);
     match &operand.value {
-        Value::Leaf { local_from_world, distance_scale, shape, material: id } => {
+        Value::Leaf { local_from_world, distance_scale, body, material: id } => {
             let material = material(flat, *id);
-            flat.nodes.push(FlatNode { code: code(shape.kind() as u32), extent: 1, numbers, material });
+            flat.nodes.push(FlatNode { code: code(body.kind as u32), extent: 1, numbers, material });
             flat.numbers.push([joint[0], *distance_scale as f32, joint[1], joint[2]]);
             flat.numbers.extend(placing_rows(local_from_world, origin));
-            let packed = shape.packed().map(|v| v as f32);
-            let rows = shape.kind().rows();
+            let packed = body.parameters.map(|v| v as f32);
+            let rows = body.kind.parameter_rows();
             flat.numbers.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
+            // Where its data are, once they are written.
+            flat.numbers.extend(data_row(body.kind).map(|_| [0.0; 4]));
             0
         }
         Value::Fold(inner) => {

@@ -3,6 +3,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | `body` | shape → the numbers that it is evaluated with |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `reflatten` | the same after a small change |
@@ -19,6 +20,7 @@
 //! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
+mod body;
 mod buffers;
 pub mod compare;
 mod emit;
@@ -40,6 +42,7 @@ pub mod twin;
 mod view;
 
 pub use arrays::*;
+pub use body::Body;
 pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};

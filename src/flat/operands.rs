@@ -3,6 +3,7 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::{Join, MAX_FLAT_NODES, Warning};
+use super::body::Body;
 use super::enclosure::{Enclosure, fold_bounds};
 use super::flatten::FlattenError;
 use super::joints::{Joiner, has_own_radius};
@@ -36,8 +37,8 @@ pub(super) struct Operand<'a> {
 /// What an operand is.
 #[derive(Clone)]
 pub(super) enum Value<'a> {
-    /// A shape: local-from-world, factor on its local distance, parameters.
-    Leaf { local_from_world: DAffine3, distance_scale: f64, shape: Shape, material: MaterialId },
+    /// A shape: local-from-world, factor on its local distance, what it is evaluated with.
+    Leaf { local_from_world: DAffine3, distance_scale: f64, body: Body, material: MaterialId },
     /// A fold of its own; never of one operand.
     Fold(Vec<Operand<'a>>),
     /// A fold in the local space of a modifier: local-from-world, factor on its local distance, the modifier.
@@ -447,7 +448,8 @@ fn leaf<'a>(
         // A ball looks the same from every side: without a rotation its kernel is shorter.
         world_from_local.matrix3 = DMat3::IDENTITY;
     }
-    let bounds = shape.bounds().transformed(&world_from_local);
+    let body = Body::new(&shape);
+    let bounds = body.bounds.transformed(&world_from_local);
     Operand {
         node,
         outermost,
@@ -457,7 +459,7 @@ fn leaf<'a>(
         bounds,
         skip: bounds,
         slope: if bounds.is_finite() { least / greatest } else { 0.0 },
-        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, shape, material },
+        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, body, material },
     }
 }
 
@@ -477,8 +479,8 @@ fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f6
             let rotation = DMat3::from_cols(m.x_axis / scale.x, m.y_axis / scale.y, m.z_axis / scale.z);
             return (absorbed, DAffine3 { matrix3: rotation, ..*world_from_local }, 1.0, 1.0);
         }
-        return (*shape, *world_from_local, scale.min_element(), scale.max_element());
+        return (shape.clone(), *world_from_local, scale.min_element(), scale.max_element());
     }
     let (least, greatest) = singular_values(m);
-    (*shape, *world_from_local, least, greatest)
+    (shape.clone(), *world_from_local, least, greatest)
 }

@@ -102,7 +102,7 @@ impl Last {
             known &= found.is_some();
             found.unwrap_or(0) as u32
         });
-        if !known || (new.count, new.rows, new.stack) != (old.count, old.rows, old.stack) {
+        if !known || (new.count, new.rows, new.data, new.stack) != (old.count, old.rows, old.data, old.stack) {
             return false;
         }
         let flat = Arc::make_mut(&mut self.flat);

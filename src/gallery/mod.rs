@@ -9,6 +9,7 @@ mod chess_pawn;
 mod chessboard;
 mod crowds;
 mod deep_tree;
+mod drawn;
 mod ellipsoid_and_plane;
 mod mesh_and_fields;
 mod modifiers;
@@ -43,6 +44,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("deep-tree", deep_tree::scene()),
         ("modifiers", modifiers::scene()),
         ("chessboard", chessboard::scene()),
+        ("drawn", drawn::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

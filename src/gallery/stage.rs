@@ -191,6 +191,11 @@ fn settled(mut node: Node) -> Node {
                 match value {
                     ParamValue::Scalar(v) => ParamValue::Scalar(round(v)),
                     ParamValue::Vector(v) => ParamValue::Vector(round3(v)),
+                    ParamValue::List(mut list) => {
+                        list.rows.iter_mut().flatten().for_each(|v| *v = round(*v));
+                        ParamValue::List(list)
+                    }
+                    other @ (ParamValue::Flag(_) | ParamValue::Text(_)) => other,
                 },
             );
         }

@@ -1,14 +1,16 @@
-//! Points, boxes, rays, transforms and cameras. Knows nothing of scenes.
+//! Points, arcs, boxes, rays, transforms and cameras. Knows nothing of scenes.
 //!
 //! Conventions, for the whole program: right-handed, +Y up, metres, radians inside and degrees at
 //! the border (files, inspector). Matrices are named `target_from_source`.
 
 mod aabb;
+mod arc;
 mod camera;
 mod ray;
 mod transform;
 
 pub use aabb::Aabb;
+pub use arc::{ArcPiece, biarc, smooth_curve, straight_curve};
 pub use camera::Camera;
 pub use ray::Ray;
 pub use transform::{Transform, singular_values};

@@ -352,9 +352,9 @@ impl Drop for Worker {
     }
 }
 
-/// The component's numbers as bits.
+/// The component's numbers as bits, without the data of its leaves.
 fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
-    let rows = component.numbers as usize..(component.numbers + component.rows) as usize;
+    let rows = component.numbers as usize..(component.numbers + component.rows - component.data) as usize;
     flat.numbers[rows].iter().map(|row| row.map(f32::to_bits)).collect()
 }
 

@@ -4,11 +4,11 @@
 use glam::DQuat;
 
 use super::limits::{
-    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, POSITION, RANGE,
-    SCALE, SHININESS, STEPS, THICKNESS, UNIT,
+    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, MAX_TEXT, POSITION,
+    RANGE, SCALE, SHININESS, STEPS, THICKNESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, MAX_MODIFIERS, Material, MeshNode,
+    Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, List, MAX_MODIFIERS, Material, MeshNode,
     Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
@@ -168,6 +168,34 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
         match value {
             ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
             ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
+            ParamValue::Flag(_) => {}
+            ParamValue::Text(text) => letters(param.name, &text)?,
+            ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
+        }
+    }
+    Ok(())
+}
+
+fn letters(field: &str, text: &str) -> Result<(), Fault> {
+    let count = text.chars().count();
+    if count > MAX_TEXT {
+        return Err(Fault::new(field, format!("must be at most {MAX_TEXT} letters long, not {count}")));
+    }
+    if text.chars().any(|c| c.is_control() && c != '\n') {
+        return Err(Fault::new(field, format!("must not hold control characters, such as in {text:?}")));
+    }
+    Ok(())
+}
+
+/// How many rows a list has, and every number in it.
+fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
+    let [least, most] = list.count;
+    if list.rows.len() < least || list.rows.len() > most {
+        return Err(Fault::new(field, format!("must be {least} to {most} points, not {}", list.rows.len())));
+    }
+    for (i, row) in list.rows.iter().enumerate() {
+        for (column, value) in row[..list.columns.len()].iter().enumerate() {
+            number(&format!("{field}[{i}][{column}]"), *value, &list.limits(column, limits))?;
         }
     }
     Ok(())
@@ -264,8 +292,16 @@ mod tests {
             for (i, param) in kind.params().iter().enumerate() {
                 for bad in [f64::NAN, f64::INFINITY, param.limits.hard[0] - 1.0, param.limits.hard[1] * 1.01] {
                     let mut shape = kind.default_shape();
-                    if !shape.set_value(i, ParamValue::Scalar(bad)) {
-                        assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))));
+                    match &mut shape.values()[i] {
+                        ParamValue::Flag(_) | ParamValue::Text(_) => continue,
+                        ParamValue::Scalar(_) => assert!(shape.set_value(i, ParamValue::Scalar(bad))),
+                        ParamValue::Vector(_) => {
+                            assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))))
+                        }
+                        ParamValue::List(list) => {
+                            list.rows[1][0] = bad;
+                            assert!(shape.set_value(i, ParamValue::List(list.clone())));
+                        }
                     }
                     let object = Object { shape, material: MaterialId(1) };
                     let fault = node(&Node::new("x", NodeKind::Object(object))).unwrap_err();
@@ -278,11 +314,28 @@ mod tests {
     }
 
     #[test]
+    fn lists_are_held_to_their_lengths_and_columns() {
+        let check = |change: &dyn Fn(&mut List)| {
+            let mut shape = ShapeKind::Tube.default_shape();
+            let ParamValue::List(mut list) = shape.values()[0].clone() else { panic!("a list") };
+            change(&mut list);
+            assert!(shape.set_value(0, ParamValue::List(list)));
+            node(&Node::new("x", NodeKind::Object(Object { shape, material: MaterialId(1) })))
+        };
+        assert_eq!(check(&|_| {}), Ok(()));
+        let fault = check(&|list| list.rows.truncate(1)).unwrap_err();
+        assert_eq!((&*fault.field, &*fault.reason), ("object.shape.points", "must be 2 to 256 points, not 1"));
+        assert!(check(&|list| list.rows = vec![[0.0; 4]; 257]).is_err());
+        assert_eq!(check(&|list| list.rows[2][3] = -1.0).unwrap_err().field, "object.shape.points[2][3]");
+        assert_eq!(check(&|list| list.rows[2][1] = -1.0), Ok(()));
+    }
+
+    #[test]
     fn every_parameter_of_every_modifier_is_held_to_its_limits() {
         use crate::scene::{ModifierKind, Shape};
         let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
         for &kind in ModifierKind::ALL {
-            let with = |modifier| Node::new("x", NodeKind::Object(object)).modified(modifier);
+            let with = |modifier| Node::new("x", NodeKind::Object(object.clone())).modified(modifier);
             assert_eq!(node(&with(kind.default_modifier())), Ok(()));
             for (i, param) in kind.params().iter().enumerate() {
                 let bad = param.limits.hard[1] * 1.01 + 1.0;

@@ -33,6 +33,14 @@ pub const MAX_NAME: usize = 256;
 /// Largest scene file in bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
 
+/// Fewest and most points of a curve.
+pub const POINTS: [usize; 2] = [2, 256];
+/// Fewest and most corners of an outline.
+pub const CORNERS: [usize; 2] = [3, 256];
+
+/// Longest text, in letters.
+pub const MAX_TEXT: usize = 64;
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 1e6], unit: "m" };
 /// Thicknesses and roundings.
@@ -41,6 +49,16 @@ pub const THICKNESS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit:
 pub const POSITION: Limits = Limits { soft: [-10.0, 10.0], hard: [-1e9, 1e9], unit: "m" };
 /// Magnitude of a scale factor; its sign is free, zero is refused.
 pub const SCALE: Limits = Limits { soft: [0.01, 10.0], hard: [1e-6, 1e6], unit: "" };
+/// Length of a wave or a hill.
+pub const WAVELENGTH: Limits = Limits { soft: [0.1, 10.0], hard: [1e-2, 1e6], unit: "m" };
+/// Layers of noise, and waves; whole numbers.
+pub const OCTAVES: Limits = Limits { soft: [1.0, 10.0], hard: [1.0, 10.0], unit: "" };
+/// Seeds of what is random; whole numbers.
+pub const SEED: Limits = Limits { soft: [0.0, 100.0], hard: [0.0, 1e6], unit: "" };
+/// Angles.
+pub const TURN: Limits = Limits { soft: [-180.0, 180.0], hard: [-3600.0, 3600.0], unit: "°" };
+/// What is counted or only on or off.
+pub const COUNT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
 /// Blend radius.
 pub const BLEND_RADIUS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
 /// Steps and columns of a joint.

@@ -3,6 +3,7 @@
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
 pub mod check;
+mod drawn;
 mod error;
 pub mod file;
 mod light;
@@ -14,6 +15,7 @@ mod operator;
 mod shape;
 mod table;
 
+pub use drawn::{Corners, Points, profile_curve, text_outline, tube_curve};
 pub use error::SceneError;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;
@@ -22,5 +24,5 @@ pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierParam, Modifie
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, Joining, Operator, RadiusUnit};
 pub(crate) use shape::for_each_shape;
-pub use shape::{Degrees, Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind, Sides};
+pub use shape::{Degrees, LIST_COLUMNS, List, Param, ParamValue, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;

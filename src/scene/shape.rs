@@ -2,25 +2,36 @@
 //! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
 //! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/twin/sdf/`, `sdf_name` in
-//! `shaders/sdf/`. `src/README.md` shows one.
+//! `shaders/sdf/`. `src/README.md` shows one. One `with data` is evaluated from numbers that `flat::Body` makes of its
+//! parameters.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{ARC, CONE, CONSTANT, FOLD, ITERATIONS, POSITION, REACH, SECTOR, SIDES, SIZE, SQUARES, THICKNESS};
+use super::drawn::{Corners, Points};
+use super::limits::{
+    ARC, CONE, CONSTANT, COUNT, FOLD, ITERATIONS, OCTAVES, POSITION, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES,
+    THICKNESS, TURN, UNIT, WAVELENGTH,
+};
 
 mod extent;
 mod param;
 
+#[cfg(test)]
+mod tests;
+
 use param::ParamField;
-pub use param::{Degrees, Param, ParamValue, SHAPE_FLOATS, Sides};
+pub use param::{Degrees, LIST_COLUMNS, List, Param, ParamValue, SHAPE_FLOATS, Sides};
+
+/// Rows of the parameters of a shape with data.
+const DATA_PARAMETER_ROWS: usize = 2;
 
 macro_rules! shapes {
-    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident, $label:literal {
+    ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
         $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
         /// A shape with its parameters, in metres, in local space.
-        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Shape {
             $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ $param: $type, )* }, )+
@@ -59,16 +70,32 @@ macro_rules! shapes {
                 }, )*] }, )+ }
             }
 
-            /// The shape of these packed parameters, see [`Shape::packed`].
+            /// The shape of these packed parameters, see [`Shape::packed`]; nothing for one with data.
             #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
-            pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Shape {
+            pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Option<Shape> {
+                if self.has_data() {
+                    return None;
+                }
                 let mut rest = packed.as_slice();
-                match self { $( Self::$name => Shape::$name { $( $param: ParamField::unpack(&mut rest), )* }, )+ }
+                Some(match self { $( Self::$name => Shape::$name { $( $param: ParamField::unpack(&mut rest), )* }, )+ })
+            }
+
+            /// How many rows of four numbers it takes: its parameters, and behind them where its data are.
+            pub fn rows(self) -> usize {
+                self.parameter_rows() + usize::from(self.has_data())
             }
 
             /// How many rows of four numbers its parameters take, see [`Shape::packed`].
-            pub fn rows(self) -> usize {
+            pub fn parameter_rows(self) -> usize {
+                if self.has_data() {
+                    return DATA_PARAMETER_ROWS;
+                }
                 match self { $( Self::$name => const { (0_usize $( + <$type as ParamField>::FLOATS )*).div_ceil(4) }, )+ }
+            }
+
+            /// Whether it is evaluated from numbers made of its parameters, with further rows behind them.
+            pub fn has_data(self) -> bool {
+                match self { $( Self::$name => false $( || stringify!($data) == "data" )?, )+ }
             }
 
             /// The shape with its default parameters.
@@ -85,16 +112,20 @@ macro_rules! shapes {
 
             /// The parameters' values, in the order of [`ShapeKind::params`].
             pub fn values(&self) -> Vec<ParamValue> {
-                match *self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
+                match self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
             }
 
             /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
-            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one.
+            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one. Of a shape with
+            /// data all are 0: `flat::Body` makes what is read instead.
             #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
             pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
                 let mut out = [0.0; SHAPE_FLOATS];
+                if self.kind().has_data() {
+                    return out;
+                }
                 let mut rest = out.as_mut_slice();
-                match *self { $( Self::$name { $( $param, )* } => { $( $param.pack(&mut rest); )* } )+ }
+                match self { $( Self::$name { $( $param, )* } => { $( $param.pack(&mut rest); )* } )+ }
                 out
             }
 
@@ -115,9 +146,9 @@ macro_rules! shapes {
             }
         }
 
-        /// Calls `$callback!(Name = sdf_name, …)` with every shape.
+        /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` behind those that have data.
         macro_rules! for_each_shape {
-            ($callback:ident) => { $callback! { $( $name = $function, )+ } };
+            ($callback:ident) => { $callback! { $( $name = $function $(with $data)?, )+ } };
         }
         pub(crate) use for_each_shape;
     };
@@ -387,36 +418,78 @@ shapes! {
         /// How often it is folded; a whole number.
         iterations: f64 = 5.0, ITERATIONS;
     }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_parameter_can_be_read_written_and_packed() {
-        for &kind in ShapeKind::ALL {
-            let mut shape = kind.default_shape();
-            assert_eq!(shape.kind(), kind);
-            let values = shape.values();
-            assert_eq!(values.len(), kind.params().len());
-            assert!(kind.rows() * 4 <= SHAPE_FLOATS);
-            for (before, after) in values.iter().zip(kind.unpacked(&shape.packed()).values()) {
-                let [before, after] = [*before, after].map(|v| match v {
-                    ParamValue::Scalar(v) => glam::DVec3::splat(v),
-                    ParamValue::Vector(v) => v,
-                });
-                assert!(before.abs_diff_eq(after, 1e-12), "{kind:?}");
-            }
-            for (i, value) in values.iter().enumerate() {
-                let changed = match *value {
-                    ParamValue::Scalar(v) => ParamValue::Scalar(v + 0.25),
-                    ParamValue::Vector(v) => ParamValue::Vector(v + 0.25),
-                };
-                assert!(shape.set_value(i, changed));
-                assert_eq!(shape.values()[i], changed);
-            }
-            assert!(!shape.set_value(values.len(), ParamValue::Scalar(1.0)));
-        }
+    /// A round tube along a smooth curve through points; its ends are balls.
+    Tube = sdf_tube with data, "Tube" {
+        /// Points of the curve, each with a radius.
+        points: Points = Points::new([[-0.6, -0.2, 0.0, 0.0], [-0.2, 0.25, 0.15, 0.0], [0.2, -0.25, -0.15, 0.0], [0.6, 0.2, 0.0, 0.0]]), POSITION;
+        /// Added to the radius of each point.
+        radius: f64 = 0.12, SIZE;
+        /// Whether the curve returns to its first point.
+        closed: bool = false, COUNT;
+    }
+    /// A drawn outline in the XY plane, as thick as its depth along Z.
+    Extrusion = sdf_extrusion with data, "Extrusion" {
+        /// Corners of the outline; the last is joined to the first.
+        corners: Corners = Corners::star(5, 0.6, 0.28), POSITION;
+        /// Whether the outline is a smooth curve through the corners.
+        smooth: bool = false, COUNT;
+        /// From face to face.
+        depth: f64 = 0.3, SIZE;
+        /// Radius of the edges of the faces, inwards.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// A drawn outline in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
+    Revolution = sdf_revolution with data, "Revolution" {
+        /// Corners of the outline; the last is joined to the first.
+        corners: Corners = Corners::vase(), POSITION;
+        /// Whether the outline is a smooth curve through the corners.
+        smooth: bool = false, COUNT;
+        /// How far the outline is moved away from the axis.
+        offset: f64 = 0.0, POSITION;
+    }
+    /// A text of solid letters in the XY plane, as thick as its depth along Z.
+    Text = sdf_text with data, "Text" {
+        /// What is written; `\n` begins a line.
+        text: String = "Text".to_owned(), COUNT;
+        /// Height of the font; capital letters have seven tenths of it.
+        size: f64 = 0.6, SIZE;
+        /// From face to face.
+        depth: f64 = 0.15, SIZE;
+        /// Radius of the edges of the faces, inwards.
+        rounding: f64 = 0.0, THICKNESS;
+    }
+    /// Hills: fractal noise over a rectangle, solid down to a flat bottom.
+    Terrain = sdf_terrain with data, "Terrain" {
+        /// Width, depth of the ground below the mean height, length.
+        size: [f64; 3] = [2.0, 0.4, 2.0], SIZE;
+        /// Greatest height above and below the mean.
+        amplitude: f64 = 0.35, SIZE;
+        /// Size of the largest hills.
+        wavelength: f64 = 0.8, WAVELENGTH;
+        /// How many layers of ever finer noise.
+        octaves: f64 = 5.0, OCTAVES;
+        /// How high each layer is relative to the one before it.
+        roughness: f64 = 0.45, UNIT;
+        /// Another number, another landscape.
+        seed: f64 = 1.0, SEED;
+    }
+    /// Water with waves over a rectangle, solid down to a flat bottom.
+    Ocean = sdf_ocean with data, "Ocean" {
+        /// Width, depth of the water, length.
+        size: [f64; 3] = [2.0, 0.3, 2.0], SIZE;
+        /// Height of the waves above and below the mean, all together.
+        amplitude: f64 = 0.08, SIZE;
+        /// Length of the longest wave.
+        wavelength: f64 = 0.9, WAVELENGTH;
+        /// How many waves.
+        waves: f64 = 6.0, OCTAVES;
+        /// Where they run to, seen from above: 0 is along X, 90 along Z.
+        direction: f64 = 30.0, TURN;
+        /// How far the waves run apart, to either side of the direction.
+        spread: f64 = 50.0, TURN;
+        /// How pointed the crests are.
+        sharpness: f64 = 0.5, UNIT;
+        /// Where the waves are in their motion: 360 is a whole turn of the longest.
+        phase: f64 = 0.0, TURN;
     }
 }

@@ -131,7 +131,7 @@ fn paint_changes_only_the_material() {
 fn added(shapes: &[(Shape, DVec3)], kernel: BlendKernel, half: DVec3) -> f64 {
     let flat = |radius: f64| {
         let children = shapes.iter().map(|(shape, place)| {
-            Node::new("", NodeKind::Object(Object { shape: *shape, material: MaterialId(1) })).at(*place)
+            Node::new("", NodeKind::Object(Object { shape: shape.clone(), material: MaterialId(1) })).at(*place)
         });
         let (scene, _) = scene(Group::new(Operator::Union, Blend::new(kernel, radius)), children.collect());
         flatten(&scene, 0.0).unwrap()
@@ -157,7 +157,7 @@ fn added(shapes: &[(Shape, DVec3)], kernel: BlendKernel, half: DVec3) -> f64 {
 fn the_lean_kernel_adds_the_least_of_all_smooth_ones() {
     let capsule = Shape::Capsule { start: [-0.5, 0.0, 0.0], end: [0.5, 0.0, 0.0], radius: 0.25 };
     let bar = |x, y, z| Shape::Box { size: [x, y, z], rounding: 0.0 };
-    let in_line = [(capsule, DVec3::X * -0.4), (capsule, DVec3::X * 0.4)];
+    let in_line = [(capsule.clone(), DVec3::X * -0.4), (capsule, DVec3::X * 0.4)];
     let crossing = [(bar(2.0, 0.5, 0.5), DVec3::ZERO), (bar(0.5, 2.0, 0.5), DVec3::ZERO)];
     for (name, shapes, half) in
         [("in line", &in_line, DVec3::new(1.3, 0.4, 0.4)), ("crossing", &crossing, DVec3::new(1.1, 1.1, 0.4))]

@@ -138,7 +138,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
                     let at = curve(v);
                     Some(turned(at.x, at.y, u))
                 });
-                outside_only(patch, *shape)
+                outside_only(patch, shape.clone())
             })
             .collect(),
     }
@@ -237,7 +237,7 @@ fn tubes(shape: &Shape) -> Vec<Patch> {
             let angle = half_angle.0.to_radians();
             let end = |sign: f64| {
                 let (s, c) = (sign * angle).sin_cos();
-                ball(DVec3::new(c, 0.0, s) * major_radius, DVec3::splat(minor_radius), *shape)
+                ball(DVec3::new(c, 0.0, s) * major_radius, DVec3::splat(minor_radius), shape.clone())
             };
             let ring = move |u: f64| {
                 let across = DVec2::from_angle(angle * (2.0 * u - 1.0));
@@ -263,7 +263,7 @@ fn tubes(shape: &Shape) -> Vec<Patch> {
         }
         _ => panic!("{shape:?} is no tube"),
     };
-    patches.into_iter().map(|patch| outside_only(patch, *shape)).collect()
+    patches.into_iter().map(|patch| outside_only(patch, shape.clone())).collect()
 }
 
 /// Both faces of a sheet, the round of its edges, the balls at its corners.
@@ -281,9 +281,9 @@ fn sheet(shape: &Shape, radius: f64) -> Vec<Patch> {
             let (s, c) = (TAU * v).sin_cos();
             Some(from.lerp(to, u) + (across * c + DVec3::Y * s) * radius)
         }));
-        patches.push(ball(from, DVec3::splat(radius), *shape));
+        patches.push(ball(from, DVec3::splat(radius), shape.clone()));
     }
-    patches.into_iter().map(|patch| outside_only(patch, *shape)).collect()
+    patches.into_iter().map(|patch| outside_only(patch, shape.clone())).collect()
 }
 
 /// How a prism is rounded: by a smaller one within, with everything near it.

@@ -1,6 +1,8 @@
 //! Reproducible random numbers, points and parameters.
 
 use glam::DVec3;
+use isolith::flat::Body;
+use isolith::flat::twin::{Real, shape_distance};
 use isolith::scene::{Limits, ParamValue, Shape, ShapeKind};
 
 /// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
@@ -57,10 +59,24 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
     let mut shape = kind.default_shape();
     for (i, value) in shape.values().into_iter().enumerate() {
         let limits = kind.params()[i].limits;
-        let mut next = || number(&limits).clamp(limits.hard[0], limits.hard[1]);
+        let mut within = |limits: &Limits| number(limits).clamp(limits.hard[0], limits.hard[1]);
+        let mut next = || within(&limits);
         let value = match value {
             ParamValue::Scalar(_) => ParamValue::Scalar(next()),
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
+            ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
+            ParamValue::Text(_) => {
+                // Up to three letters: an empty text, one outline, outlines with holes.
+                let count = within(&Limits { soft: [0.0, 3.9], hard: [0.0, 3.0], unit: "" }) as usize;
+                ParamValue::Text("oi8".chars().take(count).collect())
+            }
+            ParamValue::List(mut list) => {
+                let more = within(&Limits { soft: [0.0, 2.9], hard: [0.0, 2.0], unit: "" }) as usize;
+                let limits: Vec<Limits> = (0..list.columns.len()).map(|c| list.limits(c, &limits)).collect();
+                let mut row = || std::array::from_fn(|c| limits.get(c).map_or(0.0, &mut within));
+                list.rows = (0..list.count[0] + more).map(|_| row()).collect();
+                ParamValue::List(list)
+            }
         };
         assert!(shape.set_value(i, value));
     }
@@ -91,14 +107,27 @@ pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
     (0..count).map(|_| shape_with(kind, |_| random.pick(&[0.0, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1e3, 1e6, 1e9]))).collect()
 }
 
-/// The size of a shape: the greatest of its numbers.
+/// The field of a shape.
+pub fn evaluate<T: Real>(body: &Body, p: [T; 3]) -> T {
+    shape_distance(body.kind, p, &body.parameters, &|row| body.rows[row])
+}
+
+/// The size of a shape: the greatest of its numbers, or of its bounds' where some are no lengths.
 pub fn size(shape: &Shape) -> f64 {
+    if shape.kind().has_data() {
+        let bounds = shape.bounds();
+        return bounds.min.abs().max(bounds.max.abs()).max_element();
+    }
     shape.packed().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
 /// Points where formulas break: the centre, the axes, planes of symmetry, edges, far away.
 pub fn special_points(shape: &Shape) -> Vec<DVec3> {
-    let q = shape.packed();
+    let q = if shape.kind().has_data() {
+        [shape.bounds().max.to_array(), [0.0; 3]].concat()
+    } else {
+        shape.packed().to_vec()
+    };
     let mut coordinates = vec![0.0, 1e-30, 1e-9, 0.25, 1.0, -1.0, 1e6, -1e9];
     coordinates.extend(q[..3].iter().flat_map(|v| [*v, 0.5 * v, -0.5 * v]));
     let mut points = Vec::new();

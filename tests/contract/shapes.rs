@@ -1,32 +1,36 @@
 //! Every shape.
 
 use glam::DVec3;
-use isolith::flat::twin::{Dual, Real, shape_distance};
+use isolith::flat::Body;
+use isolith::flat::twin::{Dual, Real};
 use isolith::scene::{Shape, ShapeKind};
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, extreme, ordinary, size, special_points};
+use super::samples::{Random, evaluate, extreme, ordinary, size, special_points};
 use super::surfaces::{brute_distance, inside, patches};
 
 fn distance(shape: &Shape, p: DVec3) -> f64 {
-    shape_distance(shape.kind(), p.to_array(), &shape.packed())
+    evaluate(&Body::new(shape), p.to_array())
 }
 
 fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
     let coordinates = DVec3::AXES.map(|axis| Dual::coordinate(axis, 0.0, p));
-    let Dual { v, d } = shape_distance(shape.kind(), coordinates, &shape.packed());
+    let Dual { v, d } = evaluate(&Body::new(shape), coordinates);
     (v, d)
 }
 
-/// Inside tubes that meet themselves and rounded notches the field only has to be a bound.
+/// Inside tubes that meet themselves and rounded notches the field only has to be a bound; above hills and waves
+/// everywhere, and where a drawn outline is rounded.
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
+        Shape::Terrain { .. } | Shape::Ocean { .. } => return false,
+        Shape::Extrusion { rounding, .. } | Shape::Text { rounding, .. } => return rounding == 0.0,
         Shape::Torus { major_radius, minor_radius } | Shape::Link { major_radius, minor_radius, .. } => {
             minor_radius > major_radius
         }
         Shape::PolygonRing { major_radius, minor_radius, .. } => 2.0 * minor_radius > major_radius,
         Shape::Star { rounding, .. } => rounding > 0.0,
-        Shape::CappedTorus { .. } | Shape::HollowCutSphere { .. } => true,
+        Shape::CappedTorus { .. } | Shape::HollowCutSphere { .. } | Shape::Tube { .. } => true,
         _ => false,
     };
     f >= 0.0 || !meets_itself
@@ -62,7 +66,8 @@ fn distances_are_those_of_a_sampled_surface() {
                 continue;
             }
             let reach = 0.3 + size(&shape).min(2.5);
-            for i in 0..24 {
+            // The balls of a tube and the arcs of letters are many patches.
+            for i in 0..if matches!(kind, ShapeKind::Tube | ShapeKind::Text) { 6 } else { 24 } {
                 // Some points on planes of symmetry, where the nearest point is not unique.
                 let mut p = random.point(reach);
                 if i % 4 == 3 {
@@ -88,9 +93,11 @@ fn a_wrong_distance_is_caught() {
             points.iter().any(|p| check_distance(&shape, &surface, *p, wrong(distance(&shape, *p))).is_err())
         };
         assert!(!any_caught(&|f| f), "{kind:?}");
-        assert!(any_caught(&|f| f * 1.001), "{kind:?}");
-        assert!(any_caught(&|f| f * 0.999), "{kind:?}");
-        assert!(any_caught(&|f| f - 1e-4), "{kind:?}");
+        if is_exact_at(&shape, 1.0) {
+            assert!(any_caught(&|f| f * 1.001), "{kind:?}");
+            assert!(any_caught(&|f| f * 0.999), "{kind:?}");
+            assert!(any_caught(&|f| f - 1e-4), "{kind:?}");
+        }
         assert!(any_caught(&|f| -f), "{kind:?}");
     }
 }

@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use isolith::scene::Shape;
 
-use super::outlines;
+use super::{drawn, outlines};
 
 /// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
 /// surface because it lies inside.
@@ -49,6 +49,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             p.y.abs() < height * 0.5 && (0..6).all(|k| side(f64::from(k)))
         }
         Shape::Octahedron { radius } => p.abs().element_sum() < radius,
+        _ if shape.kind().has_data() => drawn::inside(shape, p),
         _ => outlines::inside(shape, p),
     }
 }
@@ -56,8 +57,8 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
 /// The surface.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
-        Shape::Sphere { radius } => vec![ball(DVec3::ZERO, DVec3::splat(radius), *shape)],
-        Shape::Ellipsoid { radii } => vec![ball(DVec3::ZERO, radii.into(), *shape)],
+        Shape::Sphere { radius } => vec![ball(DVec3::ZERO, DVec3::splat(radius), shape.clone())],
+        Shape::Ellipsoid { radii } => vec![ball(DVec3::ZERO, radii.into(), shape.clone())],
         Shape::Box { size, rounding } => {
             let half = DVec3::from(size) * 0.5;
             let rounding = rounding.min(half.min_element());
@@ -71,14 +72,14 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
         Shape::BoxFrame { size, thickness } => {
             let bars = bars(size.into(), thickness);
             let faces = bars.iter().flat_map(|b| rectangles(*b)).collect::<Vec<_>>();
-            faces.into_iter().map(|f| outside_only(f, *shape)).collect()
+            faces.into_iter().map(|f| outside_only(f, shape.clone())).collect()
         }
         Shape::Torus { major_radius, minor_radius } => vec![outside_only(
             Box::new(move |u, v| {
                 let (s, c) = (TAU * v).sin_cos();
                 Some(turned(major_radius + minor_radius * c, minor_radius * s, u))
             }),
-            *shape,
+            shape.clone(),
         )],
         Shape::Cylinder { radius, height, rounding } => {
             let rounding = rounding.min(radius).min(height * 0.5);
@@ -97,7 +98,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             let (a, b) = (end - start).try_normalize().unwrap_or(DVec3::Y).any_orthonormal_pair();
             let side: Patch =
                 Box::new(move |u, v| Some(start.lerp(end, v) + (a * (TAU * u).cos() + b * (TAU * u).sin()) * radius));
-            vec![ball(start, DVec3::splat(radius), *shape), ball(end, DVec3::splat(radius), *shape), side]
+            vec![ball(start, DVec3::splat(radius), shape.clone()), ball(end, DVec3::splat(radius), shape.clone()), side]
         }
         Shape::Plane {} => vec![Box::new(|u, v| Some(DVec3::new(64.0 * u - 32.0, 0.0, 64.0 * v - 32.0)))],
         Shape::HexagonalPrism { radius, height } => hexagonal_prism(radius, height * 0.5),
@@ -108,6 +109,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
                 triangle(corners)
             })
             .collect(),
+        _ if shape.kind().has_data() => drawn::patches(shape),
         _ => outlines::patches(shape),
     }
 }
@@ -248,8 +250,10 @@ fn frustum(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
 fn round_cone(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
     let shape = Shape::RoundCone { bottom_radius: bottom, top_radius: top, height };
     let half = 0.5 * height;
-    let mut patches =
-        vec![ball(DVec3::Y * -half, DVec3::splat(bottom), shape), ball(DVec3::Y * half, DVec3::splat(top), shape)];
+    let mut patches = vec![
+        ball(DVec3::Y * -half, DVec3::splat(bottom), shape.clone()),
+        ball(DVec3::Y * half, DVec3::splat(top), shape),
+    ];
     if (bottom - top).abs() < height {
         let tilt = ((bottom - top) / height).asin();
         let touch = move |r: f64, y: f64| (r * tilt.cos(), y + r * tilt.sin());

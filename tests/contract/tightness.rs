@@ -4,11 +4,11 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use isolith::flat::twin::shape_distance;
+use isolith::flat::Body;
 use isolith::scene::{Shape, ShapeKind};
 
 use super::outlines::menger_distance;
-use super::samples::Random;
+use super::samples::{Random, evaluate};
 use super::surfaces::{Patch, brute_distance, patches};
 
 const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
@@ -29,7 +29,8 @@ fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
 
 /// The distance along the best of many rays, which is turned ever less from there on. Not less than the distance.
 fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
-    let field = |p: DVec3| shape_distance(shape.kind(), p.to_array(), &shape.packed());
+    let body = Body::new(shape);
+    let field = |p: DVec3| evaluate(&body, p.to_array());
     let mut random = Random::new(1);
     let (mut best, mut ahead) = (f64::INFINITY, DVec3::ZERO);
     for i in 0..600 {
@@ -51,14 +52,14 @@ fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
 /// The mean and the least of field over distance, at random points outside of the default shape within its size.
 fn tightness(kind: ShapeKind) -> [f64; 2] {
     let shape = kind.default_shape();
-    let surface = patches(&shape);
+    let (surface, body) = (patches(&shape), Body::new(&shape));
     let bounds = shape.bounds();
     let reach = if bounds.is_finite() { 1.2 * bounds.half().max_element() } else { 1.0 };
     let mut random = Random::new(17 + kind as u64);
     let (mut sum, mut least, mut count) = (0.0, f64::INFINITY, 0);
     while count < POINTS {
         let p = random.point(reach);
-        let f = shape_distance(kind, p.to_array(), &shape.packed());
+        let f = evaluate(&body, p.to_array());
         if f < 1e-3 {
             continue;
         }

@@ -266,7 +266,7 @@ fn every_shape_in_a_blend_with_every_other_steps_safely() {
             let group = Group::new(random.pick(&Operator::ALL), blend);
             let parent = scene.insert(None, 0, Node::new("Group", NodeKind::Group(group))).unwrap();
             for kind in [first, second] {
-                let shape = random.pick(&ordinary(kind, 5));
+                let shape = ordinary(kind, 5).swap_remove(random.index(7));
                 let node = Node::new("Leaf", NodeKind::Object(Object { shape, material: MaterialId(1) }));
                 scene.insert(Some(parent), usize::MAX, node.at(random.point(0.3))).unwrap();
             }

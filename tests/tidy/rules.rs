@@ -5,7 +5,8 @@ use super::source::{Token, closing, tokens};
 /// What each module may use, besides itself. Nothing else is allowed: not by name, not through `super`.
 pub const MODULES: &[(&str, &[&str])] = &[
     ("geometry", &[]),
-    ("scene", &["geometry"]),
+    ("font", &["geometry"]),
+    ("scene", &["font", "geometry"]),
     ("mesh", &["geometry"]),
     ("document", &["scene", "geometry"]),
     ("gallery", &["scene", "geometry"]),
@@ -26,7 +27,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("gltf", &["mesh"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),
-    ("ab_glyph", &["bench"]),
+    ("ab_glyph", &["font", "bench"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];

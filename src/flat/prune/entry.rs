@@ -3,17 +3,18 @@
 use glam::{DAffine3, DMat3, DVec3};
 
 use crate::flat::twin::{Joint, shape_distance};
-use crate::flat::{Component, FlatScene, LEAF_ROWS, Row};
+use crate::flat::{Component, FlatScene, LEAF_ROWS, Row, leaf_data};
 use crate::geometry::{Aabb, singular_values};
 use crate::scene::{SHAPE_FLOATS, ShapeKind};
 
 /// A leaf, evaluated exactly as the twin does it.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Leaf {
     kind: ShapeKind,
     rows: [(DVec3, f64); 3],
     scale: f64,
     parameters: [f64; SHAPE_FLOATS],
+    data: Vec<[f64; 4]>,
 }
 
 impl Leaf {
@@ -25,33 +26,47 @@ impl Leaf {
             (DVec3::new(x, y, z), shift)
         });
         let mut parameters = [0.0; SHAPE_FLOATS];
-        for row in 0..kind.rows() {
+        for row in 0..kind.parameter_rows() {
             parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
         }
-        Self { kind, rows, scale: numbers[0][1].into(), parameters }
+        let data = leaf_data(kind, numbers).iter().map(|row| row.map(f64::from)).collect();
+        Self { kind, rows, scale: numbers[0][1].into(), parameters, data }
     }
 
     /// Its field at `p`, in metres.
     pub fn distance(&self, p: DVec3) -> f64 {
         let local = self.rows.map(|(row, shift)| row.dot(p) + shift);
-        shape_distance(self.kind, local, &self.parameters) * self.scale
+        shape_distance(self.kind, local, &self.parameters, &|row| self.data[row]) * self.scale
     }
 
     /// How large its coordinates get, in metres: what rounding in f32 is relative to.
     fn size(&self) -> f64 {
-        let greatest = self.parameters.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let greatest = match self.around() {
+            Some((center, radius)) => center.abs().max_element() + radius,
+            None => self.parameters.iter().fold(0.0_f64, |most, v| most.max(v.abs())),
+        };
         (self.rows.iter().fold(greatest, |most, (_, shift)| most.max(shift.abs()))) * self.scale
     }
 
+    /// The ball around a shape with data, in its own space.
+    fn around(&self) -> Option<(DVec3, f64)> {
+        self.data.first().map(|row| (DVec3::from_slice(row), row[3]))
+    }
+
     fn ball(&self) -> Ball {
-        let bounds = self.kind.unpacked(&self.parameters).bounds();
+        let around = self.around().or_else(|| {
+            let bounds = self.kind.unpacked(&self.parameters)?.bounds();
+            Some((bounds.center(), bounds.half().length()))
+        });
+        // What has data begins them with its ball.
+        let Some((middle, radius)) = around else { return Ball::NONE };
         let local_from_component = DAffine3 {
             matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
             translation: self.rows.map(|(_, shift)| shift).into(),
         };
-        let center = local_from_component.inverse().transform_point3(bounds.center());
+        let center = local_from_component.inverse().transform_point3(middle);
         let (least, _) = singular_values(&local_from_component.matrix3);
-        Ball::new(center, least * self.scale, bounds.half().length() * self.scale)
+        Ball::new(center, least * self.scale, radius * self.scale)
     }
 }
 
@@ -104,7 +119,8 @@ impl Entries {
     /// Those of `component`.
     pub fn new(flat: &FlatScene, component: &Component) -> Self {
         let count = component.count as usize;
-        let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters: [0.0; 8] };
+        let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
+        let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data };
         let mut entries = Self {
             leaves: vec![none; count],
             balls: vec![Ball::NONE; count],

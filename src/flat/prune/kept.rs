@@ -7,7 +7,8 @@ use super::CellTree;
 use super::build::{Build, Grid};
 use super::part::Part;
 use crate::flat::twin::Joint;
-use crate::flat::{Component, FlatNode, FlatScene, Row};
+use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
+use crate::scene::ShapeKind;
 
 /// A component's tree, and the component as it was then.
 #[derive(Debug)]
@@ -81,7 +82,6 @@ impl Kept {
                 return Change::All;
             }
             let first = is.numbers as usize;
-            let last = old.nodes.get(index + 1).map_or(old.numbers.len(), |next| next.numbers as usize);
             // Lists do not depend on a run at all, and of a group's numbers only on its joint: bounds
             // merely tell sooner what the leaves would.
             let same = match () {
@@ -89,7 +89,7 @@ impl Kept {
                 () if is.is_group() => {
                     was.code == is.code && Joint::read(&old.numbers[first]) == Joint::read(&new_numbers[first])
                 }
-                () => was.code == is.code && old.numbers[first..last] == new_numbers[first..last],
+                () => was.code == is.code && leaf(&is, &old.numbers[first..]) == leaf(&is, &new_numbers[first..]),
             };
             changed[index] = !same;
             count += usize::from(!same);
@@ -100,6 +100,12 @@ impl Kept {
             _ => Change::Some(changed),
         }
     }
+}
+
+/// The rows and the data of a leaf whose rows `numbers` begins with.
+fn leaf<'a>(node: &FlatNode, numbers: &'a [Row]) -> [&'a [Row]; 2] {
+    let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
+    [&numbers[..LEAF_ROWS + kind.rows()], leaf_data(kind, numbers)]
 }
 
 fn nodes<'a>(flat: &'a FlatScene, component: &'a Component) -> impl Iterator<Item = FlatNode> + 'a {

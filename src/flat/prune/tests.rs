@@ -43,6 +43,12 @@ impl Random {
         ShapeKind::ALL[self.below(ShapeKind::ALL.len())].default_shape()
     }
 
+    /// A half space or what has no end would leave nothing bounded, or nothing.
+    fn bounded_shape(&mut self) -> Shape {
+        let shape = self.shape();
+        if shape.bounds().is_finite() { shape } else { Shape::Sphere { radius: 0.6 } }
+    }
+
     fn kernel(&mut self) -> BlendKernel {
         BlendKernel::ALL[self.below(BlendKernel::ALL.len())]
     }
@@ -92,18 +98,13 @@ fn random_tree(seed: u64, count: usize) -> Scene {
         let mut node = if random.once_in(5) {
             Node::new("", random.group(0.3)).at(0.5 * place)
         } else {
-            let shape = random.shape();
-            // A half space or what has no end would leave nothing bounded, or nothing.
-            object(if shape.bounds().is_finite() { shape } else { Shape::Sphere { radius: 0.6 } })
-                .at(place)
-                .rotated(turned)
-                .scaled(scale)
+            object(random.bounded_shape()).at(place).rotated(turned).scaled(scale)
         };
         let is_group = !matches!(node.kind, NodeKind::Object(_));
         node.negative = random.once_in(5);
         let id = add(&mut scene, Some(parent), node);
         if is_group {
-            add(&mut scene, Some(id), object(random.shape()).at(place).scaled(DVec3::splat(0.8)));
+            add(&mut scene, Some(id), object(random.bounded_shape()).at(place).scaled(DVec3::splat(0.8)));
             groups.push(id);
         }
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::modifier::*;
 use super::{Dual, Joined, Joint, Real, op_join, shape_distance};
-use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row};
+use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// The field at `p`, in metres; `p` is relative to the component's origin.
@@ -216,8 +216,9 @@ fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], p: [T; 3]) -> T {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
     let local = placed(&numbers[1..4], p);
     let mut parameters = [0.0; 8];
-    for row in 0..kind.rows() {
+    for row in 0..kind.parameter_rows() {
         parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));
     }
-    shape_distance(kind, local, &parameters) * f64::from(numbers[0][1])
+    let data = leaf_data(kind, numbers);
+    shape_distance(kind, local, &parameters, &|row| data[row].map(f64::from)) * f64::from(numbers[0][1])
 }

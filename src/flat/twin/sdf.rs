@@ -19,14 +19,31 @@ pub use sheet::{sdf_quad, sdf_triangle};
 
 use super::Real;
 use super::ellipsoid::sdf_ellipsoid;
+use super::outline::{sdf_extrusion, sdf_revolution, sdf_text};
+use super::relief::{sdf_ocean, sdf_terrain};
+use super::tube::sdf_tube;
 use crate::scene::{ShapeKind, for_each_shape};
-use planar::{clamp, extruded, from_segment, length2, length3, trapezoid};
+use planar::{clamp, from_segment, trapezoid};
+pub(super) use planar::{extruded, length2, length3};
+
+/// The data of a shape: the row at an index.
+pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
+
+/// Calls the function of a shape, with the data if it takes any.
+macro_rules! call {
+    ($function:ident, $p:ident, $q:ident, $rows:ident) => {
+        $function($p, $q)
+    };
+    ($function:ident, $p:ident, $q:ident, $rows:ident, data) => {
+        $function($p, $q, $rows)
+    };
+}
 
 macro_rules! dispatch {
-    ($( $name:ident = $function:ident, )+) => {
-        /// The field of a shape, by its kind.
-        pub fn shape_distance<T: Real>(kind: ShapeKind, p: [T; 3], q: &[f64; 8]) -> T {
-            match kind { $( ShapeKind::$name => $function(p, q), )+ }
+    ($( $name:ident = $function:ident $(with $data:ident)?, )+) => {
+        /// The field of a shape, by its kind. `rows` are its data, see [`crate::flat::Body`]; most have none.
+        pub fn shape_distance<T: Real>(kind: ShapeKind, p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
+            match kind { $( ShapeKind::$name => call!($function, p, q, rows $(, $data)?), )+ }
         }
     };
 }

@@ -16,9 +16,17 @@ pub fn gradient_wgsl(function: &str) -> Option<String> {
     }
     // What has no derivative has no kernel; a test derives every one.
     let text = match function.strip_prefix("sdf_") {
-        Some(shape) => dual(&plain_source(&format!("sdf/{shape}.wgsl")).ok()?, function).ok()?,
+        Some(shape) => dual(&with_rows(plain_source(&format!("sdf/{shape}.wgsl")).ok()?), function).ok()?,
         None => super::modifiers::derived(function)?,
     };
     derived.insert(function.to_owned(), text.clone());
     Some(text)
+}
+
+/// A shape's source with something that stands for the data it reads; their derivative is zero.
+fn with_rows(text: String) -> String {
+    if !text.contains("scene_row(") {
+        return text;
+    }
+    format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
 }

@@ -10,7 +10,7 @@ use super::gradients::gradient_wgsl;
 use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::specialise::{Fold, specialise};
 use super::{Evaluator, Options, Skipping};
-use crate::flat::{FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, MAX_STACK, modifier_rows};
+use crate::flat::{FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS, MAX_STACK, data_row, modifier_rows};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Every file of `shaders/`, by its path there.
@@ -143,19 +143,25 @@ impl Features {
 /// every place it is called from.
 const MODIFIER_LOOPS: u32 = 16;
 
-/// Loops in a shape's function, and how many rounds they take together at most.
+/// Loops in a shape's function, and how many rounds they take together at most; those over data come on top, at most
+/// one for each of the shape's rows.
 pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     match kind {
         ShapeKind::MengerSponge => [1, 8],
         ShapeKind::Julia | ShapeKind::Kleinian => [2, 64],
+        ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
+        ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
         _ => [0, 0],
     }
 }
 
-/// The arguments of a shape's function, its parameters read from their rows.
+/// The arguments of a shape's function, its parameters read from their rows, and where its data begin.
 fn read_rows(kind: ShapeKind) -> String {
-    let row = |i: usize| if i < kind.rows() { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
-    format!("p, {}, {}", row(0), row(1))
+    let parameters = kind.parameter_rows();
+    let row = |i: usize| if i < parameters { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
+    let data = |at: usize| format!(", row + {at}u + u32(scene_row(row + {at}u).y)");
+    let data = data_row(kind).map_or(String::new(), |at| data(at - LEAF_ROWS));
+    format!("p, {}, {}{data}", row(0), row(1))
 }
 
 /// Why a shader could not be put together.

@@ -6,7 +6,7 @@ use super::modifiers::{file, has_point, has_value, modifier_include};
 use super::shares::shares;
 use super::structure::{Entry, EntryKind, ShapeSet, Structure};
 use super::{Options, Skipping};
-use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, is_copying, modifier_rows};
+use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, data_row, is_copying, modifier_rows};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
@@ -74,8 +74,10 @@ impl Writer<'_> {
         for row in 0..copied {
             self.line(&format!("var<private> q{row}: vec4f;"));
         }
+        self.line("var<private> first_row: u32;");
         let begin = if self.fold == Fold::Value { "field_begin" } else { "surface_begin" };
         self.line(&format!("fn {begin}(component: Component) {{"));
+        self.line("    first_row = component.numbers;");
         if self.fold == Fold::Surface {
             self.line("    surface_first = component.first;");
         }
@@ -311,12 +313,14 @@ fn own_rows(kind: ModifierKind, row: usize) -> String {
     (0..modifier_rows(kind)).map(|i| format!(", q{}", row + MODIFIER_ROWS + i)).collect()
 }
 
-/// The place of `point` in the leaf's own space, and the parameters of its shape.
+/// The place of `point` in the leaf's own space, the parameters of its shape, and where its data begin.
 pub(super) fn arguments(point: &str, entry: &Entry, shape: ShapeKind, row: usize) -> String {
     let placed = if entry.moved { "placed_moved" } else { "placed" };
     let parameter = |i: usize| {
-        if i < shape.rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
+        if i < shape.parameter_rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
     };
     let (a, b) = (parameter(0), parameter(1));
-    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}", row + 1, row + 2, row + 3)
+    let data = data_row(shape).map(|i| row + i);
+    let data = data.map_or(String::new(), |at| format!(", first_row + {at}u + u32(q{at}.y)"));
+    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
 }

@@ -270,7 +270,7 @@ const FNV_START: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
 const FNV_PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
 
 fn fits(component: &Component) -> bool {
-    component.rows <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
+    component.rows - component.data <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
 }
 
 /// Whether a component has a form: no modifiers, no operators beyond the first three, no shapes with loops.

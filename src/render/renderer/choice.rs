@@ -78,5 +78,6 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
 fn rounds(flat: &FlatScene, component: &Component) -> u32 {
     let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
     let leaves = entries.iter().filter(|node| node.is_leaf());
-    leaves.map(|node| shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[1]).sum()
+    let own = leaves.map(|node| shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[1]).sum::<u32>();
+    own + component.data
 }

@@ -155,7 +155,7 @@ impl From<&Node> for NodeV1 {
         };
         match &node.kind {
             NodeKind::Group(v) => out.group = Some(*v),
-            NodeKind::Object(v) => out.object = Some(*v),
+            NodeKind::Object(v) => out.object = Some(v.clone()),
             NodeKind::Mesh(v) => out.mesh = Some(v.clone()),
             NodeKind::Light(v) => out.light = Some(*v),
             NodeKind::Camera(v) => out.camera = Some(*v),

@@ -38,11 +38,13 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     String::from_utf8(out).map_err(|e| FileError::new(file, e.to_string()))
 }
 
-/// Every value of an object stands on a line of its own, and so does every object in a list. A list of
-/// numbers stays on one line: a point or a colour is one value.
+/// Every value of an object stands on a line of its own, and so does every object and every list in a list. A list
+/// of numbers stays on one line: a point or a colour is one value.
 #[derive(Default)]
 struct OneValuePerLine {
     indent: usize,
+    /// For each list that is open, whether it is itself an entry of a list.
+    nested: Vec<bool>,
     /// Whether what closes next holds lines of its own.
     has_lines: bool,
     /// Whether what comes next is an entry of a list.
@@ -73,11 +75,19 @@ impl OneValuePerLine {
 
 impl Formatter for OneValuePerLine {
     fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.nested.push(self.is_entry);
+        if self.is_entry {
+            self.new_line(writer)?;
+        }
         self.open(writer, b"[")
     }
 
     fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.close(writer, b"]")
+        self.close(writer, b"]")?;
+        if self.nested.pop() == Some(true) {
+            self.has_lines = true;
+        }
+        Ok(())
     }
 
     fn begin_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::{Degrees, ParamValue, Shape};
 use crate::geometry::Aabb;
+use crate::scene::drawn::{profile_bounds, text_bounds, tube_bounds};
 
 const INFINITY: f64 = f64::INFINITY;
 
@@ -13,6 +14,25 @@ impl Shape {
         // A body of revolution: its radius, its lowest and its highest point.
         let turned = |r: f64, low: f64, high: f64| Aabb::new(DVec3::new(-r, low, -r), DVec3::new(r, high, r));
         match *self {
+            Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
+            Self::Extrusion { ref corners, smooth, depth, .. } => {
+                let flat = profile_bounds(corners, smooth);
+                let half = DVec3::Z * (0.5 * depth);
+                Aabb::new(flat.min - half, flat.max + half)
+            }
+            Self::Text { ref text, size, depth, .. } => {
+                let flat = text_bounds(text, size);
+                let half = DVec3::Z * (0.5 * depth);
+                Aabb::new(flat.min - half, flat.max + half)
+            }
+            Self::Revolution { ref corners, smooth, offset } => {
+                let flat = profile_bounds(corners, smooth);
+                turned((flat.max.x + offset).max(0.0), flat.min.y, flat.max.y)
+            }
+            Self::Terrain { size, amplitude, .. } | Self::Ocean { size, amplitude, .. } => {
+                let [x, depth, z] = size;
+                Aabb::new(DVec3::new(-0.5 * x, -depth, -0.5 * z), DVec3::new(0.5 * x, amplitude, 0.5 * z))
+            }
             Self::RoundCone { bottom_radius, top_radius, height } => {
                 let low = (-0.5 * height - bottom_radius).min(0.5 * height - top_radius);
                 let high = (0.5 * height + top_radius).max(-0.5 * height + bottom_radius);
@@ -95,8 +115,12 @@ impl Shape {
     /// The shape whose field is exactly that of this one scaled by `s` (all positive) along its own
     /// axes, where there is one: non-uniform scale then costs nothing and loosens nothing.
     pub fn absorb_scale(&self, s: DVec3) -> Option<Self> {
+        if self.kind().has_data() {
+            // Its numbers would all have to be made anew, and a factor on its distance loosens nothing.
+            return None;
+        }
         if s.x == s.y && s.y == s.z {
-            return Some(self.with_lengths_times(s.x));
+            return Some(self.clone().with_lengths_times(s.x));
         }
         let round = s.x == s.z;
         let times = |v: [f64; 3]| (DVec3::from(v) * s).to_array();
@@ -143,12 +167,17 @@ impl Shape {
     }
 
     /// The shape with every length multiplied.
-    fn with_lengths_times(mut self, factor: f64) -> Self {
+    pub fn with_lengths_times(mut self, factor: f64) -> Self {
         for (index, value) in self.values().into_iter().enumerate() {
             if self.kind().params()[index].limits.unit == "m" {
                 let value = match value {
                     ParamValue::Scalar(v) => ParamValue::Scalar(v * factor),
                     ParamValue::Vector(v) => ParamValue::Vector(v * factor),
+                    ParamValue::List(mut list) => {
+                        list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
+                        ParamValue::List(list)
+                    }
+                    other @ (ParamValue::Flag(_) | ParamValue::Text(_)) => other,
                 };
                 self.set_value(index, value);
             }

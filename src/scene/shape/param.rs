@@ -4,18 +4,46 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Limits;
+use crate::scene::drawn::{Corners, Points};
+use crate::scene::limits::{CORNERS, Limits, POINTS, SIZE};
 
 /// Most numbers that the packed parameters of one shape may take.
 pub const SHAPE_FLOATS: usize = 8;
 
+/// Most numbers in a row of a list.
+pub const LIST_COLUMNS: usize = 4;
+
 /// The value of a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ParamValue {
     /// One number.
     Scalar(f64),
     /// Three numbers: a size or a point.
     Vector(DVec3),
+    /// On or off.
+    Flag(bool),
+    /// Points.
+    List(List),
+    /// Letters.
+    Text(String),
+}
+
+/// Points as rows of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct List {
+    /// The rows; places behind the last column are 0.
+    pub rows: Vec<[f64; LIST_COLUMNS]>,
+    /// The names of the columns.
+    pub columns: &'static [&'static str],
+    /// Fewest and most rows.
+    pub count: [usize; 2],
+}
+
+impl List {
+    /// The limits of the numbers in a column, where those of the parameter are `limits`.
+    pub fn limits(&self, column: usize, limits: &Limits) -> Limits {
+        if column < 3 { *limits } else { SIZE }
+    }
 }
 
 /// What is known about a parameter.
@@ -47,14 +75,14 @@ impl Sides {
     }
 }
 
-/// A Rust type that a parameter can have.
-pub(super) trait ParamField: Copy {
+/// A Rust type that a parameter can have. Those that take no numbers are for shapes with data, which are not packed.
+pub(super) trait ParamField: Sized {
     /// How many numbers it takes when packed.
     const FLOATS: usize;
-    fn to_value(self) -> ParamValue;
+    fn to_value(&self) -> ParamValue;
     fn from_value(value: ParamValue) -> Option<Self>;
     /// Writes the packed numbers to the start of `out`, which then begins behind them.
-    fn pack(self, out: &mut &mut [f64]);
+    fn pack(&self, out: &mut &mut [f64]);
     /// Reads the packed numbers from the start of `rest`, which then begins behind them.
     fn unpack(rest: &mut &[f64]) -> Self;
 }
@@ -77,14 +105,14 @@ fn scalar(value: ParamValue) -> Option<f64> {
 
 impl ParamField for f64 {
     const FLOATS: usize = 1;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Scalar(self)
+    fn to_value(&self) -> ParamValue {
+        ParamValue::Scalar(*self)
     }
     fn from_value(value: ParamValue) -> Option<Self> {
         scalar(value)
     }
-    fn pack(self, out: &mut &mut [f64]) {
-        put(out, [self]);
+    fn pack(&self, out: &mut &mut [f64]) {
+        put(out, [*self]);
     }
     fn unpack(rest: &mut &[f64]) -> Self {
         take::<1>(rest)[0]
@@ -93,14 +121,14 @@ impl ParamField for f64 {
 
 impl ParamField for [f64; 3] {
     const FLOATS: usize = 3;
-    fn to_value(self) -> ParamValue {
-        ParamValue::Vector(self.into())
+    fn to_value(&self) -> ParamValue {
+        ParamValue::Vector((*self).into())
     }
     fn from_value(value: ParamValue) -> Option<Self> {
         if let ParamValue::Vector(v) = value { Some(v.to_array()) } else { None }
     }
-    fn pack(self, out: &mut &mut [f64]) {
-        put(out, self);
+    fn pack(&self, out: &mut &mut [f64]) {
+        put(out, *self);
     }
     fn unpack(rest: &mut &[f64]) -> Self {
         take(rest)
@@ -109,13 +137,13 @@ impl ParamField for [f64; 3] {
 
 impl ParamField for Degrees {
     const FLOATS: usize = 2;
-    fn to_value(self) -> ParamValue {
+    fn to_value(&self) -> ParamValue {
         ParamValue::Scalar(self.0)
     }
     fn from_value(value: ParamValue) -> Option<Self> {
         scalar(value).map(Self)
     }
-    fn pack(self, out: &mut &mut [f64]) {
+    fn pack(&self, out: &mut &mut [f64]) {
         put(out, self.0.to_radians().sin_cos().into());
     }
     fn unpack(rest: &mut &[f64]) -> Self {
@@ -126,17 +154,75 @@ impl ParamField for Degrees {
 
 impl ParamField for Sides {
     const FLOATS: usize = 3;
-    fn to_value(self) -> ParamValue {
+    fn to_value(&self) -> ParamValue {
         ParamValue::Scalar(self.0)
     }
     fn from_value(value: ParamValue) -> Option<Self> {
         scalar(value).map(Self)
     }
-    fn pack(self, out: &mut &mut [f64]) {
+    fn pack(&self, out: &mut &mut [f64]) {
         let (sine, cosine) = self.half_angle().sin_cos();
         put(out, [self.0.round(), cosine, sine]);
     }
     fn unpack(rest: &mut &[f64]) -> Self {
         Self(take::<3>(rest)[0])
+    }
+}
+
+impl ParamField for bool {
+    const FLOATS: usize = 0;
+    fn to_value(&self) -> ParamValue {
+        ParamValue::Flag(*self)
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::Flag(v) = value { Some(v) } else { None }
+    }
+    fn pack(&self, _: &mut &mut [f64]) {}
+    fn unpack(_: &mut &[f64]) -> Self {
+        false
+    }
+}
+
+impl ParamField for String {
+    const FLOATS: usize = 0;
+    fn to_value(&self) -> ParamValue {
+        ParamValue::Text(self.clone())
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::Text(v) = value { Some(v) } else { None }
+    }
+    fn pack(&self, _: &mut &mut [f64]) {}
+    fn unpack(_: &mut &[f64]) -> Self {
+        Self::new()
+    }
+}
+
+impl ParamField for Points {
+    const FLOATS: usize = 0;
+    fn to_value(&self) -> ParamValue {
+        ParamValue::List(List { rows: self.to_vec(), columns: &["X", "Y", "Z", "Radius"], count: POINTS })
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        if let ParamValue::List(list) = value { Some(Self::new(list.rows)) } else { None }
+    }
+    fn pack(&self, _: &mut &mut [f64]) {}
+    fn unpack(_: &mut &[f64]) -> Self {
+        Self::new([])
+    }
+}
+
+impl ParamField for Corners {
+    const FLOATS: usize = 0;
+    fn to_value(&self) -> ParamValue {
+        let rows = self.iter().map(|[x, y]| [*x, *y, 0.0, 0.0]).collect();
+        ParamValue::List(List { rows, columns: &["X", "Y"], count: CORNERS })
+    }
+    fn from_value(value: ParamValue) -> Option<Self> {
+        let ParamValue::List(list) = value else { return None };
+        Some(Self::new(list.rows.into_iter().map(|[x, y, ..]| [x, y]).collect::<Vec<_>>()))
+    }
+    fn pack(&self, _: &mut &mut [f64]) {}
+    fn unpack(_: &mut &[f64]) -> Self {
+        Self::new([])
     }
 }

@@ -3,17 +3,20 @@
 mod evaluate;
 
 use super::{DUAL_PRELUDE, DualError, dual};
+use crate::flat::Body;
+use crate::flat::twin::shape_distance;
 use crate::render::kernel::{Evaluator, Features, Options, plain_source, source};
-use crate::scene::{Limits, ParamValue, ShapeKind};
+use crate::scene::{Limits, ParamValue, Shape, ShapeKind};
 use evaluate::Machine;
 
 const HELD: &str = include_str!("../../../../shaders/sdf/held.wgsl");
 
-/// Every shape, with its source and all that it includes.
+/// Every shape without data, with its source and all that it includes.
 fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
     let source = |name| plain_source(&format!("sdf/{name}.wgsl")).unwrap();
     let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
-    ShapeKind::ALL.iter().map(named).map(move |(kind, name)| (kind, name, source(name)))
+    let without_data = ShapeKind::ALL.iter().filter(|kind| !kind.has_data());
+    without_data.map(named).map(move |(kind, name)| (kind, name, source(name)))
 }
 
 /// Numbers that look random, between 0 and 1.
@@ -39,6 +42,7 @@ fn parameters(kind: ShapeKind, random: &mut Random) -> [f64; 8] {
         let value = match value {
             ParamValue::Scalar(_) => ParamValue::Scalar(number()),
             ParamValue::Vector(_) => ParamValue::Vector([number(), number(), number()].into()),
+            ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) => panic!("{kind:?} has data"),
         };
         assert!(shape.set_value(i, value));
     }
@@ -107,12 +111,51 @@ fn gradients_of_shapes_are_those_of_central_differences() {
     }
 }
 
+/// A shape with its data: its source, in which `name` is its function as one of a shape without.
+fn with_data(name: &str, body: &Body) -> String {
+    let rows: Vec<String> =
+        body.rows.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
+    let (count, rows) = (rows.len(), rows.join(", "));
+    let source = plain_source(&format!("sdf/{name}.wgsl")).unwrap();
+    format!(
+        "{source}fn scene_row(at: u32) -> vec4f {{ var rows = array<vec4f, {count}>({rows}); return rows[at]; }}
+        fn {name}(p: vec3f, a: vec4f, b: vec4f) -> f32 {{ return sdf_{name}(p, a, b, 0u); }}"
+    )
+}
+
+#[test]
+fn gradients_of_shapes_with_data_are_those_of_central_differences() {
+    for &kind in ShapeKind::ALL.iter().filter(|kind| kind.has_data()) {
+        let name = kind.function().strip_prefix("sdf_").unwrap();
+        let mut shape: Shape = kind.default_shape();
+        if matches!(kind, ShapeKind::Extrusion | ShapeKind::Revolution) {
+            assert!(shape.set_value(1, ParamValue::Flag(true)));
+        }
+        let body = Body::new(&shape);
+        let machine = machine(&with_data(name, &body), name);
+        let (a, b) = body.parameters.split_at(4);
+        let mut random = Random(5);
+        let mut compared = 0;
+        for _ in 0..60 {
+            let p = random.point(0.8);
+            let twin = machine.call(&format!("dual_{name}"), &[&p, a, b]);
+            let truth = shape_distance(body.kind, p, &body.parameters, &|row| body.rows[row]);
+            assert!((twin[3] - truth).abs() < 1e-5, "{name} at {p:?}: {twin:?}, {truth}");
+            let Some(gradient) = differences(&machine, name, p, a, b) else { continue };
+            compared += 1;
+            assert!(distance([twin[0], twin[1], twin[2]], gradient) < 1e-3, "{name} at {p:?}: {twin:?} {gradient:?}");
+        }
+        assert!(compared > 30, "{name}: {compared}");
+    }
+}
+
 #[test]
 fn all_twins_stand_in_one_shader() {
     let everything = Evaluator::Interpreted(Features::all());
     let text = source("surface.wgsl", &everything, Options::default()).unwrap();
     for &kind in ShapeKind::ALL {
-        let signature = format!("fn dual_{}(p: vec3f, a: vec4f, b: vec4f) -> vec4f {{", kind.function());
+        let data = if kind.has_data() { ", data: u32" } else { "" };
+        let signature = format!("fn dual_{}(p: vec3f, a: vec4f, b: vec4f{data}) -> vec4f {{", kind.function());
         assert_eq!(text.matches(&signature).count(), 1, "{kind:?}");
     }
 }

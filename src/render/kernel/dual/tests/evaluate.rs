@@ -246,8 +246,12 @@ impl Frame<'_> {
             Expression::Unary { op: UnaryOperator::Negate, expr } => self.value(*expr).map(|v| -v),
             Expression::Unary { op: UnaryOperator::LogicalNot, expr } => self.value(*expr).map(|v| 1.0 - v),
             Expression::Binary { op, left, right } => {
+                let (left, right) = (*left, *right);
+                if self.inner(handle).scalar_kind() == Some(ScalarKind::Uint) {
+                    return zip(&self.value(left), &self.value(right), |a, b| wrapped(*op, a, b));
+                }
                 let whole = self.inner(handle).scalar_kind() != Some(ScalarKind::Float);
-                binary(*op, &self.value(*left), &self.value(*right), whole)
+                binary(*op, &self.value(left), &self.value(right), whole)
             }
             Expression::Select { condition, accept, reject } => {
                 let (condition, accept, reject) = (self.value(*condition), self.value(*accept), self.value(*reject));
@@ -277,6 +281,23 @@ impl Frame<'_> {
             other => panic!("cannot evaluate {other:?}"),
         }
     }
+}
+
+/// An operation of whole numbers without sign, which wrap.
+fn wrapped(op: B, a: f64, b: f64) -> f64 {
+    let [a, b] = [a, b].map(|v| v as i64 as u32);
+    f64::from(match op {
+        B::Add => a.wrapping_add(b),
+        B::Subtract => a.wrapping_sub(b),
+        B::Multiply => a.wrapping_mul(b),
+        B::Divide => a / b,
+        B::Modulo => a % b,
+        B::And => a & b,
+        B::InclusiveOr => a | b,
+        B::ExclusiveOr => a ^ b,
+        B::ShiftRight => a >> b,
+        other => panic!("cannot evaluate {other:?}"),
+    })
 }
 
 fn number(literal: Literal) -> V {
@@ -348,7 +369,7 @@ fn binary(op: B, left: &V, right: &V, whole: bool) -> V {
         B::LessEqual => truth(a <= b),
         B::Greater => truth(a > b),
         B::GreaterEqual => truth(a >= b),
-        B::And | B::LogicalAnd => (a as u32 & b as u32).into(),
+        B::And | B::LogicalAnd => f64::from((a as i64 & b as i64) as i32),
         B::InclusiveOr | B::LogicalOr => (a as u32 | b as u32).into(),
         other => panic!("cannot evaluate {other:?}"),
     })

@@ -1,0 +1,22 @@
+// Waves: a sum of b.y waves, half as sharp as b.z says; see `sdf_relief` for the rest. `data` is the first row, see
+// `flat::body::relief` on the CPU.
+
+#include "sdf/relief.wgsl"
+
+fn sdf_ocean(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
+    var height = 0.0;
+    for (var wave = 0u; wave < u32(b.y); wave += 1u) {
+        let row = scene_row(data + 1u + wave);
+        let turns = dot(p.xz, row.xy) + row.w;
+        height += (sdf_ocean_cosine(turns) + 0.5 * b.z * sdf_ocean_cosine(2.0 * turns)) * row.z;
+    }
+    return sdf_relief(p, a, b, height);
+}
+
+// The cosine of so many turns, within 1e-7: drivers' own need not be that exact. With the quarter from which it is
+// counted chosen so that the series of the sine is short.
+fn sdf_ocean_cosine(turns: f32) -> f32 {
+    let x = 6.2831853 * (0.25 - abs(turns - round(turns)));
+    let s = x * x;
+    return x * (1.0 + s * (-0.16666667 + s * (0.008333333 + s * (-0.00019841270 + s * (2.7557319e-6 + s * -2.5052108e-8)))));
+}

@@ -1,0 +1,142 @@
+//! Lists of points: a row of numbers for each, in a list of its own that scrolls.
+
+use egui::{RichText, ScrollArea, Ui, vec2};
+
+use super::fields::{self, Field};
+use super::sheet::Sheet;
+use super::theme;
+use crate::scene::{List, Node, Param};
+
+/// The list grows up to this height, in points of the screen.
+const MOST_HEIGHT: f32 = 220.0;
+/// Width of the button in front of each row.
+const NUMBER_WIDTH: f32 = 30.0;
+
+/// What is done to a row.
+#[derive(Clone, Copy)]
+enum Change {
+    Set(usize, f64),
+    Insert,
+    Remove,
+    Up,
+    Down,
+}
+
+/// The points that a parameter holds. The button in front of a row adds, removes and moves.
+pub fn list(
+    ui: &mut Ui,
+    sheet: &mut Sheet<'_>,
+    (label, param): (&str, &Param),
+    get: impl Fn(&Node) -> Option<List>,
+    set: impl Fn(&mut Node, List),
+) {
+    let Some(shown) = get(sheet.active()) else { return };
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(label).color(theme::WEAK)).on_hover_text(param.help);
+        ui.label(RichText::new(format!("{}, {}", shown.rows.len(), shown.columns.join(" "))).color(theme::FAINT));
+    });
+    let mut done = None;
+    ScrollArea::vertical().id_salt(label).max_height(MOST_HEIGHT).show(ui, |ui| {
+        for index in 0..shown.rows.len() {
+            if let Some((widget, change)) = row(ui, &shown, index, param) {
+                done = Some((widget, index, change));
+            }
+        }
+    });
+    if let Some((widget, index, change)) = done {
+        sheet.change(widget, |node| {
+            if let Some(mut list) = get(node).filter(|list| index < list.rows.len()) {
+                apply(&mut list, index, change);
+                set(node, list);
+            }
+        });
+    }
+}
+
+fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::Id, Change)> {
+    let mut done = None;
+    ui.horizontal(|ui| {
+        let gap = 4.0;
+        ui.spacing_mut().item_spacing.x = gap;
+        ui.spacing_mut().button_padding.x = 4.0;
+        let count = list.columns.len() as f32;
+        let width = ((ui.available_width() - NUMBER_WIDTH - (count + 2.0) * gap) / count).floor().max(20.0);
+        let button = egui::Button::new(format!("{}", index + 1)).min_size(vec2(NUMBER_WIDTH, theme::ROW_HEIGHT));
+        let response = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
+            let choices = [
+                ("Add behind", Change::Insert, list.rows.len() < list.count[1]),
+                ("Remove", Change::Remove, list.rows.len() > list.count[0]),
+                ("Move up", Change::Up, index > 0),
+                ("Move down", Change::Down, index + 1 < list.rows.len()),
+            ];
+            for (text, change, allowed) in choices {
+                let entry = ui.add_enabled(allowed, egui::Button::new(text));
+                if entry.clicked() {
+                    done = Some((entry.id, change));
+                    ui.close();
+                }
+            }
+        });
+        let name = format!("Point {}", index + 1);
+        ui.ctx().accesskit_node_builder(response.0.id, |node| node.set_label(name.clone()));
+        for (column, title) in list.columns.iter().enumerate() {
+            let label = format!("{name} {title}");
+            // The unit would take the room of the number.
+            let limits = crate::scene::Limits { unit: "", ..list.limits(column, &param.limits) };
+            let field = Field { label: &label, help: title, limits, default: None };
+            let answer = fields::number(ui, &field, &label, list.rows[index][column], false, width);
+            if let Some(value) = answer.value {
+                done = Some((answer.widget, Change::Set(column, value)));
+            }
+        }
+    });
+    done
+}
+
+fn apply(list: &mut List, index: usize, change: Change) {
+    match change {
+        Change::Set(column, value) => list.rows[index][column] = value,
+        Change::Remove if list.rows.len() > list.count[0] => drop(list.rows.remove(index)),
+        Change::Up if index > 0 => list.rows.swap(index, index - 1),
+        Change::Down if index + 1 < list.rows.len() => list.rows.swap(index, index + 1),
+        Change::Insert if list.rows.len() < list.count[1] => {
+            // Half-way to the next point, or as far beyond the last one as it is from the one before it.
+            let here = list.rows[index];
+            let other = list.rows.get(index + 1).or(list.rows.get(index.wrapping_sub(1))).copied().unwrap_or(here);
+            let share = if index + 1 < list.rows.len() { 0.5 } else { -1.0 };
+            let mut new: [f64; 4] = std::array::from_fn(|c| here[c] + (other[c] - here[c]) * share);
+            new[3] = new[3].max(0.0);
+            list.rows.insert(index + 1, new);
+        }
+        Change::Remove | Change::Up | Change::Down | Change::Insert => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(count: usize) -> List {
+        let rows = (0..count).map(|i| [i as f64, 0.0, 0.0, 0.1]).collect();
+        List { rows, columns: &["X", "Y", "Z", "Radius"], count: [2, 4] }
+    }
+
+    #[test]
+    fn rows_are_added_removed_and_moved_within_the_limits() {
+        let firsts = |list: &List| list.rows.iter().map(|row| row[0]).collect::<Vec<_>>();
+        let after = |count, index, change| {
+            let mut list = sample(count);
+            apply(&mut list, index, change);
+            firsts(&list)
+        };
+        assert_eq!(after(3, 0, Change::Insert), [0.0, 0.5, 1.0, 2.0]);
+        assert_eq!(after(3, 2, Change::Insert), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(after(4, 2, Change::Insert), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(after(3, 1, Change::Remove), [0.0, 2.0]);
+        assert_eq!(after(2, 1, Change::Remove), [0.0, 1.0]);
+        assert_eq!(after(3, 1, Change::Up), [1.0, 0.0, 2.0]);
+        assert_eq!(after(3, 1, Change::Down), [0.0, 2.0, 1.0]);
+        assert_eq!(after(3, 0, Change::Up), [0.0, 1.0, 2.0]);
+        assert_eq!(after(3, 1, Change::Set(0, 7.0)), [0.0, 7.0, 2.0]);
+    }
+}

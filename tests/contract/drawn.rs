@@ -1,0 +1,229 @@
+//! What shapes with data are, said a second time: see `surfaces`. Their curves are taken as sampled arcs, which the tests
+//! of `geometry` hold to what they should be.
+
+use std::sync::Arc;
+
+use glam::{DVec2, DVec3};
+use isolith::flat::Body;
+use isolith::flat::twin::{ocean_height, terrain_height};
+use isolith::geometry::ArcPiece;
+use isolith::scene::{Shape, profile_curve, text_outline, tube_curve};
+
+use super::samples::evaluate;
+use super::surfaces::{Patch, ball, outside_only, turned};
+
+/// An arc with the radii at its ends.
+type Piece = (ArcPiece, [f64; 2]);
+
+fn pieces(points: &[[f64; 4]], radius: f64, closed: bool) -> Vec<Piece> {
+    let mut out = Vec::new();
+    for (i, span) in tube_curve(points, closed).into_iter().enumerate() {
+        let (from, to) = (points[i][3] + radius, points[(i + 1) % points.len()][3] + radius);
+        let whole: f64 = span.iter().map(ArcPiece::length).sum();
+        let mut way = 0.0;
+        for arc in span {
+            let at = |way: f64| if whole > 0.0 { from + (to - from) * way / whole } else { from.max(to) };
+            out.push((arc, [at(way), at(way + arc.length())]));
+            way += arc.length();
+        }
+    }
+    out
+}
+
+/// The radius at λ: it changes evenly with the way.
+fn radius_at((arc, [from, to]): &Piece, lambda: f64) -> f64 {
+    let share = if arc.length() > 0.0 { 0.5 + arc.way(lambda) / arc.length() } else { 0.0 };
+    from + (to - from) * share
+}
+
+/// Distance to the nearest ball of a piece: the best of samples, and around it by thirds.
+fn to_piece(piece: &Piece, p: DVec3) -> f64 {
+    const SAMPLES: i32 = 16;
+    let reach = piece.0.reach;
+    let f = |lambda: f64| p.distance(piece.0.at(lambda)) - radius_at(piece, lambda);
+    let place = |i: i32| reach * (2.0 * f64::from(i) / f64::from(SAMPLES) - 1.0);
+    let best = (0..=SAMPLES).min_by(|a, b| f(place(*a)).total_cmp(&f(place(*b)))).unwrap();
+    let (mut low, mut high) = (place((best - 1).max(0)), place((best + 1).min(SAMPLES)));
+    for _ in 0..40 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if f(a) < f(b) { high = b } else { low = a }
+    }
+    f(0.5 * (low + high)).min(f(place(best)))
+}
+
+/// The place of an arc at a share of the way from its start to its end, as λ.
+fn lambda_at(arc: &ArcPiece, share: f64) -> f64 {
+    arc.reach * (2.0 * share - 1.0)
+}
+
+/// Whether the curves go around the point an odd number of times: chords of fine samples against a ray upwards.
+fn is_odd(arcs: &[ArcPiece], p: DVec2) -> bool {
+    let mut crossings = 0;
+    // Letters have many short arcs.
+    let per_arc = if arcs.len() > 20 { 40 } else { 400 };
+    for arc in arcs {
+        let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
+        for i in 0..count {
+            let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate();
+            let (a, b) = (at(i), at(i + 1));
+            if (a.x > p.x) != (b.x > p.x) && a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x) > p.y {
+                crossings += 1;
+            }
+        }
+    }
+    crossings % 2 == 1
+}
+
+/// How deep a point of the plane is in a profile, by a prism without end.
+fn depth_in(shape: &Shape, p: DVec2) -> f64 {
+    let mut prism = shape.clone();
+    match &mut prism {
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
+            (*depth, *rounding) = (1e4, 0.0);
+        }
+        _ => panic!("a profile"),
+    }
+    evaluate(&Body::new(&prism), [p.x, p.y, 0.0])
+}
+
+fn height(shape: &Shape, x: f64, z: f64) -> f64 {
+    let body = Body::new(shape);
+    let rows = |row: usize| body.rows[row];
+    if matches!(shape, Shape::Ocean { .. }) {
+        ocean_height(x, z, &body.parameters, &rows)
+    } else {
+        terrain_height(x, z, &body.parameters, &rows)
+    }
+}
+
+pub fn inside(shape: &Shape, p: DVec3) -> bool {
+    match shape {
+        Shape::Tube { points, radius, closed } => {
+            pieces(points, *radius, *closed).iter().any(|piece| to_piece(piece, p) < 0.0)
+        }
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
+            let half = 0.5 * depth;
+            let rounding = rounding.min(half);
+            if rounding == 0.0 {
+                return p.z.abs() < half && is_odd(&outline_of(shape), p.truncate());
+            }
+            let d = DVec2::new(depth_in(shape, p.truncate()) + rounding, p.z.abs() - half + rounding);
+            d.max(DVec2::ZERO).length() < rounding
+        }
+        Shape::Revolution { corners, smooth, offset } => {
+            is_odd(&profile_curve(corners, *smooth), DVec2::new(p.x.hypot(p.z) - offset, p.y))
+        }
+        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } => {
+            let [x, depth, z] = *size;
+            p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && p.y < height(shape, p.x, p.z)
+        }
+        _ => panic!("stands in `surfaces`"),
+    }
+}
+
+pub fn patches(shape: &Shape) -> Vec<Patch> {
+    match shape {
+        Shape::Tube { points, radius, closed } => tube(shape, pieces(points, *radius, *closed)),
+        Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
+            extrusion(shape, 0.5 * depth, rounding.min(0.5 * depth))
+        }
+        Shape::Revolution { corners, smooth, offset } => {
+            let offset = *offset;
+            let turn = |arc: ArcPiece| -> Patch {
+                Box::new(move |u, v| {
+                    let at = arc.at(lambda_at(&arc, v));
+                    (at.x + offset >= 0.0).then(|| turned(at.x + offset, at.y, u))
+                })
+            };
+            profile_curve(corners, *smooth).into_iter().map(turn).collect()
+        }
+        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } => relief(shape, *size),
+        _ => panic!("stands in `surfaces`"),
+    }
+}
+
+fn tube(shape: &Shape, pieces: Vec<Piece>) -> Vec<Patch> {
+    let pieces = Arc::new(pieces);
+    let mut patches: Vec<Patch> = Vec::new();
+    for index in 0..pieces.len() {
+        let (arc, radii) = pieces[index];
+        for (place, radius) in [(arc.start(), radii[0]), (arc.end(), radii[1])] {
+            patches.push(ball(place, DVec3::splat(radius), shape.clone()));
+        }
+        let growth = if arc.length() > 0.0 { (radii[1] - radii[0]) / arc.length() } else { 1.0 };
+        if growth.abs() >= 1.0 {
+            // One of the balls at its ends holds all others.
+            continue;
+        }
+        let across = arc.tangent.cross(arc.bend).try_normalize().unwrap_or(arc.tangent.any_orthonormal_vector());
+        let side: Patch = Box::new(move |u, v| {
+            let lambda = lambda_at(&arc, v);
+            let (along, r) = (arc.direction(lambda), radius_at(&(arc, radii), lambda));
+            let around = turned(1.0, 0.0, u);
+            let out = across * around.x + across.cross(along) * around.z;
+            Some(arc.at(lambda) + (out * (1.0 - growth * growth).sqrt() - along * growth) * r)
+        });
+        patches.push(outside_only(side, shape.clone()));
+    }
+    patches
+}
+
+/// The arcs of a profile. Letters have outlines that do not overlap.
+fn outline_of(shape: &Shape) -> Vec<ArcPiece> {
+    match shape {
+        Shape::Extrusion { corners, smooth, .. } => profile_curve(corners, *smooth),
+        Shape::Text { text, size, .. } => text_outline(text, *size),
+        _ => panic!("a profile"),
+    }
+}
+
+fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
+    let mut patches: Vec<Patch> = Vec::new();
+    let mut arcs = outline_of(shape);
+    if arcs.is_empty() {
+        arcs.push(ArcPiece::straight(DVec3::ZERO, DVec3::ZERO));
+    }
+    for arc in arcs.clone() {
+        patches.push(Box::new(move |u, v| {
+            Some(arc.at(lambda_at(&arc, u)) + DVec3::Z * (2.0 * v - 1.0) * (half - rounding))
+        }));
+    }
+    let bounds = shape.bounds();
+    for side in [-1.0, 1.0] {
+        let (shape, arcs) = (shape.clone(), arcs.clone());
+        patches.push(Box::new(move |u, v| {
+            let (low, high) = (bounds.min, bounds.max);
+            let p = DVec2::new(low.x + (high.x - low.x) * u, low.y + (high.y - low.y) * v);
+            if rounding == 0.0 {
+                return is_odd(&arcs, p).then(|| p.extend(side * half));
+            }
+            let depth = depth_in(&shape, p);
+            let rise = (rounding * rounding - (depth + rounding).max(0.0).powi(2)).max(0.0).sqrt();
+            (depth < 0.0).then(|| p.extend(side * (half - rounding + rise)))
+        }));
+    }
+    patches
+}
+
+fn relief(shape: &Shape, [x, depth, z]: [f64; 3]) -> Vec<Patch> {
+    let at = move |u: f64, v: f64| ((u - 0.5) * x, (v - 0.5) * z);
+    let mut patches: Vec<Patch> = Vec::new();
+    for top in [false, true] {
+        let shape = shape.clone();
+        patches.push(Box::new(move |u, v| {
+            let (x, z) = at(u, v);
+            let h = height(&shape, x, z);
+            (h >= -depth).then(|| DVec3::new(x, if top { h } else { -depth }, z))
+        }));
+    }
+    for side in 0..4 {
+        let shape = shape.clone();
+        patches.push(Box::new(move |u, v| {
+            let end = f64::from(side % 2);
+            let (x, z) = if side < 2 { at(u, end) } else { at(end, u) };
+            let h = height(&shape, x, z);
+            (h >= -depth).then(|| DVec3::new(x, -depth + (h + depth) * v, z))
+        }));
+    }
+    patches
+}
