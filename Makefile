@@ -33,6 +33,7 @@ bench: setup ## Measure speed and accuracy; tables go into benches/README.md, ch
 	cargo run --release -- bench --output target/bench
 	cargo run --release -- bench --growth --methods pruned,specialised,auto --output target/bench
 	cargo run --release -- bench --blends --methods auto --output target/bench
+	cargo run --release -- bench --stress --output target/bench
 
 golden: setup ## Accept the pictures of all scenes as they are rendered now
 	ISOLITH_ACCEPT_GOLDEN=1 cargo test --test tests -- golden::

@@ -37,7 +37,7 @@ pub mod shade;
 pub mod trace;
 pub mod truth;
 pub mod twin;
-mod view;
+pub mod view;
 
 pub use arrays::*;
 pub use buffers::*;
