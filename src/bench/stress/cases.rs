@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::figures::Allowed;
 use super::place::View;
 use super::subject::{Place, Subject, usual_blend};
 use crate::scene::{
@@ -23,6 +24,11 @@ impl Case {
     /// What is drawn.
     pub fn name(&self) -> String {
         self.subject.name()
+    }
+
+    /// How much of it may be wrong.
+    pub(super) fn allowed(&self) -> Allowed {
+        if matches!(self.view, View::At(_)) { Allowed::FAR_CELL } else { Allowed::USUAL }
     }
 
     /// Whether it is one of the few that tests draw: a simple shape, one with edges, one with a hole, a soft and a
