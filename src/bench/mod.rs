@@ -30,6 +30,6 @@ pub use frontier::frontier;
 pub use growth::growth;
 pub use measure::{Bench, BenchError, Subject, Truths, cpu_time};
 pub use row::{NotFinite, Row};
-pub use stress::{Allowed, Case, Figures, cases, stress_sheet, stress_table, worst_first};
+pub use stress::{Allowed, Case, Figures, cases, first_of_each, stress_sheet, stress_table, worst_first};
 pub use table::{csv, markdown, noise};
 pub use way::Way;

@@ -8,8 +8,8 @@ use super::failure::Failure;
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
 use crate::bench::{
-    Bench, BenchError, Figures, Row, Subject, Truths, Way, cases, csv, growth, markdown, noise, stress_sheet,
-    stress_table, time_against_error, worst_first,
+    Bench, BenchError, Figures, Row, Subject, Truths, Way, cases, csv, first_of_each, growth, markdown, noise,
+    stress_sheet, stress_table, time_against_error, worst_first,
 };
 use crate::gallery;
 use crate::mesh::MeshLibrary;
@@ -107,12 +107,13 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &bench, &rows, arguments.growth))
 }
 
-/// Cases that are shown as pictures.
+/// Subjects whose worst case is shown as a picture.
 const SHOWN: usize = 10;
 /// Cases that are printed.
 const PRINTED: usize = 40;
 
-/// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst ten.
+/// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
+/// the ten worst subjects.
 fn stress(output: Option<&Path>) -> Result<(), Failure> {
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
@@ -148,7 +149,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
         std::fs::write(path, stress_table(&figures, figures.len())).map_err(|error| error.to_string())
     })?;
     write("stress.png", &|path| {
-        let picture = stress_sheet(&figures, SHOWN);
+        let picture = stress_sheet(&first_of_each(&figures), SHOWN);
         picture.save_with_format(path, ImageFormat::Png).map_err(|error| error.to_string())
     })
 }

@@ -1,5 +1,6 @@
 //! A picture against its truth, in numbers.
 
+use std::collections::HashSet;
 use std::fmt::Write as _;
 
 use image::RgbImage;
@@ -133,6 +134,12 @@ pub fn worst_first(figures: &mut [Figures]) {
     figures.sort_by(|a, b| {
         (b.nan, b.wrong, b.unfinished).cmp(&(a.nan, a.wrong, a.unfinished)).then(b.depth_p99.total_cmp(&a.depth_p99))
     });
+}
+
+/// The first case of each subject.
+pub fn first_of_each(figures: &[Figures]) -> Vec<Figures> {
+    let mut seen = HashSet::new();
+    figures.iter().filter(|one| seen.insert(one.subject.as_str())).cloned().collect()
 }
 
 /// Totals, and one line for each of the first `lines`, as Markdown.

@@ -15,5 +15,5 @@ mod sheet;
 mod subject;
 
 pub use cases::{Case, cases};
-pub use figures::{Allowed, Figures, stress_table, worst_first};
+pub use figures::{Allowed, Figures, first_of_each, stress_table, worst_first};
 pub use sheet::stress_sheet;
