@@ -1,7 +1,7 @@
 # Isolith. `make run` and `make test` are all that a fresh Debian or Ubuntu machine with Rust needs.
 
 SHELL := /bin/bash
-.PHONY: help run test lint bench golden scenes setup
+.PHONY: help run test nightly lint bench golden scenes setup
 .DEFAULT_GOAL := help
 
 # Vulkan drivers want a private folder and complain where there is none.
@@ -22,6 +22,10 @@ run: setup ## Open the editor on the showcase scene; without a display, render i
 test: lint ## Check formatting and lints, then run every test
 	cargo test --lib --tests
 
+# 200 times the points of `make test`: a million for each repetition against its copies. Takes an hour.
+nightly: setup ## Test the contract of fields at very many points
+	ISOLITH_TIMES=200 cargo test --test tests -- contract::
+
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy
 	cargo fmt --check
@@ -33,6 +37,7 @@ bench: setup ## Measure speed and accuracy; tables go into benches/README.md, ch
 	cargo run --release -- bench --output target/bench
 	cargo run --release -- bench --growth --methods pruned,specialised,auto --output target/bench
 	cargo run --release -- bench --blends --methods auto --output target/bench
+	cargo run --release -- bench --stress --output target/bench
 
 golden: setup ## Accept the pictures of all scenes as they are rendered now
 	ISOLITH_ACCEPT_GOLDEN=1 cargo test --test tests -- golden::

@@ -19,4 +19,5 @@ mod random_scene;
 mod renderer;
 mod saving;
 mod shaders;
+mod stress;
 mod tidy;

@@ -6,6 +6,7 @@
 //! | `way` | the methods |
 //! | `row`, `table` | what was measured, as JSON, CSV and Markdown |
 //! | `chart`, `growth`, `frontier` | run time against error, run time against nodes |
+//! | `stress` | shapes, operators and modifiers where numbers get difficult |
 //! | `canvas`, `axes`, `legend`, `labels`, `marks` | what the charts are drawn with |
 
 mod axes;
@@ -20,6 +21,7 @@ mod measure;
 mod row;
 #[cfg(test)]
 mod samples;
+mod stress;
 mod table;
 mod way;
 
@@ -28,5 +30,6 @@ pub use frontier::frontier;
 pub use growth::growth;
 pub use measure::{Bench, BenchError, Subject, Truths, cpu_time};
 pub use row::{NotFinite, Row};
+pub use stress::{Allowed, Case, Figures, cases, first_of_each, stress_sheet, stress_table, worst_first};
 pub use table::{csv, markdown, noise};
 pub use way::Way;

@@ -7,12 +7,15 @@ use image::{ImageFormat, RgbImage};
 use super::failure::Failure;
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
-use crate::bench::{Bench, BenchError, Row, Subject, Truths, Way, csv, growth, markdown, noise, time_against_error};
+use crate::bench::{
+    Bench, BenchError, Figures, Row, Subject, Truths, Way, cases, csv, first_of_each, growth, markdown, noise,
+    stress_sheet, stress_table, time_against_error, worst_first,
+};
 use crate::gallery;
 use crate::mesh::MeshLibrary;
-use crate::render::Gpu;
 use crate::render::driver::loop_iterations;
 use crate::render::kernel::Quality;
+use crate::render::{Gpu, Method, Renderer};
 use crate::scene::file;
 
 /// Smallest and largest side of a measured picture, in pixels.
@@ -42,6 +45,9 @@ pub struct BenchArguments {
     /// Measure large blends instead: 256 and 2 000 leaves in one union, blended and hard, 186 boxes, 1 001 spheres
     #[arg(long, conflicts_with_all = ["scenes", "growth"])]
     blends: bool,
+    /// Draw every shape, operator and modifier where numbers get difficult, and compare with the truth
+    #[arg(long, conflicts_with_all = ["scenes", "growth", "blends", "json"])]
+    stress: bool,
     /// Write tables (bench.md, bench.csv) and charts (SCENE.png) into this folder
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
@@ -53,6 +59,9 @@ pub struct BenchArguments {
 /// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
 /// and left out.
 pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
+    if arguments.stress {
+        return stress(arguments.output.as_deref());
+    }
     let ways: Vec<Way> = parsed(&arguments.methods, |name| name.parse())?;
     let qualities: Vec<Quality> = parsed(&arguments.qualities, |name| {
         let found = Quality::ALL.into_iter().find(|quality| quality.name() == name);
@@ -96,6 +105,53 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         complain(&format!("noise: {line}"));
     }
     arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &bench, &rows, arguments.growth))
+}
+
+/// Subjects whose worst case is shown as a picture.
+const SHOWN: usize = 10;
+/// Cases that are printed.
+const PRINTED: usize = 40;
+
+/// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
+/// the ten worst subjects.
+fn stress(output: Option<&Path>) -> Result<(), Failure> {
+    let gpu = Gpu::headless()?;
+    loop_iterations(&gpu)?;
+    let mut renderer = Renderer::new(&gpu)?;
+    renderer.set_method(Method::Interpreted);
+    let mut progress = Progress::start("stressing", false, Interrupts::StopTheTask);
+    let all = cases();
+    let mut figures: Vec<Figures> = Vec::new();
+    let mut unseen = 0;
+    for (i, case) in all.iter().enumerate() {
+        if !progress.update(i as f64 / all.len() as f64) {
+            return Err(Failure::Cancelled);
+        }
+        let name = || format!("{}, {}", case.name(), case.circumstance);
+        match case.measure(&mut renderer) {
+            Ok(Some(found)) => figures.push(found),
+            Ok(None) => unseen += 1,
+            Err(BenchError::Truth(error)) => complain(&format!("left out: {}: {error}", name())),
+            Err(error) => return Err(Failure::Other(format!("{}: {error}", name()))),
+        }
+    }
+    progress.finish();
+    worst_first(&mut figures);
+    say(&stress_table(&figures, PRINTED))?;
+    say(&format!("{unseen} cases show no surface or are beyond a limit of scenes."))?;
+    let Some(folder) = output else { return Ok(()) };
+    let write = |name: &str, write: &dyn Fn(&Path) -> Result<(), String>| {
+        let path = folder.join(name);
+        write(&path).map_err(|reason| Failure::Write { path, reason })
+    };
+    write("", &|path| std::fs::create_dir_all(path).map_err(|error| error.to_string()))?;
+    write("stress.md", &|path| {
+        std::fs::write(path, stress_table(&figures, figures.len())).map_err(|error| error.to_string())
+    })?;
+    write("stress.png", &|path| {
+        let picture = stress_sheet(&first_of_each(&figures), SHOWN);
+        picture.save_with_format(path, ImageFormat::Png).map_err(|error| error.to_string())
+    })
 }
 
 fn parsed<T>(names: &[String], parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Failure> {

@@ -39,7 +39,7 @@ pub mod shade;
 pub mod trace;
 pub mod truth;
 pub mod twin;
-mod view;
+pub mod view;
 
 pub use arrays::*;
 pub use body::Body;

@@ -64,7 +64,9 @@ fn is_odd(arcs: &[ArcPiece], p: DVec2) -> bool {
     for arc in arcs {
         let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
         for i in 0..count {
-            let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate();
+            // Rounded, so that two arcs that meet end in one point: between two there would be a way in.
+            let tidy = |v: f64| (v * 1e12).round() / 1e12;
+            let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate().map(tidy);
             let (a, b) = (at(i), at(i + 1));
             if (a.x > p.x) != (b.x > p.x) && a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x) > p.y {
                 crossings += 1;

@@ -9,7 +9,7 @@ use isolith::scene::{
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::Random;
+use super::samples::{Random, many};
 
 /// Something lopsided: an L of two boxes, and a ball blended to it.
 fn content(scene: &mut Scene, group: Node) -> NodeId {
@@ -122,7 +122,7 @@ fn bounds_enclose_what_is_modified() {
     for_each(8, |what, _, flat, component| {
         let (center, reach) = surroundings(component);
         let mut random = Random::new(9);
-        for _ in 0..1_500 {
+        for _ in 0..many(1_500) {
             let p = center + random.point(1.3 * reach);
             let f = field(flat, component, p);
             assert!(f.is_finite(), "{what}: {f} at {p}");
@@ -159,7 +159,7 @@ fn a_modifier_rises_with_the_distance_from_its_bounds() {
         }
         count += 1;
         let [middle, half] = [middle, half].map(|[x, y, z, _]| DVec3::new(x, y, z));
-        for _ in 0..400 {
+        for _ in 0..many(400) {
             let p = center + random.point(2.5 * reach);
             let least = joint[1] * ((p - middle).abs() - half).max(DVec3::ZERO).length();
             let f = field(flat, component, p);
@@ -226,15 +226,15 @@ fn a_repetition_is_the_union_of_its_copies() {
     for modifier in repetitions() {
         let mut scene = Scene::new();
         content(&mut scene, blended().modified(modifier));
-        let (one, many) = (flatten(&scene, 0.0).unwrap(), flatten(&explicit(&modifier), 0.0).unwrap());
-        assert!(one.components.len() == 1 && many.components.len() > 1);
+        let (one, copies) = (flatten(&scene, 0.0).unwrap(), flatten(&explicit(&modifier), 0.0).unwrap());
+        assert!(one.components.len() == 1 && copies.components.len() > 1);
         let bounds = one.components[0].bounds.translated(one.components[0].origin);
         let mut random = Random::new(17);
         let (mut inside, mut short) = (0, 0);
-        for _ in 0..6_000 {
+        for _ in 0..many(6_000) {
             let p = bounds.center() + random.point(0.6) * (2.0 * bounds.half() + 0.6);
             let f = field(&one, &one.components[0], p - one.components[0].origin);
-            let union = many.components.iter().map(|c| field(&many, c, p - c.origin)).fold(f64::INFINITY, f64::min);
+            let union = copies.components.iter().map(|c| field(&copies, c, p - c.origin)).fold(f64::INFINITY, f64::min);
             // Never more than the true field outside, of the same sign everywhere.
             assert!(f <= union.max(0.0) + 1e-5, "{modifier:?} at {p}: {f}, the copies say {union}");
             assert!(union.abs() < 1e-5 || (f < 0.0) == (union < 0.0), "{modifier:?} at {p}: {f} {union}");
@@ -243,7 +243,7 @@ fn a_repetition_is_the_union_of_its_copies() {
         }
         assert!(inside > 20, "{modifier:?}: {inside} points inside");
         // Near the surface it is the same to the last bits; away from it most are.
-        assert!(short < 4_500, "{modifier:?}: {short} of 6000 are only a bound");
+        assert!(4 * short < 3 * many(6_000), "{modifier:?}: {short} points are only a bound");
     }
 }
 

@@ -4,7 +4,7 @@ use isolith::flat::Join;
 use isolith::flat::twin::{Joined, Joint, op_join};
 use isolith::scene::{Blend, BlendKernel, Operator};
 
-use super::samples::Random;
+use super::samples::{Random, many};
 
 /// The first three: those that a kernel rounds alike.
 const PLAIN: [Join; 3] = [Join::Union, Join::Intersection, Join::Difference];
@@ -79,7 +79,7 @@ fn beyond_the_support_the_operators_are_hard() {
         for (number, kernel) in kernels() {
             for radius in [0.0, 1e-6, 0.3, 1e6] {
                 let blend = Blend::new(kernel, radius);
-                for _ in 0..500 {
+                for _ in 0..many(500) {
                     let a = random.range(-2.0, 2.0) * (1.0 + radius);
                     let distance = blend.support() * random.range(1.0 + 1e-9, 3.0) + random.range(1e-9, 1.0);
                     let b = if random.chance(0.5) { a + distance } else { a - distance };
@@ -99,7 +99,7 @@ fn beyond_the_support_the_operators_are_hard() {
 fn far_from_the_second_operand_the_first_is_left_as_it_is() {
     let mut random = Random::new(4);
     for (number, kernel) in kernels() {
-        for _ in 0..2_000 {
+        for _ in 0..many(2_000) {
             let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, random.range(0.0, 2.0)) };
             let a = random.range(-2.0, 2.0);
             let (support, more) = (blend.support(), random.range(1e-9, 1.0));
@@ -127,7 +127,7 @@ fn values_step_safely_and_derivatives_are_right() {
     for join in Join::ALL {
         for (number, kernel) in kernels().filter(|(_, kernel)| applies(join, *kernel)) {
             let (mut compared, mut count) = (0, 0);
-            for _ in 0..10_000 {
+            for _ in 0..many(10_000) {
                 let radius = random.pick(&[0.0, 0.05, 1.0, 20.0]);
                 let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, radius) };
                 let (a, b) = (random.range(-2.0, 2.0), random.range(-2.0, 2.0));
@@ -161,7 +161,7 @@ fn blends_only_add_to_unions_and_only_take_from_cuts() {
     let mut random = Random::new(6);
     for join in PLAIN {
         for (number, kernel) in kernels() {
-            for _ in 0..5_000 {
+            for _ in 0..many(5_000) {
                 let blend = Blend { steps: 1 + random.index(5) as u32, ..Blend::new(kernel, random.range(0.0, 3.0)) };
                 let (a, b) = (random.range(-2.0, 2.0), random.range(-2.0, 2.0));
                 let change = apply(join, a, b, &blend, number).value - hard(join, a, b);
@@ -176,7 +176,7 @@ fn blends_only_add_to_unions_and_only_take_from_cuts() {
 fn signs_are_what_the_operators_mean() {
     let mut random = Random::new(5);
     let (half_width, depth) = (0.2, 0.3);
-    for _ in 0..20_000 {
+    for _ in 0..many(20_000) {
         let (a, b) = (random.range(-1.0, 1.0), random.range(-1.0, 1.0));
         let near = b.abs() < half_width;
         for (join, inside) in [

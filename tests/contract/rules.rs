@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::samples::Random;
+use super::samples::{Random, many};
 
 /// |f(a) − f(b)| ≤ |a − b| over random pairs, near and far, within `half` of `center`. `noise` is what
 /// rounding may add.
@@ -15,7 +15,7 @@ pub fn steps_are_safe(
     noise: f64,
 ) -> Result<(), String> {
     let mut random = Random::new(pairs as u64);
-    for _ in 0..pairs {
+    for _ in 0..many(pairs) {
         let a = center + random.point(half);
         let distance = half * 10_f64.powf(random.range(-4.0, 0.5));
         let b = a + random.direction() * distance;

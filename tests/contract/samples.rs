@@ -1,5 +1,7 @@
 //! Reproducible random numbers, points and parameters.
 
+use std::sync::LazyLock;
+
 use glam::DVec3;
 use isolith::flat::Body;
 use isolith::flat::twin::{Real, shape_distance};
@@ -52,6 +54,15 @@ impl Random {
             }
         }
     }
+}
+
+/// So many points, times the factor that `ISOLITH_TIMES` names: `make nightly` looks at many more.
+pub fn many(count: usize) -> usize {
+    static TIMES: LazyLock<usize> = LazyLock::new(|| match std::env::var("ISOLITH_TIMES") {
+        Ok(times) => times.parse().unwrap_or_else(|error| panic!("ISOLITH_TIMES: {error}")),
+        Err(_) => 1,
+    });
+    count * *TIMES
 }
 
 /// A shape whose numbers all come from `number`, which is given their limits.

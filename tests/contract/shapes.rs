@@ -6,7 +6,7 @@ use isolith::flat::twin::{Dual, Real};
 use isolith::scene::{Shape, ShapeKind};
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, evaluate, extreme, ordinary, size, special_points};
+use super::samples::{Random, evaluate, extreme, many, ordinary, size, special_points};
 use super::surfaces::{brute_distance, inside, patches};
 
 fn distance(shape: &Shape, p: DVec3) -> f64 {
@@ -109,7 +109,7 @@ fn every_ball_of_the_fields_radius_is_on_one_side() {
         let mut random = Random::new(13 + kind as u64);
         for shape in ordinary(kind, 9) {
             let reach = 0.2 + 0.7 * size(&shape).min(2.5);
-            for _ in 0..60 {
+            for _ in 0..many(60) {
                 let p = random.point(reach);
                 let f = distance(&shape, p);
                 if f.abs() < 1e-6 {
@@ -146,7 +146,7 @@ fn steps_are_safe_for_every_shape() {
 #[test]
 fn every_value_and_gradient_is_finite() {
     for &kind in ShapeKind::ALL {
-        for shape in ordinary(kind, 10).into_iter().chain(extreme(kind, 100)) {
+        for shape in ordinary(kind, many(10)).into_iter().chain(extreme(kind, many(100))) {
             for p in special_points(&shape) {
                 let (f, gradient) = with_gradient(&shape, p);
                 assert!(f.is_finite() && gradient.is_finite(), "{shape:?} at {p}: {f}, {gradient}");
@@ -186,7 +186,7 @@ fn bounds_enclose_every_shape() {
         for shape in ordinary(kind, 20) {
             let bounds = shape.bounds();
             let reach = 1.0 + 2.0 * size(&shape);
-            for _ in 0..500 {
+            for _ in 0..many(500) {
                 let p = random.point(reach);
                 let f = distance(&shape, p);
                 assert!(bounds.contains(p) || f > 0.0, "{shape:?} at {p}: {f}");

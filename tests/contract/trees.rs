@@ -9,7 +9,7 @@ use isolith::scene::{
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, ordinary, shape_with, usual};
+use super::samples::{Random, many, ordinary, shape_with, usual};
 use super::surfaces::inside;
 
 const TREES: u64 = 60;
@@ -170,7 +170,7 @@ fn steps_are_safe_in_every_tree() {
 fn bounds_enclose_every_component() {
     for_each_component(|_, flat, component, random| {
         let (center, reach) = surroundings(component);
-        for _ in 0..400 {
+        for _ in 0..many(400) {
             let p = center + random.point(1.5 * reach);
             let f = field(flat, component, p);
             assert!(f.is_finite());
@@ -193,7 +193,7 @@ fn groups_rise_with_the_distance_from_their_bounds() {
             groups += 1;
             let inner = Component { first: index + 1, count: node.extent - 1, ..component.clone() };
             let [low, half] = [low, half].map(|[x, y, z, _]| DVec3::new(x, y, z));
-            for _ in 0..200 {
+            for _ in 0..many(200) {
                 let p = center + random.point(2.0 * reach);
                 let least = joint[1] * ((p - low).abs() - half).max(DVec3::ZERO).length();
                 let f = field(flat, &inner, p);

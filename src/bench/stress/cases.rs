@@ -1,0 +1,206 @@
+//! Subjects by circumstances. Those of one subject stand together, so that its kernel is built once.
+
+use glam::DVec3;
+
+use super::figures::Allowed;
+use super::place::View;
+use super::subject::{Place, Subject, usual_blend};
+use crate::scene::{
+    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, Shape, ShapeKind,
+    limits,
+};
+
+/// A thing to draw, and how.
+#[derive(Clone, Debug)]
+pub struct Case {
+    pub(super) subject: Subject,
+    /// What is difficult, in words.
+    pub circumstance: String,
+    pub(super) place: Place,
+    pub(super) view: View,
+}
+
+impl Case {
+    /// What is drawn.
+    pub fn name(&self) -> String {
+        self.subject.name()
+    }
+
+    /// How much of it may be wrong.
+    pub(super) fn allowed(&self) -> Allowed {
+        if matches!(self.view, View::At(_)) { Allowed::FAR_CELL } else { Allowed::USUAL }
+    }
+
+    /// Whether it is one of the few that tests draw: a simple shape, one with edges, one with a hole, a soft and a
+    /// hard joint, copies without end and a bent space.
+    pub fn is_tested(&self) -> bool {
+        match &self.subject {
+            Subject::Shape(shape) => {
+                matches!(shape.kind(), ShapeKind::Sphere | ShapeKind::Box | ShapeKind::Torus | ShapeKind::Plane)
+            }
+            Subject::Joint(group) => {
+                matches!(group.operator, Operator::Union | Operator::Difference)
+                    && group.blend.kernel == BlendKernel::Circular
+            }
+            Subject::Modified(modifier) => matches!(modifier.kind(), ModifierKind::Repeat | ModifierKind::Bend),
+        }
+    }
+}
+
+/// Every case.
+pub fn cases() -> Vec<Case> {
+    let mut all = Vec::new();
+    for &kind in ShapeKind::ALL {
+        shape(kind, &mut all);
+    }
+    for operator in Operator::ALL {
+        let kernels = if operator.has_kernel() { BlendKernel::ALL.as_slice() } else { &BlendKernel::ALL[..1] };
+        for &kernel in kernels {
+            joint(operator, kernel, &mut all);
+        }
+    }
+    for &kind in ModifierKind::ALL {
+        modifier(kind, &mut all);
+    }
+    all
+}
+
+/// The subject as it is, at the ends of the scales, far away, and from where rays are difficult.
+fn everywhere(subject: &Subject, all: &mut Vec<Case>) {
+    let scaled = |scale| Place { scale, ..Place::PLAIN };
+    let far = Place { at: DVec3::new(6e5, -6e5, 5.3e5), ..Place::PLAIN };
+    let circumstances = [
+        ("plain", Place::PLAIN, View::Whole),
+        ("scale 1e-4", scaled(1e-4), View::Whole),
+        ("scale 1e4", scaled(1e4), View::Whole),
+        ("1e6 from the origin", far, View::Whole),
+        ("1e6 from the origin, grazing", far, View::Grazing),
+        ("grazing", Place::PLAIN, View::Grazing),
+        ("from inside", Place::PLAIN, View::Inside),
+        ("from 1e-3", Place::PLAIN, View::Near),
+    ];
+    all.extend(circumstances.map(|(circumstance, place, view)| Case {
+        subject: subject.clone(),
+        circumstance: circumstance.into(),
+        place,
+        view,
+    }));
+}
+
+fn plain(subject: Subject, circumstance: String) -> Case {
+    Case { subject, circumstance, place: Place::PLAIN, view: View::Whole }
+}
+
+/// Numbers at which a parameter is tried, with their names: nothing, thin as 1e-4 of `size`, the limits.
+fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> {
+    let mut all = Vec::new();
+    if limits.accept(0.0) {
+        all.push(("0", 0.0));
+        if limits.unit == "m" {
+            all.push(("1e-4 of the size", 1e-4 * size));
+        }
+    }
+    all.extend([("at its soft lower limit", limits.soft[0]), ("at its soft upper limit", limits.soft[1])]);
+    if hard {
+        all.extend([("at its lower limit", limits.hard[0]), ("at its upper limit", limits.hard[1])]);
+    }
+    let mut kept: Vec<(&str, f64)> = Vec::new();
+    for (name, number) in all {
+        if kept.iter().all(|(_, before)| *before != number) {
+            kept.push((name, number));
+        }
+    }
+    kept
+}
+
+fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
+    let usual = kind.default_shape();
+    everywhere(&Subject::Shape(usual.clone()), all);
+    let bounds = usual.bounds();
+    let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
+    for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
+        for (name, number) in extremes(&param.limits, size, true) {
+            let changed = match value {
+                ParamValue::Scalar(_) => ParamValue::Scalar(number),
+                ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..v }),
+                // What is no number has no extremes.
+                #[allow(unreachable_patterns, reason = "not every version of the table has other values")]
+                _ => continue,
+            };
+            let mut shape: Shape = usual.clone();
+            if shape.set_value(index, changed) && shape != usual {
+                let circumstance = format!("{} {name}", param.name.replace('_', " "));
+                all.push(plain(Subject::Shape(shape), circumstance));
+            }
+        }
+    }
+}
+
+fn joint(operator: Operator, kernel: BlendKernel, all: &mut Vec<Case>) {
+    let usual = Group::new(operator, usual_blend(kernel));
+    // Far off and close by, joints of all kernels are the same code.
+    if operator == Operator::Union || kernel == BlendKernel::ALL[0] {
+        everywhere(&Subject::Joint(usual), all);
+    }
+    let mut push = |group: Group, circumstance: String| all.push(plain(Subject::Joint(group), circumstance));
+    if operator.has_radius() {
+        for (name, radius) in [("without a blend", 0.0), ("blend of 1e6", limits::BLEND_RADIUS.hard[1])] {
+            push(Group { blend: Blend::new(kernel, radius), ..usual }, name.into());
+        }
+        if kernel.has_steps() && operator.has_steps() {
+            for steps in limits::STEPS.hard {
+                let blend = Blend { steps: steps as u32, ..usual.blend };
+                push(Group { blend, ..usual }, format!("{steps} steps"));
+            }
+        }
+    }
+    if kernel != BlendKernel::ALL[0] {
+        return;
+    }
+    for number in [0.0, 1e-4, 1e6] {
+        if operator.has_width() {
+            push(Group { width: number, ..usual }, format!("width {number:e}"));
+        }
+        if operator.has_depth() {
+            push(Group { depth: number, ..usual }, format!("depth {number:e}"));
+        }
+    }
+    if operator == Operator::Morph {
+        for share in [0.0, 1.0] {
+            push(Group { share, ..usual }, format!("share {share}"));
+        }
+    }
+}
+
+fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
+    let usual = kind.default_modifier();
+    everywhere(&Subject::Modified(usual), all);
+    for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
+        // Beyond what is offered rays take more steps than anyone waits for: waves of a kilometre every millimetre.
+        for (name, number) in extremes(&param.limits, 1.0, false) {
+            let whole = number as u32;
+            let changed = match value {
+                ModifierValue::Scalar(_) => ModifierValue::Scalar(number),
+                ModifierValue::Vector(v) => ModifierValue::Vector(DVec3 { x: number, ..v }),
+                ModifierValue::Count(_) => ModifierValue::Count(whole),
+                ModifierValue::Counts([_, y, z]) => ModifierValue::Counts([whole, y, z]),
+                ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
+            };
+            let mut changed_modifier = usual;
+            if changed_modifier.set_value(index, changed) && changed_modifier != usual {
+                let circumstance = format!("{} {name}", param.name.replace('_', " "));
+                all.push(plain(Subject::Modified(changed_modifier), circumstance));
+            }
+        }
+    }
+    if let Modifier::Repeat { spacing, .. } = usual {
+        const CELL: f64 = 1e4;
+        for (name, axes) in [("a row", [0, 1, 1]), ("a grid", [0, 0, 0])] {
+            let mut endless = usual;
+            endless.set_value(0, ModifierValue::Counts(axes));
+            let view = View::At(DVec3::from(spacing) * CELL * DVec3::from(axes.map(|n| f64::from(n == 0))));
+            let case = plain(Subject::Modified(endless), format!("cell 1e4 of {name} without end"));
+            all.push(Case { view, ..case });
+        }
+    }
+}

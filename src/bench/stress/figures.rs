@@ -1,0 +1,169 @@
+//! A picture against its truth, in numbers.
+
+use std::collections::HashSet;
+use std::fmt::Write as _;
+
+use image::RgbImage;
+
+use super::cases::Case;
+use super::sheet::strip;
+use crate::bench::BenchError;
+use crate::flat::compare::{Accuracy, GRAZING_ANGLE};
+use crate::flat::truth::{Truth, truth};
+use crate::flat::{Buffers, flatten};
+use crate::render::Renderer;
+
+/// Width and height of the pictures, in pixels.
+pub const PICTURE: [u32; 2] = [48, 36];
+/// How much of a picture may be wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Allowed {
+    /// Share of the pixels that may be wrong.
+    pub wrong: f64,
+    /// Largest error of the depth at the 99th percentile, in pixel footprints.
+    pub depth: f64,
+}
+
+impl Allowed {
+    /// Of any picture. A hundredth of the pixels of such small pictures are those along outlines, where rays graze and a
+    /// thousandth of a footprint across the surface is many times that along the ray.
+    pub const USUAL: Self = Self { wrong: 0.003, depth: 0.3 };
+    /// Of cells 1e4 away in each direction: numbers of 32 bits are 2 mm apart there, a tenth of a footprint, and many
+    /// times that along grazing rays.
+    pub const FAR_CELL: Self = Self { wrong: 0.02, depth: 4.0 };
+}
+
+/// What a case came to.
+#[derive(Clone, Debug)]
+pub struct Figures {
+    /// What was drawn.
+    pub subject: String,
+    /// What is difficult about it.
+    pub circumstance: String,
+    /// Pixels in the picture.
+    pub pixels: usize,
+    /// Pixels where truth hits something.
+    pub hits: usize,
+    /// Pixels that are wrong: one of picture and truth hits and the other does not, or their depths are more than a
+    /// footprint apart; not where the ray passes an edge so closely that 32-bit numbers cannot tell the sides apart.
+    pub wrong: usize,
+    /// Pixels whose depth or normal is no number.
+    pub nan: usize,
+    /// Components whose rays had not all ended.
+    pub unfinished: usize,
+    /// Error of the depth in pixel footprints: 99th percentile.
+    pub depth_p99: f64,
+    /// The same, maximum.
+    pub depth_max: f64,
+    /// What is allowed.
+    pub allowed: Allowed,
+    /// Picture, truth and difference beside each other.
+    pub(super) strip: RgbImage,
+}
+
+/// See [`Figures::wrong`].
+fn is_wrong(measured: &Buffers, truth: &Truth, footprint: f64, i: usize) -> bool {
+    let (m, t) = (f64::from(measured.depth[i]), f64::from(truth.buffers.depth[i]));
+    let differs = if t.is_finite() && m.is_finite() { (m - t).abs() > footprint * t } else { m != t };
+    differs && (m.is_nan() || f64::from(truth.margin[i]) > GRAZING_ANGLE / footprint)
+}
+
+/// Whether a number of the pixel is none.
+fn is_nan(buffers: &Buffers, i: usize) -> bool {
+    buffers.depth[i].is_nan() || buffers.normal[i].iter().any(|v| v.is_nan())
+}
+
+impl Case {
+    /// Draws it and compares it with the truth; none where the scene is beyond a limit or the view sees no surface.
+    ///
+    /// # Errors
+    /// A ray of the truth has no end, or the device fails.
+    pub fn measure(&self, renderer: &mut Renderer) -> Result<Option<Figures>, BenchError> {
+        let Ok(flat) = flatten(&self.subject.scene(self.place), 0.0) else { return Ok(None) };
+        let aspect = f64::from(PICTURE[0]) / f64::from(PICTURE[1]);
+        let Some(camera) = self.view.camera(&flat, self.place, aspect)? else { return Ok(None) };
+        let truth = truth(&flat, &[], &camera, PICTURE, &|_| ())?;
+        let (measured, unfinished) = renderer.render(&flat, &[], &camera, PICTURE, &mut |_| true)?;
+        let footprint = camera.footprint(f64::from(PICTURE[1]));
+        let mut figures = Figures::of(&measured, &truth, footprint);
+        figures.subject = self.name();
+        figures.circumstance.clone_from(&self.circumstance);
+        figures.unfinished = unfinished.len();
+        figures.allowed = self.allowed();
+        Ok(Some(figures))
+    }
+}
+
+impl Figures {
+    /// Compares a picture with the truth; `footprint` is the width of a pixel at distance 1.
+    pub fn of(measured: &Buffers, truth: &Truth, footprint: f64) -> Self {
+        let accuracy = Accuracy::against(measured, truth, footprint);
+        let pixels = measured.depth.len();
+        let wrong: Vec<bool> = (0..pixels).map(|i| is_wrong(measured, truth, footprint, i)).collect();
+        Self {
+            subject: String::new(),
+            circumstance: String::new(),
+            pixels,
+            hits: truth.buffers.depth.iter().filter(|depth| depth.is_finite()).count(),
+            wrong: wrong.iter().filter(|wrong| **wrong).count(),
+            nan: (0..pixels).filter(|&i| is_nan(measured, i)).count(),
+            unfinished: 0,
+            depth_p99: accuracy.depth_p99,
+            depth_max: accuracy.depth_max,
+            allowed: Allowed::USUAL,
+            strip: strip(measured, &truth.buffers, footprint, &wrong),
+        }
+    }
+
+    /// What is beyond what is allowed, in words; nothing where all is well.
+    pub fn faults(&self) -> Vec<String> {
+        let checks = [
+            ("pixels that are no number", self.nan as f64, 0.0),
+            ("components with unfinished rays", self.unfinished as f64, 0.0),
+            ("share of pixels that are wrong", self.wrong as f64 / self.pixels.max(1) as f64, self.allowed.wrong),
+            ("depth error, 99th percentile, in footprints", self.depth_p99, self.allowed.depth),
+        ];
+        let beyond = checks.into_iter().filter(|(_, value, limit)| value.is_nan() || value > limit);
+        let at = format!("{}, {}", self.subject, self.circumstance);
+        beyond.map(|(what, value, limit)| format!("{at}: {what}: {value}, allowed {limit}")).collect()
+    }
+}
+
+/// The worst first: no number, then wrong pixels, then the error of the depth.
+pub fn worst_first(figures: &mut [Figures]) {
+    figures.sort_by(|a, b| {
+        (b.nan, b.wrong, b.unfinished).cmp(&(a.nan, a.wrong, a.unfinished)).then(b.depth_p99.total_cmp(&a.depth_p99))
+    });
+}
+
+/// The first case of each subject.
+pub fn first_of_each(figures: &[Figures]) -> Vec<Figures> {
+    let mut seen = HashSet::new();
+    figures.iter().filter(|one| seen.insert(one.subject.as_str())).cloned().collect()
+}
+
+/// Totals, and one line for each of the first `lines`, as Markdown.
+pub fn stress_table(figures: &[Figures], lines: usize) -> String {
+    let sum = |of: fn(&Figures) -> usize| figures.iter().map(of).sum::<usize>();
+    let beyond = figures.iter().filter(|one| !one.faults().is_empty()).count();
+    let mut out = format!(
+        "{} cases, {} pixels, {} of them hits: {} wrong, {} no number, {} cases beyond what is allowed.\n\n",
+        figures.len(),
+        sum(|one| one.pixels),
+        sum(|one| one.hits),
+        sum(|one| one.wrong),
+        sum(|one| one.nan),
+        beyond,
+    );
+    out += "| subject | circumstance | hits | wrong | NaN | unfinished | depth p99 | max |\n";
+    out += "|---|---|--:|--:|--:|--:|--:|--:|\n";
+    for one in figures.iter().take(lines) {
+        let Figures { subject, circumstance, hits, wrong, nan, unfinished, depth_p99, depth_max, .. } = one;
+        writeln!(
+            out,
+            "| {subject} | {circumstance} | {hits} | {wrong} | {nan} | {unfinished} | {depth_p99:.5} | {depth_max:.4} |"
+        )
+        .expect("strings take all");
+    }
+    out
+}

@@ -1,0 +1,68 @@
+//! Where the eye is: far enough to see all, or where rays are difficult.
+
+use glam::{DVec2, DVec3};
+
+use super::subject::Place;
+use crate::flat::trace::{TraceError, trace};
+use crate::flat::twin::surface;
+use crate::flat::{FlatScene, view::THREE_QUARTER};
+use crate::geometry::{Aabb, Camera};
+
+/// Where the eye is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum View {
+    /// It sees all.
+    Whole,
+    /// It looks along the surface, at an angle of about one degree.
+    Grazing,
+    /// It is in the middle of the bounds.
+    Inside,
+    /// It is a thousandth of a unit from the surface and looks at it askew.
+    Near,
+    /// It looks at what is there, in the subject's own space, from as far as it would at the origin.
+    At(DVec3),
+}
+
+/// How far `View::Near` is from the surface, in metres.
+const CLOSE: f64 = 1e-3;
+/// Height over the surface of `View::Grazing`, as a share of the distance to the point it looks at.
+const LOW: f64 = 0.02;
+
+impl View {
+    /// The camera of this view; none where it needs a point of the surface, and the middle of the whole view has none.
+    ///
+    /// # Errors
+    /// A ray has no end.
+    pub fn camera(self, flat: &FlatScene, place: Place, aspect: f64) -> Result<Option<Camera>, TraceError> {
+        let endless = || flat.components.iter().any(|component| !component.bounds.is_finite());
+        let around = |at| Aabb::from_center_half(at, DVec3::splat(place.scale));
+        let content = match self {
+            Self::At(local) => around(place.at + Place::turn() * local * place.scale),
+            _ if endless() => around(place.at),
+            _ => flat.content(&[]),
+        };
+        let mut whole = Camera::framing(&content, THREE_QUARTER, Camera::DEFAULT_FOV_Y, aspect);
+        // Bounds of what is turned are larger than it.
+        whole.fov_y *= 0.6;
+        if matches!(self, Self::Whole | Self::At(_)) {
+            return Ok(Some(whole));
+        }
+        let ray = whole.ray(DVec2::splat(0.5), DVec2::ONE);
+        let Some(hit) = trace(flat, &ray, whole.near, whole.far)? else { return Ok(None) };
+        let component = &flat.components[hit.component as usize];
+        let point = ray.at(hit.t);
+        let gradient = surface(flat, component, point - component.origin).gradient;
+        let normal = gradient.try_normalize().unwrap_or(-ray.direction);
+        let along = normal.any_orthonormal_vector();
+        let size = content.half().length();
+        let (eye, target) = match self {
+            Self::Grazing => (point + (along + normal * LOW) * size, point),
+            Self::Near => (point + normal * CLOSE, point + along * CLOSE),
+            _ => (content.center(), point),
+        };
+        let mut camera = Camera::looking_at(eye, target, Camera::DEFAULT_FOV_Y);
+        camera.near = 1e-3 * (target - eye).length().max(1e-6 * size);
+        camera.far = 1e3 * size.max(CLOSE);
+        Ok(Some(camera))
+    }
+}
