@@ -14,10 +14,13 @@ fn sdf_outline(p: vec2f, groups: u32, overlaps: bool, data: u32) -> f32 {
     let y = w.y * first.z - w.x * first.w;
     let foot = held_f32(sdf_outline_foot(x, y, second.x));
     let reach = abs(second.y);
-    // To the right of the piece. It keeps its gradient where the point lies on the curve.
+    // To the right of the piece. On the curve itself the point is counted to the right, at a level piece to above: the
+    // sign there is that of this side, so that the gradient is the one of the surface.
     let u = 1.0 - second.x * y;
     let m = sqrt(u * u + second.x * x * second.x * x);
-    let aside = abs((second.x * (x * x + y * y) - 2.0 * y) / (m + 1.0));
+    let right = (second.x * dot(w, w) - 2.0 * y) / (m + 1.0);
+    let side = select(right, -right, second.z == second.w && first.z > 0.0);
+    let aside = select(side, -side, side < 0.0);
     let lambda = clamp(foot, -reach, reach);
     let share = 2.0 * lambda / (1.0 + second.x * second.x * lambda * lambda);
     let from_end = length(vec2f(x - share, y - share * second.x * lambda));
