@@ -115,7 +115,7 @@ fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> 
 
 fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
     let usual = kind.default_shape();
-    everywhere(&Subject::Shape(usual.clone()), all);
+    everywhere(&Subject::Shape(usual), all);
     let bounds = usual.bounds();
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
@@ -127,7 +127,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
                 #[allow(unreachable_patterns, reason = "not every version of the table has other values")]
                 _ => continue,
             };
-            let mut shape: Shape = usual.clone();
+            let mut shape: Shape = usual;
             if shape.set_value(index, changed) && shape != usual {
                 let circumstance = format!("{} {name}", param.name.replace('_', " "));
                 all.push(plain(Subject::Shape(shape), circumstance));
