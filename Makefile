@@ -22,7 +22,7 @@ run: setup ## Open the editor on the showcase scene; without a display, render i
 test: lint ## Check formatting and lints, then run every test
 	cargo test --lib --tests
 
-# 200 times the points of `make test`: a million for each repetition against its copies. Takes an hour.
+# 200 times the points of `make test`: a million for each repetition against its copies.
 nightly: setup ## Test the contract of fields at very many points
 	ISOLITH_TIMES=200 cargo test --test tests -- contract::
 

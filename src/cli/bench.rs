@@ -46,7 +46,7 @@ pub struct BenchArguments {
     #[arg(long, conflicts_with_all = ["scenes", "growth"])]
     blends: bool,
     /// Draw every shape, operator and modifier where numbers get difficult, and compare with the truth
-    #[arg(long, conflicts_with_all = ["scenes", "growth", "blends", "json"])]
+    #[arg(long, conflicts_with_all = ["scenes", "growth", "blends", "json", "methods", "qualities", "size"])]
     stress: bool,
     /// Write tables (bench.md, bench.csv) and charts (SCENE.png) into this folder
     #[arg(short, long, value_name = "FOLDER")]
@@ -59,6 +59,7 @@ pub struct BenchArguments {
 /// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
 /// and left out.
 pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
+    arguments.output.as_deref().map_or(Ok(()), create_folder)?;
     if arguments.stress {
         return stress(arguments.output.as_deref());
     }
@@ -122,7 +123,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
     let mut progress = Progress::start("stressing", false, Interrupts::StopTheTask);
     let all = cases();
     let mut figures: Vec<Figures> = Vec::new();
-    let mut unseen = 0;
+    let (mut unseen, mut left_out) = (0, 0);
     for (i, case) in all.iter().enumerate() {
         if !progress.update(i as f64 / all.len() as f64) {
             return Err(Failure::Cancelled);
@@ -131,27 +132,20 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
         match case.measure(&mut renderer) {
             Ok(Some(found)) => figures.push(found),
             Ok(None) => unseen += 1,
-            Err(BenchError::Truth(error)) => complain(&format!("left out: {}: {error}", name())),
+            Err(error @ (BenchError::Scene(_) | BenchError::Truth(_))) => {
+                complain(&format!("left out: {}: {error}", name()));
+                left_out += 1;
+            }
             Err(error) => return Err(Failure::Other(format!("{}: {error}", name()))),
         }
     }
     progress.finish();
     worst_first(&mut figures);
     say(&stress_table(&figures, PRINTED))?;
-    say(&format!("{unseen} cases show no surface or are beyond a limit of scenes."))?;
+    say(&format!("{unseen} cases show no surface, {left_out} were left out."))?;
     let Some(folder) = output else { return Ok(()) };
-    let write = |name: &str, write: &dyn Fn(&Path) -> Result<(), String>| {
-        let path = folder.join(name);
-        write(&path).map_err(|reason| Failure::Write { path, reason })
-    };
-    write("", &|path| std::fs::create_dir_all(path).map_err(|error| error.to_string()))?;
-    write("stress.md", &|path| {
-        std::fs::write(path, stress_table(&figures, figures.len())).map_err(|error| error.to_string())
-    })?;
-    write("stress.png", &|path| {
-        let picture = stress_sheet(&first_of_each(&figures), SHOWN);
-        picture.save_with_format(path, ImageFormat::Png).map_err(|error| error.to_string())
-    })
+    write_text(folder, "stress.md", &stress_table(&figures, figures.len()))?;
+    write_picture(folder, "stress.png", &stress_sheet(&first_of_each(&figures), SHOWN))
 }
 
 fn parsed<T>(names: &[String], parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Failure> {
@@ -206,28 +200,33 @@ fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
 }
 
 fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), Failure> {
-    let failed = |path: &Path| {
-        let path = path.to_path_buf();
-        move |error: std::io::Error| Failure::Write { path, reason: error.to_string() }
-    };
-    std::fs::create_dir_all(folder).map_err(failed(folder))?;
     let info = &bench.gpu().info;
     let heading = format!("On {} ({}).\n\n", info.name, info.driver_info);
-    for (name, text) in [("bench.md", heading + &markdown(rows)), ("bench.csv", csv(rows))] {
-        let path = folder.join(name);
-        std::fs::write(&path, text).map_err(failed(&path))?;
-    }
-    let chart = |name: &str, picture: RgbImage| {
-        let path = folder.join(format!("{name}.png"));
-        picture
-            .save_with_format(&path, ImageFormat::Png)
-            .map_err(|error| Failure::Write { path: path.clone(), reason: error.to_string() })
-    };
+    write_text(folder, "bench.md", &(heading + &markdown(rows)))?;
+    write_text(folder, "bench.csv", &csv(rows))?;
     if grown {
-        chart("growth", growth(rows))?;
+        write_picture(folder, "growth.png", &growth(rows))?;
     }
     for of_scene in rows.chunk_by(|a, b| a.scene == b.scene) {
-        chart(&of_scene[0].scene, time_against_error(of_scene))?;
+        write_picture(folder, &format!("{}.png", of_scene[0].scene), &time_against_error(of_scene))?;
     }
     Ok(())
+}
+
+fn not_written(path: &Path, error: &dyn std::error::Error) -> Failure {
+    Failure::Write { path: path.to_path_buf(), reason: error.to_string() }
+}
+
+fn create_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| not_written(folder, &error))
+}
+
+fn write_text(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).map_err(|error| not_written(&path, &error))
+}
+
+fn write_picture(folder: &Path, name: &str, picture: &RgbImage) -> Result<(), Failure> {
+    let path = folder.join(name);
+    picture.save_with_format(&path, ImageFormat::Png).map_err(|error| not_written(&path, &error))
 }

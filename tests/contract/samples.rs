@@ -1,5 +1,6 @@
 //! Reproducible random numbers, points and parameters.
 
+use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 use glam::DVec3;
@@ -58,11 +59,11 @@ impl Random {
 
 /// So many points, times the factor that `ISOLITH_TIMES` names: `make nightly` looks at many more.
 pub fn many(count: usize) -> usize {
-    static TIMES: LazyLock<usize> = LazyLock::new(|| match std::env::var("ISOLITH_TIMES") {
+    static TIMES: LazyLock<NonZeroUsize> = LazyLock::new(|| match std::env::var("ISOLITH_TIMES") {
         Ok(times) => times.parse().unwrap_or_else(|error| panic!("ISOLITH_TIMES: {error}")),
-        Err(_) => 1,
+        Err(_) => NonZeroUsize::MIN,
     });
-    count * *TIMES
+    count * TIMES.get()
 }
 
 /// A shape whose numbers all come from `number`, which is given their limits.

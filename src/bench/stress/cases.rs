@@ -30,21 +30,6 @@ impl Case {
     pub(super) fn allowed(&self) -> Allowed {
         if matches!(self.view, View::At(_)) { Allowed::FAR_CELL } else { Allowed::USUAL }
     }
-
-    /// Whether it is one of the few that tests draw: a simple shape, one with edges, one with a hole, a soft and a
-    /// hard joint, copies without end and a bent space.
-    pub fn is_tested(&self) -> bool {
-        match &self.subject {
-            Subject::Shape(shape) => {
-                matches!(shape.kind(), ShapeKind::Sphere | ShapeKind::Box | ShapeKind::Torus | ShapeKind::Plane)
-            }
-            Subject::Joint(group) => {
-                matches!(group.operator, Operator::Union | Operator::Difference)
-                    && group.blend.kernel == BlendKernel::Circular
-            }
-            Subject::Modified(modifier) => matches!(modifier.kind(), ModifierKind::Repeat | ModifierKind::Bend),
-        }
-    }
 }
 
 /// Every case.
@@ -115,7 +100,7 @@ fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> 
 
 fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
     let usual = kind.default_shape();
-    everywhere(&Subject::Shape(usual.clone()), all);
+    everywhere(&Subject::Shape(usual), all);
     let bounds = usual.bounds();
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
@@ -123,11 +108,8 @@ fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
             let changed = match value {
                 ParamValue::Scalar(_) => ParamValue::Scalar(number),
                 ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..v }),
-                // What is no number has no extremes.
-                #[allow(unreachable_patterns, reason = "not every version of the table has other values")]
-                _ => continue,
             };
-            let mut shape: Shape = usual.clone();
+            let mut shape: Shape = usual;
             if shape.set_value(index, changed) && shape != usual {
                 let circumstance = format!("{} {name}", param.name.replace('_', " "));
                 all.push(plain(Subject::Shape(shape), circumstance));

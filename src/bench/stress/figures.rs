@@ -15,6 +15,7 @@ use crate::render::Renderer;
 
 /// Width and height of the pictures, in pixels.
 pub const PICTURE: [u32; 2] = [48, 36];
+
 /// How much of a picture may be wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Allowed {
@@ -74,12 +75,12 @@ fn is_nan(buffers: &Buffers, i: usize) -> bool {
 }
 
 impl Case {
-    /// Draws it and compares it with the truth; none where the scene is beyond a limit or the view sees no surface.
+    /// Draws it and compares it with the truth; none where the view needs a surface that is not there.
     ///
     /// # Errors
-    /// A ray of the truth has no end, or the device fails.
+    /// The scene is beyond a limit, a ray of the truth has no end, or the device fails.
     pub fn measure(&self, renderer: &mut Renderer) -> Result<Option<Figures>, BenchError> {
-        let Ok(flat) = flatten(&self.subject.scene(self.place), 0.0) else { return Ok(None) };
+        let flat = flatten(&self.subject.scene(self.place), 0.0)?;
         let aspect = f64::from(PICTURE[0]) / f64::from(PICTURE[1]);
         let Some(camera) = self.view.camera(&flat, self.place, aspect)? else { return Ok(None) };
         let truth = truth(&flat, &[], &camera, PICTURE, &|_| ())?;
