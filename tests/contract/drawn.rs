@@ -7,10 +7,10 @@ use glam::{DVec2, DVec3};
 use isolith::flat::Body;
 use isolith::flat::twin::{ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
-use isolith::scene::{Shape, profile_curve, text_outline, tube_curve};
+use isolith::scene::{Shape, ShapeKind, profile_curve, text_outline, tube_curve};
 
 use super::samples::evaluate;
-use super::surfaces::{Patch, ball, outside_only, turned};
+use super::surfaces::{Patch, outside_of, sphere, turned};
 
 /// An arc with the radii at its ends.
 type Piece = (ArcPiece, [f64; 2]);
@@ -51,33 +51,51 @@ fn to_piece(piece: &Piece, p: DVec3) -> f64 {
     f(0.5 * (low + high)).min(f(place(best)))
 }
 
+/// Whether a ball of one of the pieces holds the point; most are told from afar.
+fn any_holds(pieces: &[Piece], p: DVec3) -> bool {
+    let is_near = |(arc, radii): &&Piece| p.distance(arc.at(0.0)) <= 0.5 * arc.length() + radii[0].max(radii[1]);
+    pieces.iter().filter(is_near).any(|piece| to_piece(piece, p) < 0.0)
+}
+
+/// The distance to a tube from outside, that to the nearest of its balls.
+pub fn tube_distance(shape: &Shape, p: DVec3) -> f64 {
+    let Shape::Tube { points, radius, closed } = shape else { panic!("a tube") };
+    pieces(points, *radius, *closed).iter().fold(f64::INFINITY, |least, piece| least.min(to_piece(piece, p)))
+}
+
 /// The place of an arc at a share of the way from its start to its end, as λ.
 fn lambda_at(arc: &ArcPiece, share: f64) -> f64 {
     arc.reach * (2.0 * share - 1.0)
 }
 
-/// Whether the curves go around the point an odd number of times: chords of fine samples against a ray upwards.
-fn is_odd(arcs: &[ArcPiece], p: DVec2) -> bool {
-    let mut crossings = 0;
-    // Letters have many short arcs.
-    let per_arc = if arcs.len() > 20 { 40 } else { 400 };
-    for arc in arcs {
-        let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
-        for i in 0..count {
+/// A curve as chords, and the ray upwards that says whether a point is inside.
+struct Chords(Vec<[DVec2; 2]>);
+
+impl Chords {
+    fn new(arcs: &[ArcPiece]) -> Self {
+        // Letters have many short arcs.
+        let per_arc = if arcs.len() > 20 { 40 } else { 400 };
+        let mut chords = Vec::new();
+        for arc in arcs {
+            let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
             // Rounded, so that two arcs that meet end in one point: between two there would be a way in.
             let tidy = |v: f64| (v * 1e12).round() / 1e12;
             let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate().map(tidy);
-            let (a, b) = (at(i), at(i + 1));
-            if (a.x > p.x) != (b.x > p.x) && a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x) > p.y {
-                crossings += 1;
-            }
+            chords.extend((0..count).map(|i| [at(i), at(i + 1)]));
         }
+        Self(chords)
     }
-    crossings % 2 == 1
+
+    /// Whether the curves go around the point an odd number of times.
+    fn hold(&self, p: DVec2) -> bool {
+        let is_above =
+            |[a, b]: &&[DVec2; 2]| (a.x > p.x) != (b.x > p.x) && a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x) > p.y;
+        self.0.iter().filter(is_above).count() % 2 == 1
+    }
 }
 
-/// How deep a point of the plane is in a profile, by a prism without end.
-fn depth_in(shape: &Shape, p: DVec2) -> f64 {
+/// A profile as a prism without end, whose field at its middle says how deep a point of the plane is in it.
+fn endless(shape: &Shape) -> Body {
     let mut prism = shape.clone();
     match &mut prism {
         Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
@@ -85,13 +103,16 @@ fn depth_in(shape: &Shape, p: DVec2) -> f64 {
         }
         _ => panic!("a profile"),
     }
-    evaluate(&Body::new(&prism), [p.x, p.y, 0.0])
+    Body::new(&prism)
 }
 
-fn height(shape: &Shape, x: f64, z: f64) -> f64 {
-    let body = Body::new(shape);
+fn depth_in(endless: &Body, p: DVec2) -> f64 {
+    evaluate(endless, [p.x, p.y, 0.0])
+}
+
+fn height(body: &Body, x: f64, z: f64) -> f64 {
     let rows = |row: usize| body.rows[row];
-    if matches!(shape, Shape::Ocean { .. }) {
+    if body.kind == ShapeKind::Ocean {
         ocean_height(x, z, &body.parameters, &rows)
     } else {
         terrain_height(x, z, &body.parameters, &rows)
@@ -100,24 +121,23 @@ fn height(shape: &Shape, x: f64, z: f64) -> f64 {
 
 pub fn inside(shape: &Shape, p: DVec3) -> bool {
     match shape {
-        Shape::Tube { points, radius, closed } => {
-            pieces(points, *radius, *closed).iter().any(|piece| to_piece(piece, p) < 0.0)
-        }
+        Shape::Tube { points, radius, closed } => any_holds(&pieces(points, *radius, *closed), p),
         Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
             let half = 0.5 * depth;
             let rounding = rounding.min(half);
             if rounding == 0.0 {
-                return p.z.abs() < half && is_odd(&outline_of(shape), p.truncate());
+                return p.z.abs() < half && Chords::new(&outline_of(shape)).hold(p.truncate());
             }
-            let d = DVec2::new(depth_in(shape, p.truncate()) + rounding, p.z.abs() - half + rounding);
+            let d = DVec2::new(depth_in(&endless(shape), p.truncate()) + rounding, p.z.abs() - half + rounding);
             d.max(DVec2::ZERO).length() < rounding
         }
         Shape::Revolution { corners, smooth, offset } => {
-            is_odd(&profile_curve(corners, *smooth), DVec2::new(p.x.hypot(p.z) - offset, p.y))
+            Chords::new(&profile_curve(corners, *smooth)).hold(DVec2::new(p.x.hypot(p.z) - offset, p.y))
         }
         Shape::Terrain { size, .. } | Shape::Ocean { size, .. } => {
             let [x, depth, z] = *size;
-            p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && p.y < height(shape, p.x, p.z)
+            let is_below = || p.y < height(&Body::new(shape), p.x, p.z);
+            p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && is_below()
         }
         _ => panic!("stands in `surfaces`"),
     }
@@ -125,7 +145,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
 
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match shape {
-        Shape::Tube { points, radius, closed } => tube(shape, pieces(points, *radius, *closed)),
+        Shape::Tube { points, radius, closed } => tube(pieces(points, *radius, *closed)),
         Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
             extrusion(shape, 0.5 * depth, rounding.min(0.5 * depth))
         }
@@ -134,7 +154,8 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             let turn = |arc: ArcPiece| -> Patch {
                 Box::new(move |u, v| {
                     let at = arc.at(lambda_at(&arc, v));
-                    (at.x + offset >= 0.0).then(|| turned(at.x + offset, at.y, u))
+                    // What lies on the axis bounds nothing.
+                    (at.x + offset > 1e-12).then(|| turned(at.x + offset, at.y, u))
                 })
             };
             profile_curve(corners, *smooth).into_iter().map(turn).collect()
@@ -144,13 +165,17 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
     }
 }
 
-fn tube(shape: &Shape, pieces: Vec<Piece>) -> Vec<Patch> {
+fn tube(pieces: Vec<Piece>) -> Vec<Patch> {
     let pieces = Arc::new(pieces);
     let mut patches: Vec<Patch> = Vec::new();
+    let mut push = |patch: Patch| {
+        let pieces = pieces.clone();
+        patches.push(outside_of(patch, move |p| any_holds(&pieces, p)));
+    };
     for index in 0..pieces.len() {
         let (arc, radii) = pieces[index];
         for (place, radius) in [(arc.start(), radii[0]), (arc.end(), radii[1])] {
-            patches.push(ball(place, DVec3::splat(radius), shape.clone()));
+            push(sphere(place, DVec3::splat(radius)));
         }
         let growth = if arc.length() > 0.0 { (radii[1] - radii[0]) / arc.length() } else { 1.0 };
         if growth.abs() >= 1.0 {
@@ -165,7 +190,7 @@ fn tube(shape: &Shape, pieces: Vec<Piece>) -> Vec<Patch> {
             let out = across * around.x + across.cross(along) * around.z;
             Some(arc.at(lambda) + (out * (1.0 - growth * growth).sqrt() - along * growth) * r)
         });
-        patches.push(outside_only(side, shape.clone()));
+        push(side);
     }
     patches
 }
@@ -185,21 +210,21 @@ fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
     if arcs.is_empty() {
         arcs.push(ArcPiece::straight(DVec3::ZERO, DVec3::ZERO));
     }
-    for arc in arcs.clone() {
+    for &arc in &arcs {
         patches.push(Box::new(move |u, v| {
             Some(arc.at(lambda_at(&arc, u)) + DVec3::Z * (2.0 * v - 1.0) * (half - rounding))
         }));
     }
     let bounds = shape.bounds();
     for side in [-1.0, 1.0] {
-        let (shape, arcs) = (shape.clone(), arcs.clone());
+        let (endless, chords) = (endless(shape), Chords::new(&arcs));
         patches.push(Box::new(move |u, v| {
             let (low, high) = (bounds.min, bounds.max);
             let p = DVec2::new(low.x + (high.x - low.x) * u, low.y + (high.y - low.y) * v);
             if rounding == 0.0 {
-                return is_odd(&arcs, p).then(|| p.extend(side * half));
+                return chords.hold(p).then(|| p.extend(side * half));
             }
-            let depth = depth_in(&shape, p);
+            let depth = depth_in(&endless, p);
             let rise = (rounding * rounding - (depth + rounding).max(0.0).powi(2)).max(0.0).sqrt();
             (depth < 0.0).then(|| p.extend(side * (half - rounding + rise)))
         }));
@@ -211,19 +236,19 @@ fn relief(shape: &Shape, [x, depth, z]: [f64; 3]) -> Vec<Patch> {
     let at = move |u: f64, v: f64| ((u - 0.5) * x, (v - 0.5) * z);
     let mut patches: Vec<Patch> = Vec::new();
     for top in [false, true] {
-        let shape = shape.clone();
+        let body = Body::new(shape);
         patches.push(Box::new(move |u, v| {
             let (x, z) = at(u, v);
-            let h = height(&shape, x, z);
+            let h = height(&body, x, z);
             (h >= -depth).then(|| DVec3::new(x, if top { h } else { -depth }, z))
         }));
     }
     for side in 0..4 {
-        let shape = shape.clone();
+        let body = Body::new(shape);
         patches.push(Box::new(move |u, v| {
             let end = f64::from(side % 2);
             let (x, z) = if side < 2 { at(u, end) } else { at(end, u) };
-            let h = height(&shape, x, z);
+            let h = height(&body, x, z);
             (h >= -depth).then(|| DVec3::new(x, -depth + (h + depth) * v, z))
         }));
     }

@@ -5,6 +5,7 @@ use isolith::flat::Body;
 use isolith::flat::twin::{Dual, Real};
 use isolith::scene::{Shape, ShapeKind};
 
+use super::drawn::tube_distance;
 use super::rules::{gradient_is_right, steps_are_safe};
 use super::samples::{Random, evaluate, extreme, many, ordinary, size, special_points};
 use super::surfaces::{brute_distance, inside, patches};
@@ -38,10 +39,17 @@ fn is_exact_at(shape: &Shape, f: f64) -> bool {
 
 /// What is wrong with the value `f` at `p`.
 fn check_distance(shape: &Shape, surface: &[super::surfaces::Patch], p: DVec3, f: f64) -> Result<(), String> {
-    let d = brute_distance(surface, p);
+    let is_inside = inside(shape, p);
+    let d = match shape {
+        Shape::Tube { .. } if !is_inside => tube_distance(shape, p),
+        // Only the sign is judged, since a search over all balls takes minutes. How deep the field may be is looked at in
+        // `every_ball_of_the_fields_radius_is_on_one_side`.
+        Shape::Tube { .. } => f.abs(),
+        _ => brute_distance(surface, p),
+    };
     let tolerance = 1e-6 * (1.0 + d);
     let fail = |what: &str| Err(format!("{shape:?} at {p}: {what}; the field is {f}, the distance {d}"));
-    if f.abs() > tolerance && inside(shape, p) != (f < 0.0) {
+    if f.abs() > tolerance && is_inside != (f < 0.0) {
         return fail("wrong sign");
     }
     if f.abs() > d + tolerance {
@@ -66,8 +74,7 @@ fn distances_are_those_of_a_sampled_surface() {
                 continue;
             }
             let reach = 0.3 + size(&shape).min(2.5);
-            // The balls of a tube and the arcs of letters are many patches.
-            for i in 0..if matches!(kind, ShapeKind::Tube | ShapeKind::Text) { 6 } else { 24 } {
+            for i in 0..24 {
                 // Some points on planes of symmetry, where the nearest point is not unique.
                 let mut p = random.point(reach);
                 if i % 4 == 3 {

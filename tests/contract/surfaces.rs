@@ -149,8 +149,8 @@ fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], step: f64) -> f64
     least
 }
 
-/// By moves of `step` in sixteen directions, halved where none helps.
-fn refine_once(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], mut step: f64) -> (f64, [f64; 2]) {
+/// By moves of `step` in sixteen directions, doubled where one helps and halved where none does.
+fn refine_once(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], longest: f64) -> (f64, [f64; 2]) {
     const MOVES: [[f64; 2]; 16] = [
         [1.0, 0.0],
         [-1.0, 0.0],
@@ -169,11 +169,11 @@ fn refine_once(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], mut step: f6
         [0.3, -1.0],
         [-0.3, 1.0],
     ];
-    let mut least = measure(uv);
+    let (mut least, mut step) = (measure(uv), longest);
     while step > 2e-8 {
         let moved = MOVES.iter().map(|m| [0, 1].map(|i| (uv[i] + m[i] * step).clamp(0.0, 1.0)));
         match moved.map(|next| (measure(next), next)).find(|(d, _)| *d < least) {
-            Some((d, next)) => (least, uv) = (d, next),
+            Some((d, next)) => (least, uv, step) = (d, next, longest.min(2.0 * step)),
             None => step *= 0.5,
         }
     }
@@ -287,13 +287,15 @@ pub fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
 
 /// A ball with one radius per axis, where it is not inside `shape`.
 pub fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
-    outside_only(
-        Box::new(move |u, v| {
-            let (s, c) = (PI * v - FRAC_PI_2).sin_cos();
-            Some(center + turned(c, s, u) * radii)
-        }),
-        shape,
-    )
+    outside_only(sphere(center, radii), shape)
+}
+
+/// A ball with one radius per axis.
+pub fn sphere(center: DVec3, radii: DVec3) -> Patch {
+    Box::new(move |u, v| {
+        let (s, c) = (PI * v - FRAC_PI_2).sin_cos();
+        Some(center + turned(c, s, u) * radii)
+    })
 }
 
 /// The point (radius, y) turned about the Y axis by `u` of a full turn.
@@ -302,16 +304,16 @@ pub fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
     DVec3::new(radius * c, y, radius * s)
 }
 
-/// The patch without what lies inside the shape. Points are judged a little farther out than they
-/// are, in the patch's own scale, so that rounding does not tear holes.
+/// The patch without what lies inside the shape.
 pub fn outside_only(patch: Patch, shape: Shape) -> Patch {
-    Box::new(move |u, v| patch(u, v).filter(|p| !deep_inside(&shape, *p)))
+    outside_of(patch, move |p| inside(&shape, p))
 }
 
-/// Inside together with a small neighbourhood.
-fn deep_inside(shape: &Shape, p: DVec3) -> bool {
+/// The patch without what lies inside together with a small neighbourhood, so that rounding does not tear holes.
+pub fn outside_of(patch: Patch, holds: impl Fn(DVec3) -> bool + 'static) -> Patch {
     let e = 1e-7;
-    inside(shape, p) && DVec3::AXES.iter().all(|a| inside(shape, p + *a * e) && inside(shape, p - *a * e))
+    let deep = move |p: DVec3| holds(p) && DVec3::AXES.iter().all(|a| holds(p + *a * e) && holds(p - *a * e));
+    Box::new(move |u, v| patch(u, v).filter(|p| !deep(*p)))
 }
 
 pub fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
@@ -323,7 +325,7 @@ pub fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
 fn ball_between(centers: [DVec3; 2], radii: [f64; 2], p: DVec3) -> f64 {
     let at = |t: f64| p.distance(centers[0].lerp(centers[1], t)) - (radii[0] + (radii[1] - radii[0]) * t);
     let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..80 {
+    for _ in 0..50 {
         let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
         if at(a) < at(b) { high = b } else { low = a }
     }

@@ -7,6 +7,7 @@ use glam::DVec3;
 use isolith::flat::Body;
 use isolith::scene::{Shape, ShapeKind};
 
+use super::drawn::tube_distance;
 use super::outlines::menger_distance;
 use super::samples::{Random, evaluate};
 use super::surfaces::{Patch, brute_distance, patches};
@@ -23,6 +24,7 @@ fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
             menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
         }
         Shape::Julia { .. } | Shape::Kleinian { .. } => ray_distance(shape, p),
+        Shape::Tube { .. } => tube_distance(shape, p),
         _ => brute_distance(surface, p),
     }
 }
@@ -74,6 +76,10 @@ fn tightness(kind: ShapeKind) -> [f64; 2] {
 fn the_table_says_how_tight_fields_are() {
     let mut table = String::from("| field | mean of field / distance | least |\n|---|--:|--:|\n");
     for &kind in ShapeKind::ALL {
+        eprintln!(
+            "T {kind:?} {:?}",
+            std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs()
+        );
         let [mean, least] = tightness(kind);
         writeln!(table, "| {} | {mean:.3} | {least:.3} |", kind.label()).unwrap();
     }

@@ -6,8 +6,7 @@ use super::figures::Allowed;
 use super::place::View;
 use super::subject::{Place, Subject, usual_blend};
 use crate::scene::{
-    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, Shape, ShapeKind,
-    limits,
+    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, ShapeKind, limits,
 };
 
 /// A thing to draw, and how.
@@ -100,16 +99,18 @@ fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> 
 
 fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
     let usual = kind.default_shape();
-    everywhere(&Subject::Shape(usual), all);
+    everywhere(&Subject::Shape(usual.clone()), all);
     let bounds = usual.bounds();
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
         for (name, number) in extremes(&param.limits, size, true) {
-            let changed = match value {
+            let changed = match &value {
                 ParamValue::Scalar(_) => ParamValue::Scalar(number),
-                ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..v }),
+                ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..*v }),
+                // What is no number has no extremes.
+                ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) => continue,
             };
-            let mut shape: Shape = usual;
+            let mut shape = usual.clone();
             if shape.set_value(index, changed) && shape != usual {
                 let circumstance = format!("{} {name}", param.name.replace('_', " "));
                 all.push(plain(Subject::Shape(shape), circumstance));

@@ -63,7 +63,7 @@ impl Subject {
         let sun = Light { color: [1.0; 3], intensity: 0.8, light: LightKind::Directional {} };
         let sun = Node::new("Sun", NodeKind::Light(sun)).rotated(Camera::looking_at(from, DVec3::ZERO, 1.0).rotation);
         let (node, parts) = match self {
-            Self::Shape(shape) => (object(*shape), vec![]),
+            Self::Shape(shape) => (object(shape.clone()), vec![]),
             Self::Joint(group) => {
                 let parts = [(cuboid([0.9, 0.6, 0.8]), DVec3::ZERO), (ball(0.42), DVec3::new(0.1, 0.33, 0.16))];
                 (Node::new("Joint", NodeKind::Group(*group)), parts.to_vec())
