@@ -76,10 +76,6 @@ fn tightness(kind: ShapeKind) -> [f64; 2] {
 fn the_table_says_how_tight_fields_are() {
     let mut table = String::from("| field | mean of field / distance | least |\n|---|--:|--:|\n");
     for &kind in ShapeKind::ALL {
-        eprintln!(
-            "T {kind:?} {:?}",
-            std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs()
-        );
         let [mean, least] = tightness(kind);
         writeln!(table, "| {} | {mean:.3} | {least:.3} |", kind.label()).unwrap();
     }
