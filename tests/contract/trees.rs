@@ -51,9 +51,19 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let (width, depth, share) = (random.range(0.0, 0.6), random.range(0.0, 0.3), random.range(0.0, 1.0));
         NodeKind::Group(Group { width, depth, share, ..Group::new(operator, blend) })
     } else {
-        let shape = shape_with(random.pick(ShapeKind::ALL), |limits| {
-            if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
-        });
+        // Kernels with data are slow to compile; some trees have them.
+        let is_kept = |random: &mut Random, kind: ShapeKind| !kind.has_data() || random.chance(0.15);
+        let mut kind = random.pick(ShapeKind::ALL);
+        while !is_kept(random, kind) {
+            kind = random.pick(ShapeKind::ALL);
+        }
+        let shape =
+            shape_with(
+                kind,
+                |limits| {
+                    if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
+                },
+            );
         NodeKind::Object(Object { shape, material: MaterialId(2 + random.index(3) as u64) })
     };
     let mut node = Node::new("Node", kind).at(random.point(0.8));
