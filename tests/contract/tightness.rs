@@ -1,13 +1,18 @@
-//! How near the fields of shapes come to the distance. The table of it in `shaders/README.md` is held to what is
-//! measured here; with `ISOLITH_ACCEPT_TIGHTNESS=1` it is written anew.
+//! How near fields come to the distance: of shapes, of what operators join, of what modifiers make. The tables of it in
+//! `shaders/README.md` are held to what is measured here; with `ISOLITH_ACCEPT_TIGHTNESS=1` they are written anew.
 
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use isolith::flat::Body;
-use isolith::scene::{Shape, ShapeKind};
+use isolith::flat::twin::field;
+use isolith::flat::{Body, flatten};
+use isolith::geometry::Aabb;
+use isolith::scene::{
+    Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
+};
 
 use super::drawn::tube_distance;
+use super::modifiers::modified;
 use super::outlines::menger_distance;
 use super::samples::{Random, evaluate};
 use super::surfaces::{Patch, brute_distance, patches};
@@ -16,6 +21,8 @@ const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
 const MARKS: [&str; 2] = ["<!-- tightness:begin -->", "<!-- tightness:end -->"];
 /// Points outside of each shape.
 const POINTS: usize = 200;
+/// Points outside of each scene, where the distance is searched along rays.
+const SCENE_POINTS: usize = 60;
 
 /// The distance from outside by brute force.
 fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
@@ -23,16 +30,17 @@ fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
         Shape::MengerSponge { size, iterations } => {
             menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
         }
-        Shape::Julia { .. } | Shape::Kleinian { .. } => ray_distance(shape, p),
+        Shape::Julia { .. } | Shape::Kleinian { .. } => {
+            let body = Body::new(shape);
+            ray_distance(&|p| evaluate(&body, p.to_array()), p)
+        }
         Shape::Tube { .. } => tube_distance(shape, p),
         _ => brute_distance(surface, p),
     }
 }
 
 /// The distance along the best of many rays, which is turned ever less from there on. Not less than the distance.
-fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
-    let body = Body::new(shape);
-    let field = |p: DVec3| evaluate(&body, p.to_array());
+fn ray_distance(field: &dyn Fn(DVec3) -> f64, p: DVec3) -> f64 {
     let mut random = Random::new(1);
     let (mut best, mut ahead) = (f64::INFINITY, DVec3::ZERO);
     for i in 0..600 {
@@ -51,40 +59,104 @@ fn ray_distance(shape: &Shape, p: DVec3) -> f64 {
     best
 }
 
-/// The mean and the least of field over distance, at random points outside of the default shape within its size.
-fn tightness(kind: ShapeKind) -> [f64; 2] {
-    let shape = kind.default_shape();
-    let (surface, body) = (patches(&shape), Body::new(&shape));
-    let bounds = shape.bounds();
-    let reach = if bounds.is_finite() { 1.2 * bounds.half().max_element() } else { 1.0 };
-    let mut random = Random::new(17 + kind as u64);
+/// The mean and the least of field over distance, at so many random points outside, around a box.
+fn measure(
+    field: &dyn Fn(DVec3) -> f64,
+    truth: &dyn Fn(DVec3) -> f64,
+    bounds: Aabb,
+    seed: u64,
+    points: usize,
+) -> String {
+    let (center, reach) =
+        if bounds.is_finite() { (bounds.center(), 1.2 * bounds.half().max_element()) } else { (DVec3::ZERO, 1.0) };
+    let mut random = Random::new(seed);
     let (mut sum, mut least, mut count) = (0.0, f64::INFINITY, 0);
-    while count < POINTS {
-        let p = random.point(reach);
-        let f = evaluate(&body, p.to_array());
+    while count < points {
+        let p = center + random.point(reach);
+        let f = field(p);
         if f < 1e-3 {
             continue;
         }
-        let d = truth(&shape, &surface, p);
-        assert!(f <= d + 1e-6, "{kind:?} at {p}: the field is {f}, the distance {d}");
+        let d = truth(p);
+        assert!(f <= d + 1e-6, "seed {seed} at {p}: the field is {f}, the distance {d}");
         (sum, least, count) = (sum + f / d, least.min(f / d), count + 1);
     }
-    [sum / POINTS as f64, least]
+    format!("{:.3} | {least:.3}", sum / points as f64)
+}
+
+/// Of a shape with its default parameters.
+fn of_shape(kind: ShapeKind) -> String {
+    let shape = kind.default_shape();
+    let (surface, body) = (patches(&shape), Body::new(&shape));
+    let bounds = if shape.bounds().is_finite() {
+        Aabb::from_center_half(DVec3::ZERO, DVec3::splat(shape.bounds().half().max_element()))
+    } else {
+        shape.bounds()
+    };
+    let field = |p: DVec3| evaluate(&body, p.to_array());
+    measure(&field, &|p| truth(&shape, &surface, p), bounds, 17 + kind as u64, POINTS)
+}
+
+/// Of a scene.
+fn of_scene(scene: &Scene, seed: u64) -> String {
+    let flat = flatten(scene, 0.0).unwrap();
+    let bounds = flat.components.iter().map(|c| c.bounds.translated(c.origin)).reduce(|a, b| a.union(&b)).unwrap();
+    let least = |p: DVec3| flat.components.iter().map(|c| field(&flat, c, p - c.origin)).fold(f64::INFINITY, f64::min);
+    measure(&least, &|p| ray_distance(&least, p), bounds, seed, SCENE_POINTS)
+}
+
+/// A box and a ball that reaches out of it.
+fn joined(group: Group) -> Scene {
+    let mut scene = Scene::new();
+    let parent = scene.insert(None, 0, Node::new("Joint", NodeKind::Group(group))).unwrap();
+    let parts = [
+        (Shape::Box { size: [0.9, 0.6, 0.8], rounding: 0.05 }, DVec3::ZERO),
+        (Shape::Sphere { radius: 0.42 }, DVec3::new(0.1, 0.33, 0.16)),
+    ];
+    for (shape, at) in parts {
+        let object = Object { shape, material: MaterialId(1) };
+        scene.insert(Some(parent), usize::MAX, Node::new("Part", NodeKind::Object(object)).at(at)).unwrap();
+    }
+    scene
+}
+
+/// The tables.
+fn tables() -> String {
+    const HEAD: &str = "| field | mean of field / distance | least |\n|---|--:|--:|\n";
+    let mut text = HEAD.to_owned();
+    for &kind in ShapeKind::ALL {
+        writeln!(text, "| {} | {} |", kind.label(), of_shape(kind)).unwrap();
+    }
+    write!(text, "\nA box and a ball that reaches out of it, by every operator, with a blend of 0.2 m:\n\n{HEAD}")
+        .unwrap();
+    for operator in Operator::ALL {
+        let kernels = if operator.has_kernel() { BlendKernel::ALL.as_slice() } else { &BlendKernel::ALL[..1] };
+        for &kernel in kernels {
+            let name =
+                if operator.has_kernel() { format!(", {}", kernel.label().to_lowercase()) } else { String::new() };
+            let figures = of_scene(&joined(Group::new(operator, Blend::new(kernel, 0.2))), 100 + kernel as u64);
+            writeln!(text, "| {}{name} | {figures} |", operator.label()).unwrap();
+        }
+    }
+    write!(text, "\nA lopsided thing of two boxes and a ball, blended, as it is and by every modifier:\n\n{HEAD}")
+        .unwrap();
+    writeln!(text, "| As it is | {} |", of_scene(&modified(&[]), 200)).unwrap();
+    for &kind in ModifierKind::ALL {
+        let figures = of_scene(&modified(&[kind.default_modifier()]), 201 + kind as u64);
+        writeln!(text, "| {} | {figures} |", kind.label()).unwrap();
+    }
+    text
 }
 
 #[test]
-fn the_table_says_how_tight_fields_are() {
-    let mut table = String::from("| field | mean of field / distance | least |\n|---|--:|--:|\n");
-    for &kind in ShapeKind::ALL {
-        let [mean, least] = tightness(kind);
-        writeln!(table, "| {} | {mean:.3} | {least:.3} |", kind.label()).unwrap();
-    }
+fn the_tables_say_how_tight_fields_are() {
+    let tables = tables();
     let text = std::fs::read_to_string(README).unwrap();
-    let [begin, end] = MARKS.map(|mark| text.find(mark).expect("the marks of the table"));
+    let [begin, end] = MARKS.map(|mark| text.find(mark).expect("the marks of the tables"));
     let (before, held) = (&text[..begin + MARKS[0].len()], &text[begin + MARKS[0].len()..end]);
     if std::env::var_os("ISOLITH_ACCEPT_TIGHTNESS").is_some() {
-        std::fs::write(README, format!("{before}\n\n{table}\n{}", &text[end..])).unwrap();
+        std::fs::write(README, format!("{before}\n\n{tables}\n{}", &text[end..])).unwrap();
     } else {
-        assert!(held.trim() == table.trim(), "measured now:\n{table}");
+        assert!(held.trim() == tables.trim(), "measured now:\n{tables}");
     }
 }

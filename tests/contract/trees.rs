@@ -12,7 +12,7 @@ use super::rules::{gradient_is_right, steps_are_safe};
 use super::samples::{Random, many, ordinary, shape_with, usual};
 use super::surfaces::inside;
 
-const TREES: u64 = 60;
+const TREES: u64 = 80;
 
 /// What random trees are made of.
 #[derive(Clone, Copy)]
