@@ -21,3 +21,4 @@ mod saving;
 mod shaders;
 mod stress;
 mod tidy;
+mod versions;
