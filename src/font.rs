@@ -1,9 +1,9 @@
-//! Letters as outlines made of arcs, from the fonts that come with the program (those of the editor).
+//! Letters as outlines made of arcs, from the fonts that come with the program (those of the editor) or from a file.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
-use ab_glyph::{Font, FontRef, OutlineCurve, Point};
+use ab_glyph::{Font, FontRef, FontVec, OutlineCurve, Point};
 use glam::DVec3;
 
 use crate::geometry::{ArcPiece, biarc};
@@ -29,14 +29,40 @@ static FONTS: LazyLock<[FontRef<'static>; 2]> = LazyLock::new(|| {
         .map(|bytes| FontRef::try_from_slice(bytes).expect("a font that comes with a library is whole"))
 });
 
+/// A font of one's own. Letters are made once.
+pub struct Face {
+    font: FontVec,
+    letters: Mutex<HashMap<char, Option<Arc<Letter>>>>,
+}
+
+impl Face {
+    /// The font of a TrueType or OpenType file; or why it cannot be read.
+    pub fn new(file: Vec<u8>) -> Result<Self, String> {
+        let font = FontVec::try_from_vec(file).map_err(|error| error.to_string())?;
+        if !font.codepoint_ids().any(|(id, _)| font.outline(id).is_some()) {
+            return Err("it has no outlines of letters".to_owned());
+        }
+        Ok(Self { font, letters: Mutex::default() })
+    }
+
+    /// A letter, if the font has it.
+    fn letter(&self, of: char) -> Option<Arc<Letter>> {
+        let mut letters = self.letters.lock().unwrap_or_else(PoisonError::into_inner);
+        let made = || (self.font.glyph_id(of).0 != 0).then(|| Arc::new(made(&self.font, of)));
+        letters.entry(of).or_insert_with(made).clone()
+    }
+}
+
 /// The outlines of a text in the XY plane, for a font of height 1, its middle at the origin; lines are centred. Closed
-/// curves that go around what is solid; empty for a text without ink.
-pub fn text_curve(text: &str) -> Vec<ArcPiece> {
+/// curves that go around what is solid; empty for a text without ink. Letters that the font does not have are those of
+/// the fonts that come with the program.
+pub fn text_curve(text: &str, face: Option<&Face>) -> Vec<ArcPiece> {
     let lines: Vec<&str> = text.split('\n').collect();
     let top = 0.5 * LINE * (lines.len() - 1) as f64 - MIDDLE;
+    let own = |of: char| face.and_then(|face| face.letter(of)).unwrap_or_else(|| letter(of));
     let mut out = Vec::new();
     for (i, line) in lines.iter().enumerate() {
-        let letters: Vec<Arc<Letter>> = line.chars().map(letter).collect();
+        let letters: Vec<Arc<Letter>> = line.chars().map(own).collect();
         let mut x = -0.5 * letters.iter().map(|l| l.advance).sum::<f64>();
         for letter in letters {
             let by = DVec3::new(x, top - LINE * i as f64, 0.0);
@@ -47,16 +73,16 @@ pub fn text_curve(text: &str) -> Vec<ArcPiece> {
     out
 }
 
-/// A letter, made once.
+/// A letter of the program's own fonts, made once.
 fn letter(of: char) -> Arc<Letter> {
     static KNOWN: LazyLock<Mutex<HashMap<char, Arc<Letter>>>> = LazyLock::new(Mutex::default);
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    known.entry(of).or_insert_with(|| Arc::new(made(of))).clone()
-}
-
-fn made(of: char) -> Letter {
     let [first, second] = &*FONTS;
     let font = if first.glyph_id(of).0 == 0 && second.glyph_id(of).0 != 0 { second } else { first };
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    known.entry(of).or_insert_with(|| Arc::new(made(font, of))).clone()
+}
+
+fn made(font: &impl Font, of: char) -> Letter {
     let (id, em) = (font.glyph_id(of), f64::from(font.units_per_em().unwrap_or(1000.0)));
     let place = |p: Point| DVec3::new(p.x.into(), p.y.into(), 0.0) / em;
     let mut arcs = Vec::new();
@@ -113,7 +139,7 @@ mod tests {
 
     #[test]
     fn outlines_are_closed_and_stand_around_the_origin() {
-        let arcs = text_curve("Isolith\n&ä");
+        let arcs = text_curve("Isolith\n&ä", None);
         assert!(arcs.len() > 100);
         let mut first = arcs[0].start();
         for (i, arc) in arcs.iter().enumerate() {
@@ -124,7 +150,21 @@ mod tests {
             }
             assert!(arc.middle.x.abs() < 2.0 && arc.middle.y.abs() < 1.5 && arc.middle.z == 0.0);
         }
-        assert!(text_curve(" \n").is_empty());
+        assert!(text_curve(" \n", None).is_empty());
+    }
+
+    #[test]
+    fn a_font_of_ones_own_draws_its_letters_and_leaves_others_to_the_programs_fonts() {
+        let face = Face::new(epaint_default_fonts::HACK_REGULAR.to_vec()).unwrap();
+        assert!(Face::new(vec![0; 100]).is_err());
+        // Hack's letters are all as wide, those of the first font are not.
+        let width = |text: &str, face: Option<&Face>| {
+            let arcs = text_curve(text, face);
+            arcs.iter().map(|arc| arc.middle.x).fold(f64::MIN, f64::max)
+        };
+        assert!((width("lil", Some(&face)) - width("lil", None)).abs() > 0.1);
+        // No font has this letter, so all draw the same box for it.
+        assert_eq!(width("\u{e000}", Some(&face)), width("\u{e000}", None));
     }
 
     #[test]

@@ -207,6 +207,21 @@ const CASES: &[Case] = &[
     (r#""sky": [0.1, 0.2, 0.3]"#, r#""sky": [0.1, -0.2, 0.3]"#, "", "environment.sky[1]", "must be 0 to"),
     (r#""specular": 0.75"#, r#""specular": 1.5"#, "", "materials[1].specular", "must be 0 to 1, not 1.5"),
     (r#""shininess": 96.0"#, r#""shininess": 0.5"#, "", "materials[1].shininess", "must be 1 to"),
+    // Files that are kept.
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": {"name": "x.png", "base64": "AAAA"}, "size": [1, 1, 1], "height": 1}"#,
+        "#2",
+        "nodes[1].object.shape",
+        "\"x.png\" must be a PNG, JPEG or EXR image",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": {"name": "x.png", "base64": "*"}, "size": [1, 1, 1], "height": 1}"#,
+        "#2",
+        "nodes[1].object.shape",
+        "\"x.png\" is not base 64",
+    ),
     // Ids and references.
     (r#""id": 3,"#, r#""id": 2,"#, "Foot #2", "nodes[2].id", "another node has the id #2"),
     (r#""id": 3,"#, r#""id": 9007199254740992,"#, "Foot #9007199254740992", "nodes[2].id", "must be at most"),

@@ -1,5 +1,6 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
+mod attachments;
 mod picture;
 
 use egui::accesskit::Role;

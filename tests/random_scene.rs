@@ -8,6 +8,8 @@ use isolith::scene::{
     Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
 
+use crate::contract::samples::image;
+
 /// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
 pub struct Random(u64);
 
@@ -96,6 +98,10 @@ impl Random {
                 ParamValue::Vector(_) => ParamValue::Vector(self.numbers(&param.limits).into()),
                 ParamValue::Flag(_) => ParamValue::Flag(self.once_in(2)),
                 ParamValue::Text(_) => ParamValue::Text(self.pick(&["", "a\nb", "\"ß\" {7}"]).to_owned()),
+                ParamValue::File(file) if file.endings().contains(&"png") && self.once_in(2) => {
+                    ParamValue::File(image(&file, &mut || self.bits() as u16))
+                }
+                ParamValue::File(file) => ParamValue::File(file),
                 ParamValue::List(mut list) => {
                     let count = list.count[0] + self.below(5);
                     let limits: Vec<_> = (0..list.columns.len()).map(|c| list.limits(c, &param.limits)).collect();

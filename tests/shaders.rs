@@ -4,9 +4,7 @@ use std::mem::{offset_of, size_of};
 
 use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
-use isolith::render::kernel::{
-    Evaluator, FILES, Features, Options, ShapeSet, Skipping, Structure, shape_loops, source,
-};
+use isolith::render::kernel::{Evaluator, FILES, Features, Options, ShapeSet, Skipping, Structure, fits_forms, source};
 use isolith::render::uniforms::{GpuComponent, View, Work};
 use isolith::render::{Inspect, Instance, Overlay};
 use isolith::scene::ShapeKind;
@@ -25,8 +23,7 @@ fn evaluators() -> Vec<Evaluator> {
         .flat_map(|flat| flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect::<Vec<_>>())
         .collect();
     let everything = flatten(&gallery::random(16, 1), 0.0).expect("within the limits");
-    // What has loops has no form.
-    let shapes = ShapeSet::of(ShapeKind::ALL.iter().copied().filter(|kind| shape_loops(*kind)[0] == 0));
+    let shapes = ShapeSet::of(ShapeKind::ALL.iter().copied().filter(|kind| fits_forms(*kind)));
     structures.extend(everything.components.iter().filter_map(|c| Structure::form(&everything, c, shapes)));
     structures.sort();
     structures.dedup();

@@ -7,9 +7,10 @@ use std::time::{Duration, Instant};
 use egui::{Context, Id, Key, Modal, RichText, TextEdit, ViewportCommand, vec2};
 
 use super::messages::Message;
+use super::workbench::WantedFile;
 use super::{Editor, insertion, theme};
-use crate::document::Document;
-use crate::scene::{MeshNode, Node, NodeKind};
+use crate::document::{Document, Edit};
+use crate::scene::{Attached, MeshNode, Node, NodeKind, ParamValue, file};
 
 /// Something that replaces the document or ends the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,12 +28,14 @@ pub enum Intent {
 }
 
 /// What a path is wanted for.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 enum Purpose {
     Open,
     /// Then goes on with what the saving was asked for.
     Save(Option<Intent>),
     Mesh,
+    /// A file that shapes keep.
+    Attach(WantedFile),
 }
 
 impl Purpose {
@@ -41,6 +44,8 @@ impl Purpose {
             Self::Open => "Open a scene",
             Self::Save(_) => "Save the scene",
             Self::Mesh => "Add a mesh",
+            Self::Attach(WantedFile { instead_of: Attached::Heights(_), .. }) => "Choose an image",
+            Self::Attach(WantedFile { instead_of: Attached::Font(_), .. }) => "Choose a font",
         }
     }
 }
@@ -187,6 +192,7 @@ impl Editor {
         let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
         dialog = match purpose {
             Purpose::Mesh => dialog.add_filter("glTF", &["gltf", "glb"]),
+            Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
             Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &["json"]),
         };
         let path = self.bench.document.path();
@@ -213,8 +219,36 @@ impl Editor {
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
     }
 
-    /// Takes the answer of the system's dialog. Once a frame.
+    /// Gives the file to the shapes that it is wanted for, as one undo step.
+    fn attach(&mut self, wanted: &WantedFile, path: &Path) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let file = match file::attachment(path) {
+            Ok(bytes) => wanted.instead_of.with(&name, bytes),
+            Err(error) => Err(error.to_string()),
+        };
+        let file = match file {
+            Ok(file) => file,
+            Err(reason) => return self.report(Message::error(reason)),
+        };
+        self.bench.together(|bench| {
+            for &id in &wanted.nodes {
+                let Some(node) = bench.document.scene().node(id) else { continue };
+                let mut node = Node::clone(node);
+                if let NodeKind::Object(object) = &mut node.kind
+                    && object.shape.set_value(wanted.parameter, ParamValue::File(file.clone()))
+                {
+                    bench.apply(Edit::Replace(node));
+                }
+            }
+        });
+    }
+
+    /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
     pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
+        if let Some(wanted) = self.bench.wanted_file.take() {
+            self.bench.finish();
+            self.choose(Purpose::Attach(wanted), ctx);
+        }
         let Some(dialog) = &self.dialogs.system else { return };
         let answer = match dialog.answer.try_recv() {
             Err(std::sync::mpsc::TryRecvError::Empty) => return,
@@ -240,6 +274,7 @@ impl Editor {
                 self.save_to(&path, then, ctx);
             }
             Purpose::Mesh => self.add_mesh(path),
+            Purpose::Attach(wanted) => self.attach(&wanted, path),
         }
     }
 

@@ -1,14 +1,16 @@
 //! The cards of each kind of node: shape, mesh, light, camera.
 
-use egui::{RichText, TextEdit, Ui};
+use egui::{RichText, TextEdit, Ui, vec2};
 use glam::DVec3;
 
 use super::fields::{self, Field};
 use super::sheet::Sheet;
+use super::workbench::WantedFile;
 use super::{inspector_points, shape_change, theme};
 use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, MAX_TEXT, RANGE};
 use crate::scene::{
-    Attenuation, CameraNode, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Param, ParamValue, ShapeKind,
+    Attached, Attenuation, CameraNode, Light, LightKind, Limits, MeshNode, Node, NodeKind, Object, Param, ParamValue,
+    ShapeKind,
 };
 
 pub(super) const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, default: Option<f64>) -> Field<'a> {
@@ -97,9 +99,43 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
                 sheet.change(response.id, |n| set(n, ParamValue::Text(text.clone())));
             }
         }
+        ParamValue::File(default) => {
+            let Some(ParamValue::File(file)) = value(sheet.active()) else { return };
+            attachment(ui, sheet, (&label, param.help), (index, &file), |n| set(n, ParamValue::File(default.clone())));
+        }
         ParamValue::List(_) => {
             let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };
             inspector_points::list(ui, sheet, (&label, param), get, |n, v| set(n, ParamValue::List(v)));
+        }
+    }
+}
+
+/// A file that the shape keeps: its name, which asks for another when clicked, and a cross to do without.
+fn attachment(
+    ui: &mut Ui,
+    sheet: &mut Sheet<'_>,
+    (label, help): (&str, &str),
+    (index, file): (usize, &Attached),
+    clear: impl Fn(&mut Node),
+) {
+    let (choose, remove) = fields::row(ui, label, help, |ui| {
+        let room = if file.is_some() { theme::ROW_HEIGHT + ui.spacing().item_spacing.x } else { 0.0 };
+        let size = vec2(ui.available_width() - room, theme::ROW_HEIGHT);
+        let name = egui::Button::new(format!("{}…", file.label())).truncate().min_size(size);
+        let choose = ui.add_sized(size, name).on_hover_text("Choose a file; the scene keeps a copy of it");
+        let cross = || egui::Button::new("×").min_size(egui::Vec2::splat(theme::ROW_HEIGHT));
+        let remove = file.is_some().then(|| ui.add(cross()).on_hover_text("Do without a file"));
+        (choose, remove)
+    });
+    ui.ctx().accesskit_node_builder(choose.id, |node| node.set_label(format!("{label}: {}", file.label())));
+    if choose.clicked() {
+        let nodes = sheet.ids();
+        sheet.bench().wanted_file = Some(WantedFile { nodes, parameter: index, instead_of: file.clone() });
+    }
+    if let Some(remove) = remove {
+        ui.ctx().accesskit_node_builder(remove.id, |node| node.set_label(format!("{label}: none")));
+        if remove.clicked() {
+            sheet.change(remove.id, clear);
         }
     }
 }

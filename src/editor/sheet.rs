@@ -32,9 +32,14 @@ impl<'a> Sheet<'a> {
         self.bench
     }
 
+    /// The nodes.
+    pub fn ids(&self) -> Vec<NodeId> {
+        self.nodes.iter().map(|n| n.id).collect()
+    }
+
     /// Changes every node, as part of the widget's gesture.
     pub fn change(&mut self, widget: egui::Id, change: impl Fn(&mut Node)) {
-        let ids: Vec<NodeId> = self.nodes.iter().map(|n| n.id).collect();
+        let ids = self.ids();
         self.bench.change(widget, &ids, change);
     }
 

@@ -6,7 +6,7 @@ use egui::{Context, Id};
 
 use super::messages::{Message, Messages};
 use crate::document::{Document, Edit};
-use crate::scene::{Material, Node, NodeId};
+use crate::scene::{Attached, Material, Node, NodeId};
 
 /// The document, the gesture in progress, the messages.
 ///
@@ -17,13 +17,26 @@ pub struct Workbench {
     pub document: Document,
     /// What the artist is told.
     pub messages: Messages,
+    /// The file that a panel wants to be asked for.
+    pub wanted_file: Option<WantedFile>,
     gesture: Option<Id>,
+}
+
+/// A file for a parameter of the shapes of some nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedFile {
+    /// Whose shapes.
+    pub nodes: Vec<NodeId>,
+    /// Which of the shape's parameters.
+    pub parameter: usize,
+    /// What it is now.
+    pub instead_of: Attached,
 }
 
 impl Workbench {
     /// A workbench without messages.
     pub fn new(document: Document) -> Self {
-        Self { document, messages: Messages::default(), gesture: None }
+        Self { document, messages: Messages::default(), wanted_file: None, gesture: None }
     }
 
     /// One change that is its own undo step; returns the nodes added. A refusal becomes a message.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::stage::{Stage, cuboid, object, turn_x, turn_y, v};
-use crate::scene::{Corners, Points, Scene, Shape};
+use crate::scene::{Attachment, Corners, Points, Scene, Shape};
 
 /// Points of the knot.
 const KNOT_POINTS: i32 = 64;
@@ -24,7 +24,8 @@ pub(super) fn scene() -> Scene {
     stage.add(None, object("Vase", vase, clay).at(v(0.0, 0.64, 0.9)));
     let star = Shape::Extrusion { corners: Corners::star(5, 0.75, 0.32), smooth: false, depth: 0.3, rounding: 0.06 };
     stage.add(None, object("Star", star, red).at(v(1.9, 0.62, 0.8)).rotated(turn_y(-24.0)));
-    let text = Shape::Text { text: "Isolith".to_owned(), size: 0.85, depth: 0.22, rounding: 0.02 };
+    let text =
+        Shape::Text { text: "Isolith".to_owned(), font: Attachment::NONE, size: 0.85, depth: 0.22, rounding: 0.02 };
     stage.add(None, object("Word", text, ivory).at(v(0.0, 0.30, 1.85)).rotated(turn_x(-8.0)));
     let hills = Shape::Terrain {
         size: [2.9, 0.2, 1.9],

@@ -168,7 +168,8 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
         match value {
             ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
             ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
-            ParamValue::Flag(_) => {}
+            // A file was checked when it was read.
+            ParamValue::Flag(_) | ParamValue::File(_) => {}
             ParamValue::Text(text) => letters(param.name, &text)?,
             ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
         }
@@ -293,7 +294,7 @@ mod tests {
                 for bad in [f64::NAN, f64::INFINITY, param.limits.hard[0] - 1.0, param.limits.hard[1] * 1.01] {
                     let mut shape = kind.default_shape();
                     match &mut shape.values()[i] {
-                        ParamValue::Flag(_) | ParamValue::Text(_) => continue,
+                        ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_) => continue,
                         ParamValue::Scalar(_) => assert!(shape.set_value(i, ParamValue::Scalar(bad))),
                         ParamValue::Vector(_) => {
                             assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))))

@@ -8,7 +8,8 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::font::text_curve;
+use super::attachment::Attachment;
+use crate::font::{Face, text_curve};
 use crate::geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
 
 /// Smaller letters are no letters, in metres.
@@ -107,19 +108,19 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
 }
 
 /// The outlines of a text whose font is `size` metres high.
-pub fn text_outline(text: &str, size: f64) -> Vec<ArcPiece> {
+pub fn text_outline(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
     // Without a size, or without ink, a point is left.
     if size < LEAST_TEXT {
         return Vec::new();
     }
     let sized =
         |arc: ArcPiece| ArcPiece { middle: arc.middle * size, bend: arc.bend / size, reach: arc.reach * size, ..arc };
-    text_curve(text).into_iter().map(sized).collect()
+    text_curve(text, font.content()).into_iter().map(sized).collect()
 }
 
 /// A box around a text; flat along Z.
-pub(super) fn text_bounds(text: &str, size: f64) -> Aabb {
-    let arcs = text_outline(text, size);
+pub(super) fn text_bounds(text: &str, font: &Attachment<Face>, size: f64) -> Aabb {
+    let arcs = text_outline(text, font, size);
     if arcs.is_empty() { Aabb::from_points([DVec3::ZERO]) } else { around(&arcs) }
 }
 

@@ -38,6 +38,13 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of an outline.
 pub const CORNERS: [usize; 2] = [3, 256];
 
+/// Largest file that a shape keeps in the scene, in bytes.
+pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
+/// Widest and highest image that is read, in pixels.
+pub const MAX_IMAGE_SIDE: u32 = 8_192;
+/// Most heights along a side that an image gives; larger images are made smaller.
+pub const MAX_HEIGHTS: usize = 256;
+
 /// Longest text, in letters.
 pub const MAX_TEXT: usize = 64;
 

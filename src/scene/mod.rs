@@ -2,10 +2,12 @@
 //!
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
+mod attachment;
 pub mod check;
 mod drawn;
 mod error;
 pub mod file;
+mod heights;
 mod light;
 pub mod limits;
 mod material;
@@ -15,8 +17,10 @@ mod operator;
 mod shape;
 mod table;
 
+pub use attachment::{Attached, Attachment, Content};
 pub use drawn::{Corners, Points, profile_curve, text_outline, tube_curve};
 pub use error::SceneError;
+pub use heights::Heights;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId};

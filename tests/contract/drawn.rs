@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use isolith::flat::Body;
-use isolith::flat::twin::{ocean_height, terrain_height};
+use isolith::flat::twin::{heightmap_height, ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
 use isolith::scene::{Shape, ShapeKind, profile_curve, text_outline, tube_curve};
 
@@ -112,11 +112,12 @@ fn depth_in(endless: &Body, p: DVec2) -> f64 {
 
 fn height(body: &Body, x: f64, z: f64) -> f64 {
     let rows = |row: usize| body.rows[row];
-    if body.kind == ShapeKind::Ocean {
-        ocean_height(x, z, &body.parameters, &rows)
-    } else {
-        terrain_height(x, z, &body.parameters, &rows)
-    }
+    let of_kind = match body.kind {
+        ShapeKind::Ocean => ocean_height,
+        ShapeKind::Heightmap => heightmap_height,
+        _ => terrain_height,
+    };
+    of_kind(x, z, &body.parameters, &rows)
 }
 
 pub fn inside(shape: &Shape, p: DVec3) -> bool {
@@ -134,7 +135,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
         Shape::Revolution { corners, smooth, offset } => {
             Chords::new(&profile_curve(corners, *smooth)).hold(DVec2::new(p.x.hypot(p.z) - offset, p.y))
         }
-        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } => {
+        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => {
             let [x, depth, z] = *size;
             let is_below = || p.y < height(&Body::new(shape), p.x, p.z);
             p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && is_below()
@@ -160,7 +161,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             };
             profile_curve(corners, *smooth).into_iter().map(turn).collect()
         }
-        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } => relief(shape, *size),
+        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => relief(shape, *size),
         _ => panic!("stands in `surfaces`"),
     }
 }
@@ -199,7 +200,7 @@ fn tube(pieces: Vec<Piece>) -> Vec<Patch> {
 fn outline_of(shape: &Shape) -> Vec<ArcPiece> {
     match shape {
         Shape::Extrusion { corners, smooth, .. } => profile_curve(corners, *smooth),
-        Shape::Text { text, size, .. } => text_outline(text, *size),
+        Shape::Text { text, font, size, .. } => text_outline(text, font, *size),
         _ => panic!("a profile"),
     }
 }

@@ -1,12 +1,15 @@
 //! Reproducible random numbers, points and parameters.
 
+use std::io::Cursor;
 use std::num::NonZeroUsize;
 use std::sync::LazyLock;
 
 use glam::DVec3;
+use image::{DynamicImage, ImageBuffer, ImageFormat, Luma};
 use isolith::flat::Body;
 use isolith::flat::twin::{Real, shape_distance};
-use isolith::scene::{Limits, ParamValue, Shape, ShapeKind};
+use isolith::scene::limits::UNIT;
+use isolith::scene::{Attached, Limits, ParamValue, Shape, ShapeKind};
 
 /// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
 pub struct Random(u64);
@@ -82,6 +85,10 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
                 let count = within(&Limits { soft: [0.0, 3.9], hard: [0.0, 3.0], unit: "" }) as usize;
                 ParamValue::Text("oi8".chars().take(count).collect())
             }
+            ParamValue::File(file) => {
+                let mut pixel = || (within(&UNIT) * f64::from(u16::MAX)) as u16;
+                ParamValue::File(if file.endings().contains(&"png") { image(&file, &mut pixel) } else { file })
+            }
             ParamValue::List(mut list) => {
                 let more = within(&Limits { soft: [0.0, 2.9], hard: [0.0, 2.0], unit: "" }) as usize;
                 let limits: Vec<Limits> = (0..list.columns.len()).map(|c| list.limits(c, &limits)).collect();
@@ -93,6 +100,14 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
         assert!(shape.set_value(i, value));
     }
     shape
+}
+
+/// An image of a few pixels.
+pub fn image(instead_of: &Attached, pixel: &mut dyn FnMut() -> u16) -> Attached {
+    let pixels = ImageBuffer::from_fn(4, 3, |_, _| Luma([pixel()]));
+    let mut bytes = Cursor::new(Vec::new());
+    DynamicImage::ImageLuma16(pixels).write_to(&mut bytes, ImageFormat::Png).unwrap();
+    instead_of.with("random.png", bytes.into_inner()).unwrap()
 }
 
 /// A number from the soft range; lengths up to `longest` metres.

@@ -24,7 +24,7 @@ fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
 /// everywhere, and where a drawn outline is rounded.
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
-        Shape::Terrain { .. } | Shape::Ocean { .. } => return false,
+        Shape::Terrain { .. } | Shape::Ocean { .. } | Shape::Heightmap { .. } => return false,
         Shape::Extrusion { rounding, .. } | Shape::Text { rounding, .. } => return rounding == 0.0,
         Shape::Torus { major_radius, minor_radius } | Shape::Link { major_radius, minor_radius, .. } => {
             minor_radius > major_radius

@@ -108,7 +108,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
                 ParamValue::Scalar(_) => ParamValue::Scalar(number),
                 ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..*v }),
                 // What is no number has no extremes.
-                ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) => continue,
+                ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) | ParamValue::File(_) => continue,
             };
             let mut shape = usual.clone();
             if shape.set_value(index, changed) && shape != usual {

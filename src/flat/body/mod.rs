@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `tube` | arcs of a curve with radii |
 //! | `outline` | arcs of an outline, cut so that each only rises |
-//! | `relief` | layers of noise, waves |
+//! | `relief` | layers of noise, waves, heights of an image |
 
 mod outline;
 mod relief;
@@ -13,7 +13,7 @@ mod tube;
 use glam::DVec3;
 
 use crate::geometry::Aabb;
-use crate::scene::{SHAPE_FLOATS, Shape, ShapeKind, text_outline};
+use crate::scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_outline};
 
 /// A shape, ready to be evaluated.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,10 @@ impl Body {
             Shape::Extrusion { corners, smooth, depth, rounding } => {
                 outline::extrusion(corners, *smooth, *depth, *rounding)
             }
-            Shape::Text { text, size, depth, rounding } => outline::text(&text_outline(text, *size), *depth, *rounding),
+            Shape::Text { text, font, size, depth, rounding } => {
+                outline::text(&text_outline(text, font, *size), *depth, *rounding)
+            }
+            Shape::Heightmap { image, size, height } => relief::heightmap(Heights::of(image), *size, *height),
             Shape::Revolution { corners, smooth, offset } => outline::revolution(corners, *smooth, *offset),
             Shape::Terrain { size, amplitude, wavelength, octaves, roughness, seed } => {
                 relief::terrain(*size, *amplitude, *wavelength, *octaves, *roughness, *seed)

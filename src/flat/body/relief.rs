@@ -2,15 +2,20 @@
 //!
 //! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
 //! greatest slope L, how many rows there are, seed or sharpness. Rows: frequency, height and salt of a layer of noise; or
-//! waves for each metre along X and along Z, height and phase of a wave (in turns).
+//! waves for each metre along X and along Z, height and phase of a wave (in turns); or, of an image, each height with
+//! its neighbours along X, line by line, and then the numbers are columns and lines.
 
 use std::f64::consts::{PI, TAU};
 
 use super::Numbers;
+use crate::scene::Heights;
 
 /// The steepest slope of one layer of noise with heights and cells of 1: heights differ by at most 2 between two
 /// corners, and the curve between them is nowhere steeper than 3/2.
 pub const NOISE_SLOPE: f64 = 3.0;
+
+/// Thinner cells of an image are no cells, in metres.
+const LEAST_CELL: f64 = 1e-9;
 
 fn numbers([width, depth, length]: [f64; 3], top: f64, slope: f64, last: f64, rows: Vec<[f64; 4]>) -> Numbers {
     let count = rows.len() as f64;
@@ -56,4 +61,30 @@ pub fn ocean(
     let rows: Vec<_> = (0..count).map(row).collect();
     let slope = rows.iter().map(|[x, z, height, _]| TAU * x.hypot(*z) * height * (1.0 + sharp)).sum();
     numbers(size, amplitude, slope, sharp, rows)
+}
+
+/// Heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): it stays among the
+/// heights around it, and its slope along an axis among their differences.
+pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> Numbers {
+    let [columns, lines] = image.size.map(|n| n as isize);
+    let cell = [size[0] / columns as f64, size[2] / lines as f64].map(|side| side.max(LEAST_CELL));
+    let mut rows = Vec::with_capacity(image.values.len());
+    let mut steepest: f64 = 0.0;
+    for line in 0..lines {
+        for column in 0..columns {
+            let at = |x: isize, z: isize| height * image.at(column + x, line + z);
+            rows.push([at(-1, 0), at(0, 0), at(1, 0), 0.0]);
+            let (mut along_x, mut along_z): (f64, f64) = (0.0, 0.0);
+            for i in -1..=1 {
+                for j in [-1, 0] {
+                    along_x = along_x.max((at(j + 1, i) - at(j, i)).abs());
+                    along_z = along_z.max((at(i, j + 1) - at(i, j)).abs());
+                }
+            }
+            steepest = steepest.max((along_x / cell[0]).hypot(along_z / cell[1]));
+        }
+    }
+    let mut out = numbers(size, height, steepest, lines as f64, rows);
+    out.parameters[5] = columns as f64;
+    out
 }

@@ -27,6 +27,6 @@ pub use op::{
 };
 pub use outline::{sdf_extrusion, sdf_outline, sdf_revolution, sdf_text};
 pub use real::{Dual, Real};
-pub use relief::{ocean_height, sdf_ocean, sdf_terrain, terrain_height};
+pub use relief::{heightmap_height, ocean_height, sdf_heightmap, sdf_ocean, sdf_terrain, terrain_height};
 pub use sdf::*;
 pub use tube::sdf_tube;

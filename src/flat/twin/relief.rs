@@ -15,6 +15,11 @@ pub fn sdf_ocean<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     relief(p, q, ocean_height(p[0], p[2], q, rows))
 }
 
+/// A landscape from an image; a lower bound of the distance.
+pub fn sdf_heightmap<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
+    relief(p, q, heightmap_height(p[0], p[2], q, rows))
+}
+
 /// What is below the height and in the box: the height above the surface, over √(1 + L²) for the steepest slope L, is
 /// nowhere more than the distance to it.
 fn relief<T: Real>(p: [T; 3], q: &[f64; 8], height: T) -> T {
@@ -77,4 +82,29 @@ pub fn ocean_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
 fn cosine<T: Real>(turns: T) -> T {
     let angle = TAU * turns.value().fract();
     (turns - turns.value()) * (-TAU * angle.sin()) + angle.cos()
+}
+
+/// The height of an image's surface at (x, z), in metres: a quadratic B-spline over its cells; beyond the border that of
+/// the border.
+pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
+    let (columns, lines) = (q[5], q[6]);
+    // From the middle of the nearest cell, in cells.
+    let place = |v: T, half: f64, count: f64| {
+        let cells = v.max(T::constant(-half)).min(T::constant(half)) * (0.5 * count / half.max(1e-9)) + 0.5 * count;
+        let cell = cells.value().floor().min(count - 1.0);
+        (cell, cells - (cell + 0.5))
+    };
+    let ((column, tx), (line, tz)) = (place(x, q[0], columns), place(z, q[2], lines));
+    let weights = |t: T| {
+        let (below, above) = (t * -1.0 + 0.5, t + 0.5);
+        [below * below * 0.5, t * t * -1.0 + 0.75, above * above * 0.5]
+    };
+    let (wx, wz) = (weights(tx), weights(tz));
+    let mut sum = T::constant(0.0);
+    for (side, weight) in [-1.0, 0.0, 1.0].into_iter().zip(wz) {
+        let near = (line + side).clamp(0.0, lines - 1.0);
+        let [a, b, c, _] = rows(1 + (near * columns + column) as usize);
+        sum = sum + (wx[0] * a + wx[1] * b + wx[2] * c) * weight;
+    }
+    sum
 }

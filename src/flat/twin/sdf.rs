@@ -20,7 +20,7 @@ pub use sheet::{sdf_quad, sdf_triangle};
 use super::Real;
 use super::ellipsoid::sdf_ellipsoid;
 use super::outline::{sdf_extrusion, sdf_revolution, sdf_text};
-use super::relief::{sdf_ocean, sdf_terrain};
+use super::relief::{sdf_heightmap, sdf_ocean, sdf_terrain};
 use super::tube::sdf_tube;
 use crate::scene::{ShapeKind, for_each_shape};
 use planar::{clamp, from_segment, trapezoid};

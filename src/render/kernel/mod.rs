@@ -11,7 +11,7 @@ mod source;
 mod specialise;
 mod structure;
 
-pub use source::{FILES, Features, Further, ShaderError, plain_source, shape_loops, source};
+pub use source::{FILES, Features, Further, ShaderError, fits_forms, plain_source, shape_loops, source};
 pub use structure::{MAX_KERNEL_ROWS, ShapeSet, Structure, form_rows};
 
 /// A way to evaluate components; decides the source of the kernels.

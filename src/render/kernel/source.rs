@@ -155,6 +155,11 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     }
 }
 
+/// Whether kernels for forms hold the shape: it neither loops nor has data.
+pub fn fits_forms(kind: ShapeKind) -> bool {
+    shape_loops(kind)[0] == 0 && !kind.has_data()
+}
+
 /// The arguments of a shape's function, its parameters read from their rows, and where its data begin.
 fn read_rows(kind: ShapeKind) -> String {
     let parameters = kind.parameter_rows();

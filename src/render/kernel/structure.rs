@@ -1,6 +1,6 @@
 //! What of a component decides its kernel: everything but its numbers.
 
-use super::source::{Features, Further, shape_loops};
+use super::source::{Features, Further, fits_forms};
 use crate::flat::{
     Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, Row,
     modifier_rows,
@@ -273,12 +273,12 @@ fn fits(component: &Component) -> bool {
     component.rows - component.data <= MAX_KERNEL_ROWS && component.count <= MAX_KERNEL_ENTRIES
 }
 
-/// Whether a component has a form: no modifiers, no operators beyond the first three, no shapes with loops.
+/// Whether a component has a form: no modifiers, no operators beyond the first three, no shapes with loops or data.
 fn has_form(flat: &FlatScene, component: &Component) -> bool {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let is_further = |node: &FlatNode| Join::ALL[node.join() as usize].is_further();
-    let loops = |node: &FlatNode| node.is_leaf() && shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[0] > 0;
-    !component.modified && !nodes.iter().any(|node| is_further(node) || loops(node))
+    let fits = |node: &FlatNode| !node.is_leaf() || fits_forms(ShapeKind::ALL[(node.code & 0xffff) as usize]);
+    !component.modified && nodes.iter().all(|node| !is_further(node) && fits(node))
 }
 
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
@@ -327,7 +327,7 @@ mod tests {
                 let whole = Structure::whole(&flat, component);
                 let features = whole.features();
                 let plain = !component.modified && !features.further.joins;
-                let plain = plain && !features.shapes.iter().any(|kind| shape_loops(*kind)[0] > 0);
+                let plain = plain && features.shapes.iter().all(|kind| fits_forms(*kind));
                 assert_eq!(Structure::form_key(&flat, component).is_some(), plain && fits(component), "{name}");
                 assert!(plain || Structure::form(&flat, component, whole.shapes()).is_none(), "{name}");
                 without += usize::from(!plain);

@@ -7,25 +7,35 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use super::{FileError, parse, to_json};
-use crate::scene::limits::MAX_FILE_BYTES;
+use crate::scene::limits::{MAX_ATTACHMENT_BYTES, MAX_FILE_BYTES};
 use crate::scene::{Scene, check};
 
-/// Reads a scene file. The size is checked before the contents are read.
+/// Reads a scene file.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
+    parse(&bytes_of(path, MAX_FILE_BYTES)?, path)
+}
+
+/// The bytes of a file that a shape is to keep.
+pub fn attachment(path: &Path) -> Result<Vec<u8>, FileError> {
+    bytes_of(path, MAX_ATTACHMENT_BYTES as u64)
+}
+
+/// The contents of a file. Its size is checked before they are read.
+fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let fail = |e: io::Error| FileError::new(path, format!("cannot be read: {}", plain(&e)));
     let metadata = fs::metadata(path).map_err(fail)?;
     if !metadata.is_file() {
         return Err(FileError::new(path, "is not a file"));
     }
     let mut bytes = Vec::new();
-    if metadata.len() <= MAX_FILE_BYTES {
+    if metadata.len() <= most {
         // One byte more than allowed tells of a file that has grown meanwhile.
-        File::open(path).and_then(|f| f.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)).map_err(fail)?;
+        File::open(path).and_then(|f| f.take(most + 1).read_to_end(&mut bytes)).map_err(fail)?;
     }
-    if metadata.len() > MAX_FILE_BYTES || bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(FileError::new(path, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)));
+    if metadata.len() > most || bytes.len() as u64 > most {
+        return Err(FileError::new(path, format!("is larger than {} MiB", most >> 20)));
     }
-    parse(&bytes, path)
+    Ok(bytes)
 }
 
 /// Writes a scene file. What is written is read again and compared before the old file is touched; the

@@ -18,7 +18,7 @@ mod place;
 mod read;
 mod write;
 
-pub use atomic::{load, remove_leftovers, save};
+pub use atomic::{attachment, load, remove_leftovers, save};
 pub use error::FileError;
 pub use format::{VERSION, schema};
 pub use read::parse;

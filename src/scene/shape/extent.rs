@@ -20,8 +20,8 @@ impl Shape {
                 let half = DVec3::Z * (0.5 * depth);
                 Aabb::new(flat.min - half, flat.max + half)
             }
-            Self::Text { ref text, size, depth, .. } => {
-                let flat = text_bounds(text, size);
+            Self::Text { ref text, ref font, size, depth, .. } => {
+                let flat = text_bounds(text, font, size);
                 let half = DVec3::Z * (0.5 * depth);
                 Aabb::new(flat.min - half, flat.max + half)
             }
@@ -29,7 +29,9 @@ impl Shape {
                 let flat = profile_bounds(corners, smooth);
                 turned((flat.max.x + offset).max(0.0), flat.min.y, flat.max.y)
             }
-            Self::Terrain { size, amplitude, .. } | Self::Ocean { size, amplitude, .. } => {
+            Self::Terrain { size, amplitude, .. }
+            | Self::Ocean { size, amplitude, .. }
+            | Self::Heightmap { size, height: amplitude, .. } => {
                 let [x, depth, z] = size;
                 Aabb::new(DVec3::new(-0.5 * x, -depth, -0.5 * z), DVec3::new(0.5 * x, amplitude, 0.5 * z))
             }
@@ -177,7 +179,7 @@ impl Shape {
                         list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
                         ParamValue::List(list)
                     }
-                    other @ (ParamValue::Flag(_) | ParamValue::Text(_)) => other,
+                    other @ (ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_)) => other,
                 };
                 self.set_value(index, value);
             }

@@ -4,7 +4,10 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::font::Face;
+use crate::scene::attachment::{Attached, Attachment};
 use crate::scene::drawn::{Corners, Points};
+use crate::scene::heights::Heights;
 use crate::scene::limits::{CORNERS, Limits, POINTS, SIZE};
 
 /// Most numbers that the packed parameters of one shape may take.
@@ -26,6 +29,8 @@ pub enum ParamValue {
     List(List),
     /// Letters.
     Text(String),
+    /// A file.
+    File(Attached),
 }
 
 /// Points as rows of numbers.
@@ -196,6 +201,27 @@ impl ParamField for String {
         Self::new()
     }
 }
+
+/// What is kept as a file.
+macro_rules! file {
+    ($content:ty, $kind:ident) => {
+        impl ParamField for Attachment<$content> {
+            const FLOATS: usize = 0;
+            fn to_value(&self) -> ParamValue {
+                ParamValue::File(Attached::$kind(self.clone()))
+            }
+            fn from_value(value: ParamValue) -> Option<Self> {
+                if let ParamValue::File(Attached::$kind(file)) = value { Some(file) } else { None }
+            }
+            fn pack(&self, _: &mut &mut [f64]) {}
+            fn unpack(_: &mut &[f64]) -> Self {
+                Self::NONE
+            }
+        }
+    };
+}
+file!(Heights, Heights);
+file!(Face, Font);
 
 impl ParamField for Points {
     const FLOATS: usize = 0;

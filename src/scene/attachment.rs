@@ -1,0 +1,215 @@
+//! Files that shapes keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
+//! is opened.
+
+use std::fmt;
+use std::sync::Arc;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::heights::Heights;
+use super::limits::{MAX_ATTACHMENT_BYTES, MAX_NAME};
+use crate::font::Face;
+
+/// What a file can be read as.
+pub trait Content: Sized + Send + Sync {
+    /// What the file must be, for people.
+    const WHAT: &'static str;
+    /// What is used where there is no file, for people.
+    const WITHOUT: &'static str;
+    /// How the names of such files end.
+    const ENDINGS: &'static [&'static str];
+    /// Reads a file's bytes, or says why they cannot be read.
+    fn read(bytes: &[u8]) -> Result<Self, String>;
+}
+
+/// A file and what it holds; or none. Copies share it.
+pub struct Attachment<T>(Option<Arc<Held<T>>>);
+
+struct Held<T> {
+    name: String,
+    bytes: Vec<u8>,
+    content: T,
+}
+
+/// How an attachment is written.
+#[derive(Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    /// The file's name, for people.
+    name: String,
+    /// The file as it is, in base 64.
+    base64: String,
+}
+
+impl<T> Attachment<T> {
+    /// No file.
+    pub const NONE: Self = Self(None);
+
+    /// What the file holds.
+    pub fn content(&self) -> Option<&T> {
+        self.0.as_deref().map(|held| &held.content)
+    }
+
+    /// The file's name.
+    pub fn name(&self) -> Option<&str> {
+        self.0.as_deref().map(|held| &*held.name)
+    }
+}
+
+impl<T: Content> Attachment<T> {
+    /// The file of this name with these bytes; or why it cannot be used.
+    pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, String> {
+        let name: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME).collect();
+        if bytes.len() > MAX_ATTACHMENT_BYTES {
+            return Err(format!("{name:?} must be {} of at most {} MiB", T::WHAT, MAX_ATTACHMENT_BYTES >> 20));
+        }
+        let content = T::read(&bytes).map_err(|reason| format!("{name:?} must be {}: {reason}", T::WHAT))?;
+        Ok(Self(Some(Arc::new(Held { name, bytes, content }))))
+    }
+}
+
+impl<T> Clone for Attachment<T> {
+    fn clone(&self) -> Self {
+        Self(self.0.clone())
+    }
+}
+
+impl<T> PartialEq for Attachment<T> {
+    fn eq(&self, other: &Self) -> bool {
+        match (&self.0, &other.0) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b) || (a.name == b.name && a.bytes == b.bytes),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+}
+
+impl<T> fmt::Debug for Attachment<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Attachment({:?})", self.name())
+    }
+}
+
+impl<T> Serialize for Attachment<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let written = |held: &Held<T>| Written { name: held.name.clone(), base64: STANDARD.encode(&held.bytes) };
+        self.0.as_deref().map(written).serialize(serializer)
+    }
+}
+
+impl<'de, T: Content> Deserialize<'de> for Attachment<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let Some(Written { name, base64 }) = Option::deserialize(deserializer)? else { return Ok(Self::NONE) };
+        let bytes =
+            STANDARD.decode(base64).map_err(|error| D::Error::custom(format!("{name:?} is not base 64: {error}")))?;
+        Self::new(&name, bytes).map_err(D::Error::custom)
+    }
+}
+
+impl<T> JsonSchema for Attachment<T> {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Attachment".into()
+    }
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        Option::<Written>::json_schema(generator)
+    }
+}
+
+/// An attachment of any kind, as the value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attached {
+    /// An image of heights.
+    Heights(Attachment<Heights>),
+    /// A font.
+    Font(Attachment<Face>),
+}
+
+impl Attached {
+    /// The file's name; or what is used where there is none.
+    pub fn label(&self) -> &str {
+        match self {
+            Self::Heights(file) => file.name().unwrap_or(Heights::WITHOUT),
+            Self::Font(file) => file.name().unwrap_or(Face::WITHOUT),
+        }
+    }
+
+    /// Whether there is a file.
+    pub fn is_some(&self) -> bool {
+        match self {
+            Self::Heights(file) => file.name().is_some(),
+            Self::Font(file) => file.name().is_some(),
+        }
+    }
+
+    /// How the names of files that can be chosen end.
+    pub fn endings(&self) -> &'static [&'static str] {
+        match self {
+            Self::Heights(_) => Heights::ENDINGS,
+            Self::Font(_) => Face::ENDINGS,
+        }
+    }
+
+    /// The same without a file.
+    pub fn without(&self) -> Self {
+        match self {
+            Self::Heights(_) => Self::Heights(Attachment::NONE),
+            Self::Font(_) => Self::Font(Attachment::NONE),
+        }
+    }
+
+    /// The same with another file; or why it cannot be used.
+    pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
+        Ok(match self {
+            Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
+            Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
+        })
+    }
+}
+
+impl Content for Face {
+    const WHAT: &'static str = "a TrueType or OpenType font";
+    const WITHOUT: &'static str = "The editor's font";
+    const ENDINGS: &'static [&'static str] = &["ttf", "otf"];
+
+    fn read(bytes: &[u8]) -> Result<Self, String> {
+        Self::new(bytes.to_vec())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn font() -> Vec<u8> {
+        epaint_default_fonts::HACK_REGULAR.to_vec()
+    }
+
+    #[test]
+    fn a_file_is_written_whole_and_read_again() {
+        let file = Attachment::<Face>::new("Hack\u{7}.ttf", font()).unwrap();
+        assert_eq!(file.name(), Some("Hack.ttf"));
+        let text = serde_json::to_string(&file).unwrap();
+        let again: Attachment<Face> = serde_json::from_str(&text).unwrap();
+        assert_eq!(again, file);
+        assert!(again.content().is_some());
+        assert_ne!(again, Attachment::NONE);
+        assert_eq!(serde_json::from_str::<Attachment<Face>>("null").unwrap(), Attachment::NONE);
+    }
+
+    #[test]
+    fn what_is_no_such_file_is_refused_with_a_reason() {
+        let font_as_image = Attachment::<Heights>::new("x.png", font()).unwrap_err();
+        assert!(font_as_image.starts_with("\"x.png\" must be a PNG, JPEG or EXR image"), "{font_as_image}");
+        let half = font()[..2000].to_vec();
+        let broken = Attachment::<Face>::new("x.ttf", half).unwrap_err();
+        assert!(broken.starts_with("\"x.ttf\" must be a TrueType or OpenType font"), "{broken}");
+        let huge = Attachment::<Face>::new("x.ttf", vec![0; MAX_ATTACHMENT_BYTES + 1]).unwrap_err();
+        assert!(huge.contains("at most 16 MiB"), "{huge}");
+        for bad in [r#"{"name": "x", "base64": "?"}"#, r#"{"name": "x"}"#, r#"{"name": "x", "base64": ""}"#, "7"] {
+            assert!(serde_json::from_str::<Attachment<Heights>>(bad).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Files that shapes keep: chosen, refused, done without.
+
+use std::path::Path;
+
+use egui::{Event, Key, Modifiers};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use isolith::editor::Editor;
+use isolith::scene::{NodeId, NodeKind, ParamValue, ShapeKind};
+
+use super::{open, press, scene, undo_all};
+
+fn file_of(harness: &Harness<'_, Editor>, id: NodeId) -> String {
+    let NodeKind::Object(object) = &harness.state().document().scene().node(id).unwrap().kind else {
+        panic!("an object")
+    };
+    let values = object.shape.values();
+    let file = values.iter().find_map(|v| if let ParamValue::File(file) = v { Some(file) } else { None });
+    file.expect("a file").label().to_owned()
+}
+
+/// Clicks the field of the file and types a path.
+fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
+    harness.get_by_label(field).click();
+    harness.run();
+    press(harness, Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text(path.display().to_string()));
+    harness.run();
+    press(harness, Modifiers::NONE, Key::Enter);
+}
+
+#[test]
+fn an_image_is_chosen_refused_and_done_without() {
+    let folder = tempfile::tempdir().unwrap();
+    let [image, text] = ["alps.png", "notes.txt"].map(|name| folder.path().join(name));
+    image::GrayImage::from_fn(8, 8, |x, y| image::Luma([(16 * x + y) as u8])).save(&image).unwrap();
+    std::fs::write(&text, "no image").unwrap();
+    let (mut scene, [_, ball, cube, _]) = scene();
+    for id in [ball, cube] {
+        let mut node = scene.node(id).unwrap().as_ref().clone();
+        if let NodeKind::Object(object) = &mut node.kind {
+            object.shape = ShapeKind::Heightmap.default_shape();
+        }
+        scene.replace(node).unwrap();
+    }
+    let mut harness = open(scene);
+    harness.state_mut().document_mut().select(vec![ball, cube]);
+    harness.run();
+    choose(&mut harness, "Image: A hill", &image);
+    assert_eq!([ball, cube].map(|id| file_of(&harness, id)), ["alps.png"; 2]);
+    // What is no image is told, and changes nothing.
+    choose(&mut harness, "Image: alps.png", &text);
+    let message = harness.state().messages().last().unwrap().text.clone();
+    assert!(message.contains("\"notes.txt\" must be a PNG, JPEG or EXR image"), "{message}");
+    choose(&mut harness, "Image: alps.png", &folder.path().join("none.png"));
+    let message = harness.state().messages().last().unwrap().text.clone();
+    assert!(message.contains("none.png") && message.contains("cannot be read"), "{message}");
+    assert_eq!(file_of(&harness, ball), "alps.png");
+    harness.get_by_label("Image: none").click();
+    harness.run();
+    assert_eq!(file_of(&harness, cube), "A hill");
+    assert_eq!(undo_all(&mut harness), 2);
+}
