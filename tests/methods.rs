@@ -1,11 +1,15 @@
 //! All methods draw the same picture: equal in hit or miss pixel for pixel, depths within what refinement leaves.
 
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use isolith::flat::{Buffers, flatten};
 use isolith::gallery;
+use isolith::render::kernel::shape_loops;
 use isolith::render::{Method, OverlaySettings, Renderer, Slot};
-use isolith::scene::ModifierKind;
+use isolith::scene::{
+    Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, ShapeKind,
+};
 
 use crate::contract::modifiers::{modified, samples};
 use crate::contract::trees::{Recipe, tree};
@@ -19,8 +23,9 @@ const MAX_DEPTH: f64 = 0.05;
 /// Share of the pixels that may differ by more: where a ray meets two surfaces within a footprint of one another,
 /// methods may find either.
 const MAX_SHARE: f64 = 2e-3;
-/// Random trees that are drawn.
+/// Random trees that are drawn, and how many of them are made of the same few shapes.
 const TREES: u64 = 200;
+const TREES_OF_A_KIND: u64 = 20;
 
 /// What differs between two pictures; nothing where they are equal.
 fn difference(a: &Buffers, b: &Buffers, footprint: f64) -> Option<String> {
@@ -59,11 +64,49 @@ fn crowds_are_the_same_with_pruned_lists() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// A few shapes without loops and one with, for some of the trees: together all shapes there are.
+///
+/// A kernel that walks takes seconds to compile and serves all scenes whose shapes are few less than its own.
+fn palettes() -> &'static [Vec<ShapeKind>] {
+    static PALETTES: LazyLock<Vec<Vec<ShapeKind>>> = LazyLock::new(|| {
+        let (looping, plain): (Vec<_>, Vec<_>) = ShapeKind::ALL.iter().partition(|kind| shape_loops(**kind)[0] > 0);
+        let count = (TREES / TREES_OF_A_KIND) as usize;
+        let each = plain.len().div_ceil(count);
+        assert!(looping.len() <= count);
+        let palette = |i: usize| {
+            let plain = plain.iter().cycle().skip(i * each).take(each);
+            plain.chain(looping.iter().cycle().skip(i).take(1)).copied().collect()
+        };
+        (0..count).map(palette).collect()
+    });
+    &PALETTES
+}
+
+/// These shapes, nested as deep as trees are, by every operator and every blend.
+fn sheet(kinds: &[ShapeKind]) -> Scene {
+    let mut scene = Scene::new();
+    let mut parent = None;
+    for (i, operator) in Operator::ALL.into_iter().enumerate() {
+        let blend = Blend::new(BlendKernel::ALL[i % BlendKernel::ALL.len()], 0.1);
+        let group = Node::new("Group", NodeKind::Group(Group::new(operator, blend)));
+        parent = Some(scene.insert(parent, usize::MAX, group).unwrap());
+        let object = Object { shape: kinds[i % kinds.len()].default_shape(), material: MaterialId(1) };
+        scene.insert(parent, usize::MAX, Node::new("Part", NodeKind::Object(object))).unwrap();
+    }
+    scene
+}
+
 #[test]
 fn random_trees_are_the_same_by_every_method() {
     let mut faults = Vec::new();
     for seed in 0..TREES {
-        let scene = tree(1000 + seed, Recipe { blends: true, stretching: seed % 2 == 0 });
+        let kinds = &palettes()[(seed / TREES_OF_A_KIND) as usize];
+        if seed % TREES_OF_A_KIND == 0 {
+            for kinds in [&kinds[..kinds.len() - 1], kinds] {
+                Subject::new("sheet", &sheet(kinds), None).render(1, Method::Interpreted);
+            }
+        }
+        let scene = tree(1000 + seed, Recipe { blends: true, stretching: seed % 2 == 0, kinds });
         let subject = Subject::new(&format!("tree {seed}"), &scene, None);
         // Each structure is compiled; every fourth is enough of them.
         let methods: &[Method] = if seed % 4 == 0 { &[Method::Pruned, Method::Specialised] } else { &[Method::Pruned] };

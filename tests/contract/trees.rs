@@ -19,6 +19,7 @@ const TREES: u64 = 80;
 pub struct Recipe {
     pub blends: bool,
     pub stretching: bool,
+    pub kinds: &'static [ShapeKind],
 }
 
 /// A tree of a few levels, with negative nodes, hidden ones and every operator.
@@ -51,19 +52,9 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let (width, depth, share) = (random.range(0.0, 0.6), random.range(0.0, 0.3), random.range(0.0, 1.0));
         NodeKind::Group(Group { width, depth, share, ..Group::new(operator, blend) })
     } else {
-        // Kernels with data are slow to compile; some trees have them.
-        let is_kept = |random: &mut Random, kind: ShapeKind| !kind.has_data() || random.chance(0.15);
-        let mut kind = random.pick(ShapeKind::ALL);
-        while !is_kept(random, kind) {
-            kind = random.pick(ShapeKind::ALL);
-        }
-        let shape =
-            shape_with(
-                kind,
-                |limits| {
-                    if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
-                },
-            );
+        let shape = shape_with(random.pick(recipe.kinds), |limits| {
+            if limits.unit == "m" { random.range(0.05, 1.2) } else { usual(random, limits, 1.2) }
+        });
         NodeKind::Object(Object { shape, material: MaterialId(2 + random.index(3) as u64) })
     };
     let mut node = Node::new("Node", kind).at(random.point(0.8));
@@ -92,7 +83,7 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
 fn for_each_component(mut visit: impl FnMut(&Scene, &FlatScene, &Component, &mut Random)) {
     let mut count = 0;
     for seed in 0..TREES {
-        let recipe = Recipe { blends: seed % 3 != 0, stretching: seed % 2 == 1 };
+        let recipe = Recipe { blends: seed % 3 != 0, stretching: seed % 2 == 1, kinds: ShapeKind::ALL };
         let scene = tree(seed, recipe);
         let flat = flatten(&scene, 0.0).unwrap();
         for component in &flat.components {
@@ -148,7 +139,7 @@ fn fold(scene: &Scene, parent: Option<NodeId>, operator: Operator, world: &DAffi
 fn hard_trees_hold_the_points_that_their_meaning_says() {
     let (mut held, mut compared) = (0, 0);
     for seed in 0..3 * TREES {
-        let scene = tree(seed, Recipe { blends: false, stretching: seed % 2 == 0 });
+        let scene = tree(seed, Recipe { blends: false, stretching: seed % 2 == 0, kinds: ShapeKind::ALL });
         let flat = flatten(&scene, 0.0).unwrap();
         let mut random = Random::new(seed);
         for _ in 0..150 {
@@ -246,7 +237,7 @@ fn the_shares_of_the_materials_sum_to_one() {
 #[test]
 fn a_scene_far_from_the_origin_has_the_field_of_one_at_the_origin() {
     for seed in 0..20 {
-        let scene = tree(seed, Recipe { blends: true, stretching: true });
+        let scene = tree(seed, Recipe { blends: true, stretching: true, kinds: ShapeKind::ALL });
         let mut moved = scene.clone();
         let shift = DVec3::new(1e6, -2e6, 5e5);
         for node in scene.nodes().iter().filter(|n| n.parent.is_none()) {
