@@ -38,7 +38,7 @@ pub struct Face {
 impl Face {
     /// The font of a TrueType or OpenType file; or why it cannot be read.
     pub fn new(file: Vec<u8>) -> Result<Self, String> {
-        let font = FontVec::try_from_vec(file).map_err(|error| error.to_string())?;
+        let font = FontVec::try_from_vec(file).map_err(|_| "it is damaged or of another kind")?;
         if !font.codepoint_ids().any(|(id, _)| font.outline(id).is_some()) {
             return Err("it has no outlines of letters".to_owned());
         }

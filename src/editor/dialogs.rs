@@ -349,7 +349,7 @@ impl Editor {
             ui.label(RichText::new(field.purpose.title()).heading().color(egui::Color32::WHITE));
             ui.add_space(6.0);
             let edit = TextEdit::singleline(&mut field.text)
-                .hint_text("/path/to/scene.json")
+                .hint_text("/path/to/file")
                 .desired_width(f32::INFINITY)
                 .margin(egui::Margin::symmetric(8, 6));
             let response = ui.add(edit);

@@ -178,6 +178,7 @@ fn add_component(
         ("the number of shapes that are blended or cut together", flat.nodes.len() - start, MAX_COMPONENT_NODES),
         ("the nesting of groups that cannot be simplified", component.stack as usize, MAX_STACK as usize),
         ("the number of shapes and groups", flat.nodes.len(), MAX_FLAT_NODES),
+        ("the number of rows of points, letters and images", flat.numbers.len(), MAX_FLAT_ROWS),
     ];
     for (what, value, limit) in limits {
         if value > limit {

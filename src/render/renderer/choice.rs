@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{RenderError, Renderer};
-use crate::flat::{CellTree, Component, FlatScene};
+use crate::flat::{CellTree, Component, FlatNode, FlatScene, leaf_data};
 use crate::geometry::Camera;
 use crate::render::kernel::shape_loops;
 use crate::render::kernels::{Choice, Method, Walk};
@@ -77,7 +77,11 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
 /// Rounds that the loops of the component's leaves take together, at most.
 fn rounds(flat: &FlatScene, component: &Component) -> u32 {
     let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
-    let leaves = entries.iter().filter(|node| node.is_leaf());
-    let own = leaves.map(|node| shape_loops(ShapeKind::ALL[(node.code & 0xffff) as usize])[1]).sum::<u32>();
-    own + component.data
+    let of_leaf = |node: &FlatNode| {
+        let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
+        let [loops, most] = shape_loops(kind);
+        // Without a loop data are looked up at one place.
+        most + if loops > 0 { leaf_data(kind, &flat.numbers[node.numbers as usize..]).len() as u32 } else { 0 }
+    };
+    entries.iter().filter(|node| node.is_leaf()).map(of_leaf).sum()
 }
