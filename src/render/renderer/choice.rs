@@ -85,3 +85,31 @@ fn rounds(flat: &FlatScene, component: &Component) -> u32 {
     };
     entries.iter().filter(|node| node.is_leaf()).map(of_leaf).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{flat, gallery};
+
+    /// Dispatches are cut by these rounds: if an image's rows counted, a heightmap would take minutes.
+    #[test]
+    fn data_count_as_rounds_only_where_they_are_looped_over() {
+        let shapes = gallery::all().into_iter().find(|(name, _)| *name == "shapes").expect("the sheet of shapes").1;
+        let flat = flat::flatten(&shapes, 0.0).expect("within the limits");
+        let of_kind = |kind: ShapeKind| {
+            let is_it = |node: &&FlatNode| node.is_leaf() && node.code & 0xffff == kind as u32;
+            let holds = |c: &&Component| flat.nodes[c.first as usize..][..c.count as usize].iter().any(|n| is_it(&n));
+            let component = flat.components.iter().find(holds).expect("every shape is in the sheet");
+            (rounds(&flat, component), component.data)
+        };
+        for kind in ShapeKind::ALL.iter().copied().filter(|kind| kind.has_data()) {
+            let (rounds, data) = of_kind(kind);
+            assert!(data > 0, "{kind:?}");
+            if shape_loops(kind)[0] > 0 {
+                assert!(rounds >= data, "{kind:?}: {rounds} rounds over {data} rows");
+            } else {
+                assert_eq!(rounds, 0, "{kind:?}");
+            }
+        }
+    }
+}

@@ -15,16 +15,8 @@ impl Shape {
         let turned = |r: f64, low: f64, high: f64| Aabb::new(DVec3::new(-r, low, -r), DVec3::new(r, high, r));
         match *self {
             Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
-            Self::Extrusion { ref corners, smooth, depth, .. } => {
-                let flat = profile_bounds(corners, smooth);
-                let half = DVec3::Z * (0.5 * depth);
-                Aabb::new(flat.min - half, flat.max + half)
-            }
-            Self::Text { ref text, ref font, size, depth, .. } => {
-                let flat = text_bounds(text, font, size);
-                let half = DVec3::Z * (0.5 * depth);
-                Aabb::new(flat.min - half, flat.max + half)
-            }
+            Self::Extrusion { ref corners, smooth, depth, .. } => thick(profile_bounds(corners, smooth), depth),
+            Self::Text { ref text, ref font, size, depth, .. } => thick(text_bounds(text, font, size), depth),
             Self::Revolution { ref corners, smooth, offset } => {
                 let flat = profile_bounds(corners, smooth);
                 turned((flat.max.x + offset).max(0.0), flat.min.y, flat.max.y)
@@ -186,6 +178,12 @@ impl Shape {
         }
         self
     }
+}
+
+/// What is flat along Z, as thick as this.
+fn thick(flat: Aabb, depth: f64) -> Aabb {
+    let half = DVec3::Z * (0.5 * depth);
+    Aabb::new(flat.min - half, flat.max + half)
 }
 
 /// The radius of the circle in which a ball is cut at a height over its centre.
