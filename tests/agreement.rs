@@ -12,7 +12,7 @@ use isolith::scene::{
     Shape, ShapeKind,
 };
 
-use crate::contract::modifiers::{modified, samples};
+use crate::contract::modifiers::{modified, modified_crowds, samples};
 use crate::contract::samples::{Random, ordinary};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::shared;
@@ -180,7 +180,12 @@ fn pruned_lists_agree() {
         let flat = flatten(scene, 0.0).unwrap();
         let tree = CellTree::build(&flat, &flat.components[0]);
         let points = points(&mut Random::new(seed), POINTS);
-        let evaluator = Evaluator::Pruned(Features::of(&flat));
+        let mut features = Features::of(&flat);
+        if flat.components[0].is_modified() {
+            // One kernel is compiled for all of them.
+            features = Features { modifiers: Features::all().modifiers, stack: 4, ..features };
+        }
+        let evaluator = Evaluator::Pruned(features);
         for skipping in [Skipping::Branches, Skipping::Loops] {
             let options = Options { skipping, ..Options::default() };
             let values = probe::field(&shared().gpu, &flat, 0, &points, &evaluator, options).unwrap();
@@ -196,22 +201,6 @@ fn pruned_lists_agree() {
             }
         }
     }
-}
-
-/// Large blends below modifiers: of each kind one, the later ones upon a twist.
-fn modified_crowds() -> Vec<Scene> {
-    let of_kind = |(i, &kind): (usize, &ModifierKind)| {
-        let mut scene = gallery::crowd(40, true, i as u64);
-        let mut node = Node::clone(&scene.nodes()[0]);
-        node = node.modified(kind.default_modifier());
-        if i % 2 == 1 {
-            node = node.modified(Modifier::Twist { angle: 20.0 });
-        }
-        scene.replace(node).unwrap();
-        scene
-    };
-    let single = |scene: &Scene| flatten(scene, 0.0).is_ok_and(|flat| flat.components.len() == 1);
-    ModifierKind::ALL.iter().enumerate().map(of_kind).filter(single).collect()
 }
 
 #[test]

@@ -217,9 +217,8 @@ impl Kernels {
         }
         let prunes = |i: usize| method != Method::Interpreted && has_lists.get(i) == Some(&true);
         let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
-        let needs_lists = |modified: bool| {
-            open.iter().any(|i| prunes(*i) && flat.components[*i].is_modified() == modified)
-        };
+        let needs_lists =
+            |modified: bool| open.iter().any(|i| prunes(*i) && flat.components[*i].is_modified() == modified);
         if !open.is_empty() {
             self.choose_walker(flat, [false, true].map(needs_lists))?;
         }
@@ -295,10 +294,7 @@ impl Kernels {
             Some(at) => self.walkers[..=at].rotate_right(1),
             None => {
                 let interpreter = build(Evaluator::Interpreted(wanted.clone()))?;
-                self.walkers.insert(
-                    0,
-                    Walker { features: wanted, interpreter, pruned: None, pruned_modified: None },
-                );
+                self.walkers.insert(0, Walker { features: wanted, interpreter, pruned: None, pruned_modified: None });
                 self.walkers.truncate(MAX_WALKERS);
                 self.built += 1;
             }

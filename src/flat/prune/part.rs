@@ -122,9 +122,7 @@ impl Part {
                     let face = face / f64::from(BRANCHES * BRANCHES);
                     cells.extend(self.cells[block * BLOCK_CELLS..][..BLOCK_CELLS].iter().map(|cell| (*cell, face)));
                 }
-                (CELL_LIST, None) => {
-                    own.add(&Own { faces: face, sum: face * f64::from(cell[1]), longest: cell[1] })
-                }
+                (CELL_LIST, None) => own.add(&Own { faces: face, sum: face * f64::from(cell[1]), longest: cell[1] }),
                 _ => {}
             }
         }

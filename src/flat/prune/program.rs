@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::domain::Domain;
 use super::entry::Entries;
 use super::token::{Token, TokenOp};
-use crate::flat::twin::{Joint, op_join};
 use crate::flat::Join;
+use crate::flat::twin::{Joint, op_join};
 
 /// A token on its way from a cell to its children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -198,14 +198,7 @@ fn join_leaf(
 }
 
 /// Joins the group that ends, whose value is `b`, to what was put aside when it began.
-fn join_group(
-    token: Token,
-    entries: &Entries<'_>,
-    b: Value,
-    frame: &Frame,
-    reach: f64,
-    out: &mut Vec<Step>,
-) -> Value {
+fn join_group(token: Token, entries: &Entries<'_>, b: Value, frame: &Frame, reach: f64, out: &mut Vec<Step>) -> Value {
     match Keep::of(token, entries, frame.value, b, reach) {
         Keep::First => {
             out.truncate(frame.begin);

@@ -349,7 +349,8 @@ fn wrong_in_cubes(share: f64) -> usize {
         let tokens: Vec<_> = list.iter().map(|step| step.token.0).collect();
         for _ in 0..10 {
             let p = random.point(center - half, center + half);
-            let (pruned, truth) = (field::fold(&flat, component, &tokens, p, &|_, _| unreachable!()), twin::field(&flat, component, p));
+            let (pruned, truth) =
+                (field::fold(&flat, component, &tokens, p, &|_, _| unreachable!()), twin::field(&flat, component, p));
             wrong += usize::from((pruned - truth).abs() > 1e-9);
         }
     }
