@@ -168,7 +168,7 @@ fn large_blends_below_modifiers_are_the_same_with_pruned_lists() {
     }
     let subject = Subject::new("modified crowds", &all, None);
     assert!(subject.flat.components.iter().filter(|c| c.is_modified() && is_pruned(&subject.flat, c)).count() >= 8);
-    assert_eq!(compare(&subject, 4 * SIDE, &[Method::Pruned]), Vec::<String>::new());
+    assert_eq!(compare(&subject, 2 * SIDE, &[Method::Pruned]), Vec::<String>::new());
 }
 
 #[test]
