@@ -3,7 +3,8 @@
 use std::sync::LazyLock;
 use std::time::Duration;
 
-use isolith::flat::{Buffers, flatten};
+use glam::DVec3;
+use isolith::flat::{Buffers, flatten, is_pruned};
 use isolith::gallery;
 use isolith::render::kernel::shape_loops;
 use isolith::render::{Method, OverlaySettings, Renderer, Slot};
@@ -11,7 +12,7 @@ use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, ShapeKind,
 };
 
-use crate::contract::modifiers::{modified, samples};
+use crate::contract::modifiers::{modified, modified_crowds, samples};
 use crate::contract::trees::{Recipe, tree};
 use crate::gpu::{Subject, scenes, shared};
 
@@ -152,6 +153,22 @@ fn what_is_modified_is_the_same_by_every_method() {
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// What a modifier holds has lists of its own, in its own space.
+#[test]
+fn large_blends_below_modifiers_are_the_same_with_pruned_lists() {
+    let mut all = Scene::new();
+    for (i, crowd) in modified_crowds().iter().enumerate() {
+        let root = Node::clone(&crowd.nodes()[0]).at(DVec3::new(4.0 * (i % 4) as f64, 4.0 * (i / 4) as f64, 0.0));
+        let parent = all.insert(None, usize::MAX, root).unwrap();
+        for leaf in &crowd.nodes()[1..] {
+            all.insert(Some(parent), usize::MAX, Node::clone(leaf)).unwrap();
+        }
+    }
+    let subject = Subject::new("modified crowds", &all, None);
+    assert!(subject.flat.components.iter().filter(|c| c.is_modified() && is_pruned(&subject.flat, c)).count() >= 8);
+    assert_eq!(compare(&subject, 2 * SIDE, &[Method::Pruned]), Vec::<String>::new());
 }
 
 #[test]

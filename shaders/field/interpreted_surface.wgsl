@@ -6,6 +6,7 @@
 #if MODIFIERS
 #include "generated/modifiers.wgsl"
 #include "generated/modifier_gradients.wgsl"
+#include "field/modified_surface.wgsl"
 #end
 
 var<private> surface_first: u32;
@@ -25,29 +26,6 @@ fn surface_begin(component: Component) {
     surface_first = component.first;
     surface_end = component.end;
 }
-
-#if MODIFIERS
-// The k-th copy of what a modifier holds, as seen from outside of it.
-fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Surface) -> Surface {
-    let scale = modifier_scale(modifier, copy, row);
-    var seen = content;
-    seen.distance *= scale;
-    seen.gradient = modifier_pull(modifier, local, copy, content.gradient, row) * scale;
-    return seen;
-}
-
-// What the modifier at the entry makes of the nearest copy.
-fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface) -> Surface {
-    let slopes = modifier_slopes(modifier, content.distance, local, numbers + MODIFIER_ROWS);
-    let d = content.gradient * slopes.w + slopes.xyz;
-    let scale = scene_row(numbers + 1u).w;
-    var seen = content;
-    seen.distance = modifier_value(modifier, content.distance, local, numbers + MODIFIER_ROWS) * scale;
-    seen.gradient = scale
-        * (scene_row(numbers + 3u).xyz * d.x + scene_row(numbers + 4u).xyz * d.y + scene_row(numbers + 5u).xyz * d.z);
-    return seen;
-}
-#end
 
 fn surface(p: vec3f) -> Surface {
     var q = p;

@@ -11,7 +11,7 @@ fn surface_begin(component: Component) {
 }
 
 fn surface(p: vec3f) -> Surface {
-    pruned_find(p);
+    pruned_find(pruned_own_grid(), p);
     var so_far = Surface(pruned_bound, pruned_component.first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
     var depth = 0u;
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {

@@ -12,7 +12,7 @@ fn field_begin(component: Component) {
 
 // The field at `p`, relative to the component's origin; a bound of it in cells where no surface is.
 fn field(p: vec3f) -> f32 {
-    pruned_find(p);
+    pruned_find(pruned_own_grid(), p);
     var so_far = pruned_bound;
     var depth = 0u;
     for (var at = pruned_list.x; at < pruned_list.y; at += 1u) {

@@ -271,9 +271,31 @@ pub struct Component {
     pub half_space: Option<[f64; 4]>,
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
-    /// Whether it holds modifiers.
-    pub modified: bool,
+    /// What its modifiers hold, in the order of their entries.
+    pub contents: Vec<Content>,
     /// How often an entry may be evaluated for one point: 1 without repetition.
+    pub copies: u32,
+}
+
+impl Component {
+    /// Whether it holds modifiers.
+    pub fn is_modified(&self) -> bool {
+        !self.contents.is_empty()
+    }
+}
+
+/// What a modifier holds, in its own space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Content {
+    /// The modifier's entry, counted from the component's first.
+    pub entry: u32,
+    /// Around the content's surface; may be unbounded.
+    pub bounds: Aabb,
+    /// Its field is at least `slope` times the distance to this.
+    pub skip: Aabb,
+    /// See `skip`; 0 where nothing is known.
+    pub slope: f64,
+    /// How often it may be evaluated for one point of the component.
     pub copies: u32,
 }
 

@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
-use super::enclosure::fold_bounds;
+use super::enclosure::{Enclosure, fold_bounds};
 use super::operands::{Operand, Value};
 use crate::geometry::Aabb;
 use crate::scene::{BlendKernel, MaterialId, ShapeKind};
@@ -20,9 +20,10 @@ pub(super) fn emit(
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
-    let modified = flat.nodes[first..].iter().any(|n| n.modifier().is_some());
     let data = flat.numbers.len();
     emit_data(flat, operands, &mut (first..));
+    let mut contents = Vec::new();
+    collect_contents(operands, 1, &mut (first..).map(|at| (at - first, flat.nodes[at].is_run())), &mut contents);
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
@@ -33,7 +34,7 @@ pub(super) fn emit(
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
         stack,
-        modified,
+        contents,
         copies: operands.iter().map(copies).max().unwrap_or(1),
     }
 }
@@ -96,6 +97,29 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
                 flat.numbers[row] = [count, offset, 0.0, 0.0];
                 flat.numbers.extend(body.rows.iter().map(|row| row.map(|v| v as f32)));
             }
+        }
+    }
+}
+
+/// Appends what modifiers hold; `entries` are those from here on, in the order in which they were written, and whether
+/// each is a run. What is there is evaluated up to `copies` times for one point.
+fn collect_contents(
+    operands: &[Operand<'_>],
+    copies: u32,
+    entries: &mut impl Iterator<Item = (usize, bool)>,
+    out: &mut Vec<Content>,
+) {
+    for operand in operands {
+        let (entry, _) = entries.find(|(_, is_run)| !is_run).expect("all were written");
+        match &operand.value {
+            Value::Fold(inner) => collect_contents(inner, copies, entries, out),
+            Value::Modified { content, modified, .. } => {
+                let Enclosure { bounds, skip, slope } = fold_bounds(content);
+                let copies = copies.saturating_mul(modified.copies);
+                out.push(Content { entry: entry as u32, bounds, skip, slope, copies });
+                collect_contents(content, copies, entries, out);
+            }
+            Value::Leaf { .. } => {}
         }
     }
 }

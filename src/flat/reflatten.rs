@@ -91,7 +91,7 @@ impl Last {
         let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
         let old = self.flat.components[at].clone();
         let Some(operands) = component_of(scene, outermost) else { return false };
-        let had_warnings = old.modified && !self.flat.warnings.is_empty();
+        let had_warnings = old.is_modified() && !self.flat.warnings.is_empty();
         if fold_bounds(&operands).bounds.is_empty() || had_warnings {
             return false;
         }

@@ -1,7 +1,7 @@
 //! Which kernel evaluates which component: the interpreter at once, a specialised one as soon as it is
 //! built. Equal structures share a kernel; nobody ever waits for one unless asked to.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -57,6 +57,8 @@ struct Walker {
     features: Features,
     interpreter: Arc<Kernel>,
     pruned: Option<Arc<Kernel>>,
+    /// By pruned lists too, for components with modifiers.
+    pruned_modified: Option<Arc<Kernel>>,
 }
 
 /// What the worker needs too.
@@ -119,7 +121,7 @@ impl Kernels {
         let features = Features::none();
         let evaluator = Evaluator::Interpreted(features.clone());
         let interpreter = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
-        let walkers = vec![Walker { features, interpreter, pruned: None }];
+        let walkers = vec![Walker { features, interpreter, pruned: None, pruned_modified: None }];
         let shared = Arc::new(Shared { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
         Ok(Self {
             shared,
@@ -214,14 +216,18 @@ impl Kernels {
             });
         }
         let prunes = |i: usize| method != Method::Interpreted && has_lists.get(i) == Some(&true);
-        let open = |i: &usize| choices[*i].is_none();
-        let needs_lists = (0..choices.len()).filter(open).any(prunes);
-        if (0..choices.len()).any(|i| open(&i)) {
-            self.choose_walker(flat, needs_lists)?;
+        let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
+        let needs_lists =
+            |modified: bool| open.iter().any(|i| prunes(*i) && flat.components[*i].is_modified() == modified);
+        if !open.is_empty() {
+            self.choose_walker(flat, [false, true].map(needs_lists))?;
         }
         self.forget_oldest();
         let walker = &self.walkers[0];
-        let walked = |i: usize| match &walker.pruned {
+        let pruned = |i: usize| {
+            if flat.components[i].is_modified() { &walker.pruned_modified } else { &walker.pruned }
+        };
+        let walked = |i: usize| match pruned(i) {
             Some(kernel) if prunes(i) => Choice { kernel: kernel.clone(), walk: Walk::List },
             _ => Choice { kernel: walker.interpreter.clone(), walk: Walk::Entries },
         };
@@ -278,7 +284,8 @@ impl Kernels {
 
     /// Puts the kernels first that walk and know all shapes of the scene, and not many more: what a kernel holds is
     /// paid for by every scene, because lavapipe executes every arm of a `switch`.
-    fn choose_walker(&mut self, flat: &FlatScene, needs_lists: bool) -> Result<(), ShaderError> {
+    /// `needs_lists` tells whether components without, and with, modifiers have some.
+    fn choose_walker(&mut self, flat: &FlatScene, needs_lists: [bool; 2]) -> Result<(), ShaderError> {
         let wanted = Features::of(flat);
         let Shared { gpu, layouts, field, options } = &*self.shared;
         let build = |evaluator| field.build(&gpu.device, layouts, &evaluator, *options).map(Arc::new);
@@ -287,15 +294,19 @@ impl Kernels {
             Some(at) => self.walkers[..=at].rotate_right(1),
             None => {
                 let interpreter = build(Evaluator::Interpreted(wanted.clone()))?;
-                self.walkers.insert(0, Walker { features: wanted, interpreter, pruned: None });
+                self.walkers.insert(0, Walker { features: wanted, interpreter, pruned: None, pruned_modified: None });
                 self.walkers.truncate(MAX_WALKERS);
                 self.built += 1;
             }
         }
         let walker = &mut self.walkers[0];
-        if needs_lists && walker.pruned.is_none() {
-            walker.pruned = Some(build(Evaluator::Pruned(walker.features.clone()))?);
-            self.built += 1;
+        let plain = Features { modifiers: BTreeSet::new(), ..walker.features.clone() };
+        let pruned = [(&mut walker.pruned, plain), (&mut walker.pruned_modified, walker.features.clone())];
+        for ((slot, features), _) in pruned.into_iter().zip(needs_lists).filter(|(_, needed)| *needed) {
+            if slot.is_none() {
+                *slot = Some(build(Evaluator::Pruned(features))?);
+                self.built += 1;
+            }
         }
         Ok(())
     }

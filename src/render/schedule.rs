@@ -150,7 +150,7 @@ impl Evaluation {
     pub fn of_entries(component: &Component, loops: u32, rounds: u32) -> Self {
         // For each entry an iteration, one for the choice of its shape, one for a group that ends. Of copies most are
         // out of reach.
-        let copies = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+        let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
         Self {
             straight: false,
             iterations: ((4 + loops) * component.count + rounds + 2).saturating_mul(copies),
@@ -162,7 +162,7 @@ impl Evaluation {
     /// entries, and for each leaf where its share is looked at. In a kernel for a form of many shapes every leaf has
     /// a loop for each of them, and the one that is taken ends a round later. `rounds` as in [`Evaluation::of_entries`].
     pub fn of_straight(component: &Component, form: Option<ShapeSet>, rounds: u32) -> Self {
-        let copies = if component.modified { component.copies * LOOPS_OF_COPIES } else { 1 };
+        let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
         let choosing = form.filter(|shapes| !shapes.is_small()).map_or(0, |shapes| shapes.count() + 1);
         Self {
             straight: true,

@@ -84,7 +84,7 @@ pub struct GpuComponent {
     pub grid_side: f32,
     /// Cells at the top along each axis.
     pub grid_counts: [u32; 3],
-    /// Where the cells begin in the buffer of lists.
+    /// Where its top cells stand in the buffer of lists; the headers of its contents stand before.
     pub lists: u32,
 }
 
@@ -115,10 +115,11 @@ impl GpuComponent {
 }
 
 impl GpuComponent {
-    /// The same with a grid of cells that stands at `lists` in the buffer of lists.
+    /// The same with a tree of cells that begins at `lists` in the buffer of lists.
     pub fn with_grid(self, tree: &CellTree, lists: u32) -> Self {
-        let (grid_low, grid_side) = (tree.low.as_vec3().to_array(), tree.side as f32);
-        Self { grid_low, grid_side, grid_counts: tree.counts, lists, ..self }
+        let grid = &tree.grids[0];
+        let (grid_low, grid_side) = (grid.low.as_vec3().to_array(), grid.side as f32);
+        Self { grid_low, grid_side, grid_counts: grid.counts, lists: lists + tree.start as u32, ..self }
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::{field, gradient};
 use isolith::flat::{Component, FlatScene, flatten};
+use isolith::gallery;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, ModifierValue, Node, NodeId, NodeKind, Object,
     Operator, Scene, Shape,
@@ -69,6 +70,22 @@ pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
         all.push(modifier);
     }
     all
+}
+
+/// Large blends below modifiers: of each kind one, the later ones upon a twist.
+pub fn modified_crowds() -> Vec<Scene> {
+    let of_kind = |(i, &kind): (usize, &ModifierKind)| {
+        let mut scene = gallery::crowd(40, true, i as u64);
+        let mut node = Node::clone(&scene.nodes()[0]);
+        node = node.modified(kind.default_modifier());
+        if i % 2 == 1 {
+            node = node.modified(Modifier::Twist { angle: 20.0 });
+        }
+        scene.replace(node).unwrap();
+        scene
+    };
+    let single = |scene: &Scene| flatten(scene, 0.0).is_ok_and(|flat| flat.components.len() == 1);
+    ModifierKind::ALL.iter().enumerate().map(of_kind).filter(single).collect()
 }
 
 /// Every component of every modifier's samples, twice the samples alone and once on top of a twist.

@@ -2,10 +2,10 @@
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use crate::flat::twin::{Joint, shape_distance};
-use crate::flat::{Component, FlatScene, LEAF_ROWS, Row, leaf_data};
+use crate::flat::twin::{Joint, entry_field, shape_distance};
+use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{SHAPE_FLOATS, ShapeKind};
+use crate::scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
 /// A leaf, evaluated exactly as the twin does it.
 #[derive(Clone)]
@@ -103,10 +103,16 @@ impl Ball {
 }
 
 /// All entries of a component; what does not apply to an entry is filled with something harmless.
-pub(super) struct Entries {
+pub(super) struct Entries<'a> {
+    flat: &'a FlatScene,
+    first: usize,
+    /// Rows of the component begin here.
+    pub numbers: u32,
     /// The leaves; a plane where there is none.
     pub leaves: Vec<Leaf>,
-    /// Around leaves and groups.
+    /// Modifiers whose field may jump: copies are seen only where they can matter.
+    pub jumps: Vec<bool>,
+    /// Around leaves, groups and modifiers.
     pub balls: Vec<Ball>,
     /// The numbers of the joints.
     pub joints: Vec<Joint>,
@@ -115,20 +121,24 @@ pub(super) struct Entries {
     pub size: f64,
 }
 
-impl Entries {
+impl<'a> Entries<'a> {
     /// Those of `component`.
-    pub fn new(flat: &FlatScene, component: &Component) -> Self {
-        let count = component.count as usize;
+    pub fn new(flat: &'a FlatScene, component: &Component) -> Self {
+        let (first, count) = (component.first as usize, component.count as usize);
         let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
         let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data };
         let mut entries = Self {
+            flat,
+            first,
+            numbers: component.numbers,
             leaves: vec![none; count],
+            jumps: vec![false; count],
             balls: vec![Ball::NONE; count],
             joints: vec![Joint::blend(0.0); count],
             size: 0.0,
         };
         let mut size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
-        for (index, node) in flat.nodes[component.first as usize..][..count].iter().enumerate() {
+        for (index, node) in flat.nodes[first..][..count].iter().enumerate() {
             let numbers = &flat.numbers[node.numbers as usize..];
             entries.joints[index] = Joint::read(&numbers[0]);
             if node.is_leaf() {
@@ -136,12 +146,28 @@ impl Entries {
                 size = size.max(leaf.size());
                 entries.balls[index] = leaf.ball();
                 entries.leaves[index] = leaf;
-            } else if node.is_group() {
+            } else if !node.is_run() {
                 entries.balls[index] = group_ball(numbers);
+                let repeats = |node: &FlatNode| node.modifier() == Some(ModifierKind::Repeat);
+                entries.jumps[index] = node.modifier().is_some()
+                    && flat.nodes[first + index..][..node.extent as usize].iter().any(repeats);
             }
         }
         entries.size = size.max(f64::MIN_POSITIVE).log2().ceil().exp2();
         entries
+    }
+
+    /// The entry itself.
+    pub fn node(&self, entry: usize) -> &'a FlatNode {
+        &self.flat.nodes[self.first + entry]
+    }
+
+    /// The field of a leaf or of a modifier at `p`, in metres.
+    pub fn distance(&self, entry: usize, p: DVec3) -> f64 {
+        match self.node(entry).modifier() {
+            Some(_) => entry_field(self.flat, self.first + entry, p),
+            None => self.leaves[entry].distance(p),
+        }
     }
 }
 

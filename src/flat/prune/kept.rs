@@ -4,20 +4,20 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::CellTree;
-use super::build::{Build, Grid};
-use super::part::Part;
+use super::build::{Build, Parts};
+use super::domain::{Domain, domains};
 use crate::flat::twin::Joint;
-use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, Row, leaf_data};
+use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data, modifier_rows};
 use crate::scene::ShapeKind;
 
 /// A component's tree, and the component as it was then.
 #[derive(Debug)]
 pub(super) struct Kept {
     of: FlatScene,
-    grid: Grid,
+    domains: Vec<Domain>,
     size: f64,
     pub tree: Arc<CellTree>,
-    parts: Vec<Arc<Part>>,
+    parts: Parts,
     /// How long it took to make.
     pub took: Duration,
 }
@@ -52,7 +52,7 @@ impl Kept {
         let component = &of.components[0];
         let build = Build::new(&of, component);
         let change = match &old {
-            Some(old) if old.grid == build.grid && old.size == build.size() => old.change(&of, component),
+            Some(old) if old.domains == build.domains && old.size == build.size() => old.change(&of, component),
             _ => Change::All,
         };
         let (tree, parts) = match (change, old) {
@@ -60,13 +60,15 @@ impl Kept {
             (Change::Some(changed), Some(old)) => build.again(&changed, &old.parts),
             _ => build.fresh(),
         };
-        let (grid, size) = (build.grid, build.size());
-        Self { of, grid, size, tree: Arc::new(tree), parts, took: start.elapsed() }
+        let (size, domains) = (build.size(), build.domains);
+        Self { of, domains, size, tree: Arc::new(tree), parts, took: start.elapsed() }
     }
 
     /// Whether nothing has changed that the lists depend on.
     pub fn is_current(&self, flat: &FlatScene, component: &Component) -> bool {
-        self.grid == Grid::new(component) && matches!(self.change(flat, component), Change::None)
+        // What the domains follow from is not all in the numbers.
+        matches!(self.change(flat, component), Change::None)
+            && domains(flat, component).is_some_and(|domains| domains == self.domains)
     }
 
     fn change(&self, flat: &FlatScene, component: &Component) -> Change {
@@ -77,7 +79,7 @@ impl Kept {
         let mut changed = vec![false; old.nodes.len()];
         let mut count = 0;
         for (index, (was, is)) in old.nodes.iter().zip(nodes(flat, component)).enumerate() {
-            let form = |node: &FlatNode| (node.extent, node.numbers, node.is_group(), node.is_run());
+            let form = |node: &FlatNode| (node.extent, node.numbers, node.modifier(), node.is_group(), node.is_run());
             if form(was) != form(&is) {
                 return Change::All;
             }
@@ -89,10 +91,18 @@ impl Kept {
                 () if is.is_group() => {
                     was.code == is.code && Joint::read(&old.numbers[first]) == Joint::read(&new_numbers[first])
                 }
+                () if is.modifier().is_some() => {
+                    let rows = first..first + MODIFIER_ROWS + is.modifier().map_or(0, modifier_rows);
+                    was.code == is.code && old.numbers[rows.clone()] == new_numbers[rows]
+                }
                 () => was.code == is.code && leaf(&is, &old.numbers[first..]) == leaf(&is, &new_numbers[first..]),
             };
             changed[index] = !same;
             count += usize::from(!same);
+        }
+        // A modifier is one operand with all that it holds.
+        for (index, node) in old.nodes.iter().enumerate().filter(|(_, node)| node.modifier().is_some()) {
+            changed[index] = changed[index..][..node.extent as usize].contains(&true);
         }
         match count {
             0 => Change::None,

@@ -10,6 +10,7 @@
 //! | file | what it does |
 //! |---|---|
 //! | `token` | the words of a list |
+//! | `domain` | the spaces of a component that have lists: its own, and that of each modifier's content |
 //! | `entry` | a component's entries as numbers to evaluate with |
 //! | `program` | a list at one point: its value, and the shorter list that is enough around the point |
 //! | `part` | everything in one top cell |
@@ -20,6 +21,7 @@
 //! | `worker` | makes them beside the frames |
 
 mod build;
+mod domain;
 mod entry;
 mod field;
 mod kept;
@@ -32,6 +34,8 @@ mod token;
 mod worker;
 
 use glam::DVec3;
+
+use part::Own;
 
 pub use field::pruned_field;
 pub use pruner::Pruner;
@@ -61,35 +65,66 @@ pub const CELL_SHIFT: u32 = 30;
 /// The offset in a cell's first word.
 pub const OFFSET_MASK: u32 = (1 << CELL_SHIFT) - 1;
 
-/// The cells of one component with their lists.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CellTree {
-    /// The lower corner of the grid, in metres, relative to the component's origin.
+/// Words before the cells of a component for each of its contents: the grid, see [`CellTree::words`].
+pub const HEADER_WORDS: usize = 4;
+/// Most contents of a component that has lists: what a token can name.
+pub const MAX_PRUNED_CONTENTS: usize = 255;
+/// Of the size of coordinates, for rounding in f32.
+const SIZE_SLACK: f64 = 1e-6;
+
+/// Where the top cells of a space lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// The lower corner, in metres.
     pub low: DVec3,
     /// The edge of a top cell (a cube), in metres.
     pub side: f64,
     /// Top cells along each axis, 1 to [`BRANCHES`].
     pub counts: [u32; 3],
-    /// The top cells (x fastest), then blocks of children, then all tokens. Offsets count from the start.
+    /// How far from the surface everything outside is at least, in metres.
+    pub clear: f64,
+}
+
+impl Grid {
+    /// Of a space that has no grid: one cell without end, in which all matters.
+    pub const ONE_CELL: Self = Self { low: DVec3::splat(-1e18), side: 2e18, counts: [1; 3], clear: 0.0 };
+
+    /// The distance from `p` in metres, 0 inside.
+    fn distance(&self, p: DVec3) -> f64 {
+        let high = self.low + self.side * DVec3::from(self.counts.map(f64::from));
+        (self.low - p).max(p - high).max(DVec3::ZERO).length()
+    }
+}
+
+/// The cells of one component with their lists.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellTree {
+    /// The grid of the component's own space, relative to its origin; then those of what its modifiers hold, each in its
+    /// own space, as [`Component::contents`] names them.
+    pub grids: Vec<Grid>,
+    /// A header of [`HEADER_WORDS`] for each content, the last one first: lower corner (3 floats), side of a top cell,
+    /// counts (8 bits each), where its top cells stand, [`Grid::clear`]. Then for each grid the top cells (x fastest),
+    /// blocks of children, and tokens. Offsets count from behind the headers.
     pub words: Vec<[u32; 2]>,
+    /// Where the words begin from which offsets count: the component's own top cells.
+    pub start: usize,
+    starts: Vec<u32>,
     lengths: Lengths,
 }
 
-/// How long lists are.
+/// How many tokens are walked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Lengths {
-    /// The area that cells with lists show to rays, in faces of a top cell.
-    faces: f64,
-    /// Tokens, weighted by it.
-    sum: f64,
+    mean: f64,
     longest: u32,
 }
 
 impl Lengths {
-    fn add(&mut self, other: &Self) {
-        self.faces += other.faces;
-        self.sum += other.sum;
-        self.longest = self.longest.max(other.longest);
+    /// Adds what is walked in a space that is visited up to `copies` times.
+    fn add(&mut self, own: &Own, copies: u32) {
+        let mean = if own.faces > 0.0 { own.sum / own.faces } else { 0.0 };
+        self.mean += mean * f64::from(copies).sqrt();
+        self.longest = self.longest.saturating_add(own.longest.saturating_mul(copies));
     }
 }
 
@@ -107,16 +142,12 @@ pub enum Cell<'a> {
     List(&'a [[u32; 2]]),
 }
 
-/// Whether a component has lists: it must be bounded, and large enough for them to pay.
-pub fn is_pruned(component: &Component) -> bool {
-    let bounds = &component.bounds;
-    // Copies are seen only where they can matter, so over a cell their field may jump.
-    !component.modified
-        && component.count >= LEAST_PRUNED_ENTRIES
+/// Whether a component has lists: it, or what a modifier in it holds, must be bounded and large enough for them to pay.
+pub fn is_pruned(flat: &FlatScene, component: &Component) -> bool {
+    component.count >= LEAST_PRUNED_ENTRIES
         && component.count <= MAX_PRUNED_ENTRIES
-        && bounds.is_finite()
-        && !bounds.is_empty()
-        && bounds.half().max_element() > 0.0
+        && component.contents.len() <= MAX_PRUNED_CONTENTS
+        && domain::domains(flat, component).is_some()
 }
 
 impl CellTree {
@@ -128,38 +159,35 @@ impl CellTree {
     /// Tokens that a point in a cell with a list meets, about: the mean, weighted by the area that the
     /// cells show to rays.
     pub fn mean_length(&self) -> f64 {
-        if self.lengths.faces > 0.0 { self.lengths.sum / self.lengths.faces } else { 0.0 }
+        self.lengths.mean
     }
 
-    /// Tokens of the longest list.
+    /// Tokens that are walked for a point at most.
     pub fn longest(&self) -> u32 {
         self.lengths.longest
     }
 
-    /// How far the grid reaches beyond the component's bounds, in metres.
-    pub fn margin(&self) -> f64 {
-        self.side * f64::from(BRANCHES) * MARGIN_SHARE / (1.0 + 2.0 * MARGIN_SHARE)
-    }
-
-    /// What the lists say about `p`, which is relative to the component's origin.
-    pub fn list_at(&self, p: DVec3) -> Cell<'_> {
-        if self.distance(p) > 0.0 {
+    /// What the lists say about `p` in the space of a grid: 0 for the component's own, relative to its origin.
+    pub fn list_at(&self, number: usize, p: DVec3) -> Cell<'_> {
+        let grid = &self.grids[number];
+        if grid.distance(p) > 0.0 {
             return Cell::Outside;
         }
-        let counts = DVec3::from(self.counts.map(f64::from));
-        let (mut low, mut side) = (self.low, self.side);
+        let words = &self.words[self.start..];
+        let counts = DVec3::from(grid.counts.map(f64::from));
+        let (mut low, mut side) = (grid.low, grid.side);
         let mut at = ((p - low) / side).floor().clamp(DVec3::ZERO, counts - 1.0);
-        let mut word = self.words[(at.x + counts.x * (at.y + counts.y * at.z)) as usize];
+        let mut word = words[self.starts[number] as usize + (at.x + counts.x * (at.y + counts.y * at.z)) as usize];
         loop {
             low += at * side;
             let offset = (word[0] & OFFSET_MASK) as usize;
             match word[0] >> CELL_SHIFT {
-                CELL_LIST => return Cell::List(&self.words[offset..offset + word[1] as usize]),
+                CELL_LIST => return Cell::List(&words[offset..offset + word[1] as usize]),
                 CELL_REFINED => {
                     let branches = f64::from(BRANCHES);
                     side /= branches;
                     at = ((p - low) / side).floor().clamp(DVec3::ZERO, DVec3::splat(branches - 1.0));
-                    word = self.words[offset + (at.x + branches * (at.y + branches * at.z)) as usize];
+                    word = words[offset + (at.x + branches * (at.y + branches * at.z)) as usize];
                 }
                 _ => {
                     let bound = f64::from(f32::from_bits(word[1]));
@@ -168,11 +196,5 @@ impl CellTree {
                 }
             }
         }
-    }
-
-    /// The distance from `p` to the grid in metres, 0 inside.
-    pub fn distance(&self, p: DVec3) -> f64 {
-        let high = self.low + self.side * DVec3::from(self.counts.map(f64::from));
-        (self.low - p).max(p - high).max(DVec3::ZERO).length()
     }
 }

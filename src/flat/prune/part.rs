@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::entry::Entries;
 use super::program::{Pruning, Step};
-use super::{BLOCK_CELLS, BRANCHES, CELL_EMPTY, CELL_LIST, CELL_REFINED, CELL_SHIFT, LEVELS, Lengths, OFFSET_MASK};
+use super::{BLOCK_CELLS, BRANCHES, CELL_EMPTY, CELL_LIST, CELL_REFINED, CELL_SHIFT, LEVELS, OFFSET_MASK, SIZE_SLACK};
 
 /// Cells with lists no longer than this are not refined; by level, the top cells first.
 const LONGEST_UNREFINED: [usize; LEVELS as usize] = [6, 12, usize::MAX];
@@ -21,16 +21,16 @@ const LONGEST_SHARED: usize = 8;
 const MOST_LEFT: [f64; LEVELS as usize] = [0.95, 0.75, 0.0];
 /// Of a radius, for rounding in f32.
 const RADIUS_SLACK: f64 = 1e-5;
-/// Of the size of coordinates, for rounding in f32.
-const SIZE_SLACK: f64 = 1e-6;
 
 /// What all parts of a component have in common.
 pub(super) struct Frame<'a> {
-    pub entries: &'a Entries,
+    pub entries: &'a Entries<'a>,
     /// The component's entries as a list.
     pub whole: &'a [Step],
-    /// How many kinds of cells there are above one another.
+    /// How many kinds of cells there are above one another; 0 where there is only one cell, in which all matters.
     pub levels: u32,
+    /// The field must be exact wherever it is no farther from 0 than this.
+    pub exact: f64,
     /// Which entries have changed since the last time; empty where there is none.
     pub changed: &'a [bool],
 }
@@ -39,6 +39,11 @@ impl Frame<'_> {
     /// How much closer to each other two operands can come in a cube of this edge than at its centre.
     fn reach(&self, side: f64) -> f64 {
         side * 3.0_f64.sqrt() * (1.0 + RADIUS_SLACK) + self.slack()
+    }
+
+    /// Whether a cube of this edge with this value at its centre needs no list.
+    fn is_empty(&self, value: f64, side: f64) -> bool {
+        value.abs() > self.reach(side) + self.exact
     }
 
     fn slack(&self) -> f64 {
@@ -103,13 +108,13 @@ pub(super) struct Part {
     pub cells: Vec<[u32; 2]>,
     pub tokens: Vec<[u32; 2]>,
     blocks: Vec<Block>,
-    pub lengths: Lengths,
+    pub own: Own,
 }
 
 impl Part {
     /// How long its lists are. Blocks do not know how deep they lie, so this walks down.
-    fn measured(&self) -> Lengths {
-        let mut lengths = Lengths::default();
+    fn measured(&self) -> Own {
+        let mut own = Own::default();
         let mut cells = vec![(self.top, 1.0)];
         while let Some((cell, face)) = cells.pop() {
             match (cell[0] >> CELL_SHIFT, block_of(cell)) {
@@ -117,13 +122,30 @@ impl Part {
                     let face = face / f64::from(BRANCHES * BRANCHES);
                     cells.extend(self.cells[block * BLOCK_CELLS..][..BLOCK_CELLS].iter().map(|cell| (*cell, face)));
                 }
-                (CELL_LIST, None) => {
-                    lengths.add(&Lengths { faces: face, sum: face * f64::from(cell[1]), longest: cell[1] })
-                }
+                (CELL_LIST, None) => own.add(&Own { faces: face, sum: face * f64::from(cell[1]), longest: cell[1] }),
                 _ => {}
             }
         }
-        lengths
+        own
+    }
+}
+
+/// How long lists are.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Own {
+    /// The area that cells with lists show to rays, in faces of a top cell.
+    pub faces: f64,
+    /// Tokens, weighted by it.
+    pub sum: f64,
+    /// Tokens of the longest one.
+    pub longest: u32,
+}
+
+impl Own {
+    pub fn add(&mut self, other: &Self) {
+        self.faces += other.faces;
+        self.sum += other.sum;
+        self.longest = self.longest.max(other.longest);
     }
 }
 
@@ -160,7 +182,8 @@ impl Carver {
     /// The part in the top cell `cube`; `None` where it is as the `old` one.
     pub fn part(&mut self, frame: &Frame<'_>, cube: Cube, old: Option<&Part>) -> Option<Part> {
         let mut top = std::mem::take(&mut self.top);
-        let value = self.pruning.run(frame.whole, frame.entries, cube.center(), frame.reach(cube.side), &mut top);
+        let reach = if frame.levels == 0 { f64::INFINITY } else { frame.reach(cube.side) };
+        let value = self.pruning.run(frame.whole, frame.entries, cube.center(), reach, &mut top);
         let list = hash(&top);
         let part = if old.is_some_and(|old| old.list == list) && !frame.has_changed(&top) {
             None
@@ -172,7 +195,7 @@ impl Carver {
             let old_block = old.filter(|old| old.top[0] >> CELL_SHIFT == CELL_REFINED).map(|_| 0);
             let cell = making.cell(&top, value, cube, 1, old_block, &mut lists);
             let mut part = Part { top: cell, ..making.part };
-            part.lengths = part.measured();
+            part.own = part.measured();
             self.lists = lists;
             Some(part)
         };
@@ -200,7 +223,7 @@ impl Making<'_> {
         old: Option<usize>,
         lists: &mut [Lists],
     ) -> [u32; 2] {
-        if value.abs() > self.frame.reach(cube.side) {
+        if self.frame.is_empty(value, cube.side) {
             return empty(value, self.frame.slack());
         }
         if list.len() > LONGEST_UNREFINED[level as usize - 1]
@@ -306,7 +329,7 @@ impl Making<'_> {
             let reach = self.frame.reach(cube.side);
             let value = self.carver.pruning.run(list, self.frame.entries, cube.center(), reach, steps);
             values[octant] = value;
-            if value.abs() <= reach {
+            if !self.frame.is_empty(value, cube.side) {
                 work += steps.len();
             } else {
                 steps.clear();

@@ -1,11 +1,14 @@
 //! A list at one point: its value there, and the shorter list that has the same value around the point.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
+use super::domain::Domain;
 use super::entry::Entries;
 use super::token::{Token, TokenOp};
+use crate::flat::Join;
 use crate::flat::twin::{Joint, op_join};
-use crate::flat::{Component, FlatScene, Join};
 
 /// A token on its way from a cell to its children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,27 +18,37 @@ pub(super) struct Step {
     pub span: u32,
 }
 
-/// The component as it stands, without its runs.
-pub(super) fn whole(flat: &FlatScene, component: &Component) -> Vec<Step> {
-    let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
-    let mut steps = Vec::with_capacity(nodes.len() * 2);
+/// The entries in `range` as they stand, without their runs; a modifier with all that it holds is one step.
+pub(super) fn whole(entries: &Entries<'_>, domains: &[Domain], range: Range<usize>) -> Vec<Step> {
+    let mut steps = Vec::with_capacity(range.len() * 2);
     // Groups that are open: the entry behind them, where they begin, and how they end.
     let mut open: Vec<(usize, usize, Token)> = Vec::new();
-    for index in 0..=nodes.len() {
-        while let Some((end, begin, token)) = open.pop_if(|(end, ..)| *end <= index) {
-            debug_assert!(end <= index, "groups end where their entries do");
+    let mut index = range.start;
+    loop {
+        while let Some((_, begin, token)) = open.pop_if(|(end, ..)| *end <= index) {
             close(&mut steps, begin, token);
         }
-        let Some(node) = nodes.get(index) else { break };
-        let token = |op| Token::new(op, node, index as u32, node.numbers - component.numbers);
+        if index >= range.end {
+            return steps;
+        }
+        let node = entries.node(index);
+        let row = node.numbers - entries.numbers;
+        let token = |op| Token::new(op, node, index as u32, row);
+        if node.modifier().is_some() {
+            let content = domains.iter().skip(1).position(|domain| domain.entries.start == index + 1);
+            let content = content.expect("every modifier holds something") + 1;
+            steps.push(Step { token: Token::modified(node, index as u32, row, content), span: 0 });
+            index += node.extent as usize;
+            continue;
+        }
         if node.is_leaf() {
             steps.push(Step { token: token(TokenOp::Leaf), span: 0 });
         } else if node.is_group() && node.join() != Join::First as u32 {
             open.push((index + node.extent as usize, steps.len(), token(TokenOp::End)));
             steps.push(Step { token: token(TokenOp::Begin), span: 0 });
         }
+        index += 1;
     }
-    steps
 }
 
 fn close(steps: &mut Vec<Step>, begin: usize, end: Token) {
@@ -52,7 +65,11 @@ enum Keep {
 
 impl Keep {
     /// `reach` is how much closer to each other than here the operands, or their sizes, may come around the point.
-    fn of(token: Token, entries: &Entries, a: f64, b: f64, reach: f64) -> Self {
+    fn of(token: Token, entries: &Entries<'_>, a: Value, b: Value, reach: f64) -> Self {
+        if a.jumps || b.jumps {
+            return Self::Both;
+        }
+        let (a, b) = (a.at, b.at);
         let Joint { support, size, depth } = entries.joints[token.entry()];
         // By how much the first, or the second, is alone.
         let [first, second] = match Join::ALL[token.join() as usize] {
@@ -75,9 +92,17 @@ impl Keep {
     }
 }
 
+/// A value at a point.
+#[derive(Clone, Copy)]
+struct Value {
+    at: f64,
+    /// Whether nothing is known of it beside the point.
+    jumps: bool,
+}
+
 /// An accumulator that was put aside: its value, where it and the group begin in the new list.
 struct Frame {
-    value: f64,
+    value: Value,
     start: usize,
     begin: usize,
 }
@@ -91,10 +116,11 @@ pub(super) struct Pruning {
 impl Pruning {
     /// The value of `steps` at `p`, and in `out` those of them that matter where no operand's field
     /// differs from its value at `p` by more than `reach` / 2.
-    pub fn run(&mut self, steps: &[Step], entries: &Entries, p: DVec3, reach: f64, out: &mut Vec<Step>) -> f64 {
+    pub fn run(&mut self, steps: &[Step], entries: &Entries<'_>, p: DVec3, reach: f64, out: &mut Vec<Step>) -> f64 {
         out.clear();
         self.frames.clear();
-        let (mut value, mut start) = (0.0, 0);
+        let (mut value, mut start) = (Value { at: 0.0, jumps: false }, 0);
+        let distance = |entry: usize| Value { at: entries.distance(entry, p), jumps: entries.jumps[entry] };
         let mut at = 0;
         while let Some(step) = steps.get(at) {
             let token = step.token;
@@ -103,12 +129,11 @@ impl Pruning {
                 TokenOp::Leaf => {
                     let entry = token.entry();
                     if token.join() == Join::First as u32 {
-                        value = entries.leaves[entry].distance(p);
+                        value = distance(entry);
                         start = out.len();
                         out.push(*step);
                     } else if !is_out_of_reach(token, entries, p, value, reach) {
-                        let b = entries.leaves[entry].distance(p);
-                        value = join_leaf(token, entries, [value, b], reach, start, out);
+                        value = join_leaf(token, entries, [value, distance(entry)], reach, start, out);
                     }
                 }
                 TokenOp::Begin if is_out_of_reach(token, entries, p, value, reach) => at += step.span as usize,
@@ -123,22 +148,24 @@ impl Pruning {
                     start = frame.start;
                 }
                 TokenOp::Negate => {
-                    value = -value;
+                    value.at = -value.at;
                     negate(token, start, out);
                 }
             }
         }
-        value
+        value.at
     }
 }
 
 /// Whether an operand is certainly too far off to join what stands so far, told by the ball around it.
 #[inline]
-fn is_out_of_reach(token: Token, entries: &Entries, p: DVec3, value: f64, reach: f64) -> bool {
+fn is_out_of_reach(token: Token, entries: &Entries<'_>, p: DVec3, so_far: Value, reach: f64) -> bool {
     const UNION: u32 = Join::Union as u32;
     const DIFFERENCE: u32 = Join::Difference as u32;
     let far = entries.joints[token.entry()].support + reach;
+    let value = so_far.at;
     match token.join() {
+        _ if so_far.jumps => false,
         UNION => entries.balls[token.entry()].is_beyond(p, value + far),
         DIFFERENCE => entries.balls[token.entry()].is_beyond(p, far - value),
         _ => false,
@@ -146,7 +173,14 @@ fn is_out_of_reach(token: Token, entries: &Entries, p: DVec3, value: f64, reach:
 }
 
 /// Joins the leaf `b` to the accumulator `a`, which begins at `start`.
-fn join_leaf(token: Token, entries: &Entries, [a, b]: [f64; 2], reach: f64, start: usize, out: &mut Vec<Step>) -> f64 {
+fn join_leaf(
+    token: Token,
+    entries: &Entries<'_>,
+    [a, b]: [Value; 2],
+    reach: f64,
+    start: usize,
+    out: &mut Vec<Step>,
+) -> Value {
     match Keep::of(token, entries, a, b, reach) {
         Keep::First => return a,
         Keep::Second => {
@@ -156,15 +190,15 @@ fn join_leaf(token: Token, entries: &Entries, [a, b]: [f64; 2], reach: f64, star
                 return b;
             }
             negate(token, start, out);
-            return -b;
+            return Value { at: -b.at, ..b };
         }
         Keep::Both => out.push(Step { token, span: 0 }),
     }
-    op_join(token.join(), a, b, &entries.joints[token.entry()], token.kernel()).value
+    joined(token, entries, a, b)
 }
 
 /// Joins the group that ends, whose value is `b`, to what was put aside when it began.
-fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64, out: &mut Vec<Step>) -> f64 {
+fn join_group(token: Token, entries: &Entries<'_>, b: Value, frame: &Frame, reach: f64, out: &mut Vec<Step>) -> Value {
     match Keep::of(token, entries, frame.value, b, reach) {
         Keep::First => {
             out.truncate(frame.begin);
@@ -176,7 +210,7 @@ fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64
                 return b;
             }
             negate(token, frame.start, out);
-            return -b;
+            return Value { at: -b.at, ..b };
         }
         Keep::Both => {}
     }
@@ -189,7 +223,12 @@ fn join_group(token: Token, entries: &Entries, b: f64, frame: &Frame, reach: f64
         }
         _ => close(out, frame.begin, token),
     }
-    op_join(token.join(), frame.value, b, &entries.joints[token.entry()], token.kernel()).value
+    joined(token, entries, frame.value, b)
+}
+
+fn joined(token: Token, entries: &Entries<'_>, a: Value, b: Value) -> Value {
+    let joined = op_join(token.join(), a.at, b.at, &entries.joints[token.entry()], token.kernel());
+    Value { at: joined.value, jumps: a.jumps || b.jumps }
 }
 
 /// Changes the sign of the accumulator that begins at `start`; twice is not at all.

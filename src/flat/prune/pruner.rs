@@ -102,7 +102,7 @@ impl Pruner {
         let mut met: HashMap<NodeId, u32> = HashMap::new();
         let components = flat.components.iter().zip(wanted).enumerate();
         let found: Vec<(usize, Key)> = components
-            .filter(|(_, (component, wanted))| **wanted && is_pruned(component))
+            .filter(|(_, (component, wanted))| **wanted && is_pruned(flat, component))
             .map(|(index, (component, _))| {
                 let id = flat.ids[component.first as usize];
                 let nth = met.entry(id).or_default();

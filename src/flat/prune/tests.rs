@@ -1,5 +1,7 @@
 //! The lists against the twin, which skips nothing.
 
+mod modified;
+
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -134,13 +136,14 @@ struct Verdict {
 
 fn verdict(flat: &FlatScene, tree: &CellTree, points: usize) -> Verdict {
     let component = &flat.components[0];
-    let high = tree.low + tree.side * DVec3::from(tree.counts.map(f64::from));
+    let grid = &tree.grids[0];
+    let high = grid.low + grid.side * DVec3::from(grid.counts.map(f64::from));
     let (mut random, mut verdict) = (Random(77), Verdict::default());
     for _ in 0..points {
-        let p = random.point(tree.low - 0.1 * tree.side, high + 0.1 * tree.side);
+        let p = random.point(grid.low - 0.1 * grid.side, high + 0.1 * grid.side);
         let truth = twin::field(flat, component, p);
         let pruned = pruned_field(flat, component, tree, p);
-        let right = match tree.list_at(p) {
+        let right = match tree.list_at(0, p) {
             Cell::List(_) => {
                 verdict.lists += 1;
                 (pruned - truth).abs() <= 1e-9 * truth.abs().max(1.0)
@@ -162,7 +165,7 @@ fn lists_have_the_value_of_the_whole_component() {
     let (mut built, mut lists, mut bounds) = (0, 0, 0);
     for seed in 0..40 {
         let flat = flatten(&random_tree(seed, 30 + 3 * seed as usize), 0.0).unwrap();
-        if flat.components.is_empty() || !is_pruned(&flat.components[0]) {
+        if flat.components.is_empty() || !is_pruned(&flat, &flat.components[0]) {
             continue;
         }
         let tree = CellTree::build(&flat, &flat.components[0]);
@@ -196,12 +199,13 @@ fn trees(pruner: &mut Pruner, flat: &FlatScene) -> Vec<Option<Arc<CellTree>>> {
 /// Every list of a tree.
 fn lists(tree: &CellTree) -> Vec<&[[u32; 2]]> {
     let mut found = Vec::new();
-    let mut cells: Vec<usize> = (0..tree.counts.iter().product::<u32>() as usize).collect();
+    let words = &tree.words[tree.start..];
+    let mut cells: Vec<usize> = (0..tree.grids[0].counts.iter().product::<u32>() as usize).collect();
     while let Some(cell) = cells.pop() {
-        let [first, second] = tree.words[cell];
+        let [first, second] = words[cell];
         let offset = (first & OFFSET_MASK) as usize;
         match first >> CELL_SHIFT {
-            CELL_LIST => found.push(&tree.words[offset..offset + second as usize]),
+            CELL_LIST => found.push(&words[offset..offset + second as usize]),
             CELL_REFINED => cells.extend(offset..offset + BLOCK_CELLS),
             _ => {}
         }
@@ -213,7 +217,7 @@ fn lists(tree: &CellTree) -> Vec<&[[u32; 2]]> {
 fn every_list_can_be_walked_within_the_stack_of_its_component() {
     for seed in 0..12 {
         let flat = flatten(&random_tree(seed, 80), 0.0).unwrap();
-        let Some(component) = flat.components.first().filter(|c| is_pruned(c)) else { continue };
+        let Some(component) = flat.components.first().filter(|c| is_pruned(&flat, c)) else { continue };
         for list in lists(&CellTree::build(&flat, component)) {
             let (mut aside, mut most) = (0_u32, 0);
             let mut fresh = true;
@@ -335,7 +339,8 @@ fn lists_for_a_narrower_blend_are_caught() {
 fn wrong_in_cubes(share: f64) -> usize {
     let flat = flatten(&random_tree(7, 80), 0.0).unwrap();
     let component = &flat.components[0];
-    let (whole, entries) = (program::whole(&flat, component), entry::Entries::new(&flat, component));
+    let entries = entry::Entries::new(&flat, component);
+    let whole = program::whole(&entries, &[], 0..component.count as usize);
     let (mut pruning, mut random, mut list, mut wrong) = (program::Pruning::default(), Random(8), Vec::new(), 0);
     for _ in 0..300 {
         let (center, half) = (random.point(DVec3::splat(-1.5), DVec3::splat(1.5)), random.between(0.01, 0.3));
@@ -344,7 +349,8 @@ fn wrong_in_cubes(share: f64) -> usize {
         let tokens: Vec<_> = list.iter().map(|step| step.token.0).collect();
         for _ in 0..10 {
             let p = random.point(center - half, center + half);
-            let (pruned, truth) = (field::fold(&flat, component, &tokens, p), twin::field(&flat, component, p));
+            let (pruned, truth) =
+                (field::fold(&flat, component, &tokens, p, &|_, _| unreachable!()), twin::field(&flat, component, p));
             wrong += usize::from((pruned - truth).abs() > 1e-9);
         }
     }

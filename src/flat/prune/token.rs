@@ -1,13 +1,15 @@
 //! The words of a list. An interpreter holds an accumulator and walks them in order.
 
-use crate::flat::{FlatNode, Join};
-use crate::scene::BlendKernel;
+use super::MAX_PRUNED_CONTENTS;
+use crate::flat::{FlatNode, Join, MAX_FLAT_ROWS};
+use crate::scene::{BlendKernel, ModifierKind, ShapeKind};
 
 /// What a token tells the interpreter to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum TokenOp {
-    /// Join the distance of a leaf to the accumulator; [`Join::First`] replaces it.
+    /// Join the distance of a leaf, or of a modifier with all that it holds, to the accumulator; [`Join::First`] replaces
+    /// it.
     Leaf,
     /// A group begins: put the accumulator aside.
     Begin,
@@ -19,15 +21,24 @@ pub enum TokenOp {
 
 /// A token: two words.
 ///
-/// First word: bits 0–7 the shape's code (of no meaning unless a leaf), 8–9 the [`TokenOp`], 10–13 the [`Join`]
+/// First word: bits 0–7 the shape's code, or [`MODIFIED`] and a modifier's (of no meaning unless a leaf), 8–9 the [`TokenOp`], 10–13 the [`Join`]
 /// (the group's for both of its ends), 14–16 the blend kernel, 17–31 the entry, counted from the
-/// component's first. Second word: the entry's first row, counted from the component's first; the
-/// numbers of the joint stand there.
+/// component's first. Second word: bits 0–23 the entry's first row, counted from the component's first; the
+/// numbers of the joint stand there. Bits 24–31 which of [`Component::contents`](crate::flat::Component::contents) a
+/// modifier holds, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Token(pub [u32; 2]);
 
 /// Most entries of a component that has lists: what a token can name.
 pub const MAX_PRUNED_ENTRIES: u32 = 1 << (32 - ENTRY_SHIFT);
+
+/// The first of the shape codes that stand for modifiers.
+pub const MODIFIED: u32 = 0xc0;
+const _: () = assert!(ShapeKind::ALL.len() <= MODIFIED as usize && ModifierKind::ALL.len() <= 256 - MODIFIED as usize);
+
+/// Where the number of a modifier's content stands.
+const CONTENT_SHIFT: u32 = 24;
+const _: () = assert!(MAX_FLAT_ROWS <= 1 << CONTENT_SHIFT && MAX_PRUNED_CONTENTS < 1 << (32 - CONTENT_SHIFT));
 
 const OP_SHIFT: u32 = 8;
 const JOIN_SHIFT: u32 = 10;
@@ -42,6 +53,18 @@ impl Token {
     pub(super) fn new(op: TokenOp, node: &FlatNode, entry: u32, row: u32) -> Self {
         let joint = (node.join() << JOIN_SHIFT) | (node.kernel() << KERNEL_SHIFT);
         Self([(node.code & 0xff) | ((op as u32) << OP_SHIFT) | joint | (entry << ENTRY_SHIFT), row])
+    }
+
+    /// The token of a modifier whose content is the one of this number.
+    pub(super) fn modified(node: &FlatNode, entry: u32, row: u32, content: usize) -> Self {
+        let [first, second] = Self::new(TokenOp::Leaf, node, entry, row).0;
+        Self([first | MODIFIED, second | ((content as u32) << CONTENT_SHIFT)])
+    }
+
+    /// The modifier and the number of its content; `None` for anything else.
+    pub fn content(self) -> Option<(ModifierKind, usize)> {
+        let kind = self.shape().checked_sub(MODIFIED).filter(|_| self.op() == TokenOp::Leaf)?;
+        Some((ModifierKind::ALL[kind as usize], (self.0[1] >> CONTENT_SHIFT) as usize))
     }
 
     /// The same token for another thing to do.
@@ -93,6 +116,6 @@ impl Token {
 
     /// The entry's first row, counted from the component's first.
     pub fn row(self) -> usize {
-        self.0[1] as usize
+        (self.0[1] & ((1 << CONTENT_SHIFT) - 1)) as usize
     }
 }

@@ -21,6 +21,11 @@ pub fn gradient(flat: &FlatScene, component: &Component, p: DVec3) -> (f64, DVec
     (v, d)
 }
 
+/// The field of one entry at `p`, which is relative to the space that the entry stands in.
+pub fn entry_field(flat: &FlatScene, index: usize, p: DVec3) -> f64 {
+    operand(flat, index, at(p))
+}
+
 /// What the surface near a point is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
@@ -167,19 +172,23 @@ fn operand<O: Operand>(flat: &FlatScene, index: usize, p: [O::Number; 3]) -> O {
     let numbers = &flat.numbers[node.numbers as usize..];
     let content = index + 1..index + node.extent as usize;
     match node.modifier() {
-        Some(kind) => modified(flat, content, kind, numbers, p),
+        Some(kind) => modified(kind, numbers, p, &|q| fold(flat, content.clone(), q)),
         None if node.is_group() => fold(flat, content, p),
         None => O::leaf(flat, index, leaf_distance(node, numbers, p)),
     }
 }
 
+/// The field at `p` of a modifier whose rows `numbers` begins with; `content` is the field of what it holds, in its space.
+pub fn modified_field(kind: ModifierKind, numbers: &[Row], p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
+    modified(kind, numbers, p.to_array(), &|q| content(q.into()))
+}
+
 /// The content of a modifier, in as many copies as it evaluates.
 fn modified<O: Operand>(
-    flat: &FlatScene,
-    content: Range<usize>,
     kind: ModifierKind,
     numbers: &[Row],
     p: [O::Number; 3],
+    content: &dyn Fn([O::Number; 3]) -> O,
 ) -> O {
     let local = placed(&numbers[3..6], p);
     let rows = &numbers[MODIFIER_ROWS..];
@@ -189,7 +198,7 @@ fn modified<O: Operand>(
         if !modifier_exists(kind, local, k, rows) {
             continue;
         }
-        let copy: O = fold(flat, content.clone(), modifier_point(kind, local, k, rows));
+        let copy = content(modifier_point(kind, local, k, rows));
         let copy = copy.with_distance(copy.distance() * modifier_scale(kind, k, rows));
         let is_nearer = |other: O| copy.distance().value() < other.distance().value();
         if nearest.is_none_or(is_nearer) {
@@ -199,7 +208,7 @@ fn modified<O: Operand>(
     // Where no copy is near, something must still say what the surface would be.
     let (carrier, found) = match nearest {
         Some(copy) => (copy, start.min(copy.distance())),
-        None => (fold(flat, content, modifier_point(kind, local, 0, rows)), start),
+        None => (content(modifier_point(kind, local, 0, rows)), start),
     };
     carrier.with_distance(modifier_value(kind, found, local, rows) * f64::from(numbers[1][3]))
 }

@@ -20,7 +20,7 @@ mod sdf;
 mod tube;
 
 pub use ellipsoid::sdf_ellipsoid;
-pub use eval::{SurfaceMaterial, SurfacePoint, field, gradient, surface};
+pub use eval::{SurfaceMaterial, SurfacePoint, entry_field, field, gradient, modified_field, surface};
 pub use modifier::*;
 pub use op::{
     Joined, Joint, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe, op_union, op_xor,

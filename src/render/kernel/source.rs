@@ -276,8 +276,10 @@ impl Resolver<'_> {
         match (name, self.evaluator) {
             ("generated/value.wgsl", Interpreted(_)) => include("interpreted_value"),
             ("generated/surface.wgsl", Interpreted(_)) => include("interpreted_surface"),
-            ("generated/value.wgsl", Pruned(_)) => include("pruned_value"),
-            ("generated/surface.wgsl", Pruned(_)) => include("pruned_surface"),
+            ("generated/value.wgsl", Pruned(f)) if f.modifiers.is_empty() => include("pruned_value"),
+            ("generated/surface.wgsl", Pruned(f)) if f.modifiers.is_empty() => include("pruned_surface"),
+            ("generated/value.wgsl", Pruned(_)) => include("pruned_modified_value"),
+            ("generated/surface.wgsl", Pruned(_)) => include("pruned_modified_surface"),
             ("generated/value.wgsl", Specialised(structure)) => special(structure, None, Fold::Value),
             ("generated/surface.wgsl", Specialised(s) | Generated(s, _)) if s.is_modified() => {
                 include("interpreted_surface")

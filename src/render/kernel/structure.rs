@@ -278,7 +278,7 @@ fn has_form(flat: &FlatScene, component: &Component) -> bool {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let is_further = |node: &FlatNode| Join::ALL[node.join() as usize].is_further();
     let fits = |node: &FlatNode| !node.is_leaf() || fits_forms(ShapeKind::ALL[(node.code & 0xffff) as usize]);
-    !component.modified && nodes.iter().all(|node| !is_further(node) && fits(node))
+    !component.is_modified() && nodes.iter().all(|node| !is_further(node) && fits(node))
 }
 
 fn entry(flat: &FlatScene, node: &FlatNode) -> Entry {
@@ -326,7 +326,7 @@ mod tests {
             for component in &flat.components {
                 let whole = Structure::whole(&flat, component);
                 let features = whole.features();
-                let plain = !component.modified && !features.further.joins;
+                let plain = !component.is_modified() && !features.further.joins;
                 let plain = plain && features.shapes.iter().all(|kind| fits_forms(*kind));
                 assert_eq!(Structure::form_key(&flat, component).is_some(), plain && fits(component), "{name}");
                 assert!(plain || Structure::form(&flat, component, whole.shapes()).is_none(), "{name}");

@@ -1,0 +1,22 @@
+// What modifiers make of the surface of what they hold.
+
+// The k-th copy of what a modifier holds, as seen from outside of it.
+fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Surface) -> Surface {
+    let scale = modifier_scale(modifier, copy, row);
+    var seen = content;
+    seen.distance *= scale;
+    seen.gradient = modifier_pull(modifier, local, copy, content.gradient, row) * scale;
+    return seen;
+}
+
+// What the modifier at the entry makes of the nearest copy.
+fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface) -> Surface {
+    let slopes = modifier_slopes(modifier, content.distance, local, numbers + MODIFIER_ROWS);
+    let d = content.gradient * slopes.w + slopes.xyz;
+    let scale = scene_row(numbers + 1u).w;
+    var seen = content;
+    seen.distance = modifier_value(modifier, content.distance, local, numbers + MODIFIER_ROWS) * scale;
+    seen.gradient = scale
+        * (scene_row(numbers + 3u).xyz * d.x + scene_row(numbers + 4u).xyz * d.y + scene_row(numbers + 5u).xyz * d.z);
+    return seen;
+}

@@ -1,0 +1,130 @@
+// The field of a component by pruned lists where it holds modifiers: what a modifier holds has lists in its own space.
+// Twin of `flat::prune::pruned_field`.
+
+#include "field/leaf.wgsl"
+#include "field/pruned.wgsl"
+#include "generated/modifiers.wgsl"
+
+// Of groups and modifiers under way: what stood before.
+var<private> value_stack: array<f32, STACK_SIZE>;
+// Of modifiers: the token, the rest of the list that it stands in, the point outside, the point in its own space, the copy
+// that is evaluated, the least so far.
+var<private> value_token: array<vec2u, STACK_SIZE>;
+var<private> value_list: array<vec2u, STACK_SIZE>;
+var<private> value_outside: array<vec3f, STACK_SIZE>;
+var<private> value_local: array<vec3f, STACK_SIZE>;
+var<private> value_copy: array<u32, STACK_SIZE>;
+var<private> value_least: array<f32, STACK_SIZE>;
+
+// Chooses the component. Before any call of `field`.
+fn field_begin(component: Component) {
+    pruned_component = component;
+}
+
+fn joined_value(token: vec2u, before: f32, value: f32) -> f32 {
+    let join = (token.x >> 10u) & 15u;
+    if join == JOIN_FIRST {
+        return value;
+    }
+    let joint = scene_row(pruned_component.numbers + (token.y & 0xffffffu));
+    return op_join(join, before, value, joint, (token.x >> 14u) & 7u).x;
+}
+
+// The field at `p`, relative to the component's origin; a bound of it in cells where no surface is.
+fn field(p: vec3f) -> f32 {
+    var q = p;
+    var grid = pruned_own_grid();
+    var list = vec2u(0u);
+    var so_far = 0.0;
+    var depth = 0u;
+    // Whether the list for `q` in `grid` is still to be found.
+    var is_new = true;
+    loop {
+        // Loops of at most one round: lavapipe executes the body of every `if`.
+        while is_new {
+            pruned_find(grid, q);
+            list = pruned_list;
+            so_far = pruned_bound;
+            is_new = false;
+        }
+        while list.x < list.y {
+            let token = pruned_word(list.x);
+            list.x += 1u;
+            let op = (token.x >> 8u) & 3u;
+            let shape = token.x & 0xffu;
+            let row = pruned_component.numbers + (token.y & 0xffffffu);
+            var before = so_far;
+            let is_modified = op == TOKEN_LEAF && shape >= MODIFIED;
+            var joins = op == TOKEN_LEAF || op == TOKEN_END;
+            var is_leaf = op == TOKEN_LEAF && !is_modified;
+            while is_leaf {
+                so_far = leaf_distance(shape, row, scene_row(row), q);
+                is_leaf = so_far < -1e37;
+            }
+            var begins = is_modified;
+            while begins {
+                let kind = MODIFIER + shape - MODIFIED;
+                let local = leaf_place(row + 2u, q);
+                let least = modifier_start(kind, local, row + MODIFIER_ROWS);
+                let copy = modifier_next(kind, local, 0u, least, row + MODIFIER_ROWS);
+                value_token[depth] = token;
+                value_list[depth] = list;
+                value_outside[depth] = q;
+                value_local[depth] = local;
+                value_copy[depth] = copy;
+                value_least[depth] = least;
+                is_new = copy < NO_COPY;
+                if is_new {
+                    q = modifier_point(kind, local, copy, row + MODIFIER_ROWS);
+                    grid = pruned_content_grid(token.y >> 24u);
+                }
+                list = vec2u(0u);
+                joins = false;
+                begins = false;
+            }
+            if op == TOKEN_BEGIN || is_modified {
+                value_stack[depth] = so_far;
+                depth += 1u;
+            }
+            if op == TOKEN_END {
+                depth -= 1u;
+                before = value_stack[depth];
+            }
+            if op == TOKEN_NEGATE {
+                so_far = -so_far;
+            }
+            so_far = select(so_far, joined_value(token, before, so_far), joins);
+        }
+        if is_new {
+            continue;
+        }
+        if depth == 0u {
+            break;
+        }
+        // What a modifier holds has been evaluated at one point.
+        let token = value_token[depth - 1u];
+        let kind = MODIFIER + (token.x & 0xffu) - MODIFIED;
+        let row = pruned_component.numbers + (token.y & 0xffffffu);
+        let local = value_local[depth - 1u];
+        var copy = value_copy[depth - 1u];
+        var least = value_least[depth - 1u];
+        if copy < NO_COPY {
+            least = min(least, so_far * modifier_scale(kind, copy, row + MODIFIER_ROWS));
+            copy = modifier_next(kind, local, copy + 1u, least, row + MODIFIER_ROWS);
+        }
+        is_new = copy < NO_COPY;
+        if is_new {
+            value_least[depth - 1u] = least;
+            value_copy[depth - 1u] = copy;
+            q = modifier_point(kind, local, copy, row + MODIFIER_ROWS);
+            grid = pruned_content_grid(token.y >> 24u);
+            continue;
+        }
+        depth -= 1u;
+        let value = modifier_value(kind, least, local, row + MODIFIER_ROWS) * scene_row(row + 1u).w;
+        so_far = joined_value(token, value_stack[depth], value);
+        q = value_outside[depth];
+        list = value_list[depth];
+    }
+    return so_far;
+}
