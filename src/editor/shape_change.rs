@@ -72,7 +72,7 @@ impl Room {
                 Shape::Capsule { start: (center - reach).to_array(), end: (center + reach).to_array(), radius: upright }
             }
             ShapeKind::MengerSponge => Shape::MengerSponge { size: 2.0 * mean, iterations: 3.0 },
-            ShapeKind::Julia | ShapeKind::Kleinian => {
+            ShapeKind::Mandelbulb | ShapeKind::Julia | ShapeKind::Kleinian => {
                 let mut shape = kind.default_shape();
                 shape.set_value(0, ParamValue::Scalar(1.2 * mean));
                 shape

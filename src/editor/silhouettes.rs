@@ -33,6 +33,14 @@ impl Pen<'_> {
                 self.ellipse([0.0, 0.0], [0.92, 0.55], 0.0, 1.0);
                 self.ellipse([0.0, 0.0], [0.92, 0.2], 0.0, 0.5);
             }
+            ShapeKind::Mandelbulb => {
+                self.ellipse([0.0, 0.0], [0.55, 0.55], 0.0, 1.0);
+                for i in 0..7 {
+                    let angle = TAU * i as f32 / 7.0;
+                    let outwards = [0.68 * angle.sin(), -0.68 * angle.cos()];
+                    self.ellipse(outwards, [0.24, 0.24], (i as f32 / 7.0) - 0.53, 0.56);
+                }
+            }
             ShapeKind::Julia => {
                 self.ellipse([-0.35, 0.2], [0.5, 0.6], 0.3, 0.75);
                 self.ellipse([0.4, -0.25], [0.5, 0.55], 0.8, 0.75);

@@ -11,6 +11,7 @@ mod crowds;
 mod deep_tree;
 mod drawn;
 mod ellipsoid_and_plane;
+mod fractals;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
@@ -43,6 +44,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("shapes", shapes::scene()),
         ("deep-tree", deep_tree::scene()),
         ("modifiers", modifiers::scene()),
+        ("fractals", fractals::scene()),
         ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),

@@ -1,8 +1,8 @@
 //! The golden sheet: every shape there is, on a tile of its own. A new shape gets one by itself.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
-use super::stage::{Stage, cuboid, group, object, turn_y, v};
+use super::stage::{Stage, cuboid, group, object, turn_x, turn_y, v};
 use crate::geometry::Aabb;
 use crate::scene::{Operator, Scene, ShapeKind};
 
@@ -41,16 +41,19 @@ pub(super) fn scene() -> Scene {
     stage.finish()
 }
 
-/// The shape with its default parameters, as large as the others, standing on its tile. Of one without end the part
-/// in a box is shown.
+/// The shape with its default parameters, as large as the others, standing on its tile; a text leans back to face the
+/// camera. Of one without end the part in a box is shown.
 fn add_shape(stage: &mut Stage, kind: ShapeKind, color: crate::scene::MaterialId, at: DVec3) {
     let shape = kind.default_shape();
     let bounds = shape.bounds();
     if bounds.is_finite() {
         let scale = HALF / bounds.half().max_element();
-        let center = bounds.center();
-        let foot = at - DVec3::new(center.x, bounds.min.y, center.z) * scale;
-        stage.add(None, object(kind.label(), shape, color).at(foot).scaled(DVec3::splat(scale)));
+        let turn = if kind == ShapeKind::Text { turn_x(-50.0) } else { DQuat::IDENTITY };
+        let half = bounds.half() * scale;
+        let rise: f64 = DVec3::AXES.iter().map(|axis| (turn * (*axis * half)).y.abs()).sum();
+        let origin = at + DVec3::Y * rise - turn * (bounds.center() * scale);
+        let node = object(kind.label(), shape, color).at(origin).rotated(turn).scaled(DVec3::splat(scale));
+        stage.add(None, node);
         return;
     }
     let part = Aabb::new(bounds.min.max(DVec3::splat(-HALF)), bounds.max.min(DVec3::splat(HALF)));

@@ -92,7 +92,9 @@ pub const SECTOR: Limits = Limits { soft: [0.0, 179.0], hard: [0.0, 179.9], unit
 pub const SIDES: Limits = Limits { soft: [3.0, 12.0], hard: [3.0, 64.0], unit: "" };
 /// How often a fractal repeats itself.
 pub const ITERATIONS: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 8.0], unit: "" };
-/// How often a Julia set squares.
+/// The power of a Mandelbulb; a whole number.
+pub const POWER: Limits = Limits { soft: [2.0, 12.0], hard: [2.0, 16.0], unit: "" };
+/// How often a Julia set squares and a Mandelbulb is raised to its power.
 pub const SQUARES: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 16.0], unit: "" };
 /// Each number of a Julia set's constant.
 pub const CONSTANT: Limits = Limits { soft: [-1.0, 1.0], hard: [-2.0, 2.0], unit: "" };

@@ -12,7 +12,7 @@ use super::attachment::Attachment;
 use super::drawn::{Corners, Points};
 use super::heights::Heights;
 use super::limits::{
-    ARC, CONE, CONSTANT, COUNT, FOLD, ITERATIONS, OCTAVES, POSITION, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES,
+    ARC, CONE, CONSTANT, COUNT, FOLD, ITERATIONS, OCTAVES, POSITION, POWER, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES,
     THICKNESS, TURN, UNIT, WAVELENGTH,
 };
 use crate::font::Face;
@@ -285,15 +285,24 @@ shapes! {
         /// Of the ball that holds it.
         radius: f64 = 0.8, SIZE;
         /// How much of the set the ball shows: its radius in the set's own unit.
-        reach: f64 = 1.6, REACH;
+        reach: f64 = 2.0, REACH;
         /// Half the box at which space is folded, in that unit.
-        fold: [f64; 3] = [0.92, 0.9, 0.92], FOLD;
+        fold: [f64; 3] = [1.0, 0.5, 1.0], FOLD;
         /// Square of the radius within which space is turned inside out, in that unit.
-        inversion: f64 = 1.0, FOLD;
+        inversion: f64 = 0.5, FOLD;
         /// How thick the set is drawn, in that unit.
-        thickness: f64 = 0.03, FOLD;
+        thickness: f64 = 0.06, FOLD;
         /// How often it is folded; a whole number.
-        iterations: f64 = 5.0, ITERATIONS;
+        iterations: f64 = 4.0, ITERATIONS;
+    }
+    /// A Mandelbulb: where zⁿ + c, repeated from c on, stays near; a power of angles and distances.
+    Mandelbulb = sdf_mandelbulb, "Mandelbulb" {
+        /// Of the ball that holds it.
+        radius: f64 = 0.7, SIZE;
+        /// The power n: one more than the number of large bulbs around the axis; a whole number.
+        power: f64 = 8.0, POWER;
+        /// How often it is repeated; a whole number.
+        iterations: f64 = 2.0, SQUARES;
     }
     /// A round tube along a smooth curve through points; its ends are balls.
     Tube = sdf_tube with data, "Tube" {

@@ -217,11 +217,15 @@ fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
         }));
     }
     let bounds = shape.bounds();
-    for side in [-1.0, 1.0] {
+    // Faces in tiles, so that the grid of each meets the strokes of letters.
+    const TILES: [u32; 2] = [8, 3];
+    for tile in 0..2 * TILES[0] * TILES[1] {
+        let side = if tile % 2 == 0 { -1.0 } else { 1.0 };
+        let corner = DVec2::new(f64::from(tile / 2 % TILES[0]), f64::from(tile / 2 / TILES[0]));
         let (endless, chords) = (endless(shape), Chords::new(&arcs));
         patches.push(Box::new(move |u, v| {
-            let (low, high) = (bounds.min, bounds.max);
-            let p = DVec2::new(low.x + (high.x - low.x) * u, low.y + (high.y - low.y) * v);
+            let part = (corner + DVec2::new(u, v)) / DVec2::from(TILES.map(f64::from));
+            let p = bounds.min.truncate() + (bounds.max - bounds.min).truncate() * part;
             if rounding == 0.0 {
                 return chords.hold(p).then(|| p.extend(side * half));
             }

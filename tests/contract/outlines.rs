@@ -47,7 +47,9 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let (center, radius) = arc(height, width);
             width.min(height) > 0.0 && (around - center).hypot(p.y) < radius
         }
-        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } => inside_fractal(shape, p),
+        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } | Shape::Mandelbulb { .. } => {
+            inside_fractal(shape, p)
+        }
         Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => {
             let near = nearest(&corners(shape, 1.0), flat);
             (near - flat).length().hypot(p.y) < 0.5 * thickness
@@ -97,6 +99,22 @@ fn inside_fractal(shape: &Shape, p: DVec3) -> bool {
             let disc = (around * z.y / z.length().max(1e-30)).abs().max(around - 0.92);
             p.length() < radius && disc < thickness
         }
+        Shape::Mandelbulb { radius, power, iterations } => {
+            let n = power.round();
+            let escape = 2_f64.powf(1.0 / (n - 1.0));
+            let c = p * (escape / radius);
+            let mut z = c;
+            for _ in 0..iterations.round() as i32 {
+                if z.length() >= escape {
+                    return false;
+                }
+                let (from_axis, around) = (n * z.x.hypot(z.z).atan2(z.y), n * z.z.atan2(z.x));
+                let direction =
+                    DVec3::new(around.cos() * from_axis.sin(), from_axis.cos(), around.sin() * from_axis.sin());
+                z = direction * z.length().powf(n) + c;
+            }
+            z.length() < escape
+        }
         _ => panic!("{shape:?} is no fractal"),
     }
 }
@@ -119,7 +137,7 @@ pub fn menger_distance(p: DVec3, center: DVec3, size: f64, iterations: i32, best
 /// The surface; nothing for fractals.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
-        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } => vec![],
+        Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } | Shape::Mandelbulb { .. } => vec![],
         Shape::CappedTorus { .. } | Shape::Link { .. } => tubes(shape),
         Shape::Triangle { thickness, .. } | Shape::Quad { thickness, .. } => sheet(shape, 0.5 * thickness),
         Shape::Pyramid { width, height } => {

@@ -30,7 +30,7 @@ fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
         Shape::MengerSponge { size, iterations } => {
             menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
         }
-        Shape::Julia { .. } | Shape::Kleinian { .. } => {
+        Shape::Julia { .. } | Shape::Kleinian { .. } | Shape::Mandelbulb { .. } => {
             let body = Body::new(shape);
             ray_distance(&|p| evaluate(&body, p.to_array()), p)
         }

@@ -149,6 +149,8 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     match kind {
         ShapeKind::MengerSponge => [1, 8],
         ShapeKind::Julia | ShapeKind::Kleinian => [2, 64],
+        // Up to 16 powers by 5 squarings each, and as many ways back by 6 steps each.
+        ShapeKind::Mandelbulb => [4, 240],
         ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
         ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
         _ => [0, 0],

@@ -68,6 +68,7 @@ impl Shape {
             Self::Sphere { radius }
             | Self::Octahedron { radius }
             | Self::DeathStar { radius, .. }
+            | Self::Mandelbulb { radius, .. }
             | Self::Julia { radius, .. }
             | Self::Kleinian { radius, .. } => DVec3::splat(radius),
             Self::Ellipsoid { radii } => radii.into(),

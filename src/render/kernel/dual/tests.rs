@@ -107,7 +107,7 @@ fn gradients_of_shapes_are_those_of_central_differences() {
         let error = worst_with(&text, kind.function(), 300, |random| parameters(kind, random));
         // Fractals bend as finely as they are.
         assert!(
-            error < if matches!(name, "ellipsoid" | "julia" | "kleinian") { 1e-3 } else { 1e-6 },
+            error < if matches!(name, "ellipsoid" | "julia" | "kleinian" | "mandelbulb") { 1e-3 } else { 1e-6 },
             "{name}: {error:e}"
         );
     }
@@ -175,7 +175,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[test]
 fn normals_at_surfaces_are_right_in_f32() {
     for (kind, name, text) in shapes() {
-        if matches!(kind, ShapeKind::MengerSponge | ShapeKind::Julia | ShapeKind::Kleinian) {
+        use ShapeKind::{Julia, Kleinian, Mandelbulb, MengerSponge};
+        if matches!(kind, MengerSponge | Julia | Kleinian | Mandelbulb) {
             // Fractals have edges everywhere, and no distance to reach the surface by in a few steps.
             continue;
         }
