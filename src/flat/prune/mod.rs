@@ -109,10 +109,14 @@ pub enum Cell<'a> {
 
 /// Whether a component has lists: it must be bounded, and large enough for them to pay.
 pub fn is_pruned(component: &Component) -> bool {
+    component.count >= LEAST_PRUNED_ENTRIES && can_be_pruned(component)
+}
+
+/// Whether a component may have lists, however small it is.
+fn can_be_pruned(component: &Component) -> bool {
     let bounds = &component.bounds;
     // Copies are seen only where they can matter, so over a cell their field may jump.
     !component.modified
-        && component.count >= LEAST_PRUNED_ENTRIES
         && component.count <= MAX_PRUNED_ENTRIES
         && bounds.is_finite()
         && !bounds.is_empty()
