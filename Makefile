@@ -22,9 +22,9 @@ run: setup ## Open the editor on the showcase scene; without a display, render i
 test: lint ## Check formatting and lints, then run every test
 	cargo test --lib --tests
 
-# 200 times the points of `make test`: a million for each repetition against its copies.
+# 200 times the points of `make test`: a million for each repetition against its copies. Numerical stress by all methods.
 nightly: setup ## Test the contract of fields at very many points
-	ISOLITH_TIMES=200 cargo test --test tests -- contract::
+	ISOLITH_TIMES=200 cargo test --test tests -- contract:: stress::
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy

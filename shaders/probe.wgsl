@@ -1,16 +1,8 @@
 // Not a pass: the field at given points, for the tests that compare it with the CPU twin.
 
 #include "generated/value.wgsl"
+#include "common/probe.wgsl"
 
-struct Probe {
-    component: u32,
-    count: u32,
-    padding: vec2u,
-}
-
-@group(0) @binding(0) var<uniform> probe: Probe;
-// xyz: a point relative to the component's origin.
-@group(2) @binding(0) var<storage, read> points: array<vec4f>;
 @group(2) @binding(1) var<storage, read_write> values: array<f32>;
 
 @compute @workgroup_size(64)

@@ -70,6 +70,8 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
     var inside = vec2f(NEVER, 0.0);
     // Where a leap ended outside, and the field there; NEVER for none.
     var ahead = vec2f(NEVER, 0.0);
+    // Where the ray was before a leap behind which a gap was left, and the field there; NEVER for none.
+    var doubt = vec2f(NEVER, 0.0);
     for (var step = 0u; step < work.max_steps; step += 1u) {
         var f = field(component.eye + direction * t);
         var advance = t - safe.x;
@@ -86,6 +88,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
             t = ahead.x;
             f = ahead.y;
             advance = t - safe.x;
+            leaping = true;
             may_leap = true;
         }
         ahead.x = NEVER;
@@ -101,14 +104,15 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
             } else {
                 safe = vec2f(t, f);
             }
+            // Where the field was 0 outside, this is there.
             let root = safe.x + (inside.x - safe.x) * safe.y / (safe.y - inside.y);
             if safe.y <= 0.0 || abs(f) < max(HIT * footprint, SPACING * (t + reach)) || root == t {
-                return March(select(inside.x, root, safe.y > 0.0), true, true, step + 1u);
+                return March(root, true, true, step + 1u);
             }
             t = root;
             continue;
         }
-        if fall > STEEP && f < HIT * footprint {
+        if CLOSE_IS_HIT && fall > STEEP && f < HIT * footprint {
             return March(t + f / fall, true, true, step + 1u);
         }
         if leaping && safe.y + f + CREEP_LONGEST * footprint < advance {
@@ -119,9 +123,22 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
             t = safe.x + free;
             continue;
         }
+        if doubt.x < NEVER && f >= safe.y {
+            // A leap was kept though between its two spheres there was room for a thin skin, and behind it the field
+            // does not fall: look there.
+            safe = doubt;
+            doubt.x = NEVER;
+            leaping = false;
+            may_leap = false;
+            t = safe.x + safe.y;
+            continue;
+        }
+        doubt = select(vec2f(NEVER, 0.0), safe, leaping && safe.y + f < advance);
         let near = max(CREEP * footprint, SPACING * (t + reach));
         let longest = max(near, CREEP_LONGEST * footprint);
-        creep = select(0.0, clamp(creep * 2.0, near, longest), f < near);
+        // Where the field falls, not farther than to a little behind its expected end.
+        let due = select(longest, f / fall + 0.25 * HIT * footprint, fall > 0.0);
+        creep = select(0.0, clamp(min(creep * 2.0, due), near, longest), f < near);
         leaping = may_leap && fall > STEEP && f < LEAP * footprint && f > near;
         may_leap = true;
         slope = select(-1.0, mix(slope, -fall, ADAPTION), advance > 0.0);
@@ -135,7 +152,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
         // A leap ends a little inside, where the sign tells.
         t += select(select(free, wide, relaxed), f / fall + 0.25 * HIT * footprint, leaping);
     }
-    return March(safe.x, false, false, work.max_steps);
+    return March(min(safe.x, doubt.x), false, false, work.max_steps);
 }
 
 @compute @workgroup_size(8, 8)

@@ -1,6 +1,8 @@
 //! The GPU's field is the CPU twin's: for every shape, every operator and random trees,
 //! |gpu − cpu| ≤ 1e-4 (1 + |d|) at 4 096 points.
 
+mod gradients;
+
 use glam::{DQuat, DVec3};
 use isolith::flat::twin::field;
 use isolith::flat::{Body, CellTree, FlatScene, flatten, leaf_data, pruned_field};

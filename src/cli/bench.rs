@@ -119,7 +119,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
     let mut renderer = Renderer::new(&gpu)?;
-    renderer.set_method(Method::Interpreted);
+    renderer.pruner().prune_all();
     let mut progress = Progress::start("stressing", false, Interrupts::StopTheTask);
     let all = cases();
     let mut figures: Vec<Figures> = Vec::new();
@@ -129,7 +129,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
             return Err(Failure::Cancelled);
         }
         let name = || format!("{}, {}", case.name(), case.circumstance);
-        match case.measure(&mut renderer) {
+        match case.measure(&mut renderer, &[Method::Specialised, Method::Pruned]) {
             Ok(Some(found)) => figures.push(found),
             Ok(None) => unseen += 1,
             Err(error @ (BenchError::Scene(_) | BenchError::Truth(_))) => {

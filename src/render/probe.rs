@@ -1,4 +1,4 @@
-//! The field at given points, computed by the GPU: what the agreement tests compare with the CPU twin.
+//! Fields and surfaces at given points, computed by the GPU: what the agreement tests compare with the CPU twin.
 
 use glam::DVec3;
 use wgpu::ShaderStages;
@@ -14,6 +14,9 @@ use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT, Row};
 
 /// The field of the component of this index at `points` (relative to its origin), by the same source as
 /// the passes.
+///
+/// # Errors
+/// The device fails.
 pub fn field(
     gpu: &Gpu,
     flat: &FlatScene,
@@ -22,62 +25,112 @@ pub fn field(
     evaluator: &Evaluator,
     options: Options,
 ) -> Result<Vec<f32>, RenderError> {
-    let Gpu { device, queue, .. } = gpu;
-    let stage = ShaderStages::COMPUTE;
-    let layouts = Layouts::new(device);
-    let own = layout(device, "probe", &[entry(0, stage, uniform(false))]);
-    let data = layout(device, "probe data", &[entry(0, stage, read_storage()), entry(1, stage, write_storage())]);
-    let text = source("probe.wgsl", evaluator, options)?;
-    let pipeline = compute_pipeline(device, "probe", text, "probe_field", &[&own, &layouts.scene, &data]);
-    let uploaded = |bytes: &[u8]| {
-        let mut mirror = Mirror::rows(device, "probe");
-        mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW, 4);
-        mirror
+    let probe = Probe { file: "probe.wgsl", entry: "probe_field", words: 1, evaluator, options };
+    probe.run(gpu, flat, index, points)
+}
+
+/// What the surface near a point is like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProbedSurface {
+    /// The field's gradient.
+    pub gradient: DVec3,
+    /// The field, in metres.
+    pub distance: f64,
+    /// Linear diffuse reflectance.
+    pub albedo: DVec3,
+}
+
+/// The same of surfaces: gradients and materials, by the source of the pass that finds normals.
+///
+/// # Errors
+/// The device fails.
+pub fn surface(
+    gpu: &Gpu,
+    flat: &FlatScene,
+    index: usize,
+    points: &[DVec3],
+    evaluator: &Evaluator,
+    options: Options,
+) -> Result<Vec<ProbedSurface>, RenderError> {
+    let probe = Probe { file: "probe_surface.wgsl", entry: "probe_surface", words: 8, evaluator, options };
+    let found = probe.run(gpu, flat, index, points)?;
+    let read = |v: &[f32; 8]| {
+        let [x, y, z, distance, r, g, b, _] = v.map(f64::from);
+        ProbedSurface { gradient: DVec3::new(x, y, z), distance, albedo: DVec3::new(r, g, b) }
     };
-    let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
-    let tree = matches!(evaluator, Evaluator::Pruned(_)).then(|| CellTree::build(flat, &flat.components[index]));
-    let mut components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
-    if let Some(tree) = &tree {
-        components[index] = components[index].with_grid(tree, 0);
+    Ok(found.as_chunks().0.iter().map(read).collect())
+}
+
+/// What is run at each point.
+struct Probe<'a> {
+    file: &'a str,
+    entry: &'a str,
+    /// Numbers that it writes for each point.
+    words: usize,
+    evaluator: &'a Evaluator,
+    options: Options,
+}
+
+impl Probe<'_> {
+    fn run(&self, gpu: &Gpu, flat: &FlatScene, index: usize, points: &[DVec3]) -> Result<Vec<f32>, RenderError> {
+        let Gpu { device, queue, .. } = gpu;
+        let (evaluator, count) = (self.evaluator, points.len() * self.words);
+        let stage = ShaderStages::COMPUTE;
+        let layouts = Layouts::new(device);
+        let own = layout(device, "probe", &[entry(0, stage, uniform(false))]);
+        let data = layout(device, "probe data", &[entry(0, stage, read_storage()), entry(1, stage, write_storage())]);
+        let text = source(self.file, evaluator, self.options)?;
+        let pipeline = compute_pipeline(device, "probe", text, self.entry, &[&own, &layouts.scene, &data]);
+        let uploaded = |bytes: &[u8]| {
+            let mut mirror = Mirror::rows(device, "probe");
+            mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW, 4);
+            mirror
+        };
+        let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
+        let tree = matches!(evaluator, Evaluator::Pruned(_)).then(|| CellTree::build(flat, &flat.components[index]));
+        let mut components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
+        if let Some(tree) = &tree {
+            components[index] = components[index].with_grid(tree, 0);
+        }
+        let (rows, rows_at) = window_rows(flat, index, evaluator);
+        let scene = [
+            uploaded(bytemuck::cast_slice(&flat.nodes)),
+            uploaded(bytemuck::cast_slice(&components)),
+            uploaded(bytemuck::cast_slice(&flat.materials)),
+            uploaded(bytemuck::cast_slice(&rows)),
+        ];
+        let texture = |label, format, bytes: &[u8]| {
+            let mut texture = RowTexture::new(device, label, format);
+            texture.reserve(device, bytes.len());
+            texture.write(queue, 0, bytes);
+            texture
+        };
+        let numbers = texture("numbers", NUMBERS_FORMAT, bytemuck::cast_slice(&flat.numbers));
+        let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
+        let lists = texture("lists", LISTS_FORMAT, words);
+        let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
+        let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
+        let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
+        let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
+        let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; count * 4]));
+        let groups = [
+            bind(device, "probe", &own, &[settings.binding()]),
+            bind(device, "scene", &layouts.scene, &bindings),
+            bind(device, "probe data", &data, &[positions.binding(), values.binding()]),
+        ];
+        debug_assert_eq!(flat.components[index].numbers as usize % ROW_ALIGNMENT, 0);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &groups[0], &[]);
+            pass.set_bind_group(1, &groups[1], &[rows_at]);
+            pass.set_bind_group(2, &groups[2], &[]);
+            pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
+        }
+        queue.submit([encoder.finish()]);
+        Ok(read_words(gpu, values.buffer(), count)?.into_iter().map(f32::from_bits).collect())
     }
-    let (rows, rows_at) = window_rows(flat, index, evaluator);
-    let scene = [
-        uploaded(bytemuck::cast_slice(&flat.nodes)),
-        uploaded(bytemuck::cast_slice(&components)),
-        uploaded(bytemuck::cast_slice(&flat.materials)),
-        uploaded(bytemuck::cast_slice(&rows)),
-    ];
-    let texture = |label, format, bytes: &[u8]| {
-        let mut texture = RowTexture::new(device, label, format);
-        texture.reserve(device, bytes.len());
-        texture.write(queue, 0, bytes);
-        texture
-    };
-    let numbers = texture("numbers", NUMBERS_FORMAT, bytemuck::cast_slice(&flat.numbers));
-    let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
-    let lists = texture("lists", LISTS_FORMAT, words);
-    let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
-    let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
-    let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
-    let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
-    let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; points.len() * 4]));
-    let groups = [
-        bind(device, "probe", &own, &[settings.binding()]),
-        bind(device, "scene", &layouts.scene, &bindings),
-        bind(device, "probe data", &data, &[positions.binding(), values.binding()]),
-    ];
-    debug_assert_eq!(flat.components[index].numbers as usize % ROW_ALIGNMENT, 0);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-        pass.set_pipeline(&pipeline);
-        pass.set_bind_group(0, &groups[0], &[]);
-        pass.set_bind_group(1, &groups[1], &[rows_at]);
-        pass.set_bind_group(2, &groups[2], &[]);
-        pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
-    }
-    queue.submit([encoder.finish()]);
-    Ok(read_words(gpu, values.buffer(), points.len())?.into_iter().map(f32::from_bits).collect())
 }
 
 /// The rows on which the kernel has its window, and where that begins, in bytes.

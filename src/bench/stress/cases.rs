@@ -6,7 +6,8 @@ use super::figures::Allowed;
 use super::place::View;
 use super::subject::{Place, Subject, usual_blend};
 use crate::scene::{
-    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, ShapeKind, limits,
+    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, Shape, ShapeKind,
+    limits,
 };
 
 /// A thing to draw, and how.
@@ -27,7 +28,11 @@ impl Case {
 
     /// How much of it may be wrong.
     pub(super) fn allowed(&self) -> Allowed {
-        if matches!(self.view, View::At(_)) { Allowed::FAR_CELL } else { Allowed::USUAL }
+        match (&self.subject, self.view) {
+            (Subject::Shape(Shape::Kleinian { .. }), _) => Allowed::DUST,
+            (_, View::At(_)) => Allowed::FAR_CELL,
+            _ => Allowed::USUAL,
+        }
     }
 }
 
@@ -76,7 +81,7 @@ fn plain(subject: Subject, circumstance: String) -> Case {
 }
 
 /// Numbers at which a parameter is tried, with their names: nothing, thin as 1e-4 of `size`, the limits.
-fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> {
+fn extremes(limits: &Limits, size: f64) -> Vec<(&'static str, f64)> {
     let mut all = Vec::new();
     if limits.accept(0.0) {
         all.push(("0", 0.0));
@@ -85,9 +90,7 @@ fn extremes(limits: &Limits, size: f64, hard: bool) -> Vec<(&'static str, f64)> 
         }
     }
     all.extend([("at its soft lower limit", limits.soft[0]), ("at its soft upper limit", limits.soft[1])]);
-    if hard {
-        all.extend([("at its lower limit", limits.hard[0]), ("at its upper limit", limits.hard[1])]);
-    }
+    all.extend([("at its lower limit", limits.hard[0]), ("at its upper limit", limits.hard[1])]);
     let mut kept: Vec<(&str, f64)> = Vec::new();
     for (name, number) in all {
         if kept.iter().all(|(_, before)| *before != number) {
@@ -103,20 +106,32 @@ fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
     let bounds = usual.bounds();
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
-        for (name, number) in extremes(&param.limits, size, true) {
-            let changed = match &value {
-                ParamValue::Scalar(_) => ParamValue::Scalar(number),
-                ParamValue::Vector(v) => ParamValue::Vector(DVec3 { x: number, ..*v }),
+        for (name, number) in extremes(&param.limits, size) {
+            let changed = match value {
+                ParamValue::Scalar(_) => vec![("", ParamValue::Scalar(number))],
+                ParamValue::Vector(v) => along_axes(v.to_array(), number, |v| ParamValue::Vector(v.into())),
                 // What is no number has no extremes.
                 ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) | ParamValue::File(_) => continue,
             };
-            let mut shape = usual.clone();
-            if shape.set_value(index, changed) && shape != usual {
-                let circumstance = format!("{} {name}", param.name.replace('_', " "));
-                all.push(plain(Subject::Shape(shape), circumstance));
+            for (axis, value) in changed {
+                let mut shape = usual.clone();
+                if shape.set_value(index, value) && shape != usual {
+                    let circumstance = format!("{}{axis} {name}", param.name.replace('_', " "));
+                    all.push(plain(Subject::Shape(shape), circumstance));
+                }
             }
         }
     }
+}
+
+/// Three numbers, one of them replaced by another, each in its turn, with the name of the axis.
+fn along_axes<N: Copy, V>(usual: [N; 3], number: N, value: impl Fn([N; 3]) -> V) -> Vec<(&'static str, V)> {
+    let replaced = |axis: usize| {
+        let mut numbers = usual;
+        numbers[axis] = number;
+        value(numbers)
+    };
+    [(" x", 0), (" y", 1), (" z", 2)].map(|(name, axis)| (name, replaced(axis))).into()
 }
 
 fn joint(operator: Operator, kernel: BlendKernel, all: &mut Vec<Case>) {
@@ -159,20 +174,21 @@ fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
     let usual = kind.default_modifier();
     everywhere(&Subject::Modified(usual), all);
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
-        // Beyond what is offered rays take more steps than anyone waits for: waves of a kilometre every millimetre.
-        for (name, number) in extremes(&param.limits, 1.0, false) {
+        for (name, number) in extremes(&param.limits, 1.0) {
             let whole = number as u32;
             let changed = match value {
-                ModifierValue::Scalar(_) => ModifierValue::Scalar(number),
-                ModifierValue::Vector(v) => ModifierValue::Vector(DVec3 { x: number, ..v }),
-                ModifierValue::Count(_) => ModifierValue::Count(whole),
-                ModifierValue::Counts([_, y, z]) => ModifierValue::Counts([whole, y, z]),
+                ModifierValue::Scalar(_) => vec![("", ModifierValue::Scalar(number))],
+                ModifierValue::Vector(v) => along_axes(v.to_array(), number, |v| ModifierValue::Vector(v.into())),
+                ModifierValue::Count(_) => vec![("", ModifierValue::Count(whole))],
+                ModifierValue::Counts(counts) => along_axes(counts, whole, ModifierValue::Counts),
                 ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
             };
-            let mut changed_modifier = usual;
-            if changed_modifier.set_value(index, changed) && changed_modifier != usual {
-                let circumstance = format!("{} {name}", param.name.replace('_', " "));
-                all.push(plain(Subject::Modified(changed_modifier), circumstance));
+            for (axis, value) in changed {
+                let mut changed_modifier = usual;
+                if changed_modifier.set_value(index, value) && changed_modifier != usual {
+                    let circumstance = format!("{}{axis} {name}", param.name.replace('_', " "));
+                    all.push(plain(Subject::Modified(changed_modifier), circumstance));
+                }
             }
         }
     }

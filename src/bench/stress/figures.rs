@@ -11,7 +11,7 @@ use crate::bench::BenchError;
 use crate::flat::compare::{Accuracy, GRAZING_ANGLE};
 use crate::flat::truth::{Truth, truth};
 use crate::flat::{Buffers, flatten};
-use crate::render::Renderer;
+use crate::render::{Method, Renderer};
 
 /// Width and height of the pictures, in pixels.
 pub const PICTURE: [u32; 2] = [48, 36];
@@ -23,15 +23,19 @@ pub struct Allowed {
     pub wrong: f64,
     /// Largest error of the depth at the 99th percentile, in pixel footprints.
     pub depth: f64,
+    /// Pixels that other methods may show otherwise.
+    pub differ: usize,
 }
 
 impl Allowed {
     /// Of any picture. A hundredth of the pixels of such small pictures are those along outlines, where rays graze and a
     /// thousandth of a footprint across the surface is many times that along the ray.
-    pub const USUAL: Self = Self { wrong: 0.003, depth: 0.3 };
+    pub const USUAL: Self = Self { wrong: 0.003, depth: 0.3, differ: 0 };
     /// Of cells 1e4 away in each direction: numbers of 32 bits are 2 mm apart there, a tenth of a footprint, and many
     /// times that along grazing rays.
-    pub const FAR_CELL: Self = Self { wrong: 0.02, depth: 4.0 };
+    pub const FAR_CELL: Self = Self { wrong: 0.02, depth: 4.0, differ: 0 };
+    /// Of the Kleinian set: its dust is finer than rounding, and methods round otherwise.
+    pub const DUST: Self = Self { differ: 3, ..Self::USUAL };
 }
 
 /// What a case came to.
@@ -52,6 +56,9 @@ pub struct Figures {
     pub nan: usize,
     /// Components whose rays had not all ended.
     pub unfinished: usize,
+    /// Pixels of pictures by other methods that hit something where the interpreter's picture does not, or the other way
+    /// round; not where the ray passes an edge as closely as for `wrong`.
+    pub differ: usize,
     /// Error of the depth in pixel footprints: 99th percentile.
     pub depth_p99: f64,
     /// The same, maximum.
@@ -66,7 +73,12 @@ pub struct Figures {
 fn is_wrong(measured: &Buffers, truth: &Truth, footprint: f64, i: usize) -> bool {
     let (m, t) = (f64::from(measured.depth[i]), f64::from(truth.buffers.depth[i]));
     let differs = if t.is_finite() && m.is_finite() { (m - t).abs() > footprint * t } else { m != t };
-    differs && (m.is_nan() || f64::from(truth.margin[i]) > GRAZING_ANGLE / footprint)
+    differs && (m.is_nan() || !is_grazing(truth, footprint, i))
+}
+
+/// Whether 32-bit numbers cannot tell on which side of an edge the ray passes.
+fn is_grazing(truth: &Truth, footprint: f64, i: usize) -> bool {
+    f64::from(truth.margin[i]) <= GRAZING_ANGLE / footprint
 }
 
 /// Whether a number of the pixel is none.
@@ -75,18 +87,29 @@ fn is_nan(buffers: &Buffers, i: usize) -> bool {
 }
 
 impl Case {
-    /// Draws it and compares it with the truth; none where the view needs a surface that is not there.
+    /// Draws it by the interpreter and compares it with the truth, then by the `others` and compares these with the first;
+    /// none where the view needs a surface that is not there.
     ///
     /// # Errors
-    /// The scene is beyond a limit, a ray of the truth has no end, or the device fails.
-    pub fn measure(&self, renderer: &mut Renderer) -> Result<Option<Figures>, BenchError> {
+    /// The scene is beyond a limit, the ray that finds the view has no end, or the device fails.
+    pub fn measure(&self, renderer: &mut Renderer, others: &[Method]) -> Result<Option<Figures>, BenchError> {
         let flat = flatten(&self.subject.scene(self.place), 0.0)?;
         let aspect = f64::from(PICTURE[0]) / f64::from(PICTURE[1]);
         let Some(camera) = self.view.camera(&flat, self.place, aspect)? else { return Ok(None) };
+        let mut draw = |method| {
+            renderer.set_method(method);
+            renderer.render(&flat, &[], &camera, PICTURE, &mut |_| true)
+        };
+        let (measured, unfinished) = draw(Method::Interpreted)?;
         let truth = truth(&flat, &[], &camera, PICTURE, &|_| ())?;
-        let (measured, unfinished) = renderer.render(&flat, &[], &camera, PICTURE, &mut |_| true)?;
         let footprint = camera.footprint(f64::from(PICTURE[1]));
         let mut figures = Figures::of(&measured, &truth, footprint);
+        for method in others {
+            let (other, _) = draw(*method)?;
+            let hits = |buffers: &Buffers, i: usize| buffers.depth[i].is_finite();
+            let differs = |i: &usize| hits(&measured, *i) != hits(&other, *i) && !is_grazing(&truth, footprint, *i);
+            figures.differ += (0..figures.pixels).filter(differs).count();
+        }
         figures.subject = self.name();
         figures.circumstance.clone_from(&self.circumstance);
         figures.unfinished = unfinished.len();
@@ -109,6 +132,7 @@ impl Figures {
             wrong: wrong.iter().filter(|wrong| **wrong).count(),
             nan: (0..pixels).filter(|&i| is_nan(measured, i)).count(),
             unfinished: 0,
+            differ: 0,
             depth_p99: accuracy.depth_p99,
             depth_max: accuracy.depth_max,
             allowed: Allowed::USUAL,
@@ -121,6 +145,7 @@ impl Figures {
         let checks = [
             ("pixels that are no number", self.nan as f64, 0.0),
             ("components with unfinished rays", self.unfinished as f64, 0.0),
+            ("pixels that other methods show otherwise", self.differ as f64, self.allowed.differ as f64),
             ("share of pixels that are wrong", self.wrong as f64 / self.pixels.max(1) as f64, self.allowed.wrong),
             ("depth error, 99th percentile, in footprints", self.depth_p99, self.allowed.depth),
         ];
@@ -133,7 +158,8 @@ impl Figures {
 /// The worst first: no number, then wrong pixels, then the error of the depth.
 pub fn worst_first(figures: &mut [Figures]) {
     figures.sort_by(|a, b| {
-        (b.nan, b.wrong, b.unfinished).cmp(&(a.nan, a.wrong, a.unfinished)).then(b.depth_p99.total_cmp(&a.depth_p99))
+        let badness = |one: &Figures| (one.nan, one.differ, one.wrong, one.unfinished);
+        badness(b).cmp(&badness(a)).then(b.depth_p99.total_cmp(&a.depth_p99))
     });
 }
 
@@ -148,21 +174,24 @@ pub fn stress_table(figures: &[Figures], lines: usize) -> String {
     let sum = |of: fn(&Figures) -> usize| figures.iter().map(of).sum::<usize>();
     let beyond = figures.iter().filter(|one| !one.faults().is_empty()).count();
     let mut out = format!(
-        "{} cases, {} pixels, {} of them hits: {} wrong, {} no number, {} cases beyond what is allowed.\n\n",
+        "{} cases, {} pixels, {} of them hits: {} wrong, {} no number, {} otherwise by kernels or lists; {} cases beyond \
+         what is allowed.\n\n",
         figures.len(),
         sum(|one| one.pixels),
         sum(|one| one.hits),
         sum(|one| one.wrong),
         sum(|one| one.nan),
+        sum(|one| one.differ),
         beyond,
     );
-    out += "| subject | circumstance | hits | wrong | NaN | unfinished | depth p99 | max |\n";
-    out += "|---|---|--:|--:|--:|--:|--:|--:|\n";
+    out += "| subject | circumstance | hits | wrong | NaN | unfinished | depth p99 | max | otherwise |\n";
+    out += "|---|---|--:|--:|--:|--:|--:|--:|--:|\n";
     for one in figures.iter().take(lines) {
-        let Figures { subject, circumstance, hits, wrong, nan, unfinished, depth_p99, depth_max, .. } = one;
+        let Figures { subject, circumstance, hits, wrong, nan, unfinished, depth_p99, depth_max, differ, .. } = one;
         writeln!(
             out,
-            "| {subject} | {circumstance} | {hits} | {wrong} | {nan} | {unfinished} | {depth_p99:.5} | {depth_max:.4} |"
+            "| {subject} | {circumstance} | {hits} | {wrong} | {nan} | {unfinished} | {depth_p99:.5} | {depth_max:.4} | \
+             {differ} |"
         )
         .expect("strings take all");
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::domain::{Domain, domains};
+use super::domain::{Domain, domains_of};
 use super::entry::Entries;
 use super::part::{Carver, Cube, Frame, Own, Part, moved};
 use super::program::whole;
@@ -67,7 +67,7 @@ pub(super) type Parts = Vec<Vec<Arc<Part>>>;
 impl<'a> Build<'a> {
     /// Of a component that has lists.
     pub fn new(flat: &'a FlatScene, component: &Component) -> Self {
-        let domains = domains(flat, component).expect("only components that have lists get here");
+        let domains = domains_of(flat, component).expect("only components that have lists get here");
         Self { entries: Entries::new(flat, component), domains }
     }
 

@@ -25,8 +25,14 @@ pub(super) struct Domain {
     pub copies: u32,
 }
 
-/// The domains of a component: its own, then those of its contents. Nothing where lists would not pay.
-pub(super) fn domains(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
+/// The domains of a component that has lists, because it is large or because all should have some.
+pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
+    domains(flat, component, LEAST_PRUNED_ENTRIES).or_else(|| domains(flat, component, 1))
+}
+
+/// The domains of a component: its own, then those of its contents; those of `least` entries have a grid. Nothing where
+/// none has.
+pub(super) fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Domain>> {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let rows = |node: &FlatNode| &flat.numbers[node.numbers as usize..];
     let mut exact = vec![0.0; component.contents.len()];
@@ -41,7 +47,7 @@ pub(super) fn domains(flat: &FlatScene, component: &Component) -> Option<Vec<Dom
     let all: Vec<Domain> = first
         .chain(inner)
         .map(|(content, entries, exact)| {
-            let is_large = own_entries(nodes, entries.clone()) >= LEAST_PRUNED_ENTRIES as usize;
+            let is_large = own_entries(nodes, entries.clone()) >= least as usize;
             let exact = if exact > 0.0 { exact + SIZE_SLACK * (exact + size) } else { 0.0 };
             let grid = if is_large { Grid::around(content, exact) } else { Grid::ONE_CELL };
             Domain { entries, grid, exact, copies: content.copies }

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::CellTree;
 use super::build::{Build, Parts};
-use super::domain::{Domain, domains};
+use super::domain::{Domain, domains_of};
 use crate::flat::twin::Joint;
 use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data, modifier_rows};
 use crate::scene::ShapeKind;
@@ -68,7 +68,7 @@ impl Kept {
     pub fn is_current(&self, flat: &FlatScene, component: &Component) -> bool {
         // What the domains follow from is not all in the numbers.
         matches!(self.change(flat, component), Change::None)
-            && domains(flat, component).is_some_and(|domains| domains == self.domains)
+            && domains_of(flat, component).is_some_and(|domains| domains == self.domains)
     }
 
     fn change(&self, flat: &FlatScene, component: &Component) -> Change {

@@ -144,10 +144,18 @@ pub enum Cell<'a> {
 
 /// Whether a component has lists: it, or what a modifier in it holds, must be bounded and large enough for them to pay.
 pub fn is_pruned(flat: &FlatScene, component: &Component) -> bool {
-    component.count >= LEAST_PRUNED_ENTRIES
-        && component.count <= MAX_PRUNED_ENTRIES
+    component.count >= LEAST_PRUNED_ENTRIES && has_domains(flat, component, LEAST_PRUNED_ENTRIES)
+}
+
+/// Whether a component may have lists, however small it is.
+fn can_be_pruned(flat: &FlatScene, component: &Component) -> bool {
+    has_domains(flat, component, 1)
+}
+
+fn has_domains(flat: &FlatScene, component: &Component, least: u32) -> bool {
+    component.count <= MAX_PRUNED_ENTRIES
         && component.contents.len() <= MAX_PRUNED_CONTENTS
-        && domain::domains(flat, component).is_some()
+        && domain::domains(flat, component, least).is_some()
 }
 
 impl CellTree {

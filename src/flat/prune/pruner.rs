@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use super::kept::{Kept, alone};
 use super::worker::Worker;
-use super::{CellTree, is_pruned};
+use super::{CellTree, can_be_pruned, is_pruned};
 use crate::flat::{Component, FlatScene};
 use crate::scene::NodeId;
 
@@ -17,6 +17,7 @@ pub struct Pruner {
     /// What the worker is at, with how long it is expected to take.
     away: HashMap<Key, Duration>,
     worker: Option<Worker>,
+    prunes_all: bool,
 }
 
 /// The node at the top of a component, and which one of those with this node it is.
@@ -29,6 +30,11 @@ const FRESH_ENTRY: Duration = Duration::from_micros(200);
 const TOO_LONG: Duration = Duration::from_secs(3600);
 
 impl Pruner {
+    /// Makes lists of small components too from now on: they gain nothing, but the lists can be tried.
+    pub fn prune_all(&mut self) {
+        self.prunes_all = true;
+    }
+
     /// The trees of those components that are `wanted` and have lists, beside [`FlatScene::components`]. One that
     /// has not changed keeps its tree: the same [`Arc`] as the last time. Waits until all are made.
     pub fn trees(&mut self, flat: &FlatScene, wanted: &[bool]) -> Vec<Option<Arc<CellTree>>> {
@@ -102,7 +108,9 @@ impl Pruner {
         let mut met: HashMap<NodeId, u32> = HashMap::new();
         let components = flat.components.iter().zip(wanted).enumerate();
         let found: Vec<(usize, Key)> = components
-            .filter(|(_, (component, wanted))| **wanted && is_pruned(flat, component))
+            .filter(|(_, (component, wanted))| {
+                **wanted && (is_pruned(flat, component) || self.prunes_all && can_be_pruned(flat, component))
+            })
             .map(|(index, (component, _))| {
                 let id = flat.ids[component.first as usize];
                 let nth = met.entry(id).or_default();

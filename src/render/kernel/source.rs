@@ -101,7 +101,20 @@ impl Features {
     /// Whether it holds hardly more than `other`: a few shapes, no loops.
     pub fn is_near(&self, other: &Self) -> bool {
         const FEW: usize = 3;
-        self.loops() == other.loops() && self.shapes.len() <= other.shapes.len() + FEW
+        // Rough ones draw otherwise: what a picture is like must not depend on those before it.
+        self.is_rough() == other.is_rough()
+            && self.loops() == other.loops()
+            && self.shapes.len() <= other.shapes.len() + FEW
+    }
+
+    /// Whether rays may come as near to 0 as to a surface, and touch nothing: fields of fractals and landscapes may be far
+    /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
+    /// is a hit.
+    fn is_rough(&self) -> bool {
+        use ModifierKind::{Bend, Noise, Taper, Twist, Waves};
+        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, Ocean, Terrain};
+        self.shapes.iter().any(|kind| matches!(kind, Julia | Kleinian | Mandelbulb | Terrain | Heightmap | Ocean))
+            || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise))
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
@@ -197,15 +210,17 @@ pub(super) fn gradient_include(kind: ShapeKind) -> String {
 /// The whole source of the shader `entry`, each file included once, before its first user.
 pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut resolver = Resolver { evaluator, options, seen: BTreeSet::new(), out: String::new() };
-    let (fineness, further) = (options.quality.fineness(), evaluator.features().further);
+    let (fineness, features) = (options.quality.fineness(), evaluator.features());
+    let further = features.further;
     write!(
         resolver.out,
         "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst FINENESS: f32 = \
-         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
+         {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
         options.counting,
         options.cones,
         options.skipping != Skipping::Never,
         fineness.sqrt(),
+        !features.is_rough(),
         further.joins,
         further.kernels
     )

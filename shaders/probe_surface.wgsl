@@ -1,0 +1,17 @@
+// Not a pass: what surfaces are like at given points, for the tests that compare it with the CPU twin.
+
+#include "generated/surface.wgsl"
+#include "common/probe.wgsl"
+
+// For each point the gradient with the distance, then the diffuse colour.
+@group(2) @binding(1) var<storage, read_write> surfaces: array<vec4f>;
+
+@compute @workgroup_size(64)
+fn probe_surface(@builtin(global_invocation_id) id: vec3u) {
+    if id.x < probe.count {
+        surface_begin(components[probe.component]);
+        let found = surface(points[id.x].xyz);
+        surfaces[2u * id.x] = vec4f(found.gradient, found.distance);
+        surfaces[2u * id.x + 1u] = found.diffuse;
+    }
+}

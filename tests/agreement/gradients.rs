@@ -1,0 +1,159 @@
+//! The GPU's gradients and materials are the CPU twin's: for every operator with every kernel, by every evaluator. Normals
+//! are these gradients, and the weights of joints make them; shapes have a test of their own beside `render::kernel::dual`.
+
+use glam::{DVec3, Vec3Swizzles as _};
+use isolith::flat::twin::{SurfacePoint, surface};
+use isolith::flat::{Component, FlatScene, flatten};
+use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
+use isolith::render::probe::{self, ProbedSurface};
+use isolith::scene::{
+    Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape,
+};
+
+use crate::contract::samples::Random;
+use crate::gpu::shared;
+
+/// Points at random places, and as many on the surface.
+const POINTS: usize = 600;
+/// How far gradients, and colours, may be from each other.
+const TOLERANCE: f64 = 2e-3;
+/// Around a point, in metres: where the gradient turns by more than [`KINK`] within it, rounding decides.
+const NEAR: f64 = 2e-5;
+const KINK: f64 = 5e-3;
+
+const COLORS: [[f64; 3]; 4] = [[1.0, 0.1, 0.0], [0.0, 0.9, 0.2], [0.1, 0.0, 0.8], [0.7, 0.7, 0.1]];
+
+/// A box, a ball that joins it, and a group of two that joins both: leaves and groups join by code of their own.
+fn scene(group: Group) -> Scene {
+    let mut scene = Scene::new();
+    for (i, color) in COLORS.into_iter().enumerate() {
+        scene.insert_material(Material::new(MaterialId(i as u64 + 2), "", color)).unwrap();
+    }
+    let mut add = |parent: Option<NodeId>, node: Node| scene.insert(parent, usize::MAX, node).unwrap();
+    let object = |i: u64, shape, at: [f64; 3]| {
+        Node::new("", NodeKind::Object(Object { shape, material: MaterialId(i + 2) })).at(at.into())
+    };
+    let top = add(None, Node::new("Joint", NodeKind::Group(group)));
+    add(Some(top), object(0, Shape::Box { size: [0.9, 0.6, 0.8], rounding: 0.05 }, [0.0; 3]));
+    add(Some(top), object(1, Shape::Sphere { radius: 0.42 }, [0.1, 0.33, 0.16]));
+    let inner = add(Some(top), Node::new("Inner", NodeKind::Group(group)).at([-0.3, 0.05, 0.1].into()));
+    add(Some(inner), object(2, Shape::Cylinder { radius: 0.45, height: 0.5, rounding: 0.1 }, [0.2, 0.1, 0.0]));
+    add(
+        Some(inner),
+        object(3, Shape::Capsule { start: [-0.4, -0.3, 0.0], end: [0.3, 0.3, 0.1], radius: 0.2 }, [0.0; 3]),
+    );
+    scene
+}
+
+/// Places where the gradient is smooth: half of them anywhere, the others on the surface.
+fn places(flat: &FlatScene, component: &Component, random: &mut Random) -> [Vec<DVec3>; 2] {
+    let at = |p: DVec3| surface(flat, component, p);
+    let smooth = |p: &DVec3| {
+        let here = at(*p);
+        DVec3::AXES.iter().flat_map(|axis| [*axis, -*axis]).all(|way| {
+            let beside = at(*p + way * NEAR);
+            (beside.gradient - here.gradient).length() < KINK && difference(&beside, here.material.albedo) < KINK
+        })
+    };
+    let rounded = |p: DVec3| p.as_vec3().as_dvec3();
+    let anywhere = (0..POINTS).map(|_| rounded(random.point(0.9))).filter(smooth).collect();
+    let on_surface = |mut p: DVec3| {
+        for _ in 0..30 {
+            let found = at(p);
+            p -= found.gradient * (found.distance / found.gradient.length_squared().max(0.05));
+        }
+        rounded(p)
+    };
+    let touches = |p: &DVec3| at(*p).distance.abs() < 1e-6;
+    let surface = (0..POINTS).map(|_| on_surface(random.point(0.7))).filter(|p| touches(p) && smooth(p)).collect();
+    [anywhere, surface]
+}
+
+fn difference(found: &SurfacePoint, albedo: DVec3) -> f64 {
+    (found.material.albedo - albedo).length()
+}
+
+/// The first disagreement between the twin and what was found.
+fn compare(flat: &FlatScene, component: &Component, points: &[DVec3], found: &[ProbedSurface]) -> Result<(), String> {
+    assert_eq!(points.len(), found.len());
+    for (p, gpu) in points.iter().zip(found) {
+        let cpu = surface(flat, component, *p);
+        let apart = (gpu.gradient - cpu.gradient).length();
+        // Written so that what is no number disagrees.
+        if !(apart < TOLERANCE
+            && difference(&cpu, gpu.albedo) < TOLERANCE
+            && (gpu.distance - cpu.distance).abs() < 1e-5)
+        {
+            return Err(format!("at {p} the GPU says {gpu:?}, the CPU {cpu:?}"));
+        }
+    }
+    Ok(())
+}
+
+fn groups() -> impl Iterator<Item = (String, Group)> {
+    Operator::ALL.into_iter().flat_map(|operator| {
+        let kernels = if operator.has_kernel() { BlendKernel::ALL.as_slice() } else { &BlendKernel::ALL[..1] };
+        kernels.iter().map(move |&kernel| {
+            let blend = Blend { steps: 3, ..Blend::new(kernel, 0.15) };
+            let group = Group { width: 0.2, depth: 0.08, share: 0.3, ..Group::new(operator, blend) };
+            (format!("{operator:?} {kernel:?}"), group)
+        })
+    })
+}
+
+#[test]
+fn gradients_of_every_operator_agree() {
+    for (seed, (name, group)) in groups().enumerate() {
+        let flat = flatten(&scene(group), 0.0).unwrap();
+        let [component] = &flat.components[..] else { panic!("{name}: {} components", flat.components.len()) };
+        let [anywhere, on_surface] = places(&flat, component, &mut Random::new(seed as u64));
+        assert!(
+            anywhere.len() * 2 > POINTS && on_surface.len() * 6 > POINTS,
+            "{name}: {} {}",
+            anywhere.len(),
+            on_surface.len()
+        );
+        let all = [on_surface.clone(), anywhere].concat();
+        let features = Features::of(&flat);
+        // Where no surface is near, pruned lists hold a bound and no gradient.
+        for (evaluator, points) in [
+            (Evaluator::Interpreted(features.clone()), &all),
+            (Evaluator::Pruned(features), &on_surface),
+            (Evaluator::Specialised(Structure::of(&flat, component).expect("it is small")), &all),
+        ] {
+            let options = Options { skipping: Skipping::Loops, ..Options::default() };
+            let found = probe::surface(&shared().gpu, &flat, 0, points, &evaluator, options).unwrap();
+            compare(&flat, component, points, &found).unwrap_or_else(|fault| panic!("{name}, {evaluator:?}: {fault}"));
+        }
+    }
+}
+
+#[test]
+fn a_wrong_gradient_is_caught() {
+    for (name, group) in groups() {
+        let flat = flatten(&scene(group), 0.0).unwrap();
+        let component = &flat.components[0];
+        let [_, points] = places(&flat, component, &mut Random::new(1));
+        let found = |change: &dyn Fn(SurfacePoint) -> ProbedSurface| -> Result<(), String> {
+            let values: Vec<_> = points.iter().map(|p| change(surface(&flat, component, *p))).collect();
+            compare(&flat, component, &points, &values)
+        };
+        let right =
+            |s: SurfacePoint| ProbedSurface { gradient: s.gradient, distance: s.distance, albedo: s.material.albedo };
+        assert_eq!(found(&right), Ok(()), "{name}");
+        assert!(found(&|s| ProbedSurface { gradient: s.gradient * 1.01, ..right(s) }).is_err(), "{name}");
+        assert!(found(&|s| ProbedSurface { gradient: -s.gradient, ..right(s) }).is_err(), "{name}");
+        assert!(found(&|s| ProbedSurface { gradient: DVec3::NAN, ..right(s) }).is_err(), "{name}");
+        assert!(found(&|s| ProbedSurface { albedo: s.material.albedo.zxy(), ..right(s) }).is_err(), "{name}");
+        // What joins hard has other gradients where the blend is.
+        if group.operator.has_radius() && group.operator != Operator::Paint {
+            let hard = flatten(&scene(Group { blend: Blend { radius: 0.02, ..group.blend }, ..group }), 0.0).unwrap();
+            let of_hard = |p: &DVec3| ProbedSurface {
+                gradient: surface(&hard, &hard.components[0], *p).gradient,
+                ..right(surface(&flat, component, *p))
+            };
+            let values: Vec<_> = points.iter().map(of_hard).collect();
+            assert!(compare(&flat, component, &points, &values).is_err(), "{name}");
+        }
+    }
+}
