@@ -31,6 +31,9 @@ impl Case {
         match (&self.subject, self.view) {
             (Subject::Shape(Shape::Kleinian { .. }), _) => Allowed::DUST,
             (_, View::At(_)) => Allowed::FAR_CELL,
+            (Subject::Modified(Modifier::Elongate { length }), _) if length.contains(&limits::SIZE.hard[1]) => {
+                Allowed::SLIVER
+            }
             _ => Allowed::USUAL,
         }
     }
