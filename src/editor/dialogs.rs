@@ -10,7 +10,7 @@ use super::messages::Message;
 use super::workbench::WantedFile;
 use super::{Editor, insertion, theme};
 use crate::document::{Document, Edit};
-use crate::scene::{Attached, MeshNode, Node, NodeKind, ParamValue, file};
+use crate::scene::{Attached, MeshNode, Node, NodeKind, file};
 
 /// Something that replaces the document or ends the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ enum Purpose {
     /// Then goes on with what the saving was asked for.
     Save(Option<Intent>),
     Mesh,
-    /// A file that shapes keep.
+    /// A file that nodes keep.
     Attach(WantedFile),
 }
 
@@ -219,7 +219,7 @@ impl Editor {
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
     }
 
-    /// Gives the file to the shapes that it is wanted for, as one undo step.
+    /// Gives the file to the nodes that it is wanted for, as one undo step.
     fn attach(&mut self, wanted: &WantedFile, path: &Path) {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let file = match file::attachment(path) {
@@ -234,9 +234,7 @@ impl Editor {
             for &id in &wanted.nodes {
                 let Some(node) = bench.document.scene().node(id) else { continue };
                 let mut node = Node::clone(node);
-                if let NodeKind::Object(object) = &mut node.kind
-                    && object.shape.set_value(wanted.parameter, ParamValue::File(file.clone()))
-                {
+                if wanted.keeper.set(&mut node, &file) {
                     bench.apply(Edit::Replace(node));
                 }
             }

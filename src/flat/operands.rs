@@ -69,8 +69,8 @@ pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
 }
 
 /// The modifiers that do something, in their order.
-fn active(node: &Node) -> impl DoubleEndedIterator<Item = Modifier> {
-    node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| slot.modifier)
+fn active(node: &Node) -> impl DoubleEndedIterator<Item = &Modifier> {
+    node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| &slot.modifier)
 }
 
 /// The fold of the one component whose outermost node stands at `index`; nothing where it is not one, or where
@@ -165,7 +165,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             return None;
         }
         let world = *parent * node.transform.to_affine();
-        let modifiers: Vec<Modifier> = active(node).collect();
+        let modifiers: Vec<&Modifier> = active(node).collect();
         if modifiers.is_empty() {
             return self.content(index, &world, outermost);
         }
@@ -233,7 +233,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn modified(
         &mut self,
         index: usize,
-        modifiers: &[Modifier],
+        modifiers: &[&Modifier],
         world: &DAffine3,
         outermost: &'a Node,
     ) -> Option<Operand<'a>> {
@@ -241,7 +241,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             return None;
         }
         let Some((last, rest)) = modifiers.split_last() else { return self.content(index, world, outermost) };
-        let copies = match *last {
+        let copies = match **last {
             Modifier::Mirror { axes, blend } => {
                 let axes: Vec<usize> = (0..3).filter(|i| axes[*i]).collect();
                 return self.mirrored(index, rest, world, outermost, &axes, blend);
@@ -258,7 +258,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn mirrored(
         &mut self,
         index: usize,
-        rest: &[Modifier],
+        rest: &[&Modifier],
         world: &DAffine3,
         outermost: &'a Node,
         axes: &[usize],
@@ -277,7 +277,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn deformed(
         &mut self,
         index: usize,
-        (last, rest): (&Modifier, &[Modifier]),
+        (last, rest): (&Modifier, &[&Modifier]),
         world: &DAffine3,
         outermost: &'a Node,
     ) -> Option<Operand<'a>> {

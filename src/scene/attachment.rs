@@ -1,4 +1,4 @@
-//! Files that shapes keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
+//! Files that shapes and modifiers keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
 //! is opened.
 
 use std::fmt;
@@ -18,7 +18,7 @@ use crate::font::Face;
 pub trait Content: Sized + Send + Sync {
     /// What the file must be, for people.
     const WHAT: &'static str;
-    /// What is used where there is no file, for people.
+    /// What a shape uses where there is no file, for people.
     const WITHOUT: &'static str;
     /// How the names of such files end.
     const ENDINGS: &'static [&'static str];
@@ -128,20 +128,21 @@ pub enum Attached {
 }
 
 impl Attached {
-    /// The file's name; or what is used where there is none.
-    pub fn label(&self) -> &str {
+    /// The file's name.
+    pub fn name(&self) -> Option<&str> {
         match self {
-            Self::Heights(file) => file.name().unwrap_or(Heights::WITHOUT),
-            Self::Font(file) => file.name().unwrap_or(Face::WITHOUT),
+            Self::Heights(file) => file.name(),
+            Self::Font(file) => file.name(),
         }
     }
 
-    /// Whether there is a file.
-    pub fn is_some(&self) -> bool {
-        match self {
-            Self::Heights(file) => file.name().is_some(),
-            Self::Font(file) => file.name().is_some(),
-        }
+    /// The file's name; or what a shape uses where there is none.
+    pub fn label(&self) -> &str {
+        let without = match self {
+            Self::Heights(_) => Heights::WITHOUT,
+            Self::Font(_) => Face::WITHOUT,
+        };
+        self.name().unwrap_or(without)
     }
 
     /// How the names of files that can be chosen end.

@@ -327,5 +327,14 @@ mod tests {
         let features = Features { shapes: [ShapeKind::Sphere].into(), ..Features::none() };
         let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
         assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
+        for &kind in &Features::all().modifiers {
+            let holds = |modifiers: BTreeSet<_>| {
+                let features = Features { modifiers, stack: 2, ..Features::none() };
+                let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
+                text.contains(&format!("fn mod_{}", super::super::modifiers::file(kind)))
+            };
+            let others = Features::all().modifiers.into_iter().filter(|other| *other != kind).collect();
+            assert!(holds([kind].into()) && !holds(others) && !holds(BTreeSet::new()), "{kind:?}");
+        }
     }
 }
