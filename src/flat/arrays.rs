@@ -341,5 +341,5 @@ pub const MAX_STACK: u32 = 128;
 pub const MAX_COMPONENT_NODES: usize = 4_200;
 /// Most entries in all components together.
 pub const MAX_FLAT_NODES: usize = 1 << 20;
-/// Most rows of numbers in a scene: more could not be counted by 32-bit floats, nor held by some devices.
+/// Most rows of numbers in a scene, and of data while it is flattened: more could not be counted by 32-bit floats, nor held by some devices.
 pub const MAX_FLAT_ROWS: usize = 1 << 24;
