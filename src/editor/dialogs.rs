@@ -9,8 +9,8 @@ use egui::{Context, Id, Key, Modal, RichText, TextEdit, ViewportCommand, vec2};
 use super::messages::Message;
 use super::workbench::WantedFile;
 use super::{Editor, insertion, theme};
-use crate::document::{Document, Edit};
-use crate::scene::{Attached, MeshNode, Node, NodeKind, file};
+use crate::document::Document;
+use crate::scene::{Attached, MeshNode, Node, NodeKind};
 
 /// Something that replaces the document or ends the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -219,28 +219,6 @@ impl Editor {
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
     }
 
-    /// Gives the file to the nodes that it is wanted for, as one undo step.
-    fn attach(&mut self, wanted: &WantedFile, path: &Path) {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let file = match file::attachment(path) {
-            Ok(bytes) => wanted.instead_of.with(&name, bytes),
-            Err(error) => Err(error.to_string()),
-        };
-        let file = match file {
-            Ok(file) => file,
-            Err(reason) => return self.report(Message::error(reason)),
-        };
-        self.bench.together(|bench| {
-            for &id in &wanted.nodes {
-                let Some(node) = bench.document.scene().node(id) else { continue };
-                let mut node = Node::clone(node);
-                if wanted.keeper.set(&mut node, &file) {
-                    bench.apply(Edit::Replace(node));
-                }
-            }
-        });
-    }
-
     /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
     pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
         if let Some(wanted) = self.bench.wanted_file.take() {
@@ -272,7 +250,7 @@ impl Editor {
                 self.save_to(&path, then, ctx);
             }
             Purpose::Mesh => self.add_mesh(path),
-            Purpose::Attach(wanted) => self.attach(&wanted, path),
+            Purpose::Attach(wanted) => self.read_file(wanted, path, ctx),
         }
     }
 

@@ -134,6 +134,7 @@ fn flags(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], label: &str, help: 
             let mut on = get(sheet.active())[axis];
             let mixed = sheet.common(|n| get(n)[axis]).is_none();
             let response = ui.add(egui::Checkbox::new(&mut on, name).indeterminate(mixed)).on_hover_text(help);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("{label} {name}")));
             if response.changed() {
                 changed = Some((response.id, axis, on));
             }

@@ -6,7 +6,7 @@ use egui::{Context, Id};
 
 use super::messages::{Message, Messages};
 use crate::document::{Document, Edit};
-use crate::scene::{Attached, Material, ModifierValue, Node, NodeId, NodeKind, ParamValue};
+use crate::scene::{Attached, Material, ModifierKind, ModifierValue, Node, NodeId, NodeKind, ParamValue};
 
 /// The document, the gesture in progress, the messages.
 ///
@@ -55,6 +55,23 @@ impl Keeper {
                 slot.is_some_and(|slot| slot.modifier.set_value(index, ModifierValue::File(file.clone())))
             }
         }
+    }
+
+    /// The node, its shape or modifier, and the parameter, for messages.
+    pub fn label(self, node: &Node) -> String {
+        let (of, name) = match (self, &node.kind) {
+            (Self::OfShape(index), NodeKind::Object(object)) => {
+                let kind = object.shape.kind();
+                (kind.label(), kind.params().get(index).map(|param| param.name))
+            }
+            (Self::OfShape(_), _) => ("", None),
+            (Self::OfModifier([place, index]), _) => {
+                let kind = node.modifiers.get(place).map(|slot| slot.modifier.kind());
+                let param = kind.and_then(|kind| kind.params().get(index));
+                (kind.map_or("", ModifierKind::label), param.map(|param| param.name))
+            }
+        };
+        format!("{} {}: {of}: {}", node.name, node.id, name.unwrap_or_default())
     }
 }
 
