@@ -228,7 +228,7 @@ fn every_modifier_agrees() {
         let mut random = Random::new(kind as u64);
         for (i, modifier) in samples(kind, 2).into_iter().enumerate() {
             let other = if i == 0 { Modifier::Bend { angle: 30.0 } } else { Modifier::Round { radius: 0.02 } };
-            for modifiers in [vec![modifier], vec![modifier, other]] {
+            for modifiers in [vec![modifier.clone()], vec![modifier, other]] {
                 if flatten(&modified(&modifiers), 0.0).is_ok() {
                     agree(&format!("{modifiers:?}"), &modified(&modifiers), &mut random);
                 }

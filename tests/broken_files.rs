@@ -211,16 +211,84 @@ const CASES: &[Case] = &[
     (
         r#"{"type": "sphere", "radius": 0.5}"#,
         r#"{"type": "heightmap", "image": {"name": "x.png", "base64": "AAAA"}, "size": [1, 1, 1], "height": 1}"#,
-        "#2",
-        "nodes[1].object.shape",
+        "Head #2",
+        "nodes[1].object.shape.image",
         "\"x.png\" must be a PNG, JPEG or EXR image",
     ),
     (
         r#"{"type": "sphere", "radius": 0.5}"#,
         r#"{"type": "heightmap", "image": {"name": "x.png", "base64": "*"}, "size": [1, 1, 1], "height": 1}"#,
-        "#2",
-        "nodes[1].object.shape",
+        "Head #2",
+        "nodes[1].object.shape.image",
         "\"x.png\" is not base 64",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "text", "text": "a", "font": {"name": "a\tb.ttf", "base64": "AAAA"}, "size": 1, "depth": 1, "rounding": 0}"#,
+        "Head #2",
+        "nodes[1].object.shape.font",
+        "\"ab.ttf\" must be a TrueType or OpenType font",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": {"name": "x.png"}, "size": [1, 1, 1], "height": 1}"#,
+        "Head #2",
+        "nodes[1].object.shape.image.base64",
+        "missing field",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": {"base64": "AAAA"}, "size": [1, 1, 1], "height": 1}"#,
+        "Head #2",
+        "nodes[1].object.shape.image.name",
+        "missing field",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": {"name": "x", "base64": "", "size": 3}, "size": [1, 1, 1], "height": 1}"#,
+        "Head #2",
+        "nodes[1].object.shape.image.size",
+        "unknown field",
+    ),
+    (
+        r#"{"type": "sphere", "radius": 0.5}"#,
+        r#"{"type": "heightmap", "image": "x.png", "size": [1, 1, 1], "height": 1}"#,
+        "Head #2",
+        "nodes[1].object.shape.image",
+        "expected a file in braces",
+    ),
+    // The second of two modifiers, whose file has the name of the first one's.
+    (
+        r#""name": "Foot","#,
+        concat!(
+            r#""name": "Foot", "modifiers": ["#,
+            r#"{"modifier": {"type": "displacement", "image": null, "height": 1, "tile": 1, "axis": "y"}}, "#,
+            r#"{"modifier": {"type": "displacement", "image": {"name": "x.png", "base64": "AAAA"}, "height": 1, "#,
+            r#""tile": 1, "axis": "y"}}],"#
+        ),
+        "Foot #3",
+        "nodes[2].modifiers[1].modifier.image",
+        "\"x.png\" must be a PNG, JPEG or EXR image",
+    ),
+    (
+        r#""name": "Foot","#,
+        concat!(
+            r#""name": "Foot", "modifiers": [{"modifier": "#,
+            r#"{"type": "displacement", "image": null, "height": 1, "tile": 0, "axis": "y"}}],"#
+        ),
+        "Foot #3",
+        "nodes[2].modifiers[0].modifier.tile",
+        "must be 0.0001 to",
+    ),
+    (
+        r#""name": "Foot","#,
+        concat!(
+            r#""name": "Foot", "modifiers": [{"modifier": "#,
+            r#"{"type": "displacement", "image": null, "height": 1, "tile": 1, "axis": "w"}}],"#
+        ),
+        "Foot #3",
+        "nodes[2].modifiers[0].modifier.axis",
+        "unknown variant `w`",
     ),
     // Ids and references.
     (r#""id": 3,"#, r#""id": 2,"#, "Foot #2", "nodes[2].id", "another node has the id #2"),

@@ -1,6 +1,7 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
 mod attachments;
+mod modifiers;
 mod picture;
 
 use egui::accesskit::Role;
@@ -26,10 +27,19 @@ fn scene() -> (Scene, [NodeId; 4]) {
 }
 
 fn open(scene: Scene) -> Harness<'static, Editor> {
+    open_sized(scene, 800.0)
+}
+
+/// The same in a window so high that the inspector need not be scrolled.
+fn open_tall(scene: Scene) -> Harness<'static, Editor> {
+    open_sized(scene, 2400.0)
+}
+
+fn open_sized(scene: Scene, height: f32) -> Harness<'static, Editor> {
     let mut editor = Editor::new(Document::new(scene));
     editor.ask_for_paths_in_window();
     let mut harness = Harness::builder()
-        .with_size(vec2(1280.0, 800.0))
+        .with_size(vec2(1280.0, height))
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &no_picture()), editor);
     harness.run();

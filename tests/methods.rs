@@ -145,7 +145,7 @@ fn what_is_modified_is_the_same_by_every_method() {
     let mut faults = Vec::new();
     for &kind in ModifierKind::ALL {
         for modifier in samples(kind, 1) {
-            let scene = modified(&[modifier]);
+            let scene = modified(std::slice::from_ref(&modifier));
             if flatten(&scene, 0.0).is_ok() {
                 let subject = Subject::new(&format!("{modifier:?}"), &scene, None);
                 faults.extend(compare(&subject, SIDE, &[Method::Specialised]));

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
+    Attenuation, Axis, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
     MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind, Object,
     Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
@@ -129,6 +129,11 @@ impl Random {
                 ModifierValue::Vector(_) => ModifierValue::Vector(self.numbers(limits).into()),
                 ModifierValue::Flag(_) => ModifierValue::Flag(self.once_in(2)),
                 ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| self.once_in(2))),
+                ModifierValue::Axis(_) => ModifierValue::Axis(self.pick(&Axis::ALL)),
+                ModifierValue::File(file) if self.once_in(2) => {
+                    ModifierValue::File(image(&file, &mut || self.bits() as u16))
+                }
+                ModifierValue::File(file) => ModifierValue::File(file),
             };
             assert!(modifier.set_value(i, value));
         }

@@ -9,8 +9,8 @@ use egui::{Context, Id, Key, Modal, RichText, TextEdit, ViewportCommand, vec2};
 use super::messages::Message;
 use super::workbench::WantedFile;
 use super::{Editor, insertion, theme};
-use crate::document::{Document, Edit};
-use crate::scene::{Attached, MeshNode, Node, NodeKind, ParamValue, file};
+use crate::document::Document;
+use crate::scene::{Attached, MeshNode, Node, NodeKind};
 
 /// Something that replaces the document or ends the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +34,7 @@ enum Purpose {
     /// Then goes on with what the saving was asked for.
     Save(Option<Intent>),
     Mesh,
-    /// A file that shapes keep.
+    /// A file that nodes keep.
     Attach(WantedFile),
 }
 
@@ -219,30 +219,6 @@ impl Editor {
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
     }
 
-    /// Gives the file to the shapes that it is wanted for, as one undo step.
-    fn attach(&mut self, wanted: &WantedFile, path: &Path) {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let file = match file::attachment(path) {
-            Ok(bytes) => wanted.instead_of.with(&name, bytes),
-            Err(error) => Err(error.to_string()),
-        };
-        let file = match file {
-            Ok(file) => file,
-            Err(reason) => return self.report(Message::error(reason)),
-        };
-        self.bench.together(|bench| {
-            for &id in &wanted.nodes {
-                let Some(node) = bench.document.scene().node(id) else { continue };
-                let mut node = Node::clone(node);
-                if let NodeKind::Object(object) = &mut node.kind
-                    && object.shape.set_value(wanted.parameter, ParamValue::File(file.clone()))
-                {
-                    bench.apply(Edit::Replace(node));
-                }
-            }
-        });
-    }
-
     /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
     pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
         if let Some(wanted) = self.bench.wanted_file.take() {
@@ -274,7 +250,7 @@ impl Editor {
                 self.save_to(&path, then, ctx);
             }
             Purpose::Mesh => self.add_mesh(path),
-            Purpose::Attach(wanted) => self.attach(&wanted, path),
+            Purpose::Attach(wanted) => self.read_file(wanted, path, ctx),
         }
     }
 

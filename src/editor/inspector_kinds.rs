@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::fields::{self, Field};
 use super::sheet::Sheet;
-use super::workbench::WantedFile;
+use super::workbench::{Keeper, WantedFile};
 use super::{inspector_points, shape_change, theme};
 use crate::scene::limits::{ATTENUATION, CLIP, CONE, FOV, INTENSITY, MAX_TEXT, RANGE};
 use crate::scene::{
@@ -17,7 +17,7 @@ pub(super) const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, def
     Field { label, help, limits, default }
 }
 
-fn no_help<T>(_: T) -> &'static str {
+pub(super) fn no_help<T>(_: T) -> &'static str {
     ""
 }
 
@@ -101,7 +101,8 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
         }
         ParamValue::File(default) => {
             let Some(ParamValue::File(file)) = value(sheet.active()) else { return };
-            attachment(ui, sheet, (&label, param.help), (index, &file), |n| set(n, ParamValue::File(default.clone())));
+            let keeper = Keeper::OfShape(index);
+            attachment(ui, sheet, (&label, param.help), (keeper, &file, file.label()), &default);
         }
         ParamValue::List(_) => {
             let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };
@@ -110,32 +111,35 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
     }
 }
 
-/// A file that the shape keeps: its name, which asks for another when clicked, and a cross to do without.
-fn attachment(
+/// A file that a parameter keeps: its name as it is shown, which asks for another when clicked, and a cross to do without.
+pub fn attachment(
     ui: &mut Ui,
     sheet: &mut Sheet<'_>,
     (label, help): (&str, &str),
-    (index, file): (usize, &Attached),
-    clear: impl Fn(&mut Node),
+    (keeper, file, shown): (Keeper, &Attached, &str),
+    default: &Attached,
 ) {
     let (choose, remove) = fields::row(ui, label, help, |ui| {
-        let room = if file.is_some() { theme::ROW_HEIGHT + ui.spacing().item_spacing.x } else { 0.0 };
+        let is_some = file.name().is_some();
+        let room = if is_some { theme::ROW_HEIGHT + ui.spacing().item_spacing.x } else { 0.0 };
         let size = vec2(ui.available_width() - room, theme::ROW_HEIGHT);
-        let name = egui::Button::new(format!("{}…", file.label())).truncate().min_size(size);
+        let name = egui::Button::new(format!("{shown}…")).truncate().min_size(size);
         let choose = ui.add_sized(size, name).on_hover_text("Choose a file; the scene keeps a copy of it");
         let cross = || egui::Button::new("×").min_size(egui::Vec2::splat(theme::ROW_HEIGHT));
-        let remove = file.is_some().then(|| ui.add(cross()).on_hover_text("Do without a file"));
+        let remove = is_some.then(|| ui.add(cross()).on_hover_text("Do without a file"));
         (choose, remove)
     });
-    ui.ctx().accesskit_node_builder(choose.id, |node| node.set_label(format!("{label}: {}", file.label())));
+    ui.ctx().accesskit_node_builder(choose.id, |node| node.set_label(format!("{label}: {shown}")));
     if choose.clicked() {
         let nodes = sheet.ids();
-        sheet.bench().wanted_file = Some(WantedFile { nodes, parameter: index, instead_of: file.clone() });
+        sheet.bench().wanted_file = Some(WantedFile { nodes, keeper, instead_of: file.clone() });
     }
     if let Some(remove) = remove {
         ui.ctx().accesskit_node_builder(remove.id, |node| node.set_label(format!("{label}: none")));
         if remove.clicked() {
-            sheet.change(remove.id, clear);
+            sheet.change(remove.id, |n| {
+                keeper.set(n, default);
+            });
         }
     }
 }

@@ -7,8 +7,9 @@ use glam::DVec3;
 
 use super::fields::{self, Field};
 use super::sheet::Sheet;
+use super::workbench::Keeper;
 use super::{inspector_kinds, theme};
-use crate::scene::{MAX_MODIFIERS, ModifierKind, ModifierParam, ModifierSlot, ModifierValue, Node};
+use crate::scene::{Axis, MAX_MODIFIERS, ModifierKind, ModifierParam, ModifierSlot, ModifierValue, Node};
 
 /// Shows the card for objects and groups.
 pub fn show(ui: &mut Ui, sheet: &mut Sheet<'_>) {
@@ -67,7 +68,7 @@ fn parameters(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, kind: ModifierKi
 }
 
 fn value(node: &Node, [index, at]: [usize; 2]) -> Option<ModifierValue> {
-    node.modifiers.get(index)?.modifier.values().get(at).copied()
+    node.modifiers.get(index)?.modifier.values().get(at).cloned()
 }
 
 fn set(node: &mut Node, [index, at]: [usize; 2], value: ModifierValue) {
@@ -111,6 +112,16 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], param: &Modifie
             sheet.toggle(ui, (&label, "", param.help), get, |n, on| set(n, at, ModifierValue::Flag(on)));
         }
         ModifierValue::Flags(_) => flags(ui, sheet, at, &label, param.help),
+        ModifierValue::Axis(_) => {
+            let get = |n: &Node| if let Some(ModifierValue::Axis(v)) = value(n, at) { Some(v) } else { None };
+            let names = (Axis::label, inspector_kinds::no_help);
+            sheet.choice(ui, (&label, param.help), &Axis::ALL, names, get, |n, v| set(n, at, ModifierValue::Axis(v)));
+        }
+        ModifierValue::File(default) => {
+            let Some(ModifierValue::File(file)) = value(sheet.active(), at) else { return };
+            let kept = (Keeper::OfModifier(at), &file, file.name().unwrap_or("No file"));
+            inspector_kinds::attachment(ui, sheet, (&label, param.help), kept, &default);
+        }
     }
 }
 
@@ -123,6 +134,7 @@ fn flags(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], label: &str, help: 
             let mut on = get(sheet.active())[axis];
             let mixed = sheet.common(|n| get(n)[axis]).is_none();
             let response = ui.add(egui::Checkbox::new(&mut on, name).indeterminate(mixed)).on_hover_text(help);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("{label} {name}")));
             if response.changed() {
                 changed = Some((response.id, axis, on));
             }

@@ -10,6 +10,7 @@
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
+//! | `reading` | files that nodes keep, read beside the frames |
 
 mod bounds;
 mod color_picker;
@@ -35,6 +36,7 @@ mod outliner;
 mod overlay;
 mod palette;
 mod picking;
+mod reading;
 mod selection;
 mod shape_change;
 mod sheet;
@@ -114,6 +116,8 @@ pub struct Editor {
     dialogs: dialogs::Dialogs,
     recent: RecentFiles,
     examples: Vec<Example>,
+    /// Files that nodes are to keep, on their way.
+    readings: Vec<reading::Reading>,
     show_grid: bool,
     show_outline: bool,
     look: Look,
@@ -148,6 +152,7 @@ impl Editor {
             dialogs: dialogs::Dialogs::default(),
             recent: RecentFiles::default(),
             examples: Vec::new(),
+            readings: Vec::new(),
             show_grid: true,
             show_outline: true,
             look: Look::Shaded,
@@ -187,6 +192,7 @@ impl Editor {
         self.open_dropped(&ctx);
         commands::run_shortcuts(self, &ctx);
         self.show_panels(ui, picture);
+        self.poll_readings(&ctx);
         self.show_dialogs(&ctx);
         palette::show(self, &ctx);
         let corner = self.viewport.rect();
@@ -282,6 +288,7 @@ impl Editor {
 
     fn replace_document(&mut self, document: Document) {
         self.bench.finish();
+        self.readings.clear();
         self.meshes.set_folder(document.path().and_then(folder_of));
         self.bench.document = document;
         self.outliner = outliner::Outliner::default();

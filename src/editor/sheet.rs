@@ -120,6 +120,7 @@ impl<'a> Sheet<'a> {
         let response = fields::row(ui, label, help, |ui| {
             ui.add(egui::Checkbox::new(&mut on, text).indeterminate(mixed)).on_hover_text(help)
         });
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label.to_owned()));
         if response.changed() {
             self.change(response.id, |node| set(node, on));
         }

@@ -38,8 +38,12 @@ fn plural(count: usize, word: &str) -> String {
     if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
 }
 
-/// A problem of the scene, or the newest message for a while, or what the mouse does.
+/// What is being read, a problem of the scene, or what the mouse does.
 fn left(editor: &mut Editor, ui: &mut Ui) {
+    if let Some(name) = editor.reading().next() {
+        ui.add(egui::Label::new(RichText::new(format!("Reading {name}…")).color(theme::WEAK)).truncate());
+        return;
+    }
     if let Some(problem) = &editor.flat.problem {
         let text = format!("Not shown: {problem}");
         ui.label(super::messages::Severity::Error.icon().size(14.0));

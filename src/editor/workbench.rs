@@ -6,7 +6,7 @@ use egui::{Context, Id};
 
 use super::messages::{Message, Messages};
 use crate::document::{Document, Edit};
-use crate::scene::{Attached, Material, Node, NodeId};
+use crate::scene::{Attached, Material, ModifierKind, ModifierValue, Node, NodeId, NodeKind, ParamValue};
 
 /// The document, the gesture in progress, the messages.
 ///
@@ -22,15 +22,57 @@ pub struct Workbench {
     gesture: Option<Id>,
 }
 
-/// A file for a parameter of the shapes of some nodes.
+/// A file for a parameter of some nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedFile {
-    /// Whose shapes.
+    /// Which nodes.
     pub nodes: Vec<NodeId>,
-    /// Which of the shape's parameters.
-    pub parameter: usize,
+    /// Which of their parameters.
+    pub keeper: Keeper,
     /// What it is now.
     pub instead_of: Attached,
+}
+
+/// A parameter that keeps a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Keeper {
+    /// Of this index among those of the shape.
+    OfShape(usize),
+    /// Of the modifier at this place, of this index among its own.
+    OfModifier([usize; 2]),
+}
+
+impl Keeper {
+    /// Gives the node the file; false, and nothing changed, where it has no such parameter.
+    pub fn set(self, node: &mut Node, file: &Attached) -> bool {
+        match (self, &mut node.kind) {
+            (Self::OfShape(index), NodeKind::Object(object)) => {
+                object.shape.set_value(index, ParamValue::File(file.clone()))
+            }
+            (Self::OfShape(_), _) => false,
+            (Self::OfModifier([place, index]), _) => {
+                let slot = node.modifiers.get_mut(place);
+                slot.is_some_and(|slot| slot.modifier.set_value(index, ModifierValue::File(file.clone())))
+            }
+        }
+    }
+
+    /// The node, its shape or modifier, and the parameter, for messages.
+    pub fn label(self, node: &Node) -> String {
+        let (of, name) = match (self, &node.kind) {
+            (Self::OfShape(index), NodeKind::Object(object)) => {
+                let kind = object.shape.kind();
+                (kind.label(), kind.params().get(index).map(|param| param.name))
+            }
+            (Self::OfShape(_), _) => ("", None),
+            (Self::OfModifier([place, index]), _) => {
+                let kind = node.modifiers.get(place).map(|slot| slot.modifier.kind());
+                let param = kind.and_then(|kind| kind.params().get(index));
+                (kind.map_or("", ModifierKind::label), param.map(|param| param.name))
+            }
+        };
+        format!("{} {}: {of}: {}", node.name, node.id, name.unwrap_or_default())
+    }
 }
 
 impl Workbench {

@@ -152,6 +152,7 @@ pub const FIRST_FURTHER_KERNEL: u32 = 3;
 /// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
 /// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
 /// behind the rows of all entries of the component, so that they are no part of what a specialised kernel reads as uniform.
+/// A modifier with data has such a row behind its own.
 ///
 /// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
 /// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
@@ -175,7 +176,11 @@ pub fn data_row(kind: ShapeKind) -> Option<usize> {
 
 /// The data of the leaf whose rows `numbers` begins with; empty for most.
 pub fn leaf_data(kind: ShapeKind, numbers: &[Row]) -> &[Row] {
-    let Some(row) = data_row(kind) else { return &[] };
+    data_row(kind).map_or(&[], |row| data_at(numbers, row))
+}
+
+/// The data that the row at `row` says where to find.
+fn data_at(numbers: &[Row], row: usize) -> &[Row] {
     let [count, offset, ..] = numbers[row].map(|v| v as usize);
     &numbers[row + offset..][..count]
 }
@@ -183,7 +188,21 @@ pub fn leaf_data(kind: ShapeKind, numbers: &[Row]) -> &[Row] {
 /// Rows of a modifier before its own.
 pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
 
-/// How many rows a modifier's own numbers take.
+/// Where the row that says where a modifier's data are stands among its own rows, the last of them; `None` for one without
+/// data.
+pub const fn modifier_data_row(kind: ModifierKind) -> Option<usize> {
+    match kind {
+        ModifierKind::Displacement => Some(modifier_rows(kind) - 1),
+        _ => None,
+    }
+}
+
+/// The data of the modifier whose own rows `rows` begins with; empty for most.
+pub fn modifier_data(kind: ModifierKind, rows: &[Row]) -> &[Row] {
+    modifier_data_row(kind).map_or(&[], |row| data_at(rows, row))
+}
+
+/// How many rows a modifier's own numbers take, and behind them where its data are.
 pub const fn modifier_rows(kind: ModifierKind) -> usize {
     match kind {
         // These are written as copies.
@@ -191,7 +210,7 @@ pub const fn modifier_rows(kind: ModifierKind) -> usize {
         ModifierKind::Repeat => 10,
         ModifierKind::Recursion => 6,
         ModifierKind::Bend => 4,
-        ModifierKind::Taper => 3,
+        ModifierKind::Taper | ModifierKind::Displacement => 3,
         ModifierKind::Twist | ModifierKind::Noise => 2,
         ModifierKind::Elongate | ModifierKind::Round | ModifierKind::Onion | ModifierKind::Waves => 1,
     }
@@ -259,7 +278,7 @@ pub struct Component {
     pub numbers: u32,
     /// How many rows, data included.
     pub rows: u32,
-    /// How many of the last of them are data of its leaves.
+    /// How many of the last of them are data of its leaves and modifiers.
     pub data: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
@@ -344,5 +363,5 @@ pub const MAX_STACK: u32 = 128;
 pub const MAX_COMPONENT_NODES: usize = 4_200;
 /// Most entries in all components together.
 pub const MAX_FLAT_NODES: usize = 1 << 20;
-/// Most rows of numbers in a scene: more could not be counted by 32-bit floats, nor held by some devices.
+/// Most rows of numbers in a scene, and of data while it is flattened: more could not be counted by 32-bit floats, nor held by some devices.
 pub const MAX_FLAT_ROWS: usize = 1 << 24;

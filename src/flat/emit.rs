@@ -79,7 +79,7 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
 }
 
-/// Appends the data of all leaves; `entries` are those from here on, in the order in which they were written.
+/// Appends the data of all leaves and modifiers; `entries` are those from here on, in the order in which they were written.
 fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn Iterator<Item = usize>) {
     for operand in operands {
         let mut entry = || entries.next().expect("all were written");
@@ -87,16 +87,22 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
         while flat.nodes[at].is_run() {
             at = entry();
         }
-        match &operand.value {
-            Value::Fold(inner) | Value::Modified { content: inner, .. } => emit_data(flat, inner, entries),
-            Value::Leaf { body, .. } => {
-                let Some(behind) = data_row(body.kind) else { continue };
-                let row = flat.nodes[at].numbers as usize + behind;
-                // Exact: there are far fewer rows than f32 can count.
-                let [count, offset] = [body.rows.len(), flat.numbers.len() - row].map(|v| v as f32);
-                flat.numbers[row] = [count, offset, 0.0, 0.0];
-                flat.numbers.extend(body.rows.iter().map(|row| row.map(|v| v as f32)));
+        let (behind, data) = match &operand.value {
+            Value::Fold(_) => (None, &[][..]),
+            Value::Modified { kind, modified, .. } => {
+                (modifier_data_row(*kind).map(|row| MODIFIER_ROWS + row), &*modified.data)
             }
+            Value::Leaf { body, .. } => (data_row(body.kind), &*body.rows),
+        };
+        if let Some(behind) = behind {
+            let row = flat.nodes[at].numbers as usize + behind;
+            // Exact: there are far fewer rows than f32 can count.
+            let [count, offset] = [data.len(), flat.numbers.len() - row].map(|v| v as f32);
+            flat.numbers[row] = [count, offset, 0.0, 0.0];
+            flat.numbers.extend(data.iter().map(|row| row.map(|v| v as f32)));
+        }
+        if let Value::Fold(inner) | Value::Modified { content: inner, .. } = &operand.value {
+            emit_data(flat, inner, entries);
         }
     }
 }

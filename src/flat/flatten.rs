@@ -34,6 +34,9 @@ pub struct FlattenError {
     pub limit: usize,
 }
 
+/// What is limited by [`MAX_FLAT_ROWS`].
+pub(super) const ROWS: &str = "the number of rows of points, letters and images, copies included";
+
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     flatten_with_cuts(scene, time).map(|(flat, _)| flat)
@@ -49,7 +52,7 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     flat.components.clear();
     let mut materials =
         Materials { scene, index: flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect() };
-    let components = collect(scene, &mut |_, _| {});
+    let components = collect(scene, MAX_FLAT_ROWS, &mut |_, _| {});
     let mut whole: Vec<Operand<'_>> = Vec::new();
     for mut operands in components.operands {
         if is_plain(&operands) {
@@ -63,13 +66,17 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     }
     if let Some(first) = whole.first_mut() {
         first.join = Join::First;
-        add_component(&mut flat, &mut materials, &whole)?;
+        add_component(&mut flat, &mut materials, &whole, MAX_FLAT_ROWS)?;
     }
     Ok(flat)
 }
 
 /// The same, and whether something is cut away from several components.
 pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, bool), FlattenError> {
+    flatten_within(scene, time, MAX_FLAT_ROWS)
+}
+
+fn flatten_within(scene: &Scene, time: f64, most_rows: usize) -> Result<(FlatScene, bool), FlattenError> {
     let mut flat = FlatScene {
         nodes: Vec::with_capacity(scene.nodes().len()),
         numbers: Vec::with_capacity(scene.nodes().len() * 6),
@@ -85,7 +92,7 @@ pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, 
     };
     debug_assert!(time.is_finite(), "time is checked at the border");
     let mut materials = Materials { scene, index: HashMap::new() };
-    let components = collect(scene, &mut |node, world_from_local| {
+    let components = collect(scene, most_rows, &mut |node, world_from_local| {
         add_bystander(&mut flat, &mut materials, node, world_from_local);
     });
     flat.warnings = components.warnings;
@@ -93,7 +100,7 @@ pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, 
         return Err(problem);
     }
     for operands in &components.operands {
-        add_component(&mut flat, &mut materials, operands)?;
+        add_component(&mut flat, &mut materials, operands, most_rows)?;
     }
     Ok((flat, components.has_cuts))
 }
@@ -166,6 +173,7 @@ fn add_component(
     flat: &mut FlatScene,
     materials: &mut Materials<'_>,
     operands: &[Operand<'_>],
+    most_rows: usize,
 ) -> Result<(), FlattenError> {
     let first = operands.first().expect("a component has an operand");
     // An intersection of what does not meet: nothing is there to trace.
@@ -178,7 +186,7 @@ fn add_component(
         ("the number of shapes that are blended or cut together", flat.nodes.len() - start, MAX_COMPONENT_NODES),
         ("the nesting of groups that cannot be simplified", component.stack as usize, MAX_STACK as usize),
         ("the number of shapes and groups", flat.nodes.len(), MAX_FLAT_NODES),
-        ("the number of rows of points, letters and images", flat.numbers.len(), MAX_FLAT_ROWS),
+        (ROWS, flat.numbers.len(), most_rows),
     ];
     for (what, value, limit) in limits {
         if value > limit {
@@ -188,4 +196,50 @@ fn add_component(
     }
     flat.components.push(component);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Attachment, Axis, Modifier, Object, ShapeKind};
+
+    /// Sixty-four copies of a plate that is displaced by an image of 900 pixels; the name of the plate's node.
+    fn copies() -> (Scene, NodeId) {
+        let image = Attachment::drawn("x.png", [30, 30], |x, y| (x * y % 256) as u8);
+        let displaced = Modifier::Displacement { image, height: 0.1, tile: 1.0, axis: Axis::Y };
+        let mut scene = Scene::new();
+        let object = Object { shape: ShapeKind::Box.default_shape(), material: scene.materials()[0].id };
+        let ring = Modifier::Polar { count: 64, radius: 9.0, mirrored: false };
+        let plate = Node::new("Plate", NodeKind::Object(object)).modified(displaced).modified(ring);
+        let id = scene.insert(None, 0, plate).unwrap();
+        (scene, id)
+    }
+
+    #[test]
+    fn too_many_rows_are_refused_with_the_node_before_they_are_made() {
+        let (scene, id) = copies();
+        let rows = flatten(&scene, 0.0).unwrap().numbers.len();
+        assert!(rows > 64 * 900);
+        assert!(flatten_within(&scene, 0.0, rows).is_ok());
+        let refused = |most| flatten_within(&scene, 0.0, most).unwrap_err();
+        // The last component is one row too long.
+        let error = refused(rows - 1);
+        assert_eq!((error.node, error.value, error.limit), (id, rows, rows - 1));
+        // Data alone are too many: no more copies are made than it takes to know.
+        let error = refused(5_000);
+        assert_eq!((error.node, error.value, error.limit), (id, 5_400, 5_000));
+        let told = format!("Plate ({id}): the number of rows of points, letters and images, copies included is 5400");
+        assert!(error.to_string().starts_with(&told), "{error}");
+        assert_eq!(refused(0).value, 900);
+    }
+
+    #[test]
+    fn rows_of_shapes_count_as_well() {
+        let mut scene = Scene::new();
+        let object = Object { shape: ShapeKind::Heightmap.default_shape(), material: scene.materials()[0].id };
+        let id = scene.insert(None, 0, Node::new("Alps", NodeKind::Object(object))).unwrap();
+        let error = flatten_within(&scene, 0.0, 500).unwrap_err();
+        // 24 times 24 heights, and the ball around them.
+        assert_eq!((error.node, error.value, error.limit), (id, 577, 500));
+    }
 }

@@ -28,6 +28,7 @@ mod enclosure;
 mod flatten;
 pub mod inspect;
 mod joints;
+mod leaf;
 pub mod mesh_rays;
 mod meshes;
 mod modify;

@@ -8,9 +8,10 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::arrays::modifier_rows;
+use super::body::spline;
 use super::enclosure::Enclosure;
 use crate::geometry::Aabb;
-use crate::scene::{Modifier, ModifierKind};
+use crate::scene::{Axis, Heights, Modifier, ModifierKind};
 
 /// Why a modifier does nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +27,8 @@ pub(super) enum Refusal {
 pub(super) struct Modified {
     /// Its rows, see `shaders/mod/`.
     pub rows: Vec<[f64; 4]>,
+    /// Its data; nothing for most.
+    pub data: Vec<[f64; 4]>,
     /// Around the result, in the node's own space.
     pub bounds: Aabb,
     /// The field is at least `slope` times the distance to this.
@@ -59,6 +62,7 @@ const NARROWEST: f64 = 0.05;
 pub(super) fn modify(modifier: &Modifier, content: &Enclosure) -> Result<Modified, Refusal> {
     let same = Modified {
         rows: Vec::new(),
+        data: Vec::new(),
         bounds: content.bounds,
         skip: content.skip,
         slope: content.slope,
@@ -101,6 +105,9 @@ pub(super) fn modify(modifier: &Modifier, content: &Enclosure) -> Result<Modifie
             let numbers = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
             grown(same, amplitude, vec![numbers, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
         }
+        Modifier::Displacement { ref image, height, tile, axis } => {
+            displacement(image.content().expect("idle without an image"), height, tile, axis, same)
+        }
     };
     modified.rows.resize(modifier_rows(modifier.kind()), [0.0; 4]);
     if !modified.skip.is_finite() {
@@ -121,6 +128,7 @@ pub(super) fn is_idle(modifier: &Modifier) -> bool {
         Modifier::Elongate { length } => length == [0.0; 3],
         Modifier::Round { radius } => radius == 0.0,
         Modifier::Waves { amplitude, .. } | Modifier::Noise { amplitude, .. } => amplitude == 0.0,
+        Modifier::Displacement { ref image, height, .. } => height == 0.0 || image.content().is_none(),
     }
 }
 
@@ -141,6 +149,20 @@ fn bounded(content: &Enclosure, deformed: &str) -> Result<Aabb, Refusal> {
 fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
     let reach = if same.slope > 0.0 { by / same.slope } else { 0.0 };
     Modified { rows, bounds: same.bounds.expanded(by), skip: same.skip.expanded(reach), ..same }
+}
+
+/// Where the surface is moved outwards by h, the field is f − h; its slope is at most 1 and that of the heights.
+fn displacement(image: &Heights, height: f64, tile: f64, axis: Axis, same: Modified) -> Modified {
+    let [columns, lines] = image.size.map(|n| n as f64);
+    let side = tile / columns;
+    let (data, steepest) = spline(image, [side; 2], height);
+    let heights = || image.values.iter().map(|v| v * height);
+    let (least, greatest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+    let rows = vec![
+        [1.0 / tile, 1.0 / (side * lines), columns, lines],
+        [1.0 / (1.0 + steepest), least, greatest, f64::from(axis as u8)],
+    ];
+    Modified { data, ..grown(same, greatest.max(0.0), rows) }
 }
 
 /// A deformation whose field is at least the distance to its enclosure along some axis: of three numbers at right
@@ -290,7 +312,7 @@ fn finite_box(bounds: &Aabb) -> (DVec3, DVec3) {
 
 /// Along one axis: first and last cell, middle and half extent of the content in its cell, how many neighbours
 /// are evaluated.
-struct Axis {
+struct Cells {
     first: f64,
     last: f64,
     middle: f64,
@@ -336,7 +358,7 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
         if counts[i] > 1 {
             candidates = candidates.min(2 * counts[i]);
         }
-        axes.push(Axis { first, last, middle: center[i], half: half[i], candidates });
+        axes.push(Cells { first, last, middle: center[i], half: half[i], candidates });
     }
     // An offset along an axis with cells of its own would leave them; bricks need both X and Y.
     for i in [1, 2] {
@@ -351,7 +373,7 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
     let in_cell = Aabb::from_center_half(center, half);
     let bounds = all(&in_cell);
     let flags: f64 = mirrored.iter().enumerate().map(|(i, on)| f64::from(u8::from(*on)) * f64::from(1 << i)).sum();
-    let each = |f: &dyn Fn(&Axis) -> f64| DVec3::new(f(&axes[0]), f(&axes[1]), f(&axes[2]));
+    let each = |f: &dyn Fn(&Cells) -> f64| DVec3::new(f(&axes[0]), f(&axes[1]), f(&axes[2]));
     let code = axes.iter().rev().fold(0.0, |code, a| code * 128.0 + f64::from(a.candidates));
     let rows = vec![
         DVec3::from(spacing).extend(turn).to_array(),
@@ -369,7 +391,7 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
     Ok(Modified { rows, bounds, skip: bounds, slope, copies: copies as u32, ..same })
 }
 
-fn repeated_bounds(cell: &Aabb, axes: &[Axis], counts: [u32; 3], spacing: [f64; 3], offset: [f64; 3]) -> Aabb {
+fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64; 3], offset: [f64; 3]) -> Aabb {
     let mut out = *cell;
     let last = [axes[0].last, axes[1].last];
     for i in 0..3 {

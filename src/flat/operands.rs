@@ -1,15 +1,16 @@
 //! The visible part of a scene as folds of operands in world space, one fold per component.
 
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 
-use super::arrays::{Join, MAX_FLAT_NODES, Warning};
+use super::arrays::{Join, MAX_FLAT_NODES, MAX_FLAT_ROWS, Warning};
 use super::body::Body;
 use super::enclosure::{Enclosure, fold_bounds};
-use super::flatten::FlattenError;
+use super::flatten::{FlattenError, ROWS};
 use super::joints::{Joiner, has_own_radius};
+use super::leaf::leaf;
 use super::modify::{MAX_NEIGHBOURS, Modified, Refusal, is_idle, modify};
 use crate::geometry::{Aabb, singular_values};
-use crate::scene::{Blend, Group, MaterialId, Modifier, ModifierKind, Node, NodeKind, Operator, Scene, Shape};
+use crate::scene::{Blend, Group, MaterialId, Modifier, ModifierKind, Node, NodeKind, Operator, Scene};
 
 /// One operand of a fold.
 #[derive(Clone)]
@@ -69,8 +70,8 @@ pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
 }
 
 /// The modifiers that do something, in their order.
-fn active(node: &Node) -> impl DoubleEndedIterator<Item = Modifier> {
-    node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| slot.modifier)
+fn active(node: &Node) -> impl DoubleEndedIterator<Item = &Modifier> {
+    node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| &slot.modifier)
 }
 
 /// The fold of the one component whose outermost node stands at `index`; nothing where it is not one, or where
@@ -79,7 +80,7 @@ pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_
     let node: &Node = &scene.nodes()[index];
     let parent = node.parent.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
     let mut nobody = |_: &Node, _: &DAffine3| {};
-    let mut collector = Collector::new(scene, &mut nobody);
+    let mut collector = Collector::new(scene, MAX_FLAT_ROWS, &mut nobody);
     let mut parts = apart(collector.operand(index, &parent, node)?);
     let is_one = parts.len() == 1 && collector.warnings.is_empty() && collector.problem.is_none();
     if is_one { parts.pop().map(begin_with) } else { None }
@@ -90,9 +91,14 @@ pub(super) fn is_plain(fold: &[Operand<'_>]) -> bool {
     fold[1..].iter().all(|o| o.join == Join::Union && o.blend.radius == 0.0)
 }
 
-/// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
-pub(super) fn collect<'a>(scene: &'a Scene, bystander: &mut dyn FnMut(&'a Node, &DAffine3)) -> Components<'a> {
-    let mut collector = Collector::new(scene, bystander);
+/// Collects the components, of at most `most_rows` rows of data; lights, meshes and cameras go to `bystander` with their
+/// world transform.
+pub(super) fn collect<'a>(
+    scene: &'a Scene,
+    most_rows: usize,
+    bystander: &mut dyn FnMut(&'a Node, &DAffine3),
+) -> Components<'a> {
+    let mut collector = Collector::new(scene, most_rows, bystander);
     let mut operands = Vec::new();
     collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut operands);
     let Collector { warnings, has_cuts, problem, .. } = collector;
@@ -107,13 +113,17 @@ struct Collector<'a, 'b> {
     problem: Option<FlattenError>,
     /// Leaves so far: copies of copies are many, and must end somewhere.
     leaves: usize,
+    /// Rows of data so far, and most of them.
+    rows: usize,
+    most_rows: usize,
     /// Within a modifier, whose bystanders are known already.
     is_muted: bool,
 }
 
 impl<'a, 'b> Collector<'a, 'b> {
-    fn new(scene: &'a Scene, bystander: &'b mut dyn FnMut(&'a Node, &DAffine3)) -> Self {
-        Self { scene, bystander, warnings: Vec::new(), has_cuts: false, problem: None, leaves: 0, is_muted: false }
+    fn new(scene: &'a Scene, most_rows: usize, bystander: &'b mut dyn FnMut(&'a Node, &DAffine3)) -> Self {
+        let (warnings, has_cuts, problem, is_muted) = (Vec::new(), false, None, false);
+        Self { scene, bystander, warnings, has_cuts, problem, leaves: 0, rows: 0, most_rows, is_muted }
     }
 
     /// The children in `range` are joined by hard union: each becomes a component, hard unions among
@@ -165,7 +175,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             return None;
         }
         let world = *parent * node.transform.to_affine();
-        let modifiers: Vec<Modifier> = active(node).collect();
+        let modifiers: Vec<&Modifier> = active(node).collect();
         if modifiers.is_empty() {
             return self.content(index, &world, outermost);
         }
@@ -188,7 +198,9 @@ impl<'a, 'b> Collector<'a, 'b> {
                     self.hit_limit(outermost, "the number of shapes, copies included", self.leaves, MAX_FLAT_NODES);
                     return None;
                 }
-                Some(leaf(node, outermost, world, &object.shape, object.material))
+                let leaf = leaf(node, outermost, world, &object.shape, object.material);
+                let Value::Leaf { body, .. } = &leaf.value else { unreachable!("made as a leaf") };
+                self.has_room(node, body.rows.len()).then_some(leaf)
             }
             NodeKind::Group(group) => {
                 let range = scene.subtree(index);
@@ -233,7 +245,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn modified(
         &mut self,
         index: usize,
-        modifiers: &[Modifier],
+        modifiers: &[&Modifier],
         world: &DAffine3,
         outermost: &'a Node,
     ) -> Option<Operand<'a>> {
@@ -241,7 +253,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             return None;
         }
         let Some((last, rest)) = modifiers.split_last() else { return self.content(index, world, outermost) };
-        let copies = match *last {
+        let copies = match **last {
             Modifier::Mirror { axes, blend } => {
                 let axes: Vec<usize> = (0..3).filter(|i| axes[*i]).collect();
                 return self.mirrored(index, rest, world, outermost, &axes, blend);
@@ -258,7 +270,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn mirrored(
         &mut self,
         index: usize,
-        rest: &[Modifier],
+        rest: &[&Modifier],
         world: &DAffine3,
         outermost: &'a Node,
         axes: &[usize],
@@ -277,7 +289,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     fn deformed(
         &mut self,
         index: usize,
-        (last, rest): (&Modifier, &[Modifier]),
+        (last, rest): (&Modifier, &[&Modifier]),
         world: &DAffine3,
         outermost: &'a Node,
     ) -> Option<Operand<'a>> {
@@ -299,6 +311,9 @@ impl<'a, 'b> Collector<'a, 'b> {
                 return None;
             }
         };
+        if !self.has_room(node, modified.data.len()) {
+            return None;
+        }
         if let Some(warning) = &modified.warning {
             self.warn(node, warning.clone());
         }
@@ -321,6 +336,15 @@ impl<'a, 'b> Collector<'a, 'b> {
                 content,
             },
         })
+    }
+
+    /// Whether so many more rows of data are within the limit.
+    fn has_room(&mut self, node: &Node, rows: usize) -> bool {
+        self.rows += rows;
+        if self.rows > self.most_rows {
+            self.hit_limit(node, ROWS, self.rows, self.most_rows);
+        }
+        self.rows <= self.most_rows
     }
 
     fn hit_limit(&mut self, node: &Node, what: &'static str, value: usize, limit: usize) {
@@ -434,53 +458,4 @@ pub(super) fn join<'a>(fold: &mut Vec<Operand<'a>>, operand: Operand<'a>) {
         }
         _ => fold.push(operand),
     }
-}
-
-fn leaf<'a>(
-    node: &'a Node,
-    outermost: &'a Node,
-    world_from_local: &DAffine3,
-    shape: &Shape,
-    material: MaterialId,
-) -> Operand<'a> {
-    let (shape, mut world_from_local, least, greatest) = normalise(shape, world_from_local);
-    if least == 1.0 && matches!(shape, Shape::Sphere { .. }) {
-        // A ball looks the same from every side: without a rotation its kernel is shorter.
-        world_from_local.matrix3 = DMat3::IDENTITY;
-    }
-    let body = Body::new(&shape);
-    let bounds = body.bounds.transformed(&world_from_local);
-    Operand {
-        node,
-        outermost,
-        join: Join::First,
-        blend: Blend::HARD,
-        detail: [0.0; 2],
-        bounds,
-        skip: bounds,
-        slope: if bounds.is_finite() { least / greatest } else { 0.0 },
-        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, body, material },
-    }
-}
-
-/// Takes the scale out of the transform and into the shape where the shape can hold it. Returns the
-/// least and greatest stretch of what remains: 1 and 1 in that case.
-fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f64, f64) {
-    let m = &world_from_local.matrix3;
-    let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
-    let skew = (m.x_axis.dot(m.y_axis).abs() / (scale.x * scale.y))
-        .max(m.x_axis.dot(m.z_axis).abs() / (scale.x * scale.z))
-        .max(m.y_axis.dot(m.z_axis).abs() / (scale.y * scale.z));
-    if skew < 1e-12 {
-        // Factors that differ only by rounding in the chain of rotations are one factor.
-        let mean = (scale.x + scale.y + scale.z) / 3.0;
-        let scale = if (scale - mean).abs().max_element() < 1e-12 * mean { DVec3::splat(mean) } else { scale };
-        if let Some(absorbed) = shape.absorb_scale(scale) {
-            let rotation = DMat3::from_cols(m.x_axis / scale.x, m.y_axis / scale.y, m.z_axis / scale.z);
-            return (absorbed, DAffine3 { matrix3: rotation, ..*world_from_local }, 1.0, 1.0);
-        }
-        return (shape.clone(), *world_from_local, scale.min_element(), scale.max_element());
-    }
-    let (least, greatest) = singular_values(m);
-    (shape.clone(), *world_from_local, least, greatest)
 }

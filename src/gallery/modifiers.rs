@@ -1,7 +1,7 @@
 //! The sheet of all modifiers: one on each stand, in the order of their list, row by row from the left.
 
 use super::stage::{Stage, blended, capsule, cuboid, cylinder, group, object, sphere, torus, turn_x, turn_z, v};
-use crate::scene::{BlendKernel, MaterialId, Modifier, ModifierKind, NodeId, Operator, Scene, Shape};
+use crate::scene::{Attachment, Axis, BlendKernel, MaterialId, Modifier, ModifierKind, NodeId, Operator, Scene, Shape};
 
 /// Stands in a row.
 const COLUMNS: usize = 4;
@@ -17,14 +17,14 @@ pub(super) fn scene() -> Scene {
     stage.add(None, object("Floor", Shape::Plane {}, floor));
     for (index, kind) in ModifierKind::ALL.iter().enumerate() {
         let (column, row) = (index % COLUMNS, index / COLUMNS);
-        let at = v((column as f64 - 1.5) * SPACING, 0.0, (row as f64 - 1.0) * SPACING);
+        let at = v((column as f64 - 1.5) * SPACING, 0.0, (row as f64 - 1.5) * SPACING);
         stage.add(None, object("Stand", cylinder(0.8, 0.06, 0.02), stand_material).at(at + v(0.0, 0.03, 0.0)));
         let stand = stage.add(None, group(kind.label(), Operator::Union).at(at + v(0.0, 0.06, 0.0)));
         add(&mut stage, stand, *kind, [clay, slate]);
     }
     stage.sun("Key", [-0.5, 1.0, 0.7], [1.0, 0.95, 0.88], 0.95);
     stage.sun("Fill", [0.9, 0.5, 0.4], [0.75, 0.85, 1.0], 0.3);
-    stage.camera([0.0, 6.6, 9.4], [0.0, 0.25, 0.1], 32.0);
+    stage.camera([0.0, 9.6, 11.9], [0.0, 0.2, 0.4], 32.0);
     stage.finish()
 }
 
@@ -104,5 +104,22 @@ fn add(stage: &mut Stage, stand: NodeId, kind: ModifierKind, [clay, slate]: [Mat
             let noise = Modifier::Noise { amplitude: 0.12, size: 0.3, octaves: 3, seed: 4 };
             put(object("Rock", sphere(0.45), clay).at(v(0.0, 0.46, 0.0)).modified(noise));
         }
+        ModifierKind::Displacement => {
+            let image = Attachment::drawn("bricks.png", [QUARTER[0], 2 * QUARTER[1]], bricks);
+            let bricks = Modifier::Displacement { image, height: 0.05, tile: 0.15, axis: Axis::Z };
+            let node = object("Wall", cuboid(1.0, 0.8, 0.2, 0.02), clay).at(v(0.0, 0.45, 0.0));
+            put(node.rotated(turn_x(-25.0)).modified(bricks));
+        }
     }
+}
+
+/// Width and height of a quarter of a brick with its mortar, in pixels.
+const QUARTER: [u32; 2] = [16, 6];
+
+/// The lower right quarter of a brick over the upper left one of another: mirrored tiles of it are a wall.
+fn bricks(x: u32, y: u32) -> u8 {
+    let [width, height] = QUARTER;
+    let from_joints = if y < height { [width - 1 - x, height - 1 - y] } else { [x, y - height] };
+    // Up to where the top is flat.
+    from_joints.map(|pixels| pixels.min(4)).iter().product::<u32>() as u8 * 15
 }

@@ -1,4 +1,4 @@
-//! Files that shapes keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
+//! Files that shapes and modifiers keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
 //! is opened.
 
 use std::fmt;
@@ -18,7 +18,7 @@ use crate::font::Face;
 pub trait Content: Sized + Send + Sync {
     /// What the file must be, for people.
     const WHAT: &'static str;
-    /// What is used where there is no file, for people.
+    /// What a shape uses where there is no file, for people.
     const WITHOUT: &'static str;
     /// How the names of such files end.
     const ENDINGS: &'static [&'static str];
@@ -37,7 +37,7 @@ struct Held<T> {
 
 /// How an attachment is written.
 #[derive(Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a file in braces")]
 struct Written {
     /// The file's name, for people.
     name: String,
@@ -63,13 +63,18 @@ impl<T> Attachment<T> {
 impl<T: Content> Attachment<T> {
     /// The file of this name with these bytes; or why it cannot be used.
     pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, String> {
-        let name: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME).collect();
+        let name = cleaned(name);
         if bytes.len() > MAX_ATTACHMENT_BYTES {
             return Err(format!("{name:?} must be {} of at most {} MiB", T::WHAT, MAX_ATTACHMENT_BYTES >> 20));
         }
         let content = T::read(&bytes).map_err(|reason| format!("{name:?} must be {}: {reason}", T::WHAT))?;
         Ok(Self(Some(Arc::new(Held { name, bytes, content }))))
     }
+}
+
+/// A file's name as it is kept, and as messages name it.
+pub(super) fn cleaned(name: &str) -> String {
+    name.chars().filter(|c| !c.is_control()).take(MAX_NAME).collect()
 }
 
 impl<T> Clone for Attachment<T> {
@@ -103,8 +108,9 @@ impl<T> Serialize for Attachment<T> {
 impl<'de, T: Content> Deserialize<'de> for Attachment<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let Some(Written { name, base64 }) = Option::deserialize(deserializer)? else { return Ok(Self::NONE) };
-        let bytes =
-            STANDARD.decode(base64).map_err(|error| D::Error::custom(format!("{name:?} is not base 64: {error}")))?;
+        let bytes = STANDARD
+            .decode(base64)
+            .map_err(|e| D::Error::custom(format!("{:?} is not base 64: {e}", cleaned(&name))))?;
         Self::new(&name, bytes).map_err(D::Error::custom)
     }
 }
@@ -128,20 +134,21 @@ pub enum Attached {
 }
 
 impl Attached {
-    /// The file's name; or what is used where there is none.
-    pub fn label(&self) -> &str {
+    /// The file's name.
+    pub fn name(&self) -> Option<&str> {
         match self {
-            Self::Heights(file) => file.name().unwrap_or(Heights::WITHOUT),
-            Self::Font(file) => file.name().unwrap_or(Face::WITHOUT),
+            Self::Heights(file) => file.name(),
+            Self::Font(file) => file.name(),
         }
     }
 
-    /// Whether there is a file.
-    pub fn is_some(&self) -> bool {
-        match self {
-            Self::Heights(file) => file.name().is_some(),
-            Self::Font(file) => file.name().is_some(),
-        }
+    /// The file's name; or what a shape uses where there is none.
+    pub fn label(&self) -> &str {
+        let without = match self {
+            Self::Heights(_) => Heights::WITHOUT,
+            Self::Font(_) => Face::WITHOUT,
+        };
+        self.name().unwrap_or(without)
     }
 
     /// How the names of files that can be chosen end.

@@ -210,7 +210,8 @@ fn modifier(modifier: &Modifier) -> Result<(), Fault> {
             ModifierValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
             ModifierValue::Count(n) => number(param.name, n.into(), &param.limits)?,
             ModifierValue::Counts(n) => vector(param.name, n.map(f64::from), &param.limits)?,
-            ModifierValue::Flag(_) | ModifierValue::Flags(_) => {}
+            // A file was checked when it was read.
+            ModifierValue::Flag(_) | ModifierValue::Flags(_) | ModifierValue::Axis(_) | ModifierValue::File(_) => {}
         }
     }
     Ok(())
@@ -347,6 +348,7 @@ mod tests {
                     ModifierValue::Count(_) => ModifierValue::Count(bad as u32),
                     ModifierValue::Counts(_) => ModifierValue::Counts([1, 1, bad as u32]),
                     ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
+                    ModifierValue::Axis(_) | ModifierValue::File(_) => continue,
                 };
                 assert!(modifier.set_value(i, value));
                 let fault = node(&with(modifier)).unwrap_err();

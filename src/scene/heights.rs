@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::sync::LazyLock;
 
 use image::imageops::{FilterType, resize};
-use image::{ImageReader, Limits};
+use image::{GrayImage, ImageFormat, ImageReader, Limits, Luma};
 
 use super::attachment::{Attachment, Content};
 use super::limits::{MAX_HEIGHTS, MAX_IMAGE_SIDE};
@@ -43,6 +43,17 @@ impl Heights {
     }
 }
 
+impl Attachment<Heights> {
+    /// An image of so many columns and lines, at least 1 of each, as a PNG file of this name; `level` says how white each
+    /// pixel is, up to 255.
+    pub fn drawn(name: &str, [columns, lines]: [u32; 2], level: impl Fn(u32, u32) -> u8) -> Self {
+        let mut file = Cursor::new(Vec::new());
+        let pixels = GrayImage::from_fn(columns, lines, |x, y| Luma([level(x, y)]));
+        pixels.write_to(&mut file, ImageFormat::Png).expect("memory takes all");
+        Self::new(name, file.into_inner()).expect("a small image that was just written can be read")
+    }
+}
+
 impl Content for Heights {
     const WHAT: &'static str = "a PNG, JPEG or EXR image";
     const WITHOUT: &'static str = "A hill";
@@ -66,7 +77,7 @@ impl Content for Heights {
 
 #[cfg(test)]
 mod tests {
-    use image::{DynamicImage, ImageBuffer, ImageFormat, Luma};
+    use image::{DynamicImage, ImageBuffer};
 
     use super::*;
 
@@ -86,6 +97,9 @@ mod tests {
         let large = Heights::read(&png(1024, 512, |x, _| if x % 2 == 0 { 0 } else { 60_000 })).unwrap();
         assert_eq!(large.size, [MAX_HEIGHTS, MAX_HEIGHTS / 2]);
         assert!((large.at(50, 50) - 30_000.0 / 65535.0).abs() < 0.02);
+        let drawn = Attachment::drawn("x.png", [2, 3], |x, y| (100 * x + 50 * y) as u8);
+        let drawn = drawn.content().unwrap();
+        assert_eq!((drawn.size, drawn.at(1, 2), drawn.at(0, 1)), ([2, 3], 200.0 / 255.0, 50.0 / 255.0));
         // A line of pixels stays a line.
         assert_eq!(Heights::read(&png(2000, 1, |_, _| 9)).unwrap().size, [MAX_HEIGHTS, 1]);
     }

@@ -38,7 +38,7 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of an outline.
 pub const CORNERS: [usize; 2] = [3, 256];
 
-/// Largest file that a shape keeps in the scene, in bytes.
+/// Largest file that a shape or modifier keeps in the scene, in bytes.
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
 /// Widest and highest image that is read, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 8_192;
@@ -118,3 +118,7 @@ pub const CURVATURE: Limits = Limits { soft: [-360.0, 360.0], hard: [-3.6e4, 3.6
 pub const TAPER: Limits = Limits { soft: [-1.0, 1.0], hard: [-1e3, 1e3], unit: "/m" };
 /// How far a displacement moves the surface.
 pub const AMPLITUDE: Limits = Limits { soft: [0.0, 0.5], hard: [0.0, 1e6], unit: "m" };
+/// The same, outwards or inwards.
+pub const RELIEF: Limits = Limits { soft: [-0.5, 0.5], hard: [-1e6, 1e6], unit: "m" };
+/// Width of what is repeated side by side.
+pub const TILE: Limits = Limits { soft: [0.1, 5.0], hard: [1e-4, 1e6], unit: "m" };

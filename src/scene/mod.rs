@@ -3,6 +3,7 @@
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
 mod attachment;
+mod axis;
 pub mod check;
 mod drawn;
 mod error;
@@ -18,6 +19,7 @@ mod shape;
 mod table;
 
 pub use attachment::{Attached, Attachment, Content};
+pub use axis::Axis;
 pub use drawn::{Corners, Points, profile_curve, text_outline, tube_curve};
 pub use error::SceneError;
 pub use heights::Heights;

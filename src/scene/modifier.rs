@@ -2,21 +2,25 @@
 //! the only list of them: the enum, the file format, the inspector, the tests and the golden sheet follow
 //! from it.
 //!
-//! To add one: an entry here, what it does to bounds and steps in `flat/modify.rs`, `mod_name_…` in
-//! `flat/twin/modifier.rs` and in `shaders/mod/`.
+//! To add one: an entry here, what it does to bounds and steps in `flat/modify.rs`, how many rows it has in
+//! `flat/arrays.rs`, `mod_name_…` in `flat/twin/modifier.rs` and in `shaders/mod/`.
 
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Limits;
-use super::limits::{AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, CURVATURE, POSITION, SIZE, SPACING, TAPER, THICKNESS};
+use super::attachment::{Attached, Attachment};
+use super::heights::Heights;
+use super::limits::{
+    AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, COUNT, CURVATURE, POSITION, RELIEF, SIZE, SPACING, TAPER, THICKNESS, TILE,
+};
+use super::{Axis, Limits};
 
 /// Most modifiers of one node.
 pub const MAX_MODIFIERS: usize = 32;
 
 /// The value of a modifier's parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ModifierValue {
     /// A number.
     Scalar(f64),
@@ -30,19 +34,23 @@ pub enum ModifierValue {
     Flag(bool),
     /// On or off for each axis.
     Flags([bool; 3]),
+    /// One of the axes.
+    Axis(Axis),
+    /// A file.
+    File(Attached),
 }
 
 /// A Rust type that a parameter can have.
-trait Field: Copy {
-    fn to_value(self) -> ModifierValue;
+trait Field: Sized {
+    fn to_value(&self) -> ModifierValue;
     fn from_value(value: ModifierValue) -> Option<Self>;
 }
 
 macro_rules! fields {
     ($($ty:ty = $variant:ident;)+) => { $(
         impl Field for $ty {
-            fn to_value(self) -> ModifierValue {
-                ModifierValue::$variant(self)
+            fn to_value(&self) -> ModifierValue {
+                ModifierValue::$variant(*self)
             }
             fn from_value(value: ModifierValue) -> Option<Self> {
                 if let ModifierValue::$variant(v) = value { Some(v) } else { None }
@@ -57,14 +65,24 @@ fields! {
     [u32; 3] = Counts;
     bool = Flag;
     [bool; 3] = Flags;
+    Axis = Axis;
 }
 
 impl Field for [f64; 3] {
-    fn to_value(self) -> ModifierValue {
-        ModifierValue::Vector(self.into())
+    fn to_value(&self) -> ModifierValue {
+        ModifierValue::Vector((*self).into())
     }
     fn from_value(value: ModifierValue) -> Option<Self> {
         if let ModifierValue::Vector(v) = value { Some(v.to_array()) } else { None }
+    }
+}
+
+impl Field for Attachment<Heights> {
+    fn to_value(&self) -> ModifierValue {
+        ModifierValue::File(Attached::Heights(self.clone()))
+    }
+    fn from_value(value: ModifierValue) -> Option<Self> {
+        if let ModifierValue::File(Attached::Heights(file)) = value { Some(file) } else { None }
     }
 }
 
@@ -75,7 +93,7 @@ pub struct ModifierParam {
     pub name: &'static str,
     /// One sentence for people.
     pub help: &'static str,
-    /// Accepted and offered ranges; without meaning for flags.
+    /// Accepted and offered ranges; without meaning for what is no number.
     pub limits: Limits,
 }
 
@@ -84,7 +102,7 @@ macro_rules! modifiers {
         $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
         /// A modifier with its parameters, in the node's own space.
-        #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Modifier {
             $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ $param: $type, )* }, )+
@@ -132,7 +150,7 @@ macro_rules! modifiers {
 
             /// The parameters' values, in the order of [`ModifierKind::params`].
             pub fn values(&self) -> Vec<ModifierValue> {
-                match *self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
+                match self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
             }
 
             /// Sets the parameter at `index`; false, and nothing changed, where there is none or the value is
@@ -256,6 +274,17 @@ modifiers! {
         /// Another number, another noise.
         seed: u32 = 1, SEED;
     }
+    /// The surface is moved in and out by an image, which is repeated without end, every other time mirrored.
+    Displacement = "Image displacement" {
+        /// Its pixels are heights; an image larger than 256 pixels is made smaller. Nothing happens without one.
+        image: Attachment<Heights> = Attachment::NONE, COUNT;
+        /// How far what is white moves outwards, or inwards where it is negative; what is black stays.
+        height: f64 = 0.1, RELIEF;
+        /// Width of the image.
+        tile: f64 = 1.0, TILE;
+        /// The image is seen upright from where this axis points to, its middle at the origin.
+        axis: Axis = Axis::Y, POSITION;
+    }
 }
 
 /// Copies around an axis: each is a shape of its own.
@@ -272,7 +301,7 @@ const OCTAVES: Limits = Limits { soft: [1.0, 6.0], hard: [1.0, 8.0], unit: "" };
 const SEED: Limits = Limits { soft: [0.0, 100.0], hard: [0.0, 65_535.0], unit: "" };
 
 /// A modifier in a node's list.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModifierSlot {
     /// Whether it does anything.
@@ -308,7 +337,10 @@ mod tests {
             let values = modifier.values();
             assert_eq!(values.len(), kind.params().len());
             for (i, value) in values.iter().enumerate() {
+                let image = Attachment::drawn("dots.png", [2, 2], |x, y| (100 * x + y) as u8);
                 let changed = match *value {
+                    ModifierValue::File(_) => ModifierValue::File(Attached::Heights(image)),
+                    ModifierValue::Axis(_) => ModifierValue::Axis(Axis::Z),
                     ModifierValue::Scalar(v) => ModifierValue::Scalar(v + 0.25),
                     ModifierValue::Vector(v) => ModifierValue::Vector(v + 0.25),
                     ModifierValue::Count(v) => ModifierValue::Count(v + 1),
@@ -316,7 +348,7 @@ mod tests {
                     ModifierValue::Flag(v) => ModifierValue::Flag(!v),
                     ModifierValue::Flags(v) => ModifierValue::Flags(v.map(|f| !f)),
                 };
-                assert!(modifier.set_value(i, changed));
+                assert!(modifier.set_value(i, changed.clone()));
                 assert_eq!(modifier.values()[i], changed);
                 let other = if matches!(value, ModifierValue::Flag(_)) {
                     ModifierValue::Scalar(0.0)

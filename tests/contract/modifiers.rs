@@ -5,12 +5,12 @@ use isolith::flat::twin::{field, gradient};
 use isolith::flat::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::scene::{
-    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, ModifierValue, Node, NodeId, NodeKind, Object,
-    Operator, Scene, Shape,
+    Attachment, Axis, Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, ModifierValue, Node, NodeId,
+    NodeKind, Object, Operator, Scene, Shape,
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
-use super::samples::{Random, many};
+use super::samples::{Random, image, many};
 
 /// Something lopsided: an L of two boxes, and a ball blended to it.
 fn content(scene: &mut Scene, group: Node) -> NodeId {
@@ -36,16 +36,27 @@ fn blended() -> Node {
 /// A scene of the lopsided content with these modifiers.
 pub fn modified(modifiers: &[Modifier]) -> Scene {
     let mut scene = Scene::new();
-    let node = modifiers.iter().fold(blended(), |node, modifier| node.modified(*modifier));
+    let node = modifiers.iter().fold(blended(), |node, modifier| node.modified(modifier.clone()));
     let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
     content(&mut scene, node.at(DVec3::new(0.3, -0.2, 0.1)).rotated(turn).scaled(DVec3::splat(1.2)));
     scene
 }
 
+/// The default; with an image where it does nothing without one.
+pub fn usual(kind: ModifierKind) -> Modifier {
+    let (mut modifier, mut random) = (kind.default_modifier(), Random::new(kind as u64));
+    for (index, value) in modifier.values().into_iter().enumerate() {
+        if let ModifierValue::File(file) = value {
+            assert!(modifier.set_value(index, ModifierValue::File(image(&file, &mut || random.bits() as u16))));
+        }
+    }
+    modifier
+}
+
 /// The default, one with random numbers within the range that is offered, others at the limits of that range.
 pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
     let mut random = Random::new(50 + kind as u64);
-    let mut all = vec![kind.default_modifier()];
+    let mut all = vec![usual(kind)];
     for i in 0..count {
         let mut modifier = kind.default_modifier();
         for (index, (param, value)) in kind.params().iter().zip(modifier.values()).enumerate() {
@@ -61,6 +72,8 @@ pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
                 ModifierValue::Counts(_) => ModifierValue::Counts([0, 1, 2].map(|_| random.index(4) as u32)),
                 ModifierValue::Flag(_) => ModifierValue::Flag(random.chance(0.5)),
                 ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| random.chance(0.5))),
+                ModifierValue::Axis(_) => ModifierValue::Axis(random.pick(&Axis::ALL)),
+                ModifierValue::File(file) => ModifierValue::File(image(&file, &mut || random.bits() as u16)),
             };
             assert!(modifier.set_value(index, value), "{kind:?}.{}", param.name);
         }
@@ -77,7 +90,7 @@ pub fn modified_crowds() -> Vec<Scene> {
     let of_kind = |(i, &kind): (usize, &ModifierKind)| {
         let mut scene = gallery::crowd(40, true, i as u64);
         let mut node = Node::clone(&scene.nodes()[0]);
-        node = node.modified(kind.default_modifier());
+        node = node.modified(usual(kind));
         if i % 2 == 1 {
             node = node.modified(Modifier::Twist { angle: 20.0 });
         }
@@ -92,7 +105,7 @@ pub fn modified_crowds() -> Vec<Scene> {
 fn for_each(count: usize, mut visit: impl FnMut(&str, ModifierKind, &FlatScene, &Component)) {
     for &kind in ModifierKind::ALL {
         for (i, modifier) in samples(kind, count).into_iter().enumerate() {
-            let lists = [vec![modifier], vec![Modifier::Twist { angle: 40.0 }, modifier]];
+            let lists = [vec![modifier.clone()], vec![Modifier::Twist { angle: 40.0 }, modifier.clone()]];
             for (list, modifiers) in lists.iter().enumerate().take(if i < 2 { 2 } else { 1 }) {
                 let flat = match flatten(&modified(modifiers), 0.0) {
                     Ok(flat) => flat,
@@ -242,7 +255,7 @@ fn repetitions() -> Vec<Modifier> {
 fn a_repetition_is_the_union_of_its_copies() {
     for modifier in repetitions() {
         let mut scene = Scene::new();
-        content(&mut scene, blended().modified(modifier));
+        content(&mut scene, blended().modified(modifier.clone()));
         let (one, copies) = (flatten(&scene, 0.0).unwrap(), flatten(&explicit(&modifier), 0.0).unwrap());
         assert!(one.components.len() == 1 && copies.components.len() > 1);
         let bounds = one.components[0].bounds.translated(one.components[0].origin);
@@ -269,9 +282,71 @@ fn a_mirror_and_a_ring_are_the_copies_they_stand_for() {
     let mirror = Modifier::Mirror { axes: [true, false, true], blend: 0.0 };
     let ring = Modifier::Polar { count: 5, radius: 1.5, mirrored: false };
     for (modifier, count) in [(mirror, 4), (ring, 5)] {
-        let flat = flatten(&modified(&[modifier]), 0.0).unwrap();
+        let flat = flatten(&modified(std::slice::from_ref(&modifier)), 0.0).unwrap();
         assert_eq!(flat.components.len(), count, "{modifier:?}");
     }
     let seam = Modifier::Mirror { axes: [true, false, false], blend: 0.2 };
     assert_eq!(flatten(&modified(&[seam]), 0.0).unwrap().components.len(), 1);
+}
+
+/// A plate whose top is displaced: its heights are those of the image, tile by tile, mirrored and without a jump.
+#[test]
+fn a_displacement_repeats_its_image_mirrored() {
+    const TILE: f64 = 0.5;
+    let image = Attachment::drawn("steps.png", [4, 2], |x, y| (10 + 60 * x + 20 * y) as u8);
+    let heights = image.content().unwrap().clone();
+    for (axis, height) in Axis::ALL.into_iter().flat_map(|axis| [(axis, 0.2), (axis, -0.2)]) {
+        let displaced = Modifier::Displacement { image: image.clone(), height, tile: TILE, axis };
+        let mut scene = Scene::new();
+        let object = Object { shape: Shape::Box { size: [6.0; 3], rounding: 0.0 }, material: MaterialId(1) };
+        let node = Node::new("Plate", NodeKind::Object(object)).modified(displaced);
+        scene.insert(None, 0, node).unwrap();
+        let flat = flatten(&scene, 0.0).unwrap();
+        // A point over the face, so far right and down as the image is seen from there.
+        let at = |right: f64, down: f64, up: f64| match axis {
+            Axis::X => DVec3::new(up, -down, -right),
+            Axis::Y => DVec3::new(right, up, down),
+            Axis::Z => DVec3::new(right, -down, up),
+        };
+        let inside = |p: DVec3| field(&flat, &flat.components[0], p - flat.components[0].origin) < 0.0;
+        let surface = |right: f64, down: f64| {
+            let (mut low, mut high) = (2.5, 3.5);
+            for _ in 0..50 {
+                let middle = 0.5 * (low + high);
+                if inside(at(right, down, middle)) { low = middle } else { high = middle }
+            }
+            low - 3.0
+        };
+        let side = TILE / 4.0;
+        let mut random = Random::new(3);
+        for _ in 0..200 {
+            // From the image's upper left corner, in pixels: mirrored at each border.
+            let [x, y] = [random.range(-20.0, 20.0), random.range(-20.0, 20.0)].map(f64::floor);
+            let folded = |v: f64, n: f64| {
+                let v = v.rem_euclid(2.0 * n);
+                (if v < n { v } else { 2.0 * n - 1.0 - v }) as isize
+            };
+            let place = |x: f64, y: f64| ((x + 0.5) * side - 0.5 * TILE, (y + 0.5) * side - 0.25 * TILE);
+            let pixel = |x: f64, y: f64| heights.at(folded(x, 4.0), folded(y, 2.0));
+            // The spline in the middle of a pixel.
+            let weights = [(-1.0, 0.125), (0.0, 0.75), (1.0, 0.125)];
+            let mean: f64 = weights.iter().flat_map(|(i, a)| weights.map(|(j, b)| a * b * pixel(x + i, y + j))).sum();
+            let (right, down) = place(x, y);
+            let found = surface(right, down);
+            assert!((found - height * mean).abs() < 1e-6, "{axis:?} at {x} {y}: {found}, not {}", height * mean);
+            // No jump at the border of any pixel.
+            let border = right + 0.5 * side;
+            let step = surface(border + 1e-7, down) - surface(border - 1e-7, down);
+            assert!(step.abs() < 1e-6, "{axis:?} at {x} {y}: {step}");
+        }
+    }
+}
+
+#[test]
+fn without_an_image_a_displacement_is_nothing() {
+    let none = modified(&[ModifierKind::Displacement.default_modifier()]);
+    assert_eq!(flatten(&none, 0.0), flatten(&modified(&[]), 0.0));
+    let Modifier::Displacement { image, tile, axis, .. } = usual(ModifierKind::Displacement) else { panic!() };
+    let flat = modified(&[Modifier::Displacement { image, height: 0.0, tile, axis }]);
+    assert_eq!(flatten(&flat, 0.0), flatten(&none, 0.0));
 }

@@ -12,7 +12,7 @@ use isolith::scene::{
 };
 
 use super::drawn::tube_distance;
-use super::modifiers::modified;
+use super::modifiers::{modified, usual};
 use super::outlines::menger_distance;
 use super::samples::{Random, evaluate};
 use super::surfaces::{Patch, brute_distance, patches};
@@ -142,7 +142,7 @@ fn tables() -> String {
         .unwrap();
     writeln!(text, "| As it is | {} |", of_scene(&modified(&[]), 200)).unwrap();
     for &kind in ModifierKind::ALL {
-        let figures = of_scene(&modified(&[kind.default_modifier()]), 201 + kind as u64);
+        let figures = of_scene(&modified(&[usual(kind)]), 201 + kind as u64);
         writeln!(text, "| {} | {figures} |", kind.label()).unwrap();
     }
     text

@@ -1,6 +1,7 @@
 //! Files that shapes keep: chosen, refused, done without.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
@@ -19,22 +20,29 @@ fn file_of(harness: &Harness<'_, Editor>, id: NodeId) -> String {
     file.expect("a file").label().to_owned()
 }
 
-/// Clicks the field of the file and types a path.
-fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
+/// Clicks the field of the file and types a path; to be ended by Enter.
+fn name(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
     harness.get_by_label(field).click();
     harness.run();
     press(harness, Modifiers::COMMAND, Key::A);
     harness.event(Event::Text(path.display().to_string()));
     harness.run();
-    press(harness, Modifiers::NONE, Key::Enter);
 }
 
-#[test]
-fn an_image_is_chosen_refused_and_done_without() {
-    let folder = tempfile::tempdir().unwrap();
-    let [image, text] = ["alps.png", "notes.txt"].map(|name| folder.path().join(name));
-    image::GrayImage::from_fn(8, 8, |x, y| image::Luma([(16 * x + y) as u8])).save(&image).unwrap();
-    std::fs::write(&text, "no image").unwrap();
+/// Chooses a file, and waits until it has been read.
+pub fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
+    name(harness, field, path);
+    press(harness, Modifiers::NONE, Key::Enter);
+    let since = Instant::now();
+    while harness.state().reading().next().is_some() {
+        assert!(since.elapsed() < Duration::from_secs(60), "{} is read without an end", path.display());
+        std::thread::sleep(Duration::from_millis(1));
+        harness.run();
+    }
+}
+
+/// Two heightmaps, selected.
+fn with_landscapes() -> (Harness<'static, Editor>, [NodeId; 2]) {
     let (mut scene, [_, ball, cube, _]) = scene();
     for id in [ball, cube] {
         let mut node = scene.node(id).unwrap().as_ref().clone();
@@ -46,12 +54,23 @@ fn an_image_is_chosen_refused_and_done_without() {
     let mut harness = open(scene);
     harness.state_mut().document_mut().select(vec![ball, cube]);
     harness.run();
+    (harness, [ball, cube])
+}
+
+#[test]
+fn an_image_is_chosen_refused_and_done_without() {
+    let folder = tempfile::tempdir().unwrap();
+    let [image, text] = ["alps.png", "notes.txt"].map(|name| folder.path().join(name));
+    image::GrayImage::from_fn(8, 8, |x, y| image::Luma([(16 * x + y) as u8])).save(&image).unwrap();
+    std::fs::write(&text, "no image").unwrap();
+    let (mut harness, [ball, cube]) = with_landscapes();
     choose(&mut harness, "Image: A hill", &image);
     assert_eq!([ball, cube].map(|id| file_of(&harness, id)), ["alps.png"; 2]);
     // What is no image is told, and changes nothing.
     choose(&mut harness, "Image: alps.png", &text);
     let message = harness.state().messages().last().unwrap().text.clone();
-    assert!(message.contains("\"notes.txt\" must be a PNG, JPEG or EXR image"), "{message}");
+    let place = format!("Cube {cube}: Heightmap: image: ");
+    assert!(message.starts_with(&format!("{place}\"notes.txt\" must be a PNG, JPEG or EXR image")), "{message}");
     choose(&mut harness, "Image: alps.png", &folder.path().join("none.png"));
     let message = harness.state().messages().last().unwrap().text.clone();
     assert!(message.contains("none.png") && message.contains("cannot be read"), "{message}");
@@ -60,4 +79,40 @@ fn an_image_is_chosen_refused_and_done_without() {
     harness.run();
     assert_eq!(file_of(&harness, cube), "A hill");
     assert_eq!(undo_all(&mut harness), 2);
+}
+
+#[test]
+fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("alps.png");
+    image::GrayImage::new(64, 64).save(&image).unwrap();
+    let (mut harness, [ball, _]) = with_landscapes();
+    let scene = harness.state().document().scene().clone();
+    let start = |harness: &mut Harness<'_, Editor>| {
+        name(harness, "Image: A hill", &image);
+        harness.key_press(Key::Enter);
+        harness.step();
+        // It is looked for in the next frame at the earliest, after that has told of it.
+        assert_eq!(harness.state().reading().collect::<Vec<_>>(), ["alps.png"]);
+        assert_eq!(*harness.state().document().scene(), scene);
+    };
+    start(&mut harness);
+    harness.step();
+    assert!(harness.query_by_label("Reading alps.png…").is_some());
+    while harness.state().reading().next().is_some() {
+        std::thread::sleep(Duration::from_millis(1));
+        harness.run();
+    }
+    assert_eq!(file_of(&harness, ball), "alps.png");
+    harness.run();
+    assert!(harness.query_by_label("Reading alps.png…").is_none());
+    assert_eq!(undo_all(&mut harness), 1);
+    harness.run();
+    start(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::N);
+    harness.step();
+    assert_eq!(harness.state().reading().count(), 0);
+    harness.run();
+    assert_eq!(harness.state().document().scene().nodes().len(), 1, "a new scene has a sun");
+    assert_eq!(undo_all(&mut harness), 0);
 }

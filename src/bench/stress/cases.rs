@@ -6,8 +6,8 @@ use super::figures::Allowed;
 use super::place::View;
 use super::subject::{Place, Subject, usual_blend};
 use crate::scene::{
-    Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator, ParamValue, Shape, ShapeKind,
-    limits,
+    Attached, Attachment, Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator,
+    ParamValue, Shape, ShapeKind, limits,
 };
 
 /// A thing to draw, and how.
@@ -173,9 +173,22 @@ fn joint(operator: Operator, kernel: BlendKernel, all: &mut Vec<Case>) {
     }
 }
 
+/// With an image of bumps where it needs one.
+fn with_image(mut modifier: Modifier) -> Modifier {
+    const SIDE: u32 = 16;
+    let rise = |x: u32| x * (SIDE - 1 - x);
+    for (index, value) in modifier.values().into_iter().enumerate() {
+        if let ModifierValue::File(Attached::Heights(_)) = value {
+            let bumps = Attachment::drawn("bumps.png", [SIDE; 2], |x, y| (rise(x) * rise(y) / 13) as u8);
+            modifier.set_value(index, ModifierValue::File(Attached::Heights(bumps)));
+        }
+    }
+    modifier
+}
+
 fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
-    let usual = kind.default_modifier();
-    everywhere(&Subject::Modified(usual), all);
+    let usual = with_image(kind.default_modifier());
+    everywhere(&Subject::Modified(usual.clone()), all);
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
         for (name, number) in extremes(&param.limits, 1.0) {
             let whole = number as u32;
@@ -185,9 +198,10 @@ fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
                 ModifierValue::Count(_) => vec![("", ModifierValue::Count(whole))],
                 ModifierValue::Counts(counts) => along_axes(counts, whole, ModifierValue::Counts),
                 ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
+                ModifierValue::Axis(_) | ModifierValue::File(_) => continue,
             };
             for (axis, value) in changed {
-                let mut changed_modifier = usual;
+                let mut changed_modifier = usual.clone();
                 if changed_modifier.set_value(index, value) && changed_modifier != usual {
                     let circumstance = format!("{}{axis} {name}", param.name.replace('_', " "));
                     all.push(plain(Subject::Modified(changed_modifier), circumstance));
@@ -198,7 +212,7 @@ fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
     if let Modifier::Repeat { spacing, .. } = usual {
         const CELL: f64 = 1e4;
         for (name, axes) in [("a row", [0, 1, 1]), ("a grid", [0, 0, 0])] {
-            let mut endless = usual;
+            let mut endless = usual.clone();
             endless.set_value(0, ModifierValue::Counts(axes));
             let view = View::At(DVec3::from(spacing) * CELL * DVec3::from(axes.map(|n| f64::from(n == 0))));
             let case = plain(Subject::Modified(endless), format!("cell 1e4 of {name} without end"));

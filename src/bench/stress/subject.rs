@@ -75,7 +75,7 @@ impl Subject {
                     (cuboid([0.2, 0.8, 0.3]), DVec3::new(-0.3, 0.15, 0.05)),
                     (ball(0.2), DVec3::new(0.4, 0.1, 0.1)),
                 ];
-                (Node::new("Modified", NodeKind::Group(group)).modified(*modifier), parts.to_vec())
+                (Node::new("Modified", NodeKind::Group(group)).modified(modifier.clone()), parts.to_vec())
             }
         };
         let node = node.at(place.at).rotated(Place::turn()).scaled(DVec3::splat(place.scale));

@@ -11,6 +11,7 @@ mod relief;
 mod tube;
 
 use glam::DVec3;
+pub(super) use relief::spline;
 
 use crate::geometry::Aabb;
 use crate::scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_outline};

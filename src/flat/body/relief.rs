@@ -63,11 +63,21 @@ pub fn ocean(
     numbers(size, amplitude, slope, sharp, rows)
 }
 
-/// Heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): it stays among the
-/// heights around it, and its slope along an axis among their differences.
+/// A landscape from an image.
 pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> Numbers {
+    let [columns, lines] = image.size.map(|n| n as f64);
+    let (rows, steepest) = spline(image, [size[0] / columns, size[2] / lines], height);
+    let mut out = numbers(size, height, steepest, lines, rows);
+    out.parameters[5] = columns;
+    out
+}
+
+/// Heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): it stays among the
+/// heights around it, and its slope along an axis among their differences. Its rows, and its steepest slope where a cell
+/// has these sides, in metres, and white is `height` metres above black.
+pub fn spline(image: &Heights, cell: [f64; 2], height: f64) -> (Vec<[f64; 4]>, f64) {
     let [columns, lines] = image.size.map(|n| n as isize);
-    let cell = [size[0] / columns as f64, size[2] / lines as f64].map(|side| side.max(LEAST_CELL));
+    let cell = cell.map(|side| side.max(LEAST_CELL));
     let mut rows = Vec::with_capacity(image.values.len());
     let mut steepest: f64 = 0.0;
     for line in 0..lines {
@@ -84,7 +94,5 @@ pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> Numbers {
             steepest = steepest.max((along_x / cell[0]).hypot(along_z / cell[1]));
         }
     }
-    let mut out = numbers(size, height, steepest, lines as f64, rows);
-    out.parameters[5] = columns as f64;
-    out
+    (rows, steepest)
 }

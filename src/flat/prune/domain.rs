@@ -131,5 +131,6 @@ fn of_content(kind: ModifierKind, rows: &[Row], exact: f64) -> f64 {
         ModifierKind::Onion => local + own(0, 0) + own(0, 1) * own(0, 2),
         ModifierKind::Waves => local / own(0, 3) + own(0, 0).abs(),
         ModifierKind::Noise => local / own(1, 0) + own(1, 1),
+        ModifierKind::Displacement => local / own(1, 0) + own(1, 1).abs().max(own(1, 2).abs()),
     }
 }

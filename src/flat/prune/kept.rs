@@ -7,7 +7,9 @@ use super::CellTree;
 use super::build::{Build, Parts};
 use super::domain::{Domain, domains_of};
 use crate::flat::twin::Joint;
-use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data, modifier_rows};
+use crate::flat::{
+    Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, Row, leaf_data, modifier_data, modifier_rows,
+};
 use crate::scene::ShapeKind;
 
 /// A component's tree, and the component as it was then.
@@ -92,8 +94,7 @@ impl Kept {
                     was.code == is.code && Joint::read(&old.numbers[first]) == Joint::read(&new_numbers[first])
                 }
                 () if is.modifier().is_some() => {
-                    let rows = first..first + MODIFIER_ROWS + is.modifier().map_or(0, modifier_rows);
-                    was.code == is.code && old.numbers[rows.clone()] == new_numbers[rows]
+                    was.code == is.code && modifier(&is, &old.numbers[first..]) == modifier(&is, &new_numbers[first..])
                 }
                 () => was.code == is.code && leaf(&is, &old.numbers[first..]) == leaf(&is, &new_numbers[first..]),
             };
@@ -116,6 +117,12 @@ impl Kept {
 fn leaf<'a>(node: &FlatNode, numbers: &'a [Row]) -> [&'a [Row]; 2] {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
     [&numbers[..LEAF_ROWS + kind.rows()], leaf_data(kind, numbers)]
+}
+
+/// The same of a modifier.
+fn modifier<'a>(node: &FlatNode, numbers: &'a [Row]) -> Option<[&'a [Row]; 2]> {
+    let kind = node.modifier()?;
+    Some([&numbers[..MODIFIER_ROWS + modifier_rows(kind)], modifier_data(kind, &numbers[MODIFIER_ROWS..])])
 }
 
 fn nodes<'a>(flat: &'a FlatScene, component: &'a Component) -> impl Iterator<Item = FlatNode> + 'a {

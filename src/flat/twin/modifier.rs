@@ -2,7 +2,8 @@
 //! twin of the one of the same name in `shaders/mod/`; what the rows hold is said there.
 
 use super::Real;
-use crate::flat::Row;
+use super::relief::sdf_heights;
+use crate::flat::{Row, modifier_data};
 use crate::scene::ModifierKind;
 
 type Point<T> = [T; 3];
@@ -57,6 +58,7 @@ pub fn modifier_value<T: Real>(kind: ModifierKind, f: T, p: Point<T>, rows: &[Ro
         ModifierKind::Onion => mod_onion_value(f, rows),
         ModifierKind::Waves => mod_waves_value(f, p, rows),
         ModifierKind::Noise => mod_noise_value(f, p, rows),
+        ModifierKind::Displacement => mod_displacement_value(f, p, rows, modifier_data(kind, rows)),
         _ => f,
     }
 }
@@ -307,4 +309,25 @@ pub fn mod_noise_value<T: Real>(f: T, p: Point<T>, rows: &[Row]) -> T {
         frequency *= 2.0;
     }
     (moved * b[0]).max(f - b[1]).min(f + b[1])
+}
+
+/// Where the point stands in the image, in tiles, mirrored at their borders.
+fn displacement_place<T: Real>([x, y, z]: Point<T>, [width, length, ..]: [f64; 4], axis: f64) -> [T; 2] {
+    let (across, down) = match axis as u32 {
+        0 => (-z, -y),
+        1 => (x, z),
+        _ => (x, -y),
+    };
+    [across * width + 0.5, down * length + 0.5].map(|tiles| {
+        let even = 2.0 * (tiles.value() * 0.5).round_ties_even();
+        (tiles - even).abs()
+    })
+}
+
+/// The field displaced by an image.
+pub fn mod_displacement_value<T: Real>(f: T, p: Point<T>, rows: &[Row], data: &[Row]) -> T {
+    let (a, [scale, least, greatest, axis]) = (row(rows, 0), row(rows, 1));
+    let [x, y] = displacement_place(p, a, axis);
+    let height = sdf_heights([x * a[2], y * a[3]], [a[2], a[3]], &|i| data[i].map(f64::from));
+    ((f - height) * scale).max(f - greatest).min(f - least)
 }

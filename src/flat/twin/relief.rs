@@ -88,13 +88,20 @@ fn cosine<T: Real>(turns: T) -> T {
 /// the border.
 pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     let (columns, lines) = (q[5], q[6]);
-    // From the middle of the nearest cell, in cells.
-    let place = |v: T, half: f64, count: f64| {
-        let cells = v.max(T::constant(-half)).min(T::constant(half)) * (0.5 * count / half.max(1e-9)) + 0.5 * count;
+    let cells = |v: T, half: f64, count: f64| {
+        v.max(T::constant(-half)).min(T::constant(half)) * (0.5 * count / half.max(1e-9)) + 0.5 * count
+    };
+    sdf_heights([cells(x, q[0], columns), cells(z, q[2], lines)], [columns, lines], &|row| rows(1 + row))
+}
+
+/// The height of a grid at a place, in cells from its first corner: a quadratic B-spline.
+pub fn sdf_heights<T: Real>(place: [T; 2], [columns, lines]: [f64; 2], rows: Data<'_>) -> T {
+    // From the middle of the cell, in cells.
+    let within = |cells: T, count: f64| {
         let cell = cells.value().floor().min(count - 1.0);
         (cell, cells - (cell + 0.5))
     };
-    let ((column, tx), (line, tz)) = (place(x, q[0], columns), place(z, q[2], lines));
+    let ((column, tx), (line, tz)) = (within(place[0], columns), within(place[1], lines));
     let weights = |t: T| {
         let (below, above) = (t * -1.0 + 0.5, t + 0.5);
         [below * below * 0.5, t * t * -1.0 + 0.75, above * above * 0.5]
@@ -103,7 +110,7 @@ pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T 
     let mut sum = T::constant(0.0);
     for (side, weight) in [-1.0, 0.0, 1.0].into_iter().zip(wz) {
         let near = (line + side).clamp(0.0, lines - 1.0);
-        let [a, b, c, _] = rows(1 + (near * columns + column) as usize);
+        let [a, b, c, _] = rows((near * columns + column) as usize);
         sum = sum + (wx[0] * a + wx[1] * b + wx[2] * c) * weight;
     }
     sum

@@ -23,8 +23,8 @@ pub fn gradient_wgsl(function: &str) -> Option<String> {
     Some(text)
 }
 
-/// A shape's source with something that stands for the data it reads; their derivative is zero.
-fn with_rows(text: String) -> String {
+/// A source with something that stands for the data it reads; their derivative is zero.
+pub(super) fn with_rows(text: String) -> String {
     if !text.contains("scene_row(") {
         return text;
     }

@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use super::dual::dual;
+use super::gradients::with_rows;
 use super::source::plain_source;
-use crate::flat::{FlatNode, is_copying, modifier_rows};
+use crate::flat::{FlatNode, is_copying, modifier_data_row, modifier_rows};
 use crate::scene::ModifierKind;
 
 /// The name of a modifier's file.
@@ -21,8 +22,8 @@ pub fn has_point(kind: ModifierKind) -> bool {
 
 /// Whether it changes the field's value.
 pub fn has_value(kind: ModifierKind) -> bool {
-    use ModifierKind::{Bend, Noise, Onion, Round, Taper, Twist, Waves};
-    matches!(kind, Twist | Bend | Taper | Round | Onion | Waves | Noise)
+    use ModifierKind::{Bend, Displacement, Noise, Onion, Round, Taper, Twist, Waves};
+    matches!(kind, Twist | Bend | Taper | Round | Onion | Waves | Noise | Displacement)
 }
 
 /// The line that includes a modifier's functions.
@@ -92,8 +93,8 @@ pub fn derived(function: &str) -> Option<String> {
     // All three may differentiate the same function by other arguments: each has its own copy of the source.
     let text = renamed(&plain_source(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
     let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
-    let rows: String = (0..modifier_rows(kind)).map(|i| format!(", r{i}: vec4f")).collect();
-    let passed: String = (0..modifier_rows(kind)).map(|i| format!(", r{i}")).collect();
+    let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
+    let passed = own_rows(kind, &|i| format!("r{i}"), &|_| "data".to_owned());
     let wrapper = match way {
         "pull" => format!(
             "fn {function}(p: vec3f, v: vec3f, k: u32{rows}) -> f32 {{\n    return dot(v, \
@@ -109,7 +110,7 @@ pub fn derived(function: &str) -> Option<String> {
         _ => return None,
     };
     let source = format!("{text}\n{wrapper}");
-    let twin = dual(&source, function).ok()?;
+    let twin = dual(&with_rows(source.clone()), function).ok()?;
     Some(format!("{source}{twin}"))
 }
 
@@ -123,9 +124,16 @@ fn renamed(source: &str, suffix: &str) -> String {
 
 /// The arguments of a modifier's function: `first`, then its rows read from `row` on.
 fn arguments(kind: ModifierKind, first: &str) -> String {
-    let rows = (0..modifier_rows(kind)).map(|i| format!("scene_row(row + {i}u)"));
-    let first = (!first.is_empty()).then(|| first.to_owned());
-    first.into_iter().chain(rows).collect::<Vec<_>>().join(", ")
+    let row = |i: usize| format!("scene_row(row + {i}u)");
+    let rows = own_rows(kind, &row, &|i| format!("row + {i}u + u32({}.y)", row(i)));
+    if first.is_empty() { rows.trim_start_matches(", ").to_owned() } else { format!("{first}{rows}") }
+}
+
+/// A modifier's own rows as further arguments, what `row` makes of each; instead of the one that says where its data are,
+/// what `data` makes of it.
+pub fn own_rows(kind: ModifierKind, row: &dyn Fn(usize) -> String, data: &dyn Fn(usize) -> String) -> String {
+    let argument = |i: usize| if modifier_data_row(kind) == Some(i) { data(i) } else { row(i) };
+    (0..modifier_rows(kind)).map(|i| format!(", {}", argument(i))).collect()
 }
 
 /// A function that calls what belongs to the modifier.

@@ -111,10 +111,10 @@ impl Features {
     /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
     /// is a hit.
     fn is_rough(&self) -> bool {
-        use ModifierKind::{Bend, Noise, Taper, Twist, Waves};
+        use ModifierKind::{Bend, Displacement, Noise, Taper, Twist, Waves};
         use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, Ocean, Terrain};
         self.shapes.iter().any(|kind| matches!(kind, Julia | Kleinian | Mandelbulb | Terrain | Heightmap | Ocean))
-            || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise))
+            || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise | Displacement))
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
@@ -346,5 +346,14 @@ mod tests {
         let features = Features { shapes: [ShapeKind::Sphere].into(), ..Features::none() };
         let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
         assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
+        for &kind in &Features::all().modifiers {
+            let holds = |modifiers: BTreeSet<_>| {
+                let features = Features { modifiers, stack: 2, ..Features::none() };
+                let text = source("trace.wgsl", &Evaluator::Interpreted(features), Options::default()).unwrap();
+                text.contains(&format!("fn mod_{}", super::super::modifiers::file(kind)))
+            };
+            let others = Features::all().modifiers.into_iter().filter(|other| *other != kind).collect();
+            assert!(holds([kind].into()) && !holds(others) && !holds(BTreeSet::new()), "{kind:?}");
+        }
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::modifiers::{file, has_point, has_value, modifier_include};
+use super::modifiers::{self, file, has_point, has_value, modifier_include};
 use super::shares::shares;
 use super::structure::{Entry, EntryKind, ShapeSet, Structure};
 use super::{Options, Skipping};
-use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, data_row, is_copying, modifier_rows};
+use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, data_row, is_copying};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
@@ -310,7 +310,8 @@ pub(super) fn any_of(
 
 /// A modifier's own rows as further arguments.
 fn own_rows(kind: ModifierKind, row: usize) -> String {
-    (0..modifier_rows(kind)).map(|i| format!(", q{}", row + MODIFIER_ROWS + i)).collect()
+    let at = row + MODIFIER_ROWS;
+    modifiers::own_rows(kind, &|i| format!("q{}", at + i), &|i| data_argument(at + i))
 }
 
 /// The place of `point` in the leaf's own space, the parameters of its shape, and where its data begin.
@@ -320,7 +321,11 @@ pub(super) fn arguments(point: &str, entry: &Entry, shape: ShapeKind, row: usize
         if i < shape.parameter_rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
     };
     let (a, b) = (parameter(0), parameter(1));
-    let data = data_row(shape).map(|i| row + i);
-    let data = data.map_or(String::new(), |at| format!(", first_row + {at}u + u32(q{at}.y)"));
+    let data = data_row(shape).map_or(String::new(), |i| format!(", {}", data_argument(row + i)));
     format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
+}
+
+/// The first of the data that the row at `at` of the component's says where to find.
+fn data_argument(at: usize) -> String {
+    format!("first_row + {at}u + u32(q{at}.y)")
 }

@@ -8,6 +8,7 @@ use serde_path_to_error::{Path as FieldPath, Segment};
 
 use super::error::{FileError, clipped};
 use crate::scene::NodeId;
+use crate::scene::attachment::cleaned;
 
 /// Line and column, counted from 1, of what follows these bytes.
 pub(super) fn line_and_column(before: &[u8]) -> (usize, usize) {
@@ -111,7 +112,9 @@ fn offender(node: &Value, path: &FieldPath, reason: &str) -> String {
 
 /// Whether a message of serde is about this value.
 fn is_blamed(value: &Value, reason: &str) -> bool {
+    let variant = reason.strip_prefix("unknown variant `").and_then(|rest| rest.split('`').next());
     let found = match value {
+        Value::String(v) if variant == Some(v) => return true,
         Value::Null => "null".to_owned(),
         Value::Bool(v) => format!("boolean `{v}`"),
         Value::Number(v) if v.is_f64() => return false,
@@ -119,9 +122,21 @@ fn is_blamed(value: &Value, reason: &str) -> bool {
         Value::String(v) => format!("string {v:?}"),
         Value::Array(v) if reason.starts_with(&format!("invalid length {}, ", v.len())) => return true,
         Value::Array(_) => "sequence".to_owned(),
+        Value::Object(map) if is_blamed_file(map, reason) => return true,
         Value::Object(_) => "map".to_owned(),
     };
     reason.strip_prefix("invalid type: ").and_then(|r| r.strip_prefix(&found)).is_some_and(|r| r.starts_with(", "))
+}
+
+/// Whether a message is about the file that is kept here: it cannot be used, or its fields are wrong.
+fn is_blamed_file(map: &Map<String, Value>, reason: &str) -> bool {
+    let field = |name: &str| map.get(name).and_then(Value::as_str);
+    match (field("name"), field("base64"), named(reason)) {
+        (Some(name), Some(_), None) => reason.starts_with(&format!("{:?} ", cleaned(name))),
+        (None, Some(_), Some("name")) | (Some(_), None, Some("base64")) => reason.starts_with("missing field"),
+        (Some(_), Some(_), Some(unknown)) => reason.starts_with("unknown field") && map.contains_key(unknown),
+        _ => false,
+    }
 }
 
 /// What can be read of the node at `index` before the text goes wrong. Nothing else is kept.

@@ -1,7 +1,7 @@
 //! Lists of what modifiers hold.
 
 use super::*;
-use crate::scene::{Modifier, ModifierKind};
+use crate::scene::{Attachment, Modifier, ModifierKind};
 
 /// Forty balls and boxes in one blend, below modifiers; `beside` puts as many more beside them, joined with a blend.
 fn modified_crowd(seed: u64, modifiers: &[Modifier], beside: bool) -> Scene {
@@ -14,7 +14,7 @@ fn modified_crowd(seed: u64, modifiers: &[Modifier], beside: bool) -> Scene {
         crowds.push(outer);
     }
     let parent = crowds.first().copied();
-    let held = modifiers.iter().fold(Node::new("", group(0.08)), |node, modifier| node.modified(*modifier));
+    let held = modifiers.iter().fold(Node::new("", group(0.08)), |node, modifier| node.modified(modifier.clone()));
     crowds.push(add(&mut scene, parent, held.at(DVec3::new(0.3, 0.2, -0.1)).scaled(DVec3::splat(0.8))));
     for crowd in crowds {
         for _ in 0..40 {
@@ -35,6 +35,10 @@ fn all_modifiers() -> Vec<Modifier> {
         Modifier::Repeat { counts, spacing, offset, turn, mirrored, carve_from, carve_to } => {
             let spacing = spacing.map(|s| 1.2 * s);
             Modifier::Repeat { counts, spacing, offset, turn, mirrored, carve_from, carve_to }
+        }
+        Modifier::Displacement { height, tile, axis, .. } => {
+            let image = Attachment::drawn("bumps.png", [8; 2], |x, y| (20 * (x ^ y)) as u8);
+            Modifier::Displacement { image, height, tile, axis }
         }
         other => other,
     };
@@ -69,8 +73,8 @@ fn contents_of_modifiers_have_lists_of_their_own() {
     let all = all_modifiers();
     let (mut exact_all, mut built) = (0, 0);
     for (i, modifier) in all.iter().enumerate() {
-        let other = all[(i + 3) % all.len()];
-        for (j, modifiers) in [vec![*modifier], vec![*modifier, other]].iter().enumerate() {
+        let other = all[(i + 3) % all.len()].clone();
+        for (j, modifiers) in [vec![modifier.clone()], vec![modifier.clone(), other]].iter().enumerate() {
             for beside in [false, true] {
                 let seed = (4 * i + 2 * j) as u64 + u64::from(beside);
                 let Ok(flat) = flatten(&modified_crowd(seed, modifiers, beside), 0.0) else { continue };

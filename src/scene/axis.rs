@@ -1,0 +1,26 @@
+//! The axes of a space.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// One of the three axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Axis {
+    /// To the right.
+    X,
+    /// Upwards.
+    Y,
+    /// Towards who looks from the front.
+    Z,
+}
+
+impl Axis {
+    /// All of them, in order.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// Name for people.
+    pub fn label(self) -> &'static str {
+        ["X", "Y", "Z"][self as usize]
+    }
+}
