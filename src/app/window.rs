@@ -9,6 +9,8 @@ use crate::render::{Gpu, RenderError};
 pub(super) struct Window {
     canvas: Canvas,
     shared: Shared,
+    /// Whether the window has been painted: before its first picture, for which a driver may compile for seconds.
+    is_open: bool,
 }
 
 impl Window {
@@ -19,7 +21,7 @@ impl Window {
         let gpu = Gpu::watch(state.device.clone(), state.queue.clone(), state.adapter.get_info());
         *shared.gpu.borrow_mut() = Some(gpu.clone());
         crate::render::driver::loop_iterations(&gpu)?;
-        Ok(Self { canvas: Canvas::new(gpu, state)?, shared })
+        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false })
     }
 }
 
@@ -33,6 +35,10 @@ impl eframe::App for Window {
         let mut slot = self.shared.editor.borrow_mut();
         let editor = &mut *slot;
         editor.show(ui, &self.canvas.picture());
+        if !std::mem::replace(&mut self.is_open, true) {
+            ui.ctx().request_repaint();
+            return;
+        }
         match self.canvas.update(editor, ui.ctx()) {
             Ok(()) => {}
             // What this frame has drawn cannot be painted: the pass is repeated, empty.

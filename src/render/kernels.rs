@@ -338,7 +338,8 @@ impl Worker {
                     return;
                 }
                 if let Some(warmer) = &warmer {
-                    warmer.warm(&evaluator);
+                    // A kernel that fails is reported where it is built for use.
+                    let _ = warmer.warm(&evaluator);
                 }
                 if finish.send((key, build(&shared, &evaluator))).is_err() {
                     return;

@@ -36,14 +36,15 @@ impl Warmer {
         };
         let rows = zeros(MAX_KERNEL_ROWS as usize * 16);
         let small = zeros(1024);
-        let counts = [(); 4].map(|()| zeros(1024));
+        // What is written to may not be read in the same dispatch: each has a buffer of its own.
+        let written = [(); 6].map(|()| zeros(1024));
         let lists = Lists {
-            tiles: small.buffer(),
-            tile_counts: rows.buffer(),
-            march_counts: counts[0].buffer(),
-            rays: counts[1].buffer(),
-            ray_counts: counts[2].buffer(),
-            nothing: counts[3].buffer(),
+            tiles: written[0].buffer(),
+            tile_counts: written[1].buffer(),
+            march_counts: written[2].buffer(),
+            rays: written[3].buffer(),
+            ray_counts: written[4].buffer(),
+            nothing: written[5].buffer(),
         };
         let [numbers, lists_texture] =
             [("numbers", NUMBERS_FORMAT), ("lists", LISTS_FORMAT)].map(|(l, f)| RowTexture::new(device, l, f));
@@ -68,10 +69,14 @@ impl Warmer {
         })
     }
 
-    /// Compiles the kernel of `evaluator` by dispatching it over nothing. Failures show up again where
-    /// the kernel is built for use.
-    pub fn warm(&self, evaluator: &Evaluator) {
-        let Ok(kernel) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else { return };
+    /// Compiles the kernel of `evaluator` by dispatching it over nothing.
+    ///
+    /// # Errors
+    /// What the device complains about. Failures show up again where the kernel is built for use.
+    pub fn warm(&self, evaluator: &Evaluator) -> Result<(), GpuError> {
+        let Ok(kernel) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else {
+            return Ok(());
+        };
         let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
@@ -90,7 +95,21 @@ impl Warmer {
             }
         }
         self.gpu.queue.submit([encoder.finish()]);
-        // A failed kernel is reported where it is built for use.
-        let _ = self.gpu.wait();
+        self.gpu.wait()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery;
+    use crate::render::kernel::Features;
+
+    /// Nobody sees what a warmer's device complains about: kernels would only be compiled later, while a frame waits.
+    #[test]
+    fn what_is_dispatched_over_nothing_is_accepted() {
+        let warmer = Warmer::new(Options::default()).unwrap_or_else(|error| panic!("{error}"));
+        let flat = crate::flat::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
+        warmer.warm(&Evaluator::Interpreted(Features::of(&flat))).unwrap_or_else(|error| panic!("{error}"));
     }
 }
