@@ -75,7 +75,7 @@ impl From<RenderError> for Failure {
             RenderError::Cancelled => Self::Cancelled,
             RenderError::Gpu(error) => error.into(),
             RenderError::Size(..) => Self::Usage(error.to_string()),
-            RenderError::Shader(_) | RenderError::Counts(..) => Self::Other(error.to_string()),
+            RenderError::Shader(_) | RenderError::Counts(..) | RenderError::Work(..) => Self::Other(error.to_string()),
         }
     }
 }

@@ -157,8 +157,9 @@ fn gpu_picture(
     let look = arguments.view;
     let mut renderer = if look.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
     if !look.counts() {
-        // One picture is done before kernels of its own could be built: 4 s against 40 s at 577 nodes on lavapipe.
-        renderer.set_method(Method::Interpreted);
+        // One picture is done before kernels of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Lists are
+        // made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
+        renderer.set_method(Method::Pruned);
     }
     let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
     let mut update = |share| progress.update(f64::from(share));

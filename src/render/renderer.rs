@@ -31,6 +31,7 @@ use crate::flat::inspect::Look;
 use crate::flat::{FlatScene, Pruner, Row};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
+use crate::scene::NodeId;
 
 use choice::Chosen;
 pub use frame::Frame;
@@ -53,6 +54,9 @@ pub enum RenderError {
     /// What each pixel takes cannot be counted in one buffer of the device.
     #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
     Counts(u32, u32),
+    /// What is to be done is more than one buffer of the device lists: most of it for this node.
+    #[error("a picture of {0} by {1} pixels takes too many steps for this device, most of them for node {2}")]
+    Work(u32, u32, NodeId),
     /// The caller asked to stop.
     #[error("cancelled")]
     Cancelled,
@@ -65,6 +69,20 @@ fn work_bytes(plan: &Plan) -> Vec<u8> {
         slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
     }
     work
+}
+
+/// Whether a device with buffers of `limit` bytes can hold the list of what is to be done. A component of a thousand leaves
+/// that is walked without lists on a driver that ends loops early makes it long.
+fn check_work(flat: &FlatScene, plan: &Plan, size: [u32; 2], limit: u64) -> Result<(), RenderError> {
+    // Buffers grow by powers of two.
+    let bytes = (plan.pieces.len() * WORK_STRIDE).next_power_of_two() as u64;
+    if bytes <= limit {
+        return Ok(());
+    }
+    let mut counts = vec![0_u32; flat.components.len()];
+    plan.pieces.iter().for_each(|piece| counts[piece.work.component as usize] += 1);
+    let most = (0..counts.len()).max_by_key(|i| counts[*i]).unwrap_or_default();
+    Err(RenderError::Work(size[0], size[1], flat.ids[flat.components[most].first as usize]))
 }
 
 /// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
@@ -239,6 +257,7 @@ impl Renderer {
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
         let Chosen { evaluations, .. } = self.choose(flat, camera)?;
         let plan = plan(flat, camera, size, &evaluations, &self.pace);
+        check_work(flat, &plan, size, self.gpu.device.limits().max_buffer_size)?;
         Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
     }
 
@@ -264,6 +283,7 @@ impl Renderer {
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
         let plan = plan(flat, camera, size, &evaluations, &self.pace);
+        check_work(flat, &plan, size, self.gpu.device.limits().max_buffer_size)?;
         let (form_rows, forms) = form_windows(flat, &keys);
         let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
         if self.upload(flat, &trees, camera, size, &plan) || forms_are_new {
@@ -343,5 +363,26 @@ impl Renderer {
 
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{flat, gallery};
+
+    #[test]
+    fn more_work_than_a_buffer_lists_is_refused_with_the_node() {
+        let flat = flat::flatten(&gallery::random(32, 1), 0.0).expect("within the limits");
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        let mut renderer = Renderer::new(&gpu).expect("a renderer");
+        let position = glam::DVec3::new(0.0, 0.0, 6.0);
+        let camera = Camera { position, rotation: glam::DQuat::IDENTITY, fov_y: 0.7, near: 0.01, far: 1e3 };
+        let size = [64, 64];
+        let frame = renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
+        assert!(check_work(&flat, &frame.plan, size, 1 << 30).is_ok());
+        let refused = check_work(&flat, &frame.plan, size, 256);
+        let Err(RenderError::Work(64, 64, node)) = refused else { panic!("{refused:?}") };
+        assert!(flat.ids.contains(&node));
     }
 }
