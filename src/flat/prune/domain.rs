@@ -36,7 +36,10 @@ pub(super) fn domains(flat: &FlatScene, component: &Component, least: u32) -> Op
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let rows = |node: &FlatNode| &flat.numbers[node.numbers as usize..];
     let mut exact = vec![0.0; component.contents.len()];
-    fill_exact(&Entries { nodes, rows: &rows, contents: &component.contents }, 0..nodes.len(), 0.0, &mut exact);
+    // Asked of every large component in each frame that changes anything; few hold modifiers.
+    if component.is_modified() {
+        fill_exact(&Entries { nodes, rows: &rows, contents: &component.contents }, 0..nodes.len(), 0.0, &mut exact);
+    }
     let size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
     let own = Content { entry: 0, bounds: component.bounds, skip: component.bounds, slope: 0.0, copies: 1 };
     let first = std::iter::once((&own, 0..nodes.len(), 0.0));

@@ -159,7 +159,7 @@ fn has_domains(flat: &FlatScene, component: &Component, least: u32) -> bool {
 }
 
 impl CellTree {
-    /// The lists of a component, which must be one that [`is_pruned`].
+    /// The lists of a component, which must be one that may have some, however small it is.
     pub fn build(flat: &FlatScene, component: &Component) -> Self {
         build::Build::new(flat, component).fresh().0
     }
