@@ -340,7 +340,9 @@ impl Editor {
 pub fn new_document() -> Document {
     let mut scene = Scene::new();
     let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
-    let sun = Node::new("Sun", NodeKind::Light(Light::sun())).rotated(direction).at(glam::DVec3::new(2.0, 4.0, 3.0));
+    // Bright clay is not to be white on its lit side.
+    let light = Light { intensity: 1.2, ..Light::sun() };
+    let sun = Node::new("Sun", NodeKind::Light(light)).rotated(direction).at(glam::DVec3::new(2.0, 4.0, 3.0));
     scene.insert(None, 0, sun).expect("an empty scene takes a light");
     Document::new(scene)
 }
