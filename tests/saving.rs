@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use isolith::document::{Document, Edit};
 use isolith::scene::{Scene, file};
@@ -31,10 +31,12 @@ fn killed_savers_lose_nothing() {
         let scenes = big_scenes();
         // Twice, so that there is a backup from the start.
         file::save(&scenes[1], &path).expect("the first save");
+        let start = Instant::now();
         file::save(&scenes[0], &path).expect("the second save");
+        let one_save = start.elapsed();
         let (mut left_over, mut second) = (0, 0);
         for kill in (part..KILLS).step_by(2) {
-            kill_one(&path, kill);
+            kill_one(&path, kill, one_save);
             left_over += u64::from(names(folder.path()).len() > 2);
             let document = Document::open(&path).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
             assert!(scenes.contains(document.scene()), "kill {kill}");
@@ -51,11 +53,12 @@ fn killed_savers_lose_nothing() {
     let (left_over, second) = (a.0 + b.0, a.1 + b.1);
     eprintln!("{KILLS} kills, {left_over} of them inside a save");
     assert!(left_over > 0, "no kill ever hit a save");
-    assert!(second > 0 && second < KILLS, "the savers never got to save: {second}");
+    assert!(second > 0 && second < KILLS, "all kills left the same scene: {second}");
 }
 
-/// Starts a saver, lets it work for a random while and kills it.
-fn kill_one(path: &Path, seed: u64) {
+/// Starts a saver, lets it save up to three times and for some part of the next, and kills it. Saves are counted and not
+/// timed: a slow disk takes longer for each.
+fn kill_one(path: &Path, seed: u64, one_save: Duration) {
     let mut saver = Command::new(std::env::current_exe().expect("this program"))
         .args(["--exact", "saving::killed_savers_lose_nothing", "--nocapture"])
         .env(SAVER, path)
@@ -64,17 +67,18 @@ fn kill_one(path: &Path, seed: u64) {
         .spawn()
         .expect("the saver starts");
     let lines = BufReader::new(saver.stdout.take().expect("piped")).lines();
-    assert!(lines.map_while(Result::ok).any(|line| line.contains("saving")), "the saver says when it starts");
-    let pause = Random::new(seed).unit() * 25_000.0;
-    std::thread::sleep(Duration::from_micros(pause as u64));
+    let saves = seed as usize / 2 % 4;
+    let said = lines.map_while(Result::ok).filter(|line| line.contains("saving")).take(1 + saves).count();
+    assert_eq!(said, 1 + saves, "the saver says when it starts to save");
+    std::thread::sleep(one_save.mul_f64(1.2 * Random::new(seed).unit()));
     saver.kill().expect("it runs until it is killed");
     saver.wait().expect("it has ended");
 }
 
 fn save_for_ever(path: &Path) -> ! {
     let scenes = big_scenes();
-    std::io::stdout().write_all(b"\nsaving\n").expect("someone listens");
     for scene in scenes.iter().rev().cycle() {
+        std::io::stdout().write_all(b"\nsaving\n").expect("someone listens");
         file::save(scene, path).expect("saving works");
     }
     unreachable!("the cycle has no end")

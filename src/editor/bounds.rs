@@ -22,14 +22,14 @@ pub fn of_nodes(scene: &Scene, meshes: &mut MeshLibrary, ids: &[NodeId]) -> Opti
     (!bounds.is_empty()).then_some(bounds)
 }
 
-/// The box around everything visible that has a surface; lights, cameras and planes count only
-/// where there is nothing else.
+/// The box around everything visible that has a surface; cameras and planes count only where there is nothing else,
+/// lights never: the first thing made in a scene that has only a sun is to stand at the origin.
 pub fn of_scene(scene: &Scene, meshes: &mut MeshLibrary) -> Option<Aabb> {
     let (mut solid, mut rest) = (Aabb::EMPTY, Aabb::EMPTY);
     for top in scene.children(None) {
         let Some(index) = scene.index_of(top.id) else { continue };
         visit(scene, index, top.transform.to_affine(), |node, world_from_node| {
-            if node.visible {
+            if node.visible && !matches!(node.kind, NodeKind::Light(_)) {
                 let target = if has_size(node) { &mut solid } else { &mut rest };
                 *target = target.union(&of_node(meshes, node, &world_from_node));
             }
@@ -96,7 +96,7 @@ pub fn oriented(scene: &Scene, meshes: &mut MeshLibrary, id: NodeId) -> Option<(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Group, Object, ShapeKind};
+    use crate::scene::{Group, Light, Object, ShapeKind};
 
     fn object(scene: &Scene, kind: ShapeKind) -> Node {
         let material = scene.materials()[0].id;
@@ -107,6 +107,8 @@ mod tests {
     fn the_scene_is_as_large_as_its_solid_things() {
         let mut scene = Scene::new();
         let mut meshes = MeshLibrary::new(None);
+        assert_eq!(of_scene(&scene, &mut meshes), None);
+        scene.insert(None, 0, Node::new("Sun", NodeKind::Light(Light::sun())).at(DVec3::ONE)).unwrap();
         assert_eq!(of_scene(&scene, &mut meshes), None);
         let plane = object(&scene, ShapeKind::Plane);
         scene.insert(None, 0, plane).unwrap();
