@@ -1,8 +1,13 @@
 //! Targets and buffers back to the CPU.
 
+use std::time::Duration;
+
 use super::gpu::{Gpu, GpuError};
 use super::targets::{BACKGROUND, Target, Targets};
 use crate::flat::{BACKGROUND_DEPTH, Buffers};
+
+/// How long to wait for word that a buffer can be read, when the device has done all its work.
+const CALL_BACK: Duration = Duration::from_secs(30);
 
 /// The picture with depth, leaf and normal of every pixel.
 pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<Buffers, GpuError> {
@@ -78,10 +83,40 @@ fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
         let _ = sender.send(result);
     });
     gpu.wait()?;
-    match receiver.try_recv() {
+    // Where several threads wait for one device, another of them may be about to call back.
+    match receiver.recv_timeout(CALL_BACK) {
         Ok(Ok(())) => {}
         _ => return Err(GpuError::Lost("a buffer could not be read back".into())),
     }
     let mapped = slice.get_mapped_range().map_err(|e| GpuError::Lost(e.to_string()))?;
     Ok(mapped.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One thread's wait may end while another, which found the work done, has not called back yet.
+    #[test]
+    fn many_threads_may_read_from_one_device() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        std::thread::scope(|scope| {
+            for thread in 0..32_u32 {
+                let gpu = &gpu;
+                scope.spawn(move || {
+                    let words = [thread, thread + 1, thread * 7];
+                    let source = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                        label: Some("source"),
+                        size: 12,
+                        usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                        mapped_at_creation: false,
+                    });
+                    gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&words));
+                    for _ in 0..300 {
+                        assert_eq!(read_words(gpu, &source, 3).expect("words"), words);
+                    }
+                });
+            }
+        });
+    }
 }
