@@ -425,3 +425,22 @@ fn several_nodes_are_edited_together() {
     assert_eq!((y(&harness, ball), y(&harness, cube)), (1.5, 1.5));
     assert_eq!(undo_all(&mut harness), 1);
 }
+
+#[test]
+fn the_tree_scrolls_to_what_is_selected_elsewhere() {
+    let mut scene = Scene::new();
+    let material = scene.materials()[0].id;
+    let ids: Vec<NodeId> = (0..200)
+        .map(|i| {
+            let object = Object { shape: ShapeKind::Sphere.default_shape(), material };
+            scene.insert(None, i, Node::new(format!("Ball {i}"), NodeKind::Object(object))).unwrap()
+        })
+        .collect();
+    let mut harness = open(scene);
+    for i in [150, 3, 199] {
+        harness.state_mut().document_mut().select(vec![ids[i]]);
+        harness.run();
+        let y = row(&harness, &format!("Ball {i}")).y;
+        assert!((100.0..780.0).contains(&y), "{y}");
+    }
+}

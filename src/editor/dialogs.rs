@@ -333,6 +333,7 @@ impl Editor {
             if !field.focused {
                 field.focused = true;
                 response.request_focus();
+                select_name(ctx, response.id, &field.text);
             }
             if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
                 done = Some(true);
@@ -369,6 +370,17 @@ impl Editor {
             self.intend(Intent::Quit, ctx);
         }
     }
+}
+
+/// Selects the file's name, without folder and ending, so that typing replaces it.
+fn select_name(ctx: &Context, field: Id, path: &str) {
+    let end = path.chars().count();
+    let start = path.rfind('/').map_or(0, |i| path[..=i].chars().count());
+    let stem = path.rfind('.').map_or(end, |i| path[..i].chars().count());
+    let mut state = egui::text_edit::TextEditState::default();
+    let [start, end] = [start, if stem > start { stem } else { end }].map(egui::text::CCursor::new);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
+    state.store(ctx, field);
 }
 
 fn frame(ctx: &Context) -> egui::Frame {

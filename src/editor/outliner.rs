@@ -1,9 +1,9 @@
 //! The tree of the scene: selecting, renaming, ordering, hiding, locking.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
 
-use egui::{Color32, Key, RichText, ScrollArea, TextEdit, Ui, vec2};
+use egui::{Color32, Key, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
 use egui_ltreeview::{
     Action, DirPosition, DragAndDrop, IndentHintStyle, NodeBuilder, RowLayout, TreeView, TreeViewState,
 };
@@ -76,8 +76,13 @@ impl Outliner {
                 .row_layout(RowLayout::AlignedIcons)
                 .fallback_context_menu(|ui, ids| context_menu(ui, ids, bench.document.selection(), &requests))
                 .default_node_height(Some(theme::ROW_HEIGHT));
-            let rows = Rows { scene: &scene, shown: shown.as_ref(), reveal: &reveal, requests: &requests };
+            let top = ui.cursor().min;
+            let rows = Rows { scene: &scene, shown: shown.as_ref(), reveal, requests: &requests, at: Cell::new(None) };
             actions = view.show_state(ui, tree, |builder| rows.build(builder, rename)).1;
+            if let Some(row) = rows.at.get() {
+                let place = top + vec2(0.0, row as f32 * theme::ROW_HEIGHT);
+                ui.scroll_to_rect(Rect::from_min_size(place, vec2(1.0, theme::ROW_HEIGHT)), None);
+            }
         });
         for action in actions {
             self.act(ui, bench, &scene, action);
@@ -101,15 +106,15 @@ impl Outliner {
         ui.add_space(2.0);
     }
 
-    /// Takes over the document's selection; returns the nodes that must be made visible.
-    fn follow_selection(&mut self, bench: &Workbench, scene: &Scene) -> Vec<NodeId> {
+    /// Takes over the document's selection; returns the node that must be made visible.
+    fn follow_selection(&mut self, bench: &Workbench, scene: &Scene) -> Option<NodeId> {
         let selection = bench.document.selection();
         let shown: HashSet<_> = self.tree.selected().iter().copied().flatten().collect();
         if shown.len() != selection.len() || selection.iter().any(|id| !shown.contains(id)) {
             self.tree.set_selected(selection.iter().copied().map(Some).collect());
         }
         if self.seen == selection {
-            return Vec::new();
+            return None;
         }
         self.seen = selection.to_vec();
         for &id in selection {
@@ -119,7 +124,7 @@ impl Outliner {
                 at = scene.node(parent).and_then(|n| n.parent);
             }
         }
-        selection.last().copied().into_iter().collect()
+        selection.last().copied()
     }
 
     /// The nodes whose name holds the text searched for, with those above them; `None` for all.
@@ -229,8 +234,11 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
 struct Rows<'a> {
     scene: &'a Scene,
     shown: Option<&'a HashSet<NodeId>>,
-    reveal: &'a [NodeId],
+    /// The node to scroll to.
+    reveal: Option<NodeId>,
     requests: &'a RefCell<Vec<Request>>,
+    /// The row of that node: the tree draws only the rows in view, so that a row itself cannot ask to be seen.
+    at: Cell<Option<usize>>,
 }
 
 impl Rows<'_> {
@@ -239,6 +247,7 @@ impl Rows<'_> {
         builder.node(NodeBuilder::dir(None).flatten(true).default_open(true));
         let (nodes, depths) = (self.scene.nodes(), self.scene.depths());
         let mut open_groups = 0;
+        let mut rows = 0;
         let mut hidden_above: Vec<bool> = Vec::new();
         let mut index = 0;
         while index < nodes.len() {
@@ -255,6 +264,10 @@ impl Rows<'_> {
                 index = self.scene.subtree(index).end;
                 continue;
             }
+            if self.reveal == Some(node.id) {
+                self.at.set(Some(rows));
+            }
+            rows += 1;
             let open = self.row(builder, node, inherited, rename);
             if matches!(node.kind, NodeKind::Group(_)) {
                 open_groups += 1;
@@ -304,12 +317,9 @@ impl Rows<'_> {
             () => theme::TEXT,
         };
         let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
-        let response = ui.add(egui::Label::new(text.color(color)).selectable(false));
+        ui.add(egui::Label::new(text.color(color)).selectable(false));
         if node.negative {
             ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
-        }
-        if self.reveal.contains(&node.id) {
-            response.scroll_to_me(None);
         }
     }
 
