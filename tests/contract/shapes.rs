@@ -3,7 +3,7 @@
 use glam::DVec3;
 use isolith::flat::Body;
 use isolith::flat::twin::{Dual, Real};
-use isolith::scene::{Shape, ShapeKind};
+use isolith::scene::{Corners, Shape, ShapeKind};
 
 use super::drawn::tube_distance;
 use super::rules::{gradient_is_right, steps_are_safe};
@@ -220,6 +220,19 @@ fn a_shape_that_absorbs_a_scale_is_the_scaled_shape() {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Of an outline 1e9 m long, details at one end are closed as they are: all of them lie within the rounding of the whole.
+#[test]
+fn details_of_a_huge_outline_are_closed() {
+    let corners = Corners::new([[1.0, 1.0], [0.001, 1e-9], [1e9, 1e-30], [1.0, 1e-30], [1.0, 0.001]]);
+    for smooth in [false, true] {
+        let shape = Shape::Extrusion { corners: corners.clone(), smooth, depth: 0.001, rounding: 0.0 };
+        for (x, y) in [(-977.95, 0.855), (-580.74, 0.47684), (-30.0, 0.001), (-2.0, 0.99)] {
+            let f = distance(&shape, DVec3::new(x, y, 0.0));
+            assert!((f + x).abs() < 1.5, "{smooth}: {f} at {x}, {y}");
         }
     }
 }

@@ -84,23 +84,24 @@ fn rising((arc, [from, to]): &(ArcPiece, [f64; 2])) -> Rising {
 }
 
 /// The heights in f32 where each piece starts and ends. Where two meet they have one height, to the last bit: between two
-/// different ones there would be points that are counted to neither.
+/// different ones there would be points that are counted to neither. A chain ends where its start is as near as that of
+/// what follows: curves may be so large beside their details that all of these lie within the rounding.
 fn with_heights(arcs: Vec<ArcPiece>) -> Vec<(ArcPiece, [f64; 2])> {
     let size = arcs.iter().fold(0.0_f64, |most, arc| most.max(arc.middle.abs().max_element() + arc.length()));
-    let meet = |a: DVec3, b: DVec3| a.distance(b) <= 1e-7 * size;
     let height = |p: DVec3| f64::from(p.y as f32);
     let mut out: Vec<(ArcPiece, [f64; 2])> = Vec::with_capacity(arcs.len());
-    let mut first = (DVec3::INFINITY, 0.0);
-    for arc in arcs {
-        let start = match out.last() {
-            Some((last, [_, end])) if meet(last.end(), arc.start()) => *end,
-            _ => {
-                first = (arc.start(), height(arc.start()));
-                first.1
-            }
-        };
-        let end = if meet(arc.end(), first.0) { first.1 } else { height(arc.end()) };
-        out.push((arc, [start, end]));
+    // Where the chain under way starts, and the height of its last end.
+    let mut chain: Option<(DVec3, f64, f64)> = None;
+    for (i, arc) in arcs.iter().enumerate() {
+        let (first, first_height, start) =
+            chain.unwrap_or_else(|| (arc.start(), height(arc.start()), height(arc.start())));
+        let end = arc.end();
+        let away = |p: DVec3| Some(end.distance(p)).filter(|d| *d <= 1e-7 * size).unwrap_or(f64::INFINITY);
+        let follows = arcs.get(i + 1).is_some_and(|next| away(next.start()) < away(first));
+        let closes = !follows && away(first).is_finite();
+        let end_height = if closes { first_height } else { height(end) };
+        out.push((*arc, [start, end_height]));
+        chain = follows.then_some((first, first_height, end_height));
     }
     out
 }
