@@ -30,8 +30,9 @@ const MARCH_ENDED: f32 = -1.0;
 const HIT: f32 = 1e-3 * FINENESS;
 // The least fall of the field per distance that is not grazing.
 const STEEP: f32 = 0.2;
-// Below this, a straight approach is tried to its end at once, and taken back if there is no surface.
-const LEAP: f32 = 1.0;
+// Below this, a straight approach is tried to its end at once, and taken back if there is no surface. Where the surface has
+// bumps smaller than a pixel, a long leap would pass some.
+const LEAP: f32 = select(0.1, 1.0, CLOSE_IS_HIT);
 // At grazing angles, steps shorter than this creep until they see the sign change: a ray that only
 // comes near is never taken for a hit.
 const CREEP: f32 = 1e-3 * FINENESS;

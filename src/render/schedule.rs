@@ -25,13 +25,8 @@ pub const MAX_STEPS: u32 = 4_096;
 /// Most steps of a ray through a component without bounds, towards the horizon.
 pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 
-/// Steps of a ray in the first round, after which those that have not ended are packed side by side: most have, and
-/// where they have not it is single rays along an outline, for which all others in their group would wait.
-pub const FIRST_STEPS: u32 = 10;
 /// Most pixels of one piece of a component: as many rays may be left.
 const MOST_PIXELS: f64 = 1048576.0;
-/// Components over fewer tiles are marched in one round: packing costs a dispatch.
-pub const LEAST_PACKED_TILES: u32 = 24;
 
 /// Steps of a ray in one dispatch over a component without bounds: towards the horizon thousands may be
 /// needed, which in one dispatch took two seconds.
@@ -261,9 +256,7 @@ impl Plan {
         let (max_steps, at_once) =
             if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
         let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
-        // By the whole component, so that pictures do not depend on how work is cut.
-        let first_steps = if rect.tiles() >= LEAST_PACKED_TILES { steps.min(FIRST_STEPS) } else { steps };
-        let rounds = 1 + (max_steps - first_steps.min(max_steps)).div_ceil(steps);
+        let rounds = max_steps.div_ceil(steps);
         let per_pixel = leaves * TRACE_EVALUATIONS;
         let most = pace.effort_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
         rect.cut(per_pixel, most, |rect| {
@@ -272,8 +265,7 @@ impl Plan {
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
                 let last_round = u32::from(round + 1 == rounds);
-                let max_steps = if round == 0 { first_steps } else { steps };
-                let work = Work { round, last_round, max_steps, packed: u32::from(round > 0), ..list };
+                let work = Work { round, last_round, packed: u32::from(round > 0), ..list };
                 // Most rays have ended long before the last round.
                 self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.1 }));
             }

@@ -109,11 +109,14 @@ impl Features {
 
     /// Whether rays may come as near to 0 as to a surface, and touch nothing: fields of fractals and landscapes may be far
     /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
-    /// is a hit.
+    /// is a hit, and leaps are short: they would pass bumps of a fraction of a pixel.
     fn is_rough(&self) -> bool {
         use ModifierKind::{Bend, Displacement, Noise, Taper, Twist, Waves};
-        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, Ocean, Terrain};
-        self.shapes.iter().any(|kind| matches!(kind, Julia | Kleinian | Mandelbulb | Terrain | Heightmap | Ocean))
+        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
+        let is_rough = |kind: &ShapeKind| {
+            matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | Terrain | Heightmap | Ocean)
+        };
+        self.shapes.iter().any(is_rough)
             || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise | Displacement))
     }
 
