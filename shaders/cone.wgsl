@@ -58,11 +58,8 @@ fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
 fn cone(@builtin(global_invocation_id) id: vec3u) {
     let columns = (work.end.x - work.origin.x + TILE - 1u) / TILE;
     let rows = (work.end.y - work.origin.y + TILE - 1u) / TILE;
-    if id.x >= columns * rows {
-        return;
-    }
     let place = work.origin / TILE + vec2u(id.x % columns, id.x / columns);
-    let component = components[work.component];
+    let component = subject;
     field_begin(component);
 
     // Where a ray of the cone can be inside: the box, grown by the cone's radius at its far end.
@@ -74,17 +71,15 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let farthest = textureLoad(farthest_target, place, 0).x;
     let exit = min(min(interval.y, view.far), farthest);
     var t = max(max(interval.x, view.near), entry) * cone.cosine;
-    if t > exit {
-        return;
-    }
+    let enters = id.x < columns * rows && t <= exit;
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
     // because the field is called from one place.
     var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
-    if !CONES {
+    if !CONES && enters {
         start = array<f32, 4>(t, t, t, t);
     }
     var whole = t;
-    var quarter = select(4u, 0u, CONES);
+    var quarter = select(4u, 0u, CONES && enters);
     var of_tile = true;
     var steps = 0u;
     var evaluations = 0u;
@@ -118,7 +113,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             steps = 0u;
         }
     }
-    if COUNTING {
+    if COUNTING && enters {
         cone_count(place, evaluations);
     }
     let nearest = min(min(start[0], start[1]), min(start[2], start[3]));

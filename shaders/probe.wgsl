@@ -8,7 +8,7 @@
 @compute @workgroup_size(64)
 fn probe_field(@builtin(global_invocation_id) id: vec3u) {
     if id.x < probe.count {
-        field_begin(components[probe.component]);
+        field_begin(subject);
         values[id.x] = field(points[id.x].xyz);
     }
 }

@@ -9,7 +9,7 @@
 @compute @workgroup_size(64)
 fn probe_surface(@builtin(global_invocation_id) id: vec3u) {
     if id.x < probe.count {
-        surface_begin(components[probe.component]);
+        surface_begin(subject);
         let found = surface(points[id.x].xyz);
         surfaces[2u * id.x] = vec4f(found.gradient, found.distance);
         surfaces[2u * id.x + 1u] = found.diffuse;

@@ -16,19 +16,22 @@
 
 @compute @workgroup_size(8, 8)
 fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
+    let component = subject;
+    surface_begin(component);
     let pixel = tile_pixel(tiles[work.first_tile + group.x]) + tile_place(lane);
-    if !view_contains(pixel) || textureLoad(owner_target, pixel, 0).x != work.component {
+    let seen = view_contains(pixel) && textureLoad(owner_target, pixel, 0).x == work.component;
+    if BRANCHES && !seen {
         return;
     }
-    let component = components[work.component];
-    surface_begin(component);
     let direction = view_direction(pixel);
     let t = textureLoad(depth_target, pixel, 0).x;
     let surface = surface(component.eye + direction * t);
     let size = length(surface.gradient);
     let normal = select(-direction, surface.gradient / max(size, 1e-30), size > 0.0);
-    textureStore(normal_target, pixel, vec4f(normal, size));
-    textureStore(diffuse_target, pixel, surface.diffuse);
-    textureStore(emission_target, pixel, surface.emission);
-    textureStore(leaf_target, pixel, vec4u(surface.leaf));
+    if seen {
+        textureStore(normal_target, pixel, vec4f(normal, size));
+        textureStore(diffuse_target, pixel, surface.diffuse);
+        textureStore(emission_target, pixel, surface.emission);
+        textureStore(leaf_target, pixel, vec4u(surface.leaf));
+    }
 }

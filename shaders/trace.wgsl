@@ -55,7 +55,7 @@ struct March {
 // Steps are as long as the sphere around the next point is expected to touch the one around this (Ban and
 // Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023); where the two leave a gap, the step
 // is taken back to the first one's end.
-fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) -> March {
+fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, steps: u32) -> March {
     let reach = length(component.eye);
     var t = start;
     // The last point known to be outside with nothing before it, its field, and how far it is free behind it.
@@ -73,7 +73,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
     var ahead = vec2f(NEVER, 0.0);
     // Where the ray was before a leap behind which a gap was left, and the field there; NEVER for none.
     var doubt = vec2f(NEVER, 0.0);
-    for (var step = 0u; step < work.max_steps; step += 1u) {
+    for (var step = 0u; step < steps; step += 1u) {
         var f = field(component.eye + direction * t);
         var advance = t - safe.x;
         if relaxed && safe.y + abs(f) < advance {
@@ -153,7 +153,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32) ->
         // A leap ends a little inside, where the sign tells.
         t += select(select(free, wide, relaxed), f / fall + 0.25 * HIT * footprint, leaping);
     }
-    return March(min(safe.x, doubt.x), false, false, work.max_steps);
+    return March(min(safe.x, doubt.x), false, steps == 0u, steps);
 }
 
 @compute @workgroup_size(8, 8)
@@ -170,23 +170,20 @@ fn trace(
         let ray = atomicLoad(&rays[work.rays + at]);
         pixel = select(vec2u(0u), vec2u(ray & 0xffffu, ray >> 16u), exists);
     }
-    let component = components[work.component];
+    let component = subject;
     field_begin(component);
-    var depth = 0.0;
+    var depth = select(0.0, textureLoad(depth_target, pixel).x, exists);
+    let direction = view_direction(pixel);
+    let interval = bounds_interval(component, direction, 0.0);
+    let exit = min(min(interval.y, view.far), depth);
+    var start = max(max(interval.x, view.near), max(tile.start[tile_quad(lane)], bounds_half_space_entry(component, direction)));
+    if work.round > 0u {
+        start = textureLoad(march_target, pixel).x;
+        start = select(start, NEVER, start == MARCH_ENDED);
+    }
+    let steps = select(0u, work.max_steps, exists && start <= exit);
+    let marched = trace_march(component, direction, start, exit, steps);
     if exists {
-        depth = textureLoad(depth_target, pixel).x;
-        let direction = view_direction(pixel);
-        let interval = bounds_interval(component, direction, 0.0);
-        let exit = min(min(interval.y, view.far), depth);
-        var start = max(max(interval.x, view.near), max(tile.start[tile_quad(lane)], bounds_half_space_entry(component, direction)));
-        if work.round > 0u {
-            start = textureLoad(march_target, pixel).x;
-            start = select(start, NEVER, start == MARCH_ENDED);
-        }
-        var marched = March(start, false, true, 0u);
-        if start <= exit {
-            marched = trace_march(component, direction, start, exit);
-        }
         if marched.hit && marched.t < depth {
             depth = marched.t;
             textureStore(depth_target, pixel, vec4f(depth));

@@ -128,7 +128,7 @@ fn random_trees_agree() {
 /// Long rows of operands are skipped run by run, at every place and in both ways to skip.
 #[test]
 fn runs_agree() {
-    for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Loops)] {
+    for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Selects)] {
         let mut random = Random::new(seed);
         let mut scene = Scene::new();
         let blend = Blend::new(BlendKernel::Quadratic, 0.1);
@@ -157,7 +157,7 @@ fn forms_agree() {
     for (i, kind) in ShapeKind::ALL.iter().take(6).enumerate() {
         add(&mut many, Some(parent), object(kind.default_shape()).at(DVec3::X * 0.4 * i as f64));
     }
-    for (scene, skipping) in [(&few, Skipping::Branches), (&few, Skipping::Loops), (&many, Skipping::Loops)] {
+    for (scene, skipping) in [(&few, Skipping::Branches), (&few, Skipping::Selects), (&many, Skipping::Selects)] {
         let (flat, mut random) = (flatten(scene, 0.0).unwrap(), Random::new(1));
         let used = flat.nodes.iter().filter(|node| node.is_leaf()).map(|n| ShapeKind::ALL[(n.code & 0xffff) as usize]);
         let used = ShapeSet::of(used);
@@ -188,7 +188,7 @@ fn pruned_lists_agree() {
             features = Features { modifiers: Features::all().modifiers, stack: 4, ..features };
         }
         let evaluator = Evaluator::Pruned(features);
-        for skipping in [Skipping::Branches, Skipping::Loops] {
+        for skipping in [Skipping::Branches, Skipping::Selects] {
             let options = Options { skipping, ..Options::default() };
             let values = probe::field(&shared().gpu, &flat, 0, &points, &evaluator, options).unwrap();
             for (p, gpu) in points.iter().zip(values) {
@@ -268,6 +268,6 @@ fn data_are_found_below_joints_and_modifiers() {
     let [component] = &flat.components[..] else { panic!("one component") };
     assert!(component.is_modified() && rows == component.data as usize);
     let structure = Structure::of(&flat, component).unwrap();
-    assert_eq!(structure.rows(), (component.rows - component.data) as usize);
+    assert_eq!(structure.rows() + structure.material_rows(), (component.rows - component.data) as usize);
     agree("data", &scene, &mut random);
 }

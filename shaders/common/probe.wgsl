@@ -1,9 +1,10 @@
 // What the probes are given: points of one component.
 
 struct Probe {
-    component: u32,
     count: u32,
-    padding: vec2u,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 @group(0) @binding(0) var<uniform> probe: Probe;

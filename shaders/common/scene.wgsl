@@ -48,7 +48,8 @@ const MODIFIER_ROWS: u32 = 6u;
 // Rows of numbers, as a texture: lavapipe reads a texel at a place that is not constant several times as fast as
 // four words of a buffer.
 @group(1) @binding(1) var numbers: texture_2d<f32>;
-@group(1) @binding(2) var<storage, read> components: array<Component>;
+// The component that a dispatch is about: its first word at a place that the CPU chooses.
+@group(1) @binding(2) var<uniform> subject: Component;
 @group(1) @binding(3) var<storage, read> materials: array<FlatMaterial>;
 
 // Rows and words stand in textures of this width, line after line.

@@ -42,7 +42,7 @@ fn op_join(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
 
 fn op_union(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
     let blend = op_blend(abs(a - b), joint, kernel);
-    return vec2f(min(a, b) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
+    return vec2f(select(a, b, b < a) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
 }
 
 fn op_intersection(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
@@ -60,21 +60,19 @@ fn op_difference(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
 // greater. Kernels: Quilez, "smooth minimum", scaled by their supports to one thickening.
 fn op_blend(difference: f32, joint: vec4f, kernel: u32) -> vec2f {
     let support = joint.x;
-    if difference >= support {
-        return vec2f(0.0);
-    }
-    let h = 1.0 - difference / support;
+    let h = (support - difference) * (1.0 / support);
+    var blend: vec2f;
     if FURTHER_KERNELS && kernel >= KERNEL_LEAN {
-        return op_further_blend(difference, h, joint, kernel);
+        blend = op_further_blend(difference, h, joint, kernel);
+    } else if kernel == KERNEL_CIRCULAR {
+        let root = sqrt(2.0 * support * support - difference * difference);
+        blend = vec2f(support - 0.5 * difference - 0.5 * root, 0.5 - 0.5 * difference / root);
+    } else if kernel == KERNEL_QUADRATIC {
+        blend = vec2f(0.25 * support * h * h, 0.5 * h);
+    } else {
+        blend = vec2f((1.0 / 6.0) * support * h * (h * h), 0.5 * h * h);
     }
-    if kernel == KERNEL_CIRCULAR {
-        let root = sqrt(1.0 + h * (2.0 - h));
-        return vec2f(0.5 * support * (1.0 + h - root), 0.5 * (1.0 - (1.0 - h) / root));
-    }
-    if kernel == KERNEL_QUADRATIC {
-        return vec2f(0.25 * support * h * h, 0.5 * h);
-    }
-    return vec2f(support * h * h * h / 6.0, 0.5 * h * h);
+    return select(vec2f(0.0), blend, difference < support);
 }
 
 // The same for bevels. Steps and columns: Mercury's hg_sdf (2015) builds its stairs in the same coordinates, the

@@ -151,7 +151,7 @@ pub const FIRST_FURTHER_KERNEL: u32 = 3;
 /// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
 /// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
 /// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
-/// behind the rows of all entries of the component, so that they are no part of what a specialised kernel reads as uniform.
+/// behind all other rows of the component, so that they are no part of what a specialised kernel reads as uniform.
 /// A modifier with data has such a row behind its own.
 ///
 /// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
@@ -160,12 +160,17 @@ pub const FIRST_FURTHER_KERNEL: u32 = 3;
 /// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
 /// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.
+///
+/// Behind the rows of all entries of a component stand those of the materials of its leaves, [`MATERIAL_ROWS`] for each
+/// leaf in their order, once more: kernels that know the structure know where they are.
 pub type Row = [f32; 4];
 
 /// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
 pub const ROW_ALIGNMENT: usize = 16;
 /// Rows of a leaf before its parameters.
 pub const LEAF_ROWS: usize = 4;
+/// Rows of the material of a leaf.
+pub const MATERIAL_ROWS: usize = 2;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
 
@@ -228,6 +233,14 @@ pub struct FlatMaterial {
     pub emission: [f32; 3],
     /// Blinn-Phong exponent.
     pub shininess: f32,
+}
+
+impl FlatMaterial {
+    /// As rows: albedo and specular, emission and shininess.
+    pub fn rows(&self) -> [Row; MATERIAL_ROWS] {
+        let ([r, g, b], [red, green, blue]) = (self.albedo, self.emission);
+        [[r, g, b, self.specular], [red, green, blue, self.shininess]]
+    }
 }
 
 /// A light with its place in the world.

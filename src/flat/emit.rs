@@ -20,6 +20,7 @@ pub(super) fn emit(
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
     flat.numbers.resize(numbers, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
+    emit_materials(flat, first);
     let data = flat.numbers.len();
     emit_data(flat, operands, &mut (first..));
     let mut contents = Vec::new();
@@ -36,6 +37,13 @@ pub(super) fn emit(
         stack,
         contents,
         copies: operands.iter().map(copies).max().unwrap_or(1),
+    }
+}
+
+/// Appends the materials of the leaves from the entry `first` on.
+fn emit_materials(flat: &mut FlatScene, first: usize) {
+    for node in flat.nodes[first..].iter().filter(|node| node.is_leaf()) {
+        flat.numbers.extend(flat.materials[node.material as usize].rows());
     }
 }
 

@@ -95,17 +95,20 @@ impl Last {
         if fold_bounds(&operands).bounds.is_empty() || had_warnings {
             return false;
         }
-        let mut scratch = FlatScene { environment: self.flat.environment, ..FlatScene::default() };
+        let flat = Arc::make_mut(&mut self.flat);
+        // Lent for a moment: their values stand among the rows.
+        let materials = std::mem::take(&mut flat.materials);
+        let mut scratch = FlatScene { environment: flat.environment, materials, ..FlatScene::default() };
         let mut known = true;
         let new = emit(&mut scratch, &operands, &mut |_, id| {
-            let found = self.flat.material_ids.iter().position(|m| *m == id);
+            let found = flat.material_ids.iter().position(|m| *m == id);
             known &= found.is_some();
             found.unwrap_or(0) as u32
         });
+        flat.materials = scratch.materials;
         if !known || (new.count, new.rows, new.data, new.stack) != (old.count, old.rows, old.data, old.stack) {
             return false;
         }
-        let flat = Arc::make_mut(&mut self.flat);
         for node in &mut scratch.nodes {
             node.numbers += old.numbers;
         }

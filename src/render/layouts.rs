@@ -8,8 +8,8 @@ use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 pub struct Layouts {
     /// Group 0: `View`.
     pub view: BindGroupLayout,
-    /// Group 1 of the field passes: nodes, numbers, components, materials, the component's own rows once more
-    /// as a uniform at a dynamic offset, pruned lists.
+    /// Group 1 of the field passes: nodes, numbers, the component at a dynamic offset, materials, the component's own
+    /// rows once more as a uniform at a dynamic offset, pruned lists.
     pub scene: BindGroupLayout,
     /// Group 3: `Work`, at a dynamic offset.
     pub work: BindGroupLayout,
@@ -27,7 +27,7 @@ impl Layouts {
                 &[
                     read_storage(),
                     read_texture(false),
-                    read_storage(),
+                    uniform(true),
                     read_storage(),
                     uniform(true),
                     read_texture(true),

@@ -86,16 +86,14 @@ impl Probe<'_> {
             mirror.set_with_room(device, queue, bytes, KERNEL_WINDOW, 4);
             mirror
         };
-        let settings = uploaded(bytemuck::cast_slice(&[index as u32, points.len() as u32, 0, 0]));
+        let settings = uploaded(bytemuck::cast_slice(&[points.len() as u32, 0, 0, 0]));
         let tree = matches!(evaluator, Evaluator::Pruned(_)).then(|| CellTree::build(flat, &flat.components[index]));
-        let mut components: Vec<_> = flat.components.iter().map(|c| GpuComponent::new(c, c.origin)).collect();
-        if let Some(tree) = &tree {
-            components[index] = components[index].with_grid(tree, 0);
-        }
+        let component = GpuComponent::new(&flat.components[index], flat.components[index].origin);
+        let component = tree.as_ref().map_or(component, |tree| component.with_grid(tree, 0));
         let (rows, rows_at) = window_rows(flat, index, evaluator);
         let scene = [
             uploaded(bytemuck::cast_slice(&flat.nodes)),
-            uploaded(bytemuck::cast_slice(&components)),
+            uploaded(bytemuck::bytes_of(&component)),
             uploaded(bytemuck::cast_slice(&flat.materials)),
             uploaded(bytemuck::cast_slice(&rows)),
         ];
@@ -108,9 +106,10 @@ impl Probe<'_> {
         let numbers = texture("numbers", NUMBERS_FORMAT, bytemuck::cast_slice(&flat.numbers));
         let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
         let lists = texture("lists", LISTS_FORMAT, words);
-        let [nodes, components, materials] = [0, 1, 2].map(|i: usize| scene[i].binding());
+        let [nodes, materials] = [0, 2].map(|i: usize| scene[i].binding());
+        let subject = window(scene[1].buffer(), size_of::<GpuComponent>());
         let rows_window = window(scene[3].buffer(), KERNEL_WINDOW);
-        let bindings = [nodes, numbers.binding(), components, materials, rows_window, lists.binding()];
+        let bindings = [nodes, numbers.binding(), subject, materials, rows_window, lists.binding()];
         let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
         let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; count * 4]));
         let groups = [
@@ -124,7 +123,7 @@ impl Probe<'_> {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &groups[0], &[]);
-            pass.set_bind_group(1, &groups[1], &[rows_at]);
+            pass.set_bind_group(1, &groups[1], &[0, rows_at]);
             pass.set_bind_group(2, &groups[2], &[]);
             pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
         }

@@ -26,7 +26,7 @@ use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
 use super::schedule::{DISPATCH_TARGET, Effort, Pace, Plan, plan};
 use super::targets::Targets;
-use super::uniforms::Work;
+use super::uniforms::UNIFORM_STRIDE;
 use crate::flat::inspect::Look;
 use crate::flat::{FlatScene, Pruner, Row};
 use crate::geometry::Camera;
@@ -62,20 +62,11 @@ pub enum RenderError {
     Cancelled,
 }
 
-/// The pieces of work as the device reads them, at offsets of [`WORK_STRIDE`].
-fn work_bytes(plan: &Plan) -> Vec<u8> {
-    let mut work = vec![0_u8; plan.pieces.len() * WORK_STRIDE];
-    for (slot, piece) in work.chunks_exact_mut(WORK_STRIDE).zip(&plan.pieces) {
-        slot[..size_of::<Work>()].copy_from_slice(bytemuck::bytes_of(&piece.work));
-    }
-    work
-}
-
 /// Whether a device with buffers of `limit` bytes can hold the list of what is to be done. A component of a thousand leaves
 /// that is walked without lists on a driver that ends loops early makes it long.
 fn check_work(flat: &FlatScene, plan: &Plan, size: [u32; 2], limit: u64) -> Result<(), RenderError> {
     // Buffers grow by powers of two.
-    let bytes = (plan.pieces.len() * WORK_STRIDE).next_power_of_two() as u64;
+    let bytes = (plan.pieces.len() * UNIFORM_STRIDE).next_power_of_two() as u64;
     if bytes <= limit {
         return Ok(());
     }
@@ -142,8 +133,6 @@ pub struct Renderer {
     pace: Pace,
 }
 
-/// Dynamic offsets of `Work` are multiples of this.
-const WORK_STRIDE: usize = 256;
 /// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
@@ -166,7 +155,7 @@ impl Renderer {
 
     /// What kernels do on this device when nobody asks for something else.
     pub fn options(gpu: &Gpu) -> Options {
-        let skipping = if gpu.is_software() { Skipping::Loops } else { Skipping::Branches };
+        let skipping = if gpu.is_software() { Skipping::Selects } else { Skipping::Branches };
         Options { skipping, ..Options::default() }
     }
 
@@ -189,7 +178,7 @@ impl Renderer {
             numbers: RowTexture::new(device, "numbers", NUMBERS_FORMAT),
             lists: ListTexture::new(device),
             pruner: Pruner::default(),
-            components: storage("components"),
+            components: Mirror::uniform(device, "components"),
             materials: storage("materials"),
             view: Mirror::uniform(device, "view"),
             lights: storage("lights"),

@@ -8,7 +8,6 @@ use std::time::Duration;
 use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3};
 
-use super::kernel::ShapeSet;
 use super::uniforms::Work;
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
@@ -153,15 +152,13 @@ impl Evaluation {
         }
     }
 
-    /// Of straight-line code for a component: at most an iteration for each group or run of at least four
-    /// entries, and for each leaf where its share is looked at. In a kernel for a form of many shapes every leaf has
-    /// a loop for each of them, and the one that is taken ends a round later. `rounds` as in [`Evaluation::of_entries`].
-    pub fn of_straight(component: &Component, form: Option<ShapeSet>, rounds: u32) -> Self {
+    /// Of straight-line code for a component: loops are only in modifiers, at most one for each entry, and in leaves;
+    /// `rounds` as in [`Evaluation::of_entries`].
+    pub fn of_straight(component: &Component, rounds: u32) -> Self {
         let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
-        let choosing = form.filter(|shapes| !shapes.is_small()).map_or(0, |shapes| shapes.count() + 1);
         Self {
             straight: true,
-            iterations: (2 + (2 + choosing) * component.count + rounds).saturating_mul(copies),
+            iterations: (2 + component.count + rounds).saturating_mul(copies),
             leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
         }
     }

@@ -88,6 +88,19 @@ pub struct GpuComponent {
     pub lists: u32,
 }
 
+/// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
+pub const UNIFORM_STRIDE: usize = 256;
+
+/// The bytes of `all`, each at its multiple of [`UNIFORM_STRIDE`].
+pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
+    const { assert!(size_of::<T>() <= UNIFORM_STRIDE) };
+    let mut bytes = vec![0; all.len() * UNIFORM_STRIDE];
+    for (slot, one) in bytes.chunks_exact_mut(UNIFORM_STRIDE).zip(all) {
+        slot[..size_of::<T>()].copy_from_slice(bytemuck::bytes_of(&one));
+    }
+    bytes
+}
+
 /// Where bounds without end are said to end: far beyond any camera, near enough for f32 arithmetic.
 const UNBOUNDED: f32 = 1e18;
 

@@ -7,7 +7,7 @@ use super::layouts::{Layouts, bind, window};
 use super::passes::field::{FieldGroups, FieldLayouts, Lists};
 use super::renderer::{LISTS_FORMAT, NUMBERS_FORMAT};
 use super::targets::Targets;
-use super::uniforms::{View, Work};
+use super::uniforms::{GpuComponent, View, Work};
 
 /// A device with just enough on it to dispatch a kernel over nothing.
 #[derive(Debug)]
@@ -51,7 +51,7 @@ impl Warmer {
         let scene = [
             small.binding(),
             numbers.binding(),
-            small.binding(),
+            window(small.buffer(), size_of::<GpuComponent>()),
             small.binding(),
             window(rows.buffer(), MAX_KERNEL_ROWS as usize * 16),
             lists_texture.binding(),
@@ -81,7 +81,7 @@ impl Warmer {
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             pass.set_bind_group(0, &self.view, &[]);
-            pass.set_bind_group(1, &self.scene, &[0]);
+            pass.set_bind_group(1, &self.scene, &[0, 0]);
             pass.set_bind_group(3, &self.work, &[0]);
             let passes = [
                 (&kernel.cone, &self.groups.cone),

@@ -121,7 +121,7 @@ fn gradients_of_every_operator_agree() {
             (Evaluator::Pruned(features), &on_surface),
             (Evaluator::Specialised(Structure::of(&flat, component).expect("it is small")), &all),
         ] {
-            let options = Options { skipping: Skipping::Loops, ..Options::default() };
+            let options = Options { skipping: Skipping::Selects, ..Options::default() };
             let found = probe::surface(&shared().gpu, &flat, 0, points, &evaluator, options).unwrap();
             compare(&flat, component, points, &found).unwrap_or_else(|fault| panic!("{name}, {evaluator:?}: {fault}"));
         }

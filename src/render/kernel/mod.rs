@@ -44,9 +44,9 @@ pub enum Skipping {
     /// By `if`: free where a branch that no lane takes is not executed.
     #[default]
     Branches,
-    /// By a loop of at most one round: lavapipe executes the body of every `if`, but ends a loop that no
-    /// lane is in.
-    Loops,
+    /// Not within straight-line code, where all is computed and chosen from: lavapipe executes the body of every `if`
+    /// and the first round of every loop, and what is read as uniform within either costs 25 times as much.
+    Selects,
     /// Not at all: every node at every step, as the benches' baselines do it.
     Never,
 }

@@ -12,18 +12,18 @@ use std::ops::Range;
 use super::Skipping;
 use super::specialise::{any_of, arguments};
 use super::structure::{Entry, EntryKind, Structure};
-use crate::flat::Join;
+use crate::flat::{Join, MATERIAL_ROWS};
 use crate::scene::ShapeKind;
 
 /// The text that declares and sums `gradient`, `diffuse` and `emission`.
-pub fn shares(structure: &Structure, skipping: Skipping) -> String {
+pub fn shares(structure: &Structure, baked: bool, skipping: Skipping) -> String {
     let rows = structure.entries.iter().scan(0, |row, entry| {
         let first = *row;
         *row += entry.rows();
         Some(first)
     });
     let general = structure.has_further_joins();
-    let mut writer = Shares { structure, rows: rows.collect(), skipping, general, out: String::new() };
+    let mut writer = Shares { structure, rows: rows.collect(), baked, skipping, general, out: String::new() };
     writer.out.push_str(
         "    var gradient = vec3f(0.0);\n    var diffuse = vec4f(0.0);\n    var emission = vec4f(0.0);\n    \
          var rest0 = 1.0;\n",
@@ -38,6 +38,7 @@ pub fn shares(structure: &Structure, skipping: Skipping) -> String {
 struct Shares<'a> {
     structure: &'a Structure,
     rows: Vec<usize>,
+    baked: bool,
     skipping: Skipping,
     general: bool,
     out: String,
@@ -93,7 +94,7 @@ impl Shares<'_> {
         let has = if self.general { format!("{has} || wear{at} > 0.0") } else { has };
         match self.skipping {
             Skipping::Branches | Skipping::Never => self.line(&format!("    if {has} {{")),
-            Skipping::Loops => self.line(&format!("    var has{at} = {has};\n    while has{at} {{")),
+            Skipping::Selects => self.line("    {"),
         }
         let row = self.rows[at];
         let gradient = match entry.kind {
@@ -110,25 +111,20 @@ impl Shares<'_> {
         if let Some(gradient) = gradient {
             let moved = if entry.moved { "placed_gradient_moved" } else { "placed_gradient" };
             let factor = if entry.unscaled { format!("{sign:?}") } else { format!("{sign:?} * q{row}.y") };
-            self.line(&format!(
-                "    gradient += share{at} * {factor} * {moved}({gradient}, q{}, q{}, q{});",
-                row + 1,
-                row + 2,
-                row + 3
-            ));
-            self.line(&format!("    let material{at} = materials[nodes[surface_first + {at}u].material];"));
-            self.line(&format!("    diffuse += {wear}{at} * vec4f(material{at}.albedo, material{at}.specular);"));
-            self.line(&format!("    emission += {wear}{at} * vec4f(material{at}.emission, material{at}.shininess);"));
+            let moved = format!("{moved}({gradient}, q{}, q{}, q{})", row + 1, row + 2, row + 3);
+            self.line(&format!("    gradient += share{at} * {factor} * {moved};"));
+            let leaves_before = self.structure.entries[..at].iter().filter(|entry| entry.is_leaf()).count();
+            let material = self.structure.rows() + leaves_before * MATERIAL_ROWS;
+            for (what, row) in [("diffuse", material), ("emission", material + 1)] {
+                let row = if self.baked { format!("q{row}") } else { format!("rows[{row}u]") };
+                self.line(&format!("    {what} += {wear}{at} * {row};"));
+            }
         } else {
             self.line(&format!("    var rest{} = share{at};", level + 1));
             if self.general {
                 self.line(&format!("    var worn{} = wear{at};", level + 1));
             }
             self.siblings(at + 1..at + entry.extent as usize, level + 1, sign);
-        }
-        if self.skipping == Skipping::Loops {
-            // Never true, but no compiler knows that: it would make the loop an `if` again.
-            self.line(&format!("    has{at} = s0 < -1e37;"));
         }
         self.line("    }");
     }

@@ -47,7 +47,10 @@ impl Writer<'_> {
 
     fn head(&mut self) {
         let rows = self.structure.rows();
-        self.line(&format!("const ROW_COUNT: u32 = {}u;", if self.baked.is_some() { 1 } else { rows }));
+        self.line(&format!(
+            "const ROW_COUNT: u32 = {}u;",
+            if self.baked.is_some() { 1 } else { rows + self.structure.material_rows() }
+        ));
         self.line("#include \"field/placed.wgsl\"");
         let modifier = |e: &Entry| if let EntryKind::Modified(kind) = e.kind { Some(kind) } else { None };
         let modifiers: BTreeSet<_> = self.structure.entries.iter().filter_map(modifier).collect();
@@ -105,8 +108,8 @@ impl Writer<'_> {
             self.line("fn field(p: vec3f) -> f32 {\n    var s0 = 0.0;");
         }
         let mut row = 0;
-        // Groups and runs under way: where each begins, its entry, its first row, whether it may be skipped.
-        let mut open: Vec<(usize, Entry, usize, bool)> = Vec::new();
+        // Groups and runs under way: where each begins, its entry, its first row.
+        let mut open: Vec<(usize, Entry, usize)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
             if let EntryKind::Leaf(shape) = entry.kind {
@@ -117,8 +120,8 @@ impl Writer<'_> {
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join.is_skipped_far_off();
-                let skipped = skipped && self.options.skipping != Skipping::Never;
-                self.open_block(level, at, entry, row, skipped);
+                let skipped = skipped && self.options.skipping == Skipping::Branches;
+                self.open_block(level, entry, row, skipped);
                 if entry.kind != EntryKind::Run {
                     level += 1;
                     self.line(&format!("    var s{level}: f32;"));
@@ -129,10 +132,10 @@ impl Writer<'_> {
                 if let EntryKind::Modified(kind) = entry.kind {
                     self.open_modifier(at, entry, kind, row);
                 }
-                open.push((at, *entry, row, skipped));
+                open.push((at, *entry, row));
             }
             row += entry.rows();
-            while let Some((begin, group, first, skipped)) = open.last().copied() {
+            while let Some((begin, group, first)) = open.last().copied() {
                 if begin + group.extent as usize != at + 1 {
                     break;
                 }
@@ -145,11 +148,11 @@ impl Writer<'_> {
                     let [value, leaf] = ["s", "l"].map(|name| format!("{name}{}", level + 1));
                     self.join(level, begin, &group, first, &value, &leaf);
                 }
-                self.close_block(level, begin, skipped);
+                self.line("    }");
             }
         }
         if surface {
-            let text = shares(self.structure, self.options.skipping);
+            let text = shares(self.structure, self.baked.is_some(), self.options.skipping);
             self.line(&text);
             self.line("    return Surface(s0, surface_first + l0, gradient, diffuse, emission);\n}");
         } else {
@@ -256,7 +259,7 @@ impl Writer<'_> {
 
     /// A block that is entered only if what follows can change what stands so far. Every group has one
     /// of its own in any case: the group after it needs the same name for its accumulator.
-    fn open_block(&mut self, level: usize, at: usize, entry: &Entry, row: usize, skipped: bool) {
+    fn open_block(&mut self, level: usize, entry: &Entry, row: usize, skipped: bool) {
         if !skipped {
             self.line("    {");
             return;
@@ -267,18 +270,7 @@ impl Writer<'_> {
         };
         let point = self.point();
         let reached = format!("placed_bounds({point}, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
-        match self.options.skipping {
-            Skipping::Branches | Skipping::Never => self.line(&format!("    if {reached} {{")),
-            Skipping::Loops => self.line(&format!("    var once{at} = {reached};\n    while once{at} {{")),
-        }
-    }
-
-    fn close_block(&mut self, level: usize, at: usize, skipped: bool) {
-        if skipped && self.options.skipping == Skipping::Loops {
-            // Never true, but no compiler knows that: it would make the loop an `if` again.
-            self.line(&format!("    once{at} = s{level} < -1e37;"));
-        }
-        self.line("    }");
+        self.line(&format!("    if {reached} {{"));
     }
 }
 
@@ -297,12 +289,7 @@ pub(super) fn any_of(
         let is_it = format!("q{row}.w == {code}.0");
         out += &match skipping {
             Skipping::Branches | Skipping::Never => format!("    if {is_it} {{ {name}{at} = {value}; }}\n"),
-            Skipping::Loops if shapes.is_small() => format!("    {name}{at} = select({name}{at}, {value}, {is_it});\n"),
-            // Ended by what no compiler knows: it would make the loop an `if` again.
-            Skipping::Loops => format!(
-                "    var is_{name}{at}_{code} = {is_it};\n    while is_{name}{at}_{code} {{ {name}{at} = {value}; \
-                 is_{name}{at}_{code} = s0 < -1e37; }}\n"
-            ),
+            Skipping::Selects => format!("    {name}{at} = select({name}{at}, {value}, {is_it});\n"),
         };
     }
     out

@@ -2,13 +2,13 @@
 
 use super::source::{Features, Further, fits_forms};
 use crate::flat::{
-    Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, Row,
-    modifier_rows,
+    Component, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MATERIAL_ROWS, MODIFIER_ROWS,
+    Row, modifier_rows,
 };
 use crate::scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
-/// Most rows of a component that gets a kernel of its own: 12 KiB of a uniform buffer's 16.
-pub const MAX_KERNEL_ROWS: u32 = 768;
+/// Most rows of a component that gets a kernel of its own: the 16 KiB of a uniform buffer that every device has.
+pub const MAX_KERNEL_ROWS: u32 = 1024;
 
 /// Most entries of a component that gets a kernel of its own: compiling grows faster than linearly, and
 /// beyond this the interpreter has made many pictures by the time the kernel is ready.
@@ -34,8 +34,8 @@ pub enum EntryKind {
 pub struct ShapeSet(pub u64);
 
 impl ShapeSet {
-    /// Whether lavapipe computes all of them and chooses in less time than it takes to skip those that are not meant,
-    /// by loops: with three shapes 137 instead of 217 ms for 128 groups of 8 leaves, and 431 instead of 895 for 1 024.
+    /// Whether one kernel for all of them is worth computing them all where one is chosen, even where there are not too
+    /// many structures for kernels of their own.
     pub fn is_small(self) -> bool {
         self.count() <= 4
     }
@@ -83,6 +83,11 @@ pub struct Entry {
 }
 
 impl Entry {
+    /// Whether it is a leaf.
+    pub fn is_leaf(&self) -> bool {
+        matches!(self.kind, EntryKind::Leaf(_) | EntryKind::AnyLeaf(_))
+    }
+
     /// Rows of numbers that it takes.
     pub fn rows(&self) -> usize {
         match self.kind {
@@ -240,9 +245,14 @@ impl Structure {
         features
     }
 
-    /// Rows of numbers of a component of this structure.
+    /// Rows of the entries of a component of this structure; those of the materials of its leaves come next.
     pub fn rows(&self) -> usize {
         self.entries.iter().map(Entry::rows).sum()
+    }
+
+    /// Rows of the materials of its leaves.
+    pub fn material_rows(&self) -> usize {
+        self.entries.iter().filter(|entry| entry.is_leaf()).count() * MATERIAL_ROWS
     }
 }
 
@@ -263,6 +273,8 @@ pub fn form_rows(flat: &FlatScene, component: &Component, out: &mut Vec<Row>) {
         out.resize(first + FORM_LEAF_ROWS, [0.0; 4]);
         out[first][3] = code as f32;
     }
+    let leaves = flat.nodes[component.first as usize..][..component.count as usize].iter().filter(|n| n.is_leaf());
+    out.extend(leaves.flat_map(|leaf| flat.materials[leaf.material as usize].rows()));
 }
 
 /// FNV-1a of 128 bits.

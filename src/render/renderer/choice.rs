@@ -48,14 +48,14 @@ impl Renderer {
         let loops = self.kernels.loops();
         let evaluation = |i: usize| {
             let rounds = rounds(flat, &flat.components[i]);
-            let straight = |key: Key| Evaluation::of_straight(&flat.components[i], key.form, rounds);
+            let straight = || Evaluation::of_straight(&flat.components[i], rounds);
             let mut now = match (choices[i].walk, &trees[i], keys[i]) {
-                (Walk::Straight, _, Some(key)) => straight(key),
+                (Walk::Straight, _, Some(_)) => straight(),
                 (Walk::List, Some(tree), _) => Evaluation::of_lists(tree, loops, rounds),
                 _ => Evaluation::of_entries(&flat.components[i], loops, rounds),
             };
             // A kernel that becomes ready takes over within the frame.
-            now.iterations = now.iterations.max(keys[i].map_or(0, |key| straight(key).iterations));
+            now.iterations = now.iterations.max(keys[i].map_or(0, |_| straight().iterations));
             now
         };
         let evaluations = (0..flat.components.len()).map(evaluation).collect();

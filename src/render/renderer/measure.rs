@@ -1,13 +1,13 @@
 //! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
 
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::{COUNTS, Frame, RenderError, Renderer, work_bytes};
+use super::{COUNTS, Frame, RenderError, Renderer};
 use crate::flat::{Buffers, Warning};
 use crate::render::gpu::Gpu;
 use crate::render::passes::overlay::OverlaySettings;
 use crate::render::readback::{read_buffers, read_words_at};
 use crate::render::schedule::{Piece, Stage};
-use crate::render::uniforms::Work;
+use crate::render::uniforms::{Work, strided};
 
 /// What kernels that count have counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -43,7 +43,7 @@ impl Renderer {
         let mut plan = frame.plan.clone();
         plan.pieces = plan.pieces.iter().filter_map(confirm).collect();
         let Gpu { device, queue, .. } = &self.gpu;
-        self.work.set(device, queue, &work_bytes(&plan));
+        self.work.set(device, queue, &strided(plan.pieces.iter().map(|piece| piece.work)));
         let targets = &self.slot(frame.slot).targets;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let size = targets.depth.texture.size();

@@ -1,8 +1,9 @@
 //! Writes the dispatches of a frame down and hands them to the device.
 
 use super::upload::Groups;
-use super::{CONE_GROUP, Frame, Renderer, SlotState, WORK_STRIDE};
+use super::{CONE_GROUP, Frame, Renderer, SlotState};
 use crate::render::schedule::{Piece, Stage};
+use crate::render::uniforms::UNIFORM_STRIDE;
 
 impl Renderer {
     pub(super) fn submit(&self, frame: &Frame, range: std::ops::Range<usize>) {
@@ -45,7 +46,7 @@ impl Renderer {
         pass.set_bind_group(0, &groups.view, &[]);
         for at in range {
             let piece = &frame.plan.pieces[at];
-            pass.set_bind_group(3, &groups.work, &[(at * WORK_STRIDE) as u32]);
+            pass.set_bind_group(3, &groups.work, &[(at * UNIFORM_STRIDE) as u32]);
             match piece.stage {
                 Stage::Farthest => {
                     pass.set_pipeline(self.farthest.pipeline());
@@ -79,9 +80,10 @@ impl Renderer {
             Stage::Mesh | Stage::Farthest | Stage::Shade => unreachable!("the caller records these"),
         };
         pass.set_pipeline(pipeline);
+        let subject = (component * UNIFORM_STRIDE) as u32;
         match frame.form_window(component) {
-            Some(window) => pass.set_bind_group(1, &groups.forms, &[window]),
-            None => pass.set_bind_group(1, &groups.scene, &[frame.rows[component]]),
+            Some(window) => pass.set_bind_group(1, &groups.forms, &[subject, window]),
+            None => pass.set_bind_group(1, &groups.scene, &[subject, frame.rows[component]]),
         }
         pass.set_bind_group(2, targets, &[]);
         if piece.stage == Stage::Cone {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use wgpu::BindGroup;
 
-use super::{KERNEL_WINDOW, Renderer, TILE_BYTES, work_bytes};
+use super::{KERNEL_WINDOW, Renderer, TILE_BYTES};
 use crate::flat::{CellTree, Component, FlatScene, ROW_ALIGNMENT, Row, gpu_lights};
 use crate::geometry::Camera;
 use crate::render::gpu::Gpu;
@@ -15,7 +15,7 @@ use crate::render::passes::field::{FieldGroups, Lists};
 use crate::render::passes::shade::mesh_emissions;
 use crate::render::schedule::{Plan, TILE};
 use crate::render::targets::Targets;
-use crate::render::uniforms::{GpuComponent, View, Work};
+use crate::render::uniforms::{GpuComponent, View, Work, strided};
 
 #[derive(Debug)]
 pub(super) struct Groups {
@@ -64,7 +64,7 @@ impl Renderer {
             let place = tree.as_ref().and_then(|tree| Some((tree, self.lists.place(tree)?)));
             place.map_or(gpu, |(tree, at)| gpu.with_grid(tree, at))
         };
-        let components: Vec<_> = flat.components.iter().zip(trees).map(placed).collect();
+        let components = strided(flat.components.iter().zip(trees).map(placed));
         let numbers: &[u8] = bytemuck::cast_slice(&flat.numbers);
         let (rows_are_new, changed) = self.rows.set_with_room(device, queue, numbers, KERNEL_WINDOW, size_of::<Row>());
         let texture_is_new = self.numbers.reserve(device, numbers.len());
@@ -76,12 +76,12 @@ impl Renderer {
         let view = View::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
-            self.components.set(device, queue, bytemuck::cast_slice(&components)),
+            self.components.set(device, queue, &components),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
-            self.work.set(device, queue, &work_bytes(plan)),
+            self.work.set(device, queue, &strided(plan.pieces.iter().map(|piece| piece.work))),
             self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
             self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
@@ -96,7 +96,7 @@ impl Renderer {
             let resources = [
                 self.nodes.binding(),
                 self.numbers.binding(),
-                self.components.binding(),
+                window(self.components.buffer(), size_of::<GpuComponent>()),
                 self.materials.binding(),
                 window(rows.buffer(), KERNEL_WINDOW),
                 self.lists.binding(),
