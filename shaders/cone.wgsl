@@ -6,6 +6,7 @@
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
 #include "common/tiles.wgsl"
+#include "common/ahead.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/counts.wgsl"
@@ -83,13 +84,18 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     var of_tile = true;
     var steps = 0u;
     var evaluations = 0u;
+    // Where the field was last evaluated on this cone's axis.
+    var last = NEVER;
+    let reach = length(component.eye);
     while quarter < 4u {
+        ahead_begin(t - last, AHEAD_WINDOW * max(t - last, 0.0), 2.0 * SPACING * (t + reach));
+        last = t;
         let f = field(component.eye + cone.axis * t);
         steps += 1u;
         evaluations += 1u;
         let clear = f - cone.spread * t;
         let stopped = clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, work.max_steps / 5u + 1u);
-        let next = t + clear / (1.0 + cone.spread);
+        let next = t + max(min(clear / (ahead_slope(f) + cone.spread), ahead_window), clear / (1.0 + cone.spread));
         if !stopped && next <= exit {
             t = next;
             continue;
@@ -110,6 +116,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             let corner = place * TILE + vec2u(quarter & 1u, quarter >> 1u) * (TILE / 2u);
             cone = cone_around(corner, TILE / 2u);
             t = whole;
+            last = NEVER;
             steps = 0u;
         }
     }

@@ -5,6 +5,7 @@
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
 #include "common/tiles.wgsl"
+#include "common/ahead.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/counts.wgsl"
@@ -73,8 +74,13 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, st
     var ahead = vec2f(NEVER, 0.0);
     // Where the ray was before a leap behind which a gap was left, and the field there; NEVER for none.
     var doubt = vec2f(NEVER, 0.0);
+    // Where the field was last evaluated.
+    var last = NEVER;
     for (var step = 0u; step < steps; step += 1u) {
+        ahead_begin(t - last, AHEAD_WINDOW * (t - safe.x), 2.0 * SPACING * (t + reach));
+        last = t;
         var f = field(component.eye + direction * t);
+        var proven = ahead_free(f);
         var advance = t - safe.x;
         if relaxed && safe.y + abs(f) < advance {
             relaxed = false;
@@ -88,6 +94,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, st
             safe = vec2f(t, f);
             t = ahead.x;
             f = ahead.y;
+            proven = 0.0;
             advance = t - safe.x;
             leaping = true;
             may_leap = true;
@@ -144,7 +151,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, st
         may_leap = true;
         slope = select(-1.0, mix(slope, -fall, ADAPTION), advance > 0.0);
         safe = vec2f(t, f);
-        free = max(f, creep);
+        free = max(max(f, creep), select(0.0, proven, f > near));
         if t + free > exit && !leaping {
             return March(t, false, true, step + 1u);
         }

@@ -1,6 +1,7 @@
 //! The GPU's field is the CPU twin's: for every shape, every operator and random trees,
 //! |gpu − cpu| ≤ 1e-4 (1 + |d|) at 4 096 points.
 
+mod ahead;
 mod gradients;
 
 use glam::{DQuat, DVec3};
@@ -125,20 +126,26 @@ fn random_trees_agree() {
     }
 }
 
+/// Thirty shapes joined and fifteen cut away.
+fn long_rows(random: &mut Random) -> Scene {
+    let mut scene = Scene::new();
+    let blend = Blend::new(BlendKernel::Quadratic, 0.1);
+    let group = Group::new(Operator::Union, blend);
+    let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
+    for i in 0..45 {
+        let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
+        let node = object(kind.default_shape()).at(random.point(2.0)).scaled(DVec3::splat(0.5));
+        add(&mut scene, Some(parent), if i < 30 { node } else { node.negative() });
+    }
+    scene
+}
+
 /// Long rows of operands are skipped run by run, at every place and in both ways to skip.
 #[test]
 fn runs_agree() {
     for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Selects)] {
         let mut random = Random::new(seed);
-        let mut scene = Scene::new();
-        let blend = Blend::new(BlendKernel::Quadratic, 0.1);
-        let group = Group::new(Operator::Union, blend);
-        let parent = add(&mut scene, None, Node::new("Group", NodeKind::Group(group)));
-        for i in 0..45 {
-            let kind = random.pick(&[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus]);
-            let node = object(kind.default_shape()).at(random.point(2.0)).scaled(DVec3::splat(0.5));
-            add(&mut scene, Some(parent), if i < 30 { node } else { node.negative() });
-        }
+        let scene = long_rows(&mut random);
         let flat = flatten(&scene, 0.0).unwrap();
         assert!(flat.nodes.iter().filter(|n| n.is_run()).count() >= 6, "nothing is skipped here");
         assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a kernel");

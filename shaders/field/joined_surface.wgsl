@@ -35,14 +35,11 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
     so_far.gradient = before.gradient * joined.y;
     so_far.distance = joined.x;
     so_far.leaf = select(before.leaf, at, w > 0.5);
-    // A loop of at most one round: lavapipe executes the body of every `if`.
-    var follows = w > 0.0 || joined.z != 0.0;
-    while follows {
+    if w > 0.0 || joined.z != 0.0 {
         let m = materials[nodes[at].material];
         so_far.gradient += joined_surface_gradient(shape, row, joint, p) * joined.z;
         so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
         so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
-        follows = so_far.distance < -1e37;
     }
     return so_far;
 }

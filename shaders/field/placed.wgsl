@@ -1,5 +1,6 @@
 // Leaves of a specialised kernel: where the point stands in the leaf's own space.
 
+#include "common/ahead.wgsl"
 #include "common/scene.wgsl"
 #include "sdf/op.wgsl"
 

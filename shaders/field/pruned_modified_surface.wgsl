@@ -38,8 +38,7 @@ fn surface(p: vec3f) -> Surface {
     var depth = 0u;
     var is_new = true;
     loop {
-        // Loops of at most one round: lavapipe executes the body of every `if`.
-        while is_new {
+        if is_new {
             pruned_find(grid, q);
             list = pruned_list;
             so_far = surface_at(pruned_bound);
@@ -52,14 +51,11 @@ fn surface(p: vec3f) -> Surface {
             let shape = token.x & 0xffu;
             let row = pruned_component.numbers + (token.y & 0xffffffu);
             let is_modified = op == TOKEN_LEAF && shape >= MODIFIED;
-            var is_leaf = op == TOKEN_LEAF && !is_modified;
-            while is_leaf {
+            if op == TOKEN_LEAF && !is_modified {
                 let entry = pruned_component.first + (token.x >> 17u);
                 so_far = joined_surface_leaf(entry, shape, (token.x >> 10u) & 15u, (token.x >> 14u) & 7u, row, so_far, q);
-                is_leaf = so_far.distance < -1e37;
             }
-            var begins = is_modified;
-            while begins {
+            if is_modified {
                 let kind = MODIFIER + shape - MODIFIED;
                 let local = leaf_place(row + 2u, q);
                 let least = modifier_start(kind, local, row + MODIFIER_ROWS);
@@ -76,7 +72,6 @@ fn surface(p: vec3f) -> Surface {
                     grid = pruned_content_grid(token.y >> 24u);
                 }
                 list = vec2u(0u);
-                begins = false;
             }
             if op == TOKEN_BEGIN || is_modified {
                 surface_stack[depth] = so_far;

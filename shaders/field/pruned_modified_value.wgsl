@@ -40,8 +40,7 @@ fn field(p: vec3f) -> f32 {
     // Whether the list for `q` in `grid` is still to be found.
     var is_new = true;
     loop {
-        // Loops of at most one round: lavapipe executes the body of every `if`.
-        while is_new {
+        if is_new {
             pruned_find(grid, q);
             list = pruned_list;
             so_far = pruned_bound;
@@ -56,13 +55,10 @@ fn field(p: vec3f) -> f32 {
             var before = so_far;
             let is_modified = op == TOKEN_LEAF && shape >= MODIFIED;
             var joins = op == TOKEN_LEAF || op == TOKEN_END;
-            var is_leaf = op == TOKEN_LEAF && !is_modified;
-            while is_leaf {
+            if op == TOKEN_LEAF && !is_modified {
                 so_far = leaf_distance(shape, row, scene_row(row), q);
-                is_leaf = so_far < -1e37;
             }
-            var begins = is_modified;
-            while begins {
+            if is_modified {
                 let kind = MODIFIER + shape - MODIFIED;
                 let local = leaf_place(row + 2u, q);
                 let least = modifier_start(kind, local, row + MODIFIER_ROWS);
@@ -80,7 +76,6 @@ fn field(p: vec3f) -> f32 {
                 }
                 list = vec2u(0u);
                 joins = false;
-                begins = false;
             }
             if op == TOKEN_BEGIN || is_modified {
                 value_stack[depth] = so_far;

@@ -20,11 +20,9 @@ fn surface(p: vec3f) -> Surface {
         let join = (token.x >> 10u) & 15u;
         let kernel = (token.x >> 14u) & 7u;
         let row = pruned_component.numbers + token.y;
-        var is_leaf = op == TOKEN_LEAF;
-        while is_leaf {
+        if op == TOKEN_LEAF {
             let entry = pruned_component.first + (token.x >> 17u);
             so_far = joined_surface_leaf(entry, token.x & 0xffu, join, kernel, row, so_far, p);
-            is_leaf = so_far.distance < -1e37;
         }
         if op == TOKEN_BEGIN {
             surface_stack[depth] = so_far;

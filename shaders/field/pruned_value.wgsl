@@ -23,11 +23,8 @@ fn field(p: vec3f) -> f32 {
         let row = pruned_component.numbers + token.y;
         let joint = scene_row(row);
         var before = so_far;
-        // Loops of at most one round: lavapipe executes the body of every `if`.
-        var is_leaf = op == TOKEN_LEAF;
-        while is_leaf {
+        if op == TOKEN_LEAF {
             so_far = leaf_distance(token.x & 0xffu, row, joint, p);
-            is_leaf = so_far < -1e37;
         }
         if op == TOKEN_BEGIN {
             value_stack[depth] = so_far;

@@ -61,6 +61,23 @@ pub fn surface(
     Ok(found.as_chunks().0.iter().map(read).collect())
 }
 
+/// For each two points on a ray, both relative to the origin, the field at the second one and how far beyond it that is
+/// proven to be positive.
+///
+/// # Errors
+/// The device fails.
+pub fn ahead(
+    gpu: &Gpu,
+    flat: &FlatScene,
+    index: usize,
+    pairs: &[DVec3],
+    evaluator: &Evaluator,
+    options: Options,
+) -> Result<Vec<[f32; 2]>, RenderError> {
+    let probe = Probe { file: "probe_ahead.wgsl", entry: "probe_ahead", words: 1, evaluator, options };
+    Ok(probe.run(gpu, flat, index, pairs)?.as_chunks().0.to_vec())
+}
+
 /// What is run at each point.
 struct Probe<'a> {
     file: &'a str,

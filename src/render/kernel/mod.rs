@@ -3,6 +3,7 @@
 //! An [`Evaluator`] is either the interpreter, which walks any component, or straight-line code for the
 //! [`Structure`] of one. Both call the same functions of `shaders/sdf/`.
 
+mod ahead;
 mod dual;
 mod gradients;
 mod modifiers;

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use thiserror::Error;
 
+use super::ahead;
 use super::dual::DUAL_PRELUDE;
 use super::gradients::gradient_wgsl;
 use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
@@ -229,6 +230,7 @@ pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<St
         further.kernels
     )
     .expect("strings take all");
+    resolver.out += &ahead::constants(evaluator, options);
     resolver.include(entry, entry)?;
     Ok(resolver.out)
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::ahead;
 use super::modifiers::{self, file, has_point, has_value, modifier_include};
 use super::shares::shares;
 use super::structure::{Entry, EntryKind, ShapeSet, Structure};
@@ -23,7 +24,9 @@ const LEAST_SKIPPED: u32 = 4;
 
 /// The generated file for one fold over `structure`; with `baked` rows they are written into it, as bits.
 pub fn specialise(structure: &Structure, baked: Option<&Vec<[u32; 4]>>, fold: Fold, options: Options) -> String {
-    let mut writer = Writer { structure, baked, fold, options, points: vec!["p".to_owned()], out: String::new() };
+    let ahead = fold == Fold::Value && baked.is_none() && ahead::looks_ahead(structure, options);
+    let mut writer =
+        Writer { structure, baked, ahead, fold, options, points: vec!["p".to_owned()], out: String::new() };
     writer.head();
     writer.body();
     writer.out
@@ -33,6 +36,8 @@ struct Writer<'a> {
     structure: &'a Structure,
     baked: Option<&'a Vec<[u32; 4]>>,
     fold: Fold,
+    /// Whether it also says what the field can be ahead.
+    ahead: bool,
     options: Options,
     /// Names of the point outside and in each modifier under way.
     points: Vec<String>,
@@ -90,9 +95,9 @@ impl Writer<'_> {
         self.line("}");
     }
 
-    fn body(&mut self) {
-        let surface = self.fold == Fold::Surface;
-        if surface {
+    /// What stands before the fold.
+    fn open_fold(&mut self) {
+        if self.fold == Fold::Surface {
             self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
             for row in 0..if self.baked.is_some() { 0 } else { self.structure.rows() } {
                 self.line(&format!("    let q{row} = rows[{row}u];"));
@@ -105,18 +110,30 @@ impl Writer<'_> {
                 }
             }
         } else {
+            for (at, _) in self.structure.entries.iter().enumerate().filter(|(_, entry)| entry.is_leaf()) {
+                if self.ahead {
+                    self.line(&format!("var<private> b{at}: f32;"));
+                }
+            }
             self.line("fn field(p: vec3f) -> f32 {\n    var s0 = 0.0;");
+            if self.ahead {
+                self.line("    var h0 = 0.0;");
+            }
         }
+    }
+
+    fn body(&mut self) {
+        let surface = self.fold == Fold::Surface;
+        self.open_fold();
         let mut row = 0;
         // Groups and runs under way: where each begins, its entry, its first row.
         let mut open: Vec<(usize, Entry, usize)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
-            if let EntryKind::Leaf(shape) = entry.kind {
-                let value = self.leaf(entry, shape, row);
-                self.join(level, at, entry, row, &value, &format!("{at}u"));
-            } else if let EntryKind::AnyLeaf(shapes) = entry.kind {
-                let value = self.any_leaf(at, entry, shapes, row);
+            if entry.is_leaf() {
+                let is_operand = |e: &&Entry| e.kind != EntryKind::Run && e.join == Join::Difference;
+                let cuts = open.iter().map(|(_, group, _)| group).chain([entry]).filter(is_operand).count();
+                let value = self.leaf(at, entry, row, cuts % 2 == 1);
                 self.join(level, at, entry, row, &value, &format!("{at}u"));
             } else {
                 let skipped = entry.bounded && entry.extent >= LEAST_SKIPPED && entry.join.is_skipped_far_off();
@@ -125,6 +142,9 @@ impl Writer<'_> {
                 if entry.kind != EntryKind::Run {
                     level += 1;
                     self.line(&format!("    var s{level}: f32;"));
+                    if self.ahead {
+                        self.line(&format!("    var h{level}: f32;"));
+                    }
                     if surface {
                         self.line(&format!("    var l{level}: u32;"));
                     }
@@ -156,6 +176,9 @@ impl Writer<'_> {
             self.line(&text);
             self.line("    return Surface(s0, surface_first + l0, gradient, diffuse, emission);\n}");
         } else {
+            if self.ahead {
+                self.line("    ahead_least = h0;");
+            }
             self.line("    return s0;\n}");
         }
     }
@@ -165,10 +188,22 @@ impl Writer<'_> {
         self.fold == Fold::Surface && self.structure.has_further_joins()
     }
 
-    /// The value of a leaf whose rows begin at `row`.
-    fn leaf(&self, entry: &Entry, shape: ShapeKind, row: usize) -> String {
-        let value = format!("{}({})", shape.function(), arguments(self.point(), entry, shape, row));
-        if entry.unscaled { value } else { format!("{value} * q{row}.y") }
+    /// The value of a leaf whose rows begin at `row`. `is_cut`: below an odd number of cuts.
+    fn leaf(&mut self, at: usize, entry: &Entry, row: usize, is_cut: bool) -> String {
+        let value = match entry.kind {
+            EntryKind::Leaf(shape) => {
+                let value = format!("{}({})", shape.function(), arguments(self.point(), entry, shape, row));
+                if entry.unscaled { value } else { format!("{value} * q{row}.y") }
+            }
+            EntryKind::AnyLeaf(shapes) => self.any_leaf(at, entry, shapes, row),
+            EntryKind::Nested | EntryKind::Modified(_) | EntryKind::Run => unreachable!("these are no leaves"),
+        };
+        if !self.ahead {
+            return value;
+        }
+        let text = ahead::leaf(at, entry, row, is_cut, &value, &|kind| arguments(self.point(), entry, kind, row));
+        self.out.push_str(&text);
+        format!("v{at}")
     }
 
     /// The value of a leaf of any shape, computed before it is named.
@@ -186,6 +221,9 @@ impl Writer<'_> {
         let name = match entry.join {
             Join::First => {
                 self.line(&format!("    s{level} = {value};"));
+                if self.ahead {
+                    self.line(&format!("    h{level} = {};", least_ahead(level, at, entry)));
+                }
                 if surface {
                     self.line(&format!("    l{level} = {leaf};"));
                 }
@@ -197,14 +235,19 @@ impl Writer<'_> {
             _ => "further",
         };
         let general = self.is_general() || entry.join.is_further();
-        let joined = match entry.kernel {
+        let call = |a: &str, b: &str| match entry.kernel {
             _ if general => {
                 let (join, kernel) = (entry.join as u32, entry.kernel.unwrap_or(0));
-                format!("op_join({join}u, s{level}, {value}, q{row}, {kernel}u)")
+                format!("op_join({join}u, {a}, {b}, q{row}, {kernel}u)")
             }
-            Some(kernel) => format!("op_{name}(s{level}, {value}, q{row}, {kernel}u)"),
-            None => format!("op_hard_{name}(s{level}, {value})"),
+            Some(kernel) => format!("op_{name}({a}, {b}, q{row}, {kernel}u)"),
+            None => format!("op_hard_{name}({a}, {b})"),
         };
+        let joined = call(&format!("s{level}"), value);
+        if self.ahead {
+            let ahead = call(&format!("h{level}"), &least_ahead(level, at, entry));
+            self.line(&format!("    h{level} = {ahead}.x;"));
+        }
         if surface && general {
             self.line(&format!("    w{at} = {joined}; s{level} = w{at}.x;"));
             self.line(&format!("    l{level} = select(l{level}, {leaf}, w{at}.w > 0.5);"));
@@ -272,6 +315,11 @@ impl Writer<'_> {
         let reached = format!("placed_bounds({point}, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         self.line(&format!("    if {reached} {{"));
     }
+}
+
+/// The name of the least that an operand can be ahead.
+fn least_ahead(level: usize, at: usize, entry: &Entry) -> String {
+    if entry.is_leaf() { format!("a{at}") } else { format!("h{}", level + 1) }
 }
 
 /// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row.
