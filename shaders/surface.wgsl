@@ -20,7 +20,7 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     surface_begin(component);
     let pixel = tile_pixel(tiles[work.first_tile + group.x]) + tile_place(lane);
     let seen = view_contains(pixel) && textureLoad(owner_target, pixel, 0).x == work.component;
-    if BRANCHES && !seen {
+    if RETURNS_EARLY && !seen {
         return;
     }
     let direction = view_direction(pixel);

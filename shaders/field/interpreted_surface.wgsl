@@ -24,7 +24,8 @@ var<private> surface_least: array<Surface, STACK_SIZE>;
 // Chooses the component. Before any call of `surface`.
 fn surface_begin(component: Component) {
     surface_first = component.first;
-    surface_end = component.end;
+    // And nothing, which no compiler knows: lavapipe compiles a kernel anew for each value of a uniform that ends a loop.
+    surface_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
 fn surface(p: vec3f) -> Surface {

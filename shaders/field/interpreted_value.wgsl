@@ -29,7 +29,8 @@ fn join_value(node: FlatNode, joint: vec4f, so_far: f32, value: f32) -> f32 {
 // Chooses the component. Before any call of `field`.
 fn field_begin(component: Component) {
     value_first = component.first;
-    value_end = component.end;
+    // And nothing, which no compiler knows: lavapipe compiles a kernel anew for each value of a uniform that ends a loop.
+    value_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
 // The field at `p`, relative to the component's origin.

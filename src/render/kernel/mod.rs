@@ -30,6 +30,11 @@ pub enum Evaluator {
 }
 
 impl Evaluator {
+    /// Whether it is straight-line code; otherwise it walks, by loops that end where no invocation is in them.
+    fn is_straight(&self) -> bool {
+        matches!(self, Self::Specialised(_) | Self::Generated(..))
+    }
+
     /// What its interpreter's parts must be able to evaluate.
     fn features(&self) -> Features {
         match self {

@@ -218,12 +218,12 @@ pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<St
     let further = features.further;
     write!(
         resolver.out,
-        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst BRANCHES: bool = {};\nconst FINENESS: f32 = \
+        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
          {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
         options.counting,
         options.cones,
         options.skipping != Skipping::Never,
-        options.skipping == Skipping::Branches,
+        options.skipping == Skipping::Branches || !evaluator.is_straight(),
         fineness.sqrt(),
         !features.is_rough(),
         further.joins,
