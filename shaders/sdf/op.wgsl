@@ -42,6 +42,7 @@ fn op_join(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
 
 fn op_union(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
     let blend = op_blend(abs(a - b), joint, kernel);
+    // Not `min`: for that lavapipe also asks whether either is no number.
     return vec2f(select(a, b, b < a) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
 }
 
@@ -61,6 +62,7 @@ fn op_difference(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
 fn op_blend(difference: f32, joint: vec4f, kernel: u32) -> vec2f {
     let support = joint.x;
     let h = (support - difference) * (1.0 / support);
+    // Beyond the support this may be no number; it is thrown away there.
     var blend: vec2f;
     if FURTHER_KERNELS && kernel >= KERNEL_LEAN {
         blend = op_further_blend(difference, h, joint, kernel);

@@ -37,8 +37,18 @@ fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator
 
 #[test]
 fn what_is_proven_ahead_is_so() {
-    let kinds = &[ShapeKind::Sphere, ShapeKind::Box, ShapeKind::Torus, ShapeKind::Capsule, ShapeKind::Ellipsoid];
-    let trees = (300..306).map(|seed| tree(seed, Recipe { blends: true, stretching: seed % 2 == 0, kinds }));
+    let kinds = &[
+        ShapeKind::Sphere,
+        ShapeKind::Box,
+        ShapeKind::Torus,
+        ShapeKind::Capsule,
+        ShapeKind::Cylinder,
+        ShapeKind::CappedCone,
+        ShapeKind::RoundCone,
+        ShapeKind::InfiniteCylinder,
+        ShapeKind::Ellipsoid,
+    ];
+    let trees = (300..310).map(|seed| tree(seed, Recipe { blends: true, stretching: seed % 2 == 0, kinds }));
     let [mut farther, mut all] = [0, 0];
     for (seed, scene) in trees.chain([gallery::random(4, 1), long_rows(&mut Random::new(1))]).enumerate() {
         let flat = flatten(&scene, 0.0).unwrap();

@@ -112,7 +112,12 @@ impl Shares<'_> {
             let moved = if entry.moved { "placed_gradient_moved" } else { "placed_gradient" };
             let factor = if entry.unscaled { format!("{sign:?}") } else { format!("{sign:?} * q{row}.y") };
             let moved = format!("{moved}({gradient}, q{}, q{}, q{})", row + 1, row + 2, row + 3);
-            self.line(&format!("    gradient += share{at} * {factor} * {moved};"));
+            let part = format!("share{at} * {factor} * {moved}");
+            self.line(&match self.skipping {
+                Skipping::Branches | Skipping::Never => format!("    gradient += {part};"),
+                // A leaf without a share may have no gradient here.
+                Skipping::Selects => format!("    gradient += select(vec3f(0.0), {part}, {has});"),
+            });
             let leaves_before = self.structure.entries[..at].iter().filter(|entry| entry.is_leaf()).count();
             let material = self.structure.rows() + leaves_before * MATERIAL_ROWS;
             for (what, row) in [("diffuse", material), ("emission", material + 1)] {

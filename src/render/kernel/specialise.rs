@@ -110,10 +110,9 @@ impl Writer<'_> {
                 }
             }
         } else {
-            for (at, _) in self.structure.entries.iter().enumerate().filter(|(_, entry)| entry.is_leaf()) {
-                if self.ahead {
-                    self.line(&format!("var<private> b{at}: f32;"));
-                }
+            let entries = self.structure.entries.iter().enumerate();
+            for (at, _) in entries.filter(|(_, entry)| self.ahead && entry.is_leaf()).collect::<Vec<_>>() {
+                self.line(&format!("var<private> b{at}: f32;"));
             }
             self.line("fn field(p: vec3f) -> f32 {\n    var s0 = 0.0;");
             if self.ahead {
