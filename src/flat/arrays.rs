@@ -280,7 +280,7 @@ pub struct FlatCamera {
     pub camera: Camera,
 }
 
-/// A subtree that meets the others only through hard union, and is therefore traced alone.
+/// A subtree that meets the others only through hard union, and is therefore traced alone; or several small ones together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component {
     /// Its entries in [`FlatScene::nodes`].

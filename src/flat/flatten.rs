@@ -1,7 +1,8 @@
 //! Scene → arrays.
 //!
 //! Two steps: the visible nodes become folds of operands in world space (`operands`), split into
-//! components at hard unions; then each component is written out relative to its own origin (`emit`).
+//! components at hard unions, small ones joined again by place (`batch`); then each component is written out relative to
+//! its own origin (`emit`).
 //!
 //! What never reaches the arrays: hidden nodes, empty groups, groups of one operand, and groups that
 //! come first in their parent (their fold simply is the beginning of the parent's fold).
@@ -12,9 +13,10 @@ use glam::{DAffine3, DVec3};
 use thiserror::Error;
 
 use super::arrays::*;
+use super::batch::{batched, united};
 use super::emit::emit;
 use super::enclosure::fold_bounds;
-use super::operands::{Operand, collect, group_of, is_plain};
+use super::operands::{Operand, collect};
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 
@@ -53,19 +55,8 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     let mut materials =
         Materials { scene, index: flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect() };
     let components = collect(scene, MAX_FLAT_ROWS, &mut |_, _| {});
-    let mut whole: Vec<Operand<'_>> = Vec::new();
-    for mut operands in components.operands {
-        if is_plain(&operands) {
-            for operand in &mut operands {
-                operand.join = Join::Union;
-            }
-            whole.extend(operands);
-        } else {
-            whole.push(Operand { join: Join::Union, ..group_of(operands) });
-        }
-    }
-    if let Some(first) = whole.first_mut() {
-        first.join = Join::First;
+    let whole = united(components.operands);
+    if !whole.is_empty() {
         add_component(&mut flat, &mut materials, &whole, MAX_FLAT_ROWS)?;
     }
     Ok(flat)
@@ -99,7 +90,7 @@ fn flatten_within(scene: &Scene, time: f64, most_rows: usize) -> Result<(FlatSce
     if let Some(problem) = components.problem {
         return Err(problem);
     }
-    for operands in &components.operands {
+    for operands in &batched(components.operands) {
         add_component(&mut flat, &mut materials, operands, most_rows)?;
     }
     Ok((flat, components.has_cuts))

@@ -3,6 +3,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
+//! | `batch` | small components joined by place |
 //! | `body` | shape → the numbers that it is evaluated with |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
@@ -20,6 +21,7 @@
 //! | `compare` | how wrong a picture is, against the truth |
 
 mod arrays;
+mod batch;
 mod body;
 mod buffers;
 pub mod compare;

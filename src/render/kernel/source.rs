@@ -176,7 +176,7 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
 
 /// Whether kernels for forms hold the shape: it neither loops nor has data.
 pub fn fits_forms(kind: ShapeKind) -> bool {
-    shape_loops(kind)[0] == 0 && !kind.has_data()
+    !kind.is_iterated() && !kind.has_data()
 }
 
 /// The arguments of a shape's function, its parameters read from their rows, and where its data begin.
@@ -328,6 +328,13 @@ impl Resolver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shapes_that_are_iterated_are_those_without_data_that_loop() {
+        for &kind in ShapeKind::ALL.iter().filter(|kind| !kind.has_data()) {
+            assert_eq!(shape_loops(kind)[0] > 0, kind.is_iterated(), "{kind:?}");
+        }
+    }
 
     #[test]
     fn files_are_included_once_and_missing_ones_are_named() {

@@ -72,6 +72,11 @@ macro_rules! shapes {
                 match self { $( Self::$name => false $( || stringify!($data) == "data" )?, )+ }
             }
 
+            /// Whether its field is found by iterating, as that of a fractal.
+            pub fn is_iterated(self) -> bool {
+                self.params().iter().any(|param| param.name == "iterations")
+            }
+
             /// The shape with its default parameters.
             pub fn default_shape(self) -> Shape {
                 match self { $( Self::$name => Shape::$name { $( $param: $default, )* }, )+ }
