@@ -3,10 +3,10 @@
 #include "common/walked.wgsl"
 
 // Headers, cells, then tokens, two words each; see `CellTree` on the CPU.
-@group(1) @binding(5) var lists: texture_2d<u32>;
+@group(1) @binding(5) var lists: texture_storage_2d<rg32uint, read>;
 
 fn pruned_word(at: u32) -> vec2u {
-    return textureLoad(lists, vec2u(at % LINE, at / LINE), 0).xy;
+    return textureLoad(lists, vec2u(at % LINE, at / LINE)).xy;
 }
 
 const TOKEN_LEAF: u32 = 0u;

@@ -127,12 +127,16 @@ pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
     descriptor
 }
 
+/// Storage textures of a pass: up to four targets, the rows and the lists. WebGPU's default is four.
+const STORAGE_TEXTURES: u32 = 6;
+
 /// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let required_limits = wgpu::Limits {
         max_texture_dimension_2d: offered.max_texture_dimension_2d,
         max_buffer_size: offered.max_buffer_size,
+        max_storage_textures_per_shader_stage: STORAGE_TEXTURES,
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
         ..wgpu::Limits::default()
     };

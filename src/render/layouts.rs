@@ -3,6 +3,11 @@
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 
+/// Of the texture of rows.
+pub const NUMBERS_FORMAT: Format = Format::Rgba32Float;
+/// Of the texture of pruned lists.
+pub const LISTS_FORMAT: Format = Format::Rg32Uint;
+
 /// Layouts that several passes share.
 #[derive(Clone, Debug)]
 pub struct Layouts {
@@ -26,11 +31,11 @@ impl Layouts {
                 "scene",
                 &[
                     read_storage(),
-                    read_texture(false),
+                    storage_texture(NUMBERS_FORMAT, Access::ReadOnly),
                     uniform(true),
                     read_storage(),
                     uniform(true),
-                    read_texture(true),
+                    storage_texture(LISTS_FORMAT, Access::ReadOnly),
                 ]
                 .iter()
                 .enumerate()

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::buffers::RowTexture;
-use super::renderer::LISTS_FORMAT;
+use super::layouts::LISTS_FORMAT;
 use crate::flat::CellTree;
 
 /// See the module.

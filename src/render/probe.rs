@@ -6,9 +6,12 @@ use wgpu::ShaderStages;
 use super::buffers::{Mirror, RowTexture};
 use super::gpu::Gpu;
 use super::kernel::{Evaluator, Options, form_rows, source};
-use super::layouts::{Layouts, bind, compute_pipeline, entry, layout, read_storage, uniform, window, write_storage};
+use super::layouts::{
+    LISTS_FORMAT, Layouts, NUMBERS_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform, window,
+    write_storage,
+};
 use super::readback::read_words;
-use super::renderer::{KERNEL_WINDOW, LISTS_FORMAT, NUMBERS_FORMAT, RenderError};
+use super::renderer::{KERNEL_WINDOW, RenderError};
 use super::uniforms::GpuComponent;
 use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT, Row};
 

@@ -17,7 +17,7 @@ use super::buffers::{Mirror, RowTexture};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Kernels, Method};
-use super::layouts::Layouts;
+use super::layouts::{Layouts, NUMBERS_FORMAT};
 use super::list_texture::ListTexture;
 use super::passes::farthest::FarthestPass;
 use super::passes::inspect::InspectPass;
@@ -136,10 +136,6 @@ pub struct Renderer {
 /// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
-/// Of the texture of rows.
-pub(super) const NUMBERS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Float;
-/// Of the texture of pruned lists.
-pub(super) const LISTS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// Bytes of a tile in a list.
 const TILE_BYTES: usize = 20;
 /// Words for each list of tiles.

@@ -3,9 +3,8 @@
 use super::buffers::{Mirror, RowTexture};
 use super::gpu::{Gpu, GpuError};
 use super::kernel::{Evaluator, MAX_KERNEL_ROWS, Options};
-use super::layouts::{Layouts, bind, window};
+use super::layouts::{LISTS_FORMAT, Layouts, NUMBERS_FORMAT, bind, window};
 use super::passes::field::{FieldGroups, FieldLayouts, Lists};
-use super::renderer::{LISTS_FORMAT, NUMBERS_FORMAT};
 use super::targets::Targets;
 use super::uniforms::{GpuComponent, View, Work};
 
