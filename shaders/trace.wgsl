@@ -147,7 +147,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, st
         // Where the field falls, not farther than to a little behind its expected end.
         let due = select(longest, f / fall + 0.25 * HIT * footprint, fall > 0.0);
         creep = select(0.0, clamp(min(creep * 2.0, due), near, longest), f < near);
-        leaping = may_leap && fall > STEEP && f < LEAP * footprint && f > near;
+        leaping = RELAXED && may_leap && fall > STEEP && f < LEAP * footprint && f > near;
         may_leap = true;
         slope = select(-1.0, mix(slope, -fall, ADAPTION), advance > 0.0);
         safe = vec2f(t, f);
@@ -156,7 +156,7 @@ fn trace_march(component: Component, direction: vec3f, start: f32, exit: f32, st
             return March(t, false, true, step + 1u);
         }
         let wide = f * 2.0 / (1.0 - min(slope, 0.9));
-        relaxed = !leaping && wide > free * 1.01;
+        relaxed = RELAXED && !leaping && wide > free * 1.01;
         // A leap ends a little inside, where the sign tells.
         t += select(select(free, wide, relaxed), f / fall + 0.25 * HIT * footprint, leaping);
     }

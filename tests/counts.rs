@@ -73,4 +73,5 @@ fn without_cones_more_is_evaluated() {
 }
 
 /// Evaluations per pixel that are allowed: those of 2026-11, with a twentieth of room for drivers that round otherwise.
-const MOST: [f64; 4] = [4.35, 5.95, 5.3, 9.3];
+/// The second one was 5.95 when groups of eight shapes had no lists: cells end steps, but for each less is read.
+const MOST: [f64; 4] = [4.35, 7.9, 5.3, 9.3];

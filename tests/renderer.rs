@@ -199,8 +199,15 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
     note(&format!("200 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
     assert!(renderer.pruner().building() > 0, "lists of this size are not waited for");
+    // Without them this would be millions of dispatches, which is no reason to refuse it.
+    let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
+    assert!(huge > Duration::from_secs(100_000), "{huge:?}");
+    let refused = renderer.begin(Slot::Full, &flat, &[], &camera, [8_192; 2], OverlaySettings::default());
+    assert!(matches!(refused, Err(RenderError::Work(8_192, 8_192, _))));
     assert!(is_same(&picture(&mut renderer, &flat, &camera), &picture(&mut plain, &flat, &camera)));
     wait_for_kernels(&mut renderer, &flat, &camera);
+    let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
+    assert!(huge < Duration::from_secs(1_000), "{huge:?}");
     let uploaded = renderer.uploaded();
     picture(&mut renderer, &flat, &camera);
     assert!(renderer.uploaded() > uploaded + 20_000, "the lists are on the device now");

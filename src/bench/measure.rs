@@ -189,11 +189,12 @@ impl Bench {
             Ok::<_, RenderError>(frame)
         };
         // Kernels and lists are built and the pace is learnt before anything counts.
-        let mut frame = begin(&mut renderer)?;
+        renderer.estimate(flat, &subject.camera, [size, size])?;
         while way.method() == Method::Auto && renderer.is_preparing() {
             std::thread::sleep(Duration::from_millis(5));
-            frame = begin(&mut renderer)?;
+            renderer.estimate(flat, &subject.camera, [size, size])?;
         }
+        let mut frame = begin(&mut renderer)?;
         renderer.advance(&mut frame, Duration::MAX)?;
         let started = Instant::now();
         let (mut cpu, mut wall) = (Vec::new(), Vec::new());

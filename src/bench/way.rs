@@ -8,7 +8,8 @@ use crate::render::kernel::{Options, Skipping};
 /// A way to draw a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Way {
-    /// Every node at every step of every ray, as the thesis "Ray Marching Scene Creator" (Basov 2024) does.
+    /// Every node at every step of every ray, each from sphere to sphere, as the thesis "Ray Marching Scene Creator" (Basov
+    /// 2024) does.
     Thesis,
     /// The whole scene as one generated kernel with its numbers written into it, as a person would write it.
     Generated,
@@ -60,7 +61,8 @@ impl Way {
 
     /// What its kernels do, from what they do by default.
     pub(super) fn options(self, options: Options) -> Options {
-        if self.is_whole() { Options { skipping: Skipping::Never, cones: false, ..options } } else { options }
+        let relaxed = self != Self::Thesis;
+        if self.is_whole() { Options { skipping: Skipping::Never, cones: false, relaxed, ..options } } else { options }
     }
 }
 

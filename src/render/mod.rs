@@ -19,6 +19,7 @@ mod kernels;
 mod keys;
 mod layouts;
 mod list_texture;
+mod pace;
 mod passes;
 pub mod probe;
 mod readback;

@@ -19,12 +19,13 @@ use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
 use super::kernels::{Kernels, Method};
 use super::layouts::{Layouts, NUMBERS_FORMAT};
 use super::list_texture::ListTexture;
+use super::pace::Pace;
 use super::passes::farthest::FarthestPass;
 use super::passes::inspect::InspectPass;
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
-use super::schedule::{DISPATCH_TARGET, Effort, Pace, Plan, plan};
+use super::schedule::{Evaluation, Plan, TooLong, plan};
 use super::targets::Targets;
 use super::uniforms::UNIFORM_STRIDE;
 use crate::flat::inspect::Look;
@@ -62,19 +63,8 @@ pub enum RenderError {
     Cancelled,
 }
 
-/// Whether a device with buffers of `limit` bytes can hold the list of what is to be done. A component of a thousand leaves
-/// that is walked without lists on a driver that ends loops early makes it long.
-fn check_work(flat: &FlatScene, plan: &Plan, size: [u32; 2], limit: u64) -> Result<(), RenderError> {
-    // Buffers grow by powers of two.
-    let bytes = (plan.pieces.len() * UNIFORM_STRIDE).next_power_of_two() as u64;
-    if bytes <= limit {
-        return Ok(());
-    }
-    let mut counts = vec![0_u32; flat.components.len()];
-    plan.pieces.iter().for_each(|piece| counts[piece.work.component as usize] += 1);
-    let most = (0..counts.len()).max_by_key(|i| counts[*i]).unwrap_or_default();
-    Err(RenderError::Work(size[0], size[1], flat.ids[flat.components[most].first as usize]))
-}
+/// What a frame is expected to take that cannot be drawn yet.
+const LONGEST: Duration = Duration::from_secs(1_000_000);
 
 /// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,12 +228,30 @@ impl Renderer {
         buffers.iter().sum::<u64>() + self.numbers.uploaded() + self.lists.uploaded()
     }
 
-    /// How long a whole frame is expected to take.
+    /// How long a whole frame is expected to take. While lists are being made it may be more than can be drawn at all.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
         let Chosen { evaluations, .. } = self.choose(flat, camera)?;
-        let plan = plan(flat, camera, size, &evaluations, &self.pace);
-        check_work(flat, &plan, size, self.gpu.device.limits().max_buffer_size)?;
-        Ok(Duration::from_secs_f64(self.pace.seconds(plan.effort()).min(1e6)))
+        match self.plan(flat, camera, size, &evaluations) {
+            Err(RenderError::Work(..)) if self.pruner.building() > 0 => Ok(LONGEST),
+            plan => Ok(Duration::from_secs_f64(self.pace.seconds(plan?.effort()).min(LONGEST.as_secs_f64()))),
+        }
+    }
+
+    /// The work of a frame, no more than the device holds. A component of a thousand leaves that is walked without lists on
+    /// a driver that ends loops early makes it long.
+    fn plan(
+        &self,
+        flat: &FlatScene,
+        camera: &Camera,
+        size: [u32; 2],
+        evaluations: &[Evaluation],
+    ) -> Result<Plan, RenderError> {
+        // Buffers grow by powers of two.
+        let bytes = self.gpu.device.limits().max_buffer_size.checked_ilog2().map_or(0, |bits| 1_usize << bits);
+        let refused = |TooLong { component }| {
+            RenderError::Work(size[0], size[1], flat.ids[flat.components[component].first as usize])
+        };
+        plan(flat, camera, size, evaluations, &self.pace, bytes / UNIFORM_STRIDE).map_err(refused)
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
@@ -262,13 +270,12 @@ impl Renderer {
         }
         self.check_counts(flat.components.len(), size)?;
         let Chosen { keys, choices, evaluations, trees } = self.choose(flat, camera)?;
+        let plan = self.plan(flat, camera, size, &evaluations)?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
-        let plan = plan(flat, camera, size, &evaluations, &self.pace);
-        check_work(flat, &plan, size, self.gpu.device.limits().max_buffer_size)?;
         let (form_rows, forms) = form_windows(flat, &keys);
         let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
         if self.upload(flat, &trees, camera, size, &plan) || forms_are_new {
@@ -294,6 +301,7 @@ impl Renderer {
             choices,
             next: 0,
             seconds_done: 0.0,
+            rounds_at_once: 0,
             slot,
             overlay,
             look: Look::Shaded,
@@ -304,36 +312,27 @@ impl Renderer {
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
-    /// dispatches of about [`DISPATCH_TARGET`]. Waits for the device, and learns its pace.
+    /// dispatches of about [`super::schedule::DISPATCH_TARGET`]. Waits for the device, and learns its pace.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
         let start = Instant::now();
         if self.kernels.collect() {
             self.kernels.refresh(&frame.keys, &mut frame.choices);
         }
         loop {
-            let first = frame.next;
-            let mut effort = Effort::default();
-            let mut end = first;
-            while end < frame.plan.pieces.len() {
-                let more = effort + frame.plan.pieces[end].effort;
-                // How long a later round takes nobody can foresee: it stands alone.
-                let alone = frame.plan.pieces[end].work.round > 0;
-                if end > first && (alone || self.pace.seconds(more) > DISPATCH_TARGET.as_secs_f64()) {
-                    break;
-                }
-                effort = more;
-                end += 1;
-            }
+            let (pieces, effort, rounds) = frame.next_batch(&self.pace);
             let submitted = Instant::now();
             frame.seconds_done += frame.pace.seconds(effort);
-            self.submit(frame, first..end);
+            self.submit(frame, pieces.clone());
             self.gpu.wait()?;
+            let took = submitted.elapsed();
             // The first dispatch of a kernel may include its compilation, and a later round marches an unknown
-            // few of its rays: neither says anything of the pace.
-            if !frame.uses_fresh_kernel(first..end) && frame.plan.pieces[first].work.round == 0 {
-                self.pace.learn(effort, submitted.elapsed());
+            // few of its rays: neither says that the pace is slow.
+            let foreseen = rounds == 0 || took.as_secs_f64() < self.pace.seconds(effort);
+            if !frame.uses_fresh_kernel(pieces.clone()) && foreseen {
+                self.pace.learn(effort, took);
             }
-            frame.next = end;
+            frame.learn_rounds(rounds, took);
+            frame.next = pieces.end;
             if frame.is_done() || start.elapsed() >= budget {
                 return Ok(());
             }
@@ -348,26 +347,5 @@ impl Renderer {
 
     fn slot(&self, slot: Slot) -> &SlotState {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{flat, gallery};
-
-    #[test]
-    fn more_work_than_a_buffer_lists_is_refused_with_the_node() {
-        let flat = flat::flatten(&gallery::random(32, 1), 0.0).expect("within the limits");
-        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
-        let mut renderer = Renderer::new(&gpu).expect("a renderer");
-        let position = glam::DVec3::new(0.0, 0.0, 6.0);
-        let camera = Camera { position, rotation: glam::DQuat::IDENTITY, fov_y: 0.7, near: 0.01, far: 1e3 };
-        let size = [64, 64];
-        let frame = renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");
-        assert!(check_work(&flat, &frame.plan, size, 1 << 30).is_ok());
-        let refused = check_work(&flat, &frame.plan, size, 256);
-        let Err(RenderError::Work(64, 64, node)) = refused else { panic!("{refused:?}") };
-        assert!(flat.ids.contains(&node));
     }
 }

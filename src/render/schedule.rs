@@ -1,4 +1,4 @@
-//! Cuts a frame into dispatches that are short enough to be waited for, and learns how long they take.
+//! Cuts a frame into dispatches that are short enough to be waited for.
 //!
 //! No dispatch may run long: it cannot be interrupted, and some systems reset a device that is busy for
 //! seconds. No invocation may loop too often: lavapipe ends every loop after 65 535 iterations.
@@ -8,6 +8,7 @@ use std::time::Duration;
 use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3};
 
+use super::pace::{Effort, Pace};
 use super::uniforms::Work;
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
@@ -63,75 +64,6 @@ impl Piece {
     /// Tiles along x and y.
     pub fn tiles(&self) -> [u32; 2] {
         [0, 1].map(|i| (self.work.end[i] - self.work.origin[i]).div_ceil(TILE))
-    }
-}
-
-/// Effort, in evaluations of a leaf, by the kind of kernel that makes them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Effort {
-    /// By interpreted kernels, and everything else.
-    pub interpreted: f64,
-    /// By specialised kernels.
-    pub specialised: f64,
-}
-
-impl Effort {
-    fn new(specialised: bool, amount: f64) -> Self {
-        if specialised {
-            Self { specialised: amount, ..Self::default() }
-        } else {
-            Self { interpreted: amount, ..Self::default() }
-        }
-    }
-}
-
-impl std::ops::Add for Effort {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { interpreted: self.interpreted + other.interpreted, specialised: self.specialised + other.specialised }
-    }
-}
-
-/// How fast the device is, learnt from what was measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Pace {
-    interpreted: f64,
-    specialised: f64,
-}
-
-impl Pace {
-    /// A first guess.
-    pub fn new(software: bool) -> Self {
-        if software {
-            Self { interpreted: 4e-8, specialised: 2e-9 }
-        } else {
-            Self { interpreted: 5e-11, specialised: 1e-11 }
-        }
-    }
-
-    /// Seconds that the effort is expected to take.
-    pub fn seconds(&self, effort: Effort) -> f64 {
-        effort.interpreted * self.interpreted + effort.specialised * self.specialised
-    }
-
-    /// Effort of one kind that is expected to take this long.
-    fn effort_in(&self, time: Duration, specialised: bool) -> f64 {
-        time.as_secs_f64() / if specialised { self.specialised } else { self.interpreted }
-    }
-
-    /// Learns from a measurement. Slower than expected counts at once, faster bit by bit.
-    pub fn learn(&mut self, effort: Effort, took: Duration) {
-        let expected = self.seconds(effort);
-        // Below a millisecond it is the submission that is measured, not the work.
-        if expected <= 0.0 || took < Duration::from_millis(1) {
-            return;
-        }
-        let ratio = (took.as_secs_f64() / expected).clamp(0.05, 20.0);
-        let gain = if ratio > 1.0 { 0.6 } else { 0.3 };
-        let of_special = effort.specialised * self.specialised / expected;
-        self.specialised *= 1.0 + (ratio - 1.0) * gain * of_special;
-        self.interpreted *= 1.0 + (ratio - 1.0) * gain * (1.0 - of_special);
     }
 }
 
@@ -203,30 +135,91 @@ pub struct Evaluation {
     pub leaves: f64,
 }
 
-/// Plans a frame. `evaluations` stand beside the components.
-pub fn plan(flat: &FlatScene, camera: &Camera, size: [u32; 2], evaluations: &[Evaluation], pace: &Pace) -> Plan {
+/// A frame would have too many pieces, most of them for this component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TooLong {
+    /// Which.
+    pub component: usize,
+}
+
+/// Plans a frame of at most `most` pieces. `evaluations` stand beside the components.
+///
+/// # Errors
+/// It would have more: known before any is made, since there may be millions.
+pub fn plan(
+    flat: &FlatScene,
+    camera: &Camera,
+    size: [u32; 2],
+    evaluations: &[Evaluation],
+    pace: &Pace,
+    most: usize,
+) -> Result<Plan, TooLong> {
     let whole = Rect { origin: [0, 0], end: size };
+    let projection = Projection::new(camera, size);
+    let seen: Vec<(usize, Rect, Marching)> = front_to_back(flat, camera)
+        .into_iter()
+        .filter_map(|index| {
+            let component = &flat.components[index];
+            let rect = Rect::around(component, &projection, size)?;
+            Some((index, rect, Marching::of(component, evaluations[index], pace)))
+        })
+        .collect();
+    let pieces = |(_, rect, marching): &(usize, Rect, Marching)| marching.pieces(rect);
+    let shading = 0.3 + 0.2 * flat.lights.len() as f64;
+    let most_shading = pace.effort_in(DISPATCH_TARGET, false);
+    let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading);
+    if seen.iter().map(pieces).fold(others, usize::saturating_add) > most {
+        let component = seen.iter().max_by_key(|one| pieces(one)).map_or(0, |one| one.0);
+        return Err(TooLong { component });
+    }
     let mut plan = Plan::default();
     plan.push(Stage::Mesh, whole.work(0), Effort::default());
     if !flat.meshes.is_empty() {
         plan.push(Stage::Farthest, whole.work(0), Effort::new(false, whole.pixels() * 0.05));
     }
     let mut surfaces = Vec::new();
-    let projection = Projection::new(camera, size);
-    for index in front_to_back(flat, camera) {
-        let Some(rect) = Rect::around(&flat.components[index], &projection, size) else { continue };
-        plan.component(flat, index, rect, evaluations[index], pace, &mut surfaces);
+    for (index, rect, marching) in seen {
+        plan.component(index, rect, marching, &mut surfaces);
     }
     // The rays that are left stand behind how many they are; one list after the other uses the same place.
     let rays = plan.lists;
     plan.pieces.iter_mut().for_each(|piece| piece.work.rays = rays);
     // Normals only of what is still seen when all components are there.
     plan.pieces.append(&mut surfaces);
-    let per_pixel = 0.3 + 0.2 * flat.lights.len() as f64;
-    whole.cut(per_pixel, pace.effort_in(DISPATCH_TARGET, false), |rect| {
-        plan.push(Stage::Shade, rect.work(0), Effort::new(false, rect.pixels() * per_pixel));
+    whole.cut(shading, most_shading, |rect| {
+        plan.push(Stage::Shade, rect.work(0), Effort::new(false, rect.pixels() * shading));
     });
-    plan
+    Ok(plan)
+}
+
+/// How the rays through a component are cut into dispatches.
+#[derive(Clone, Copy, Debug)]
+struct Marching {
+    evaluation: Evaluation,
+    /// Steps of a ray in one dispatch.
+    steps: u32,
+    /// Dispatches one after the other, until no ray can be left.
+    rounds: u32,
+    /// Effort of a pixel, and most in one dispatch.
+    per_pixel: f64,
+    most: f64,
+}
+
+impl Marching {
+    fn of(component: &Component, evaluation: Evaluation, pace: &Pace) -> Self {
+        let Evaluation { straight, iterations, leaves } = evaluation;
+        let (max_steps, at_once) =
+            if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
+        let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
+        let per_pixel = leaves * TRACE_EVALUATIONS;
+        let most = pace.effort_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
+        Self { evaluation, steps, rounds: max_steps.div_ceil(steps), per_pixel, most }
+    }
+
+    /// How many pieces the component takes whose image is within `rect`: of each part its cones, its rounds, its surface.
+    fn pieces(&self, rect: &Rect) -> usize {
+        rect.parts(self.per_pixel, self.most) * (self.rounds as usize + 2)
+    }
 }
 
 impl Plan {
@@ -239,23 +232,8 @@ impl Plan {
         self.pieces.push(Piece { stage, work, effort });
     }
 
-    fn component(
-        &mut self,
-        flat: &FlatScene,
-        index: usize,
-        rect: Rect,
-        evaluation: Evaluation,
-        pace: &Pace,
-        surfaces: &mut Vec<Piece>,
-    ) {
-        let component = &flat.components[index];
-        let Evaluation { straight, iterations, leaves } = evaluation;
-        let (max_steps, at_once) =
-            if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
-        let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
-        let rounds = max_steps.div_ceil(steps);
-        let per_pixel = leaves * TRACE_EVALUATIONS;
-        let most = pace.effort_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
+    fn component(&mut self, index: usize, rect: Rect, marching: Marching, surfaces: &mut Vec<Piece>) {
+        let Marching { evaluation: Evaluation { straight, leaves, .. }, steps, rounds, per_pixel, most } = marching;
         rect.cut(per_pixel, most, |rect| {
             let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(straight, rect.pixels() * leaves * evaluations);
@@ -369,8 +347,8 @@ impl Rect {
         Work { origin: self.origin, end: self.end, component, ..Work::zeroed() }
     }
 
-    /// Cuts into pieces of at most `most` effort, or of one tile.
-    fn cut(&self, per_pixel: f64, most: f64, mut each: impl FnMut(Self)) {
+    /// Width and height of the parts, of at most `most` effort, or of one tile.
+    fn part(&self, per_pixel: f64, most: f64) -> [u32; 2] {
         let pixels = (most / per_pixel.max(1e-9)).max(f64::from(TILE * TILE));
         let width = self.end[0] - self.origin[0];
         let rows = ((pixels / f64::from(width)).min(1e9) as u32 / TILE * TILE).max(TILE);
@@ -379,6 +357,18 @@ impl Rect {
         } else {
             width
         };
+        [columns, rows]
+    }
+
+    /// How many parts there are.
+    fn parts(&self, per_pixel: f64, most: f64) -> usize {
+        let part = self.part(per_pixel, most);
+        [0, 1].map(|i| (self.end[i] - self.origin[i]).div_ceil(part[i]) as usize).iter().product()
+    }
+
+    /// Cuts into parts, see [`Rect::part`].
+    fn cut(&self, per_pixel: f64, most: f64, mut each: impl FnMut(Self)) {
+        let [columns, rows] = self.part(per_pixel, most);
         let mut y = self.origin[1];
         while y < self.end[1] {
             let bottom = y.saturating_add(rows).min(self.end[1]);
@@ -402,7 +392,9 @@ mod tests {
         let rect = Rect { origin: [16, 8], end: [301, 177] };
         for (per_pixel, most) in [(1.0, 1e12), (1.0, 5000.0), (100.0, 5000.0), (1e9, 1.0)] {
             let mut covered = vec![0; 301 * 177];
+            let mut parts = 0;
             rect.cut(per_pixel, most, |r| {
+                parts += 1;
                 let limit = most.max(per_pixel * f64::from(TILE * TILE));
                 assert!(r.pixels() * per_pixel <= limit, "{r:?}");
                 for y in r.origin[1]..r.end[1] {
@@ -411,6 +403,7 @@ mod tests {
                     }
                 }
             });
+            assert_eq!(rect.parts(per_pixel, most), parts);
             for y in 0..177 {
                 for x in 0..301 {
                     let inside = x >= 16 && y >= 8;
@@ -421,13 +414,17 @@ mod tests {
     }
 
     #[test]
-    fn the_pace_follows_what_is_measured() {
-        let mut pace = Pace::new(true);
-        let effort = Effort { interpreted: 1e6, specialised: 1e7 };
-        for _ in 0..60 {
-            pace.learn(effort, Duration::from_millis(100));
-        }
-        let expected = pace.seconds(effort);
-        assert!((expected - 0.1).abs() < 0.01, "{expected}");
+    fn more_pieces_than_there_is_room_for_are_refused_with_the_component() {
+        let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+        let camera = flat.default_camera(&[], 1.0);
+        let cheap = Evaluation { straight: true, iterations: 10, leaves: 8.0 };
+        // Of the third one few steps fit in a dispatch.
+        let mut evaluations = vec![cheap; flat.components.len()];
+        evaluations[2].iterations = MAX_ITERATIONS / 4;
+        let planned = |most| plan(&flat, &camera, [640, 480], &evaluations, &Pace::new(true), most);
+        let count = planned(usize::MAX).expect("room for all").pieces.len();
+        assert!(count > 1_000, "{count}");
+        assert_eq!(planned(count).expect("just enough room").pieces.len(), count);
+        assert_eq!(planned(count - 1).expect_err("too many"), TooLong { component: 2 });
     }
 }

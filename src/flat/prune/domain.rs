@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::{Grid, LEAST_PRUNED_ENTRIES, SIZE_SLACK};
+use super::{Grid, SIZE_SLACK, least_entries};
 use crate::flat::twin::Joint;
 use crate::flat::{Component, Content, FlatNode, FlatScene, Join, MODIFIER_ROWS, Row};
 use crate::scene::ModifierKind;
@@ -27,7 +27,7 @@ pub(super) struct Domain {
 
 /// The domains of a component that has lists, because it is large or because all should have some.
 pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
-    domains(flat, component, LEAST_PRUNED_ENTRIES).or_else(|| domains(flat, component, 1))
+    domains(flat, component, least_entries(component)).or_else(|| domains(flat, component, 1))
 }
 
 /// The domains of a component: its own, then those of its contents; those of `least` entries have a grid. Nothing where

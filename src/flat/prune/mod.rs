@@ -44,7 +44,9 @@ pub use token::{MAX_PRUNED_ENTRIES, Token, TokenOp};
 use super::{Component, FlatScene};
 
 /// Components of at least so many entries have lists: those of fewer are walked as fast without.
-pub const LEAST_PRUNED_ENTRIES: u32 = 24;
+const LEAST_PRUNED_ENTRIES: u32 = 5;
+/// The same with modifiers, whose kernel has more to do for a list.
+const LEAST_MODIFIED_ENTRIES: u32 = 24;
 /// What the grid keeps clear around the component's bounds on each side, as a share of their largest extent.
 pub const MARGIN_SHARE: f64 = 0.05;
 /// Cells along each axis of a block, and top cells along the largest extent.
@@ -144,7 +146,13 @@ pub enum Cell<'a> {
 
 /// Whether a component has lists: it, or what a modifier in it holds, must be bounded and large enough for them to pay.
 pub fn is_pruned(flat: &FlatScene, component: &Component) -> bool {
-    component.count >= LEAST_PRUNED_ENTRIES && has_domains(flat, component, LEAST_PRUNED_ENTRIES)
+    let least = least_entries(component);
+    component.count >= least && has_domains(flat, component, least)
+}
+
+/// So many entries of its own space, or of what a modifier holds, have lists.
+fn least_entries(component: &Component) -> u32 {
+    if component.is_modified() { LEAST_MODIFIED_ENTRIES } else { LEAST_PRUNED_ENTRIES }
 }
 
 /// Whether a component may have lists, however small it is.

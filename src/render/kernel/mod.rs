@@ -101,12 +101,14 @@ pub struct Options {
     pub skipping: Skipping,
     /// Whether cones around tiles go before the rays.
     pub cones: bool,
+    /// Whether rays take longer steps than from sphere to sphere, where they expect that nothing is there.
+    pub relaxed: bool,
     /// How near a march comes to the surface.
     pub quality: Quality,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { counting: false, skipping: Skipping::default(), cones: true, quality: Quality::default() }
+        Self { counting: false, skipping: Skipping::default(), cones: true, relaxed: true, quality: Quality::default() }
     }
 }

@@ -218,10 +218,11 @@ pub fn source(entry: &str, evaluator: &Evaluator, options: Options) -> Result<St
     let further = features.further;
     write!(
         resolver.out,
-        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
+        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst RELAXED: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
          {fineness:?};\nconst CREEP_SHARE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst FURTHER_JOINS: bool = {};\nconst FURTHER_KERNELS: bool = {};\n",
         options.counting,
         options.cones,
+        options.relaxed,
         options.skipping != Skipping::Never,
         options.skipping == Skipping::Branches || !evaluator.is_straight(),
         fineness.sqrt(),

@@ -1,11 +1,14 @@
 //! A picture under way: what is still to be done, by which kernels.
 
+use std::time::Duration;
+
 use super::Slot;
 use crate::flat::inspect::Look;
 use crate::render::kernels::{Choice, Walk};
 use crate::render::keys::Key;
+use crate::render::pace::{Effort, Pace};
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::schedule::{Pace, Piece, Plan, Stage};
+use crate::render::schedule::{DISPATCH_TARGET, Piece, Plan, Stage};
 
 /// A frame under way.
 #[derive(Clone, Debug)]
@@ -17,6 +20,8 @@ pub struct Frame {
     /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
     pub(super) pace: Pace,
     pub(super) seconds_done: f64,
+    /// So many later rounds may be submitted together with others; where it is 0 each stands alone.
+    pub(super) rounds_at_once: u32,
     pub(super) seconds: f64,
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
@@ -27,6 +32,9 @@ pub struct Frame {
     pub(super) origins: Vec<crate::scene::NodeId>,
 }
 
+/// See [`Frame::rounds_at_once`]; more would save nothing.
+const MOST_ROUNDS_AT_ONCE: u32 = 64;
+
 impl Frame {
     /// Share that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
@@ -36,6 +44,31 @@ impl Frame {
     /// Where the rows of a component's kernel begin among those of forms, in bytes; `None` for all other kernels.
     pub(super) fn form_window(&self, component: usize) -> Option<u32> {
         self.form_rows[component].filter(|_| self.choices[component].walk == Walk::Straight)
+    }
+
+    /// The pieces to submit next, what effort they are, and how many of them are later rounds. How long those take nobody
+    /// can foresee: mostly nothing is left for them, but what is left may take long.
+    pub(super) fn next_batch(&self, pace: &Pace) -> (std::ops::Range<usize>, Effort, u32) {
+        let (mut effort, mut rounds, mut end) = (Effort::default(), 0, self.next);
+        for piece in &self.plan.pieces[self.next..] {
+            let more = effort + piece.effort;
+            let more_rounds = rounds + u32::from(piece.work.round > 0);
+            let fits = more_rounds <= self.rounds_at_once && pace.seconds(more) <= DISPATCH_TARGET.as_secs_f64();
+            if end > self.next && !fits {
+                break;
+            }
+            (effort, rounds, end) = (more, more_rounds, end + 1);
+        }
+        (self.next..end, effort, rounds)
+    }
+
+    /// Learns from how long a batch took how many later rounds the next one may hold.
+    pub(super) fn learn_rounds(&mut self, rounds: u32, took: Duration) {
+        if took > DISPATCH_TARGET {
+            self.rounds_at_once = 0;
+        } else if rounds >= self.rounds_at_once {
+            self.rounds_at_once = (2 * self.rounds_at_once).clamp(1, MOST_ROUNDS_AT_ONCE);
+        }
     }
 
     /// Whether a kernel is dispatched for the first time among these pieces.

@@ -1,0 +1,89 @@
+//! How much there is to do, and how fast the device is.
+
+use std::time::Duration;
+
+/// Effort, in evaluations of a leaf, by the kind of kernel that makes them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// By interpreted kernels, and everything else.
+    pub interpreted: f64,
+    /// By specialised kernels.
+    pub specialised: f64,
+}
+
+impl Effort {
+    /// An amount of one kind.
+    pub fn new(specialised: bool, amount: f64) -> Self {
+        if specialised {
+            Self { specialised: amount, ..Self::default() }
+        } else {
+            Self { interpreted: amount, ..Self::default() }
+        }
+    }
+}
+
+impl std::ops::Add for Effort {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { interpreted: self.interpreted + other.interpreted, specialised: self.specialised + other.specialised }
+    }
+}
+
+/// How fast the device is, learnt from what was measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    interpreted: f64,
+    specialised: f64,
+}
+
+impl Pace {
+    /// A first guess.
+    pub fn new(software: bool) -> Self {
+        if software {
+            Self { interpreted: 4e-8, specialised: 2e-9 }
+        } else {
+            Self { interpreted: 5e-11, specialised: 1e-11 }
+        }
+    }
+
+    /// Seconds that the effort is expected to take.
+    pub fn seconds(&self, effort: Effort) -> f64 {
+        effort.interpreted * self.interpreted + effort.specialised * self.specialised
+    }
+
+    /// Effort of one kind that is expected to take this long.
+    pub fn effort_in(&self, time: Duration, specialised: bool) -> f64 {
+        time.as_secs_f64() / if specialised { self.specialised } else { self.interpreted }
+    }
+
+    /// Learns from a measurement. Slower than expected counts at once, faster bit by bit.
+    pub fn learn(&mut self, effort: Effort, took: Duration) {
+        let expected = self.seconds(effort);
+        // Below a millisecond it is the submission that is measured, not the work.
+        if expected <= 0.0 || took < Duration::from_millis(1) {
+            return;
+        }
+        let ratio = (took.as_secs_f64() / expected).clamp(0.05, 20.0);
+        let gain = if ratio > 1.0 { 0.6 } else { 0.3 };
+        let of_special = effort.specialised * self.specialised / expected;
+        self.specialised *= 1.0 + (ratio - 1.0) * gain * of_special;
+        self.interpreted *= 1.0 + (ratio - 1.0) * gain * (1.0 - of_special);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pace_follows_what_is_measured() {
+        let mut pace = Pace::new(true);
+        let effort = Effort { interpreted: 1e6, specialised: 1e7 };
+        for _ in 0..60 {
+            pace.learn(effort, Duration::from_millis(100));
+        }
+        let expected = pace.seconds(effort);
+        assert!((expected - 0.1).abs() < 0.01, "{expected}");
+    }
+}
