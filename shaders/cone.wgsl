@@ -1,20 +1,21 @@
 // Pass `cone`: one invocation for each tile. A cone around all the tile's rays is marched through the
 // component; what it passes without touching, no ray of the tile needs to look at. Tiles in which it
-// touches nothing, or only what is hidden, are dropped; the others are listed with a safe start.
+// touches nothing, or only what is hidden, are dropped; of the others the same is asked about their quarters, and those that
+// are left are listed with a safe start.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
-#include "common/tiles.wgsl"
+#include "common/quads.wgsl"
 #include "common/ahead.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/counts.wgsl"
 
 @group(2) @binding(0) var farthest_target: texture_2d<f32>;
-@group(2) @binding(1) var<storage, read_write> tiles: array<Tile>;
-// For each list the arguments of an indirect dispatch: tiles, 1, 1, evaluations made here.
-@group(2) @binding(2) var<storage, read_write> tile_counts: array<atomic<u32>>;
+@group(2) @binding(1) var<storage, read_write> quads: array<Quad>;
+// QUAD_COUNTS for each list.
+@group(2) @binding(2) var<storage, read_write> quad_counts: array<atomic<u32>>;
 // See `common/counts.wgsl`.
 @group(2) @binding(3) var<storage, read_write> march_counts: array<atomic<u32>>;
 
@@ -69,8 +70,12 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let interval = bounds_interval(component, cone.axis, cone.spread * min(length(far_corner), 1e9));
     let entry = cone_half_space_entry(component, place * TILE);
     // Distances along a ray are longer than along the axis, by at most the cosine.
-    let farthest = textureLoad(farthest_target, place, 0).x;
-    let exit = min(min(interval.y, view.far), farthest);
+    let farthest = max(
+        max(cone_farthest(place, 0u), cone_farthest(place, 1u)),
+        max(cone_farthest(place, 2u), cone_farthest(place, 3u)),
+    );
+    let limit = min(interval.y, view.far);
+    var exit = min(limit, farthest);
     var t = max(max(interval.x, view.near), entry) * cone.cosine;
     let enters = id.x < columns * rows && t <= exit;
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
@@ -107,14 +112,14 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             of_tile = false;
             whole = t * cone.cosine;
         } else {
-            if stopped {
+            if stopped && t * cone.cosine <= exit {
                 start[quarter] = t * cone.cosine;
             }
             quarter += 1u;
         }
         if quarter < 4u {
-            let corner = place * TILE + vec2u(quarter & 1u, quarter >> 1u) * (TILE / 2u);
-            cone = cone_around(corner, TILE / 2u);
+            cone = cone_around(cone_quad(place, quarter) * QUAD, QUAD);
+            exit = min(limit, cone_farthest(place, quarter));
             t = whole;
             last = NEVER;
             steps = 0u;
@@ -123,16 +128,37 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     if COUNTING && enters {
         cone_count(place, evaluations);
     }
-    let nearest = min(min(start[0], start[1]), min(start[2], start[3]));
-    if nearest < CONE_PASSED {
-        let slot = atomicAdd(&tile_counts[work.list * 4u], 1u);
-        tiles[work.first_tile + slot] = Tile(place.x | (place.y << 16u), start);
+    var count = 0u;
+    for (var i = 0u; i < 4u; i += 1u) {
+        count += select(0u, 1u, start[i] < CONE_PASSED);
     }
+    if count > 0u {
+        let list = work.list * QUAD_COUNTS;
+        var slot = atomicAdd(&quad_counts[list + 4u], count);
+        atomicMax(&quad_counts[list], (slot + count + 3u) / 4u);
+        for (var i = 0u; i < 4u; i += 1u) {
+            if start[i] < CONE_PASSED {
+                quads[work.first_quad + slot] = Quad(quad_at(cone_quad(place, i)), start[i]);
+                slot += 1u;
+            }
+        }
+    }
+}
+
+// A quarter of a tile among all quads.
+fn cone_quad(place: vec2u, quarter: u32) -> vec2u {
+    return place * 2u + vec2u(quarter & 1u, quarter >> 1u);
+}
+
+// 0 for what lies outside of the picture.
+fn cone_farthest(place: vec2u, quarter: u32) -> f32 {
+    let quad = cone_quad(place, quarter);
+    return select(0.0, textureLoad(farthest_target, quad, 0).x, view_contains(quad * QUAD));
 }
 
 // What the cones of a tile took, for the list, the tile and the component.
 fn cone_count(place: vec2u, evaluations: u32) {
-    atomicAdd(&tile_counts[work.list * 4u + 3u], evaluations);
+    atomicAdd(&quad_counts[work.list * QUAD_COUNTS + 3u], evaluations);
     let of_tile = counts_of_tile(arrayLength(&march_counts), place);
     atomicAdd(&march_counts[of_tile], evaluations);
     atomicAdd(&march_counts[of_tile + 2u], walked.x);

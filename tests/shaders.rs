@@ -162,7 +162,10 @@ fn rust_and_wgsl_agree_about_every_struct() {
             "View" =
                 View { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
         ),
-        layout!("Work" = Work { origin, end, component, max_steps, round, last_round, list, first_tile, packed, rays }),
+        layout!(
+            "Work" =
+                Work { origin, end, component, max_steps, round, last_round, list, first_quad, packed, rays, hits }
+        ),
         layout!(
             "Instance" = Instance {
                 eye_from_local_x,

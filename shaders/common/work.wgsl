@@ -12,17 +12,19 @@ struct Work {
     round: u32,
     // 1 in the last round: what has not ended by now is counted.
     last_round: u32,
-    // Which of `tile_counts`: where the cone pass counts the tiles that are left.
+    // Which list of quads, see `common/quads.wgsl`.
     list: u32,
-    // Where its tiles start in `tiles`.
-    first_tile: u32,
-    // 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
+    // Where its quads start in `quads`.
+    first_quad: u32,
+    // 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the quads.
     packed: u32,
     // Where the rays that are left stand in `rays`.
     rays: u32,
+    // Where the lists of quads with hits begin in `quads`.
+    hits: u32,
 }
 
 @group(3) @binding(0) var<uniform> work: Work;
 
-// Pixels along a side of a tile: a workgroup's.
+// Pixels along a side of a tile: what a cone begins with.
 const TILE: u32 = 8u;

@@ -111,8 +111,8 @@ pub struct Renderer {
     lights: Mirror,
     mesh_emissions: Mirror,
     work: Mirror,
-    tiles: Mirror,
-    tile_counts: Mirror,
+    quads: Mirror,
+    quad_counts: Mirror,
     rays: Mirror,
     ray_counts: Mirror,
     nothing: Mirror,
@@ -126,10 +126,11 @@ pub struct Renderer {
 /// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
-/// Bytes of a tile in a list.
-const TILE_BYTES: usize = 20;
-/// Words for each list of tiles.
-const COUNTS: usize = 4;
+/// Bytes of a quad in a list.
+const QUAD_BYTES: usize = 8;
+/// Words of a list of quads, and of a list of what its rays leave: see `shaders/common/quads.wgsl`.
+const QUAD_COUNTS: usize = 5;
+const RAY_COUNTS: usize = 7;
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
 
@@ -170,8 +171,8 @@ impl Renderer {
             lights: storage("lights"),
             mesh_emissions: storage("mesh emissions"),
             work: Mirror::uniform(device, "work"),
-            tiles: storage("tiles"),
-            tile_counts: Mirror::indirect(device, "tile counts"),
+            quads: storage("quads"),
+            quad_counts: Mirror::indirect(device, "quad counts"),
             rays: storage("rays"),
             nothing: storage("nothing"),
             ray_counts: Mirror::indirect(device, "ray counts"),

@@ -13,8 +13,10 @@ use super::uniforms::Work;
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
 
-/// Pixels along a side of a tile: a workgroup's.
+/// Pixels along a side of a tile: what a cone begins with.
 pub const TILE: u32 = 8;
+/// Quads along a side of a tile: what cones are narrowed down to.
+pub const QUADS: u32 = 2;
 /// A dispatch is cut so that it is expected to take about this long; measured times scatter by a factor
 /// of two or three around that, so nearly all stay below 50 ms.
 pub const DISPATCH_TARGET: Duration = Duration::from_millis(16);
@@ -37,11 +39,11 @@ pub const STEPS_UNBOUNDED: u32 = 512;
 pub enum Stage {
     /// Clear the targets and draw the meshes.
     Mesh,
-    /// The farthest depth of each tile after the meshes.
+    /// The farthest depth of each quad after the meshes.
     Farthest,
-    /// Find the tiles that a component touches.
+    /// Find the quads that a component touches.
     Cone,
-    /// March one component within these tiles.
+    /// March one component within these quads.
     Trace,
     /// Normals and materials of its hits.
     Surface,
@@ -111,10 +113,10 @@ impl Evaluation {
 pub struct Plan {
     /// In order.
     pub pieces: Vec<Piece>,
-    /// Lists of tiles that the cone passes write.
+    /// Lists of quads that the cone passes write.
     pub lists: u32,
-    /// Tiles in all lists together, if none is dropped.
-    pub tiles: u32,
+    /// Quads in all lists together, if none is dropped.
+    pub quads: u32,
     /// Tiles in the longest list, if none is dropped.
     pub longest: u32,
 }
@@ -184,6 +186,7 @@ pub fn plan(
     // The rays that are left stand behind how many they are; one list after the other uses the same place.
     let rays = plan.lists;
     plan.pieces.iter_mut().for_each(|piece| piece.work.rays = rays);
+    surfaces.iter_mut().chain(&mut plan.pieces).for_each(|piece: &mut Piece| piece.work.hits = plan.quads);
     // Normals only of what is still seen when all components are there.
     plan.pieces.append(&mut surfaces);
     whole.cut(shading, most_shading, |rect| {
@@ -235,7 +238,7 @@ impl Plan {
     fn component(&mut self, index: usize, rect: Rect, marching: Marching, surfaces: &mut Vec<Piece>) {
         let Marching { evaluation: Evaluation { straight, leaves, .. }, steps, rounds, per_pixel, most } = marching;
         rect.cut(per_pixel, most, |rect| {
-            let list = Work { max_steps: steps, list: self.lists, first_tile: self.tiles, ..rect.work(index as u32) };
+            let list = Work { max_steps: steps, list: self.lists, first_quad: self.quads, ..rect.work(index as u32) };
             let effort = |evaluations: f64| Effort::new(straight, rect.pixels() * leaves * evaluations);
             self.push(Stage::Cone, list, effort(CONE_EVALUATIONS));
             for round in 0..rounds {
@@ -246,7 +249,7 @@ impl Plan {
             }
             surfaces.push(Piece { stage: Stage::Surface, work: list, effort: effort(SURFACE_EVALUATIONS) });
             self.lists += 1;
-            self.tiles += rect.tiles();
+            self.quads += rect.tiles() * QUADS * QUADS;
             self.longest = self.longest.max(rect.tiles());
         });
     }

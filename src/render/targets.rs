@@ -5,7 +5,7 @@
 //! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] where nothing is |
 //! | owner | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
 //! | march | R32Float | trace | where a march goes on in the next round |
-//! | farthest | R32Float | farthest, trace | the farthest depth in each tile of 8 by 8 pixels; it may be wider |
+//! | farthest | R32Float | farthest, trace | the farthest depth in each quad of 4 by 4 pixels; it may be wider |
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
 //! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
 //! | emission | Rgba16Float | surface | emission, shininess |
@@ -17,7 +17,7 @@
 
 use wgpu::{TextureFormat, TextureUsages};
 
-use super::schedule::TILE;
+use super::schedule::{QUADS, TILE};
 
 /// Depth where nothing was hit.
 pub const BACKGROUND: f32 = 1e30;
@@ -64,13 +64,13 @@ impl Targets {
         let compute = TextureUsages::STORAGE_BINDING | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
         let both = compute | TextureUsages::RENDER_ATTACHMENT;
         let target = |label, format, usage| Target::new(device, label, size, format, usage);
-        let tiles = size.map(|v| no_power_of_two(v.div_ceil(TILE)));
+        let quads = size.map(|v| no_power_of_two(v.div_ceil(TILE / QUADS)));
         Self {
             size,
             depth: target("depth", TextureFormat::R32Float, both),
             owner: target("owner", TextureFormat::R32Uint, both),
             march: target("march", TextureFormat::R32Float, compute | TextureUsages::COPY_DST),
-            farthest: Target::new(device, "farthest", tiles, TextureFormat::R32Float, both),
+            farthest: Target::new(device, "farthest", quads, TextureFormat::R32Float, both),
             normal: target("normal", TextureFormat::Rgba32Float, both),
             diffuse: target("diffuse", TextureFormat::Rgba16Float, both),
             emission: target("emission", TextureFormat::Rgba16Float, compute),

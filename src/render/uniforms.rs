@@ -152,12 +152,16 @@ pub struct Work {
     pub round: u32,
     /// 1 in the last round.
     pub last_round: u32,
-    /// Where the cone pass counts the tiles that are left.
+    /// Which list of quads.
     pub list: u32,
-    /// Where these tiles start.
-    pub first_tile: u32,
-    /// 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the tiles.
+    /// Where its quads start.
+    pub first_quad: u32,
+    /// 1 where a march goes on with the rays that were left, packed side by side; 0 for all pixels of the quads.
     pub packed: u32,
     /// Where the rays that are left stand in the buffer of rays.
     pub rays: u32,
+    /// Where the lists of quads with hits begin.
+    pub hits: u32,
+    /// Fills the last eight bytes.
+    pub _padding: u32,
 }

@@ -38,8 +38,8 @@ impl Warmer {
         // What is written to may not be read in the same dispatch: each has a buffer of its own.
         let written = [(); 6].map(|()| zeros(1024));
         let lists = Lists {
-            tiles: written[0].buffer(),
-            tile_counts: written[1].buffer(),
+            quads: written[0].buffer(),
+            quad_counts: written[1].buffer(),
             march_counts: written[2].buffer(),
             rays: written[3].buffer(),
             ray_counts: written[4].buffer(),

@@ -102,22 +102,16 @@ pub fn leaf(
 mod tests {
     use super::*;
     use crate::flat::twin::shape_distance;
-
-    /// Random numbers from 0 to 1.
-    fn random(state: &mut u64) -> f64 {
-        *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (*state >> 11) as f64 / (1_u64 << 53) as f64
-    }
+    use crate::render::kernel::random::Random;
 
     /// How far the middle of a chord is below the field, at most, over random chords of what `kind` is by default.
     fn worst(kind: ShapeKind, holds: impl Fn([f64; 3], f64) -> bool) -> f64 {
         let body = crate::flat::Body::new(&kind.default_shape());
         let field = |p: [f64; 3]| shape_distance(kind, p, &body.parameters, &|row| body.rows[row]);
-        let mut state = 1;
+        let mut random = Random(1);
         let mut worst = 0.0_f64;
         for _ in 0..20_000 {
-            let middle = [(); 3].map(|()| random(&mut state) * 4.0 - 2.0);
-            let way = [(); 3].map(|()| random(&mut state) - 0.5);
+            let (middle, way) = (random.point(2.0), random.point(0.5));
             let length = way.iter().map(|v| v * v).sum::<f64>().sqrt();
             let end = |sign: f64| [0, 1, 2].map(|i| middle[i] + sign * way[i]);
             if holds(end(-1.0), 2.0 * length) {

@@ -7,6 +7,8 @@ mod ahead;
 mod dual;
 mod gradients;
 mod modifiers;
+#[cfg(test)]
+mod random;
 mod shares;
 mod source;
 mod specialise;

@@ -1,4 +1,4 @@
-//! Pass `farthest`: the farthest depth in each tile after the meshes; only where there are meshes.
+//! Pass `farthest`: the farthest depth in each quad after the meshes; only where there are meshes.
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 

@@ -12,9 +12,9 @@ use crate::render::targets::Targets;
 /// The pipelines of one evaluator.
 #[derive(Debug)]
 pub struct Kernel {
-    /// Which tiles of the picture a component touches, and from where on.
+    /// Which quads of the picture a component touches, and from where on.
     pub cone: ComputePipeline,
-    /// Hits within these tiles.
+    /// Hits within these quads.
     pub trace: ComputePipeline,
     /// Normal, material and leaf of the hits.
     pub surface: ComputePipeline,
@@ -54,13 +54,13 @@ pub struct FieldGroups {
 /// Buffers that the passes hand on to each other.
 #[derive(Clone, Copy, Debug)]
 pub struct Lists<'a> {
-    /// Tiles that are left, list after list.
-    pub tiles: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatch.
-    pub tile_counts: &'a wgpu::Buffer,
+    /// Quads that the cones have left, list after list; then those with hits.
+    pub quads: &'a wgpu::Buffer,
+    /// For each list the arguments of its indirect dispatch, and how many there are.
+    pub quad_counts: &'a wgpu::Buffer,
     /// Pixels whose march goes on, list after list.
     pub rays: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatch over these.
+    /// For each list the arguments of its indirect dispatches over these, and over quads with hits.
     pub ray_counts: &'a wgpu::Buffer,
     /// Any other buffer.
     pub nothing: &'a wgpu::Buffer,
@@ -81,10 +81,11 @@ impl FieldLayouts {
             write_texture(TextureFormat::R32Uint),
             read_write_texture(TextureFormat::R32Float),
             write_texture(TextureFormat::R32Float),
+            write_storage(),
+            write_storage(),
+            write_storage(),
+            write_storage(),
             read_storage(),
-            write_storage(),
-            write_storage(),
-            write_storage(),
         ];
         let surface = [
             read_texture(false),
@@ -93,6 +94,7 @@ impl FieldLayouts {
             write_texture(TextureFormat::Rgba16Float),
             write_texture(TextureFormat::Rgba16Float),
             write_texture(TextureFormat::R32Uint),
+            read_storage(),
             read_storage(),
         ];
         Self {
@@ -131,8 +133,8 @@ impl FieldLayouts {
         let texture = wgpu::BindingResource::TextureView;
         let cone = [
             texture(&targets.farthest.view),
-            lists.tiles.as_entire_binding(),
-            lists.tile_counts.as_entire_binding(),
+            lists.quads.as_entire_binding(),
+            lists.quad_counts.as_entire_binding(),
             lists.march_counts.as_entire_binding(),
         ];
         let trace = [
@@ -140,10 +142,11 @@ impl FieldLayouts {
             texture(&targets.owner.view),
             texture(&targets.march.view),
             texture(&targets.farthest.view),
-            lists.tiles.as_entire_binding(),
+            lists.quads.as_entire_binding(),
             lists.march_counts.as_entire_binding(),
             lists.rays.as_entire_binding(),
             lists.ray_counts.as_entire_binding(),
+            lists.quad_counts.as_entire_binding(),
         ];
         let mut packed = trace.clone();
         packed[7] = lists.nothing.as_entire_binding();
@@ -154,7 +157,8 @@ impl FieldLayouts {
             texture(&targets.diffuse.view),
             texture(&targets.emission.view),
             texture(&targets.leaf.view),
-            lists.tiles.as_entire_binding(),
+            lists.quads.as_entire_binding(),
+            lists.ray_counts.as_entire_binding(),
         ];
         FieldGroups {
             cone: bind(device, "cone targets", &self.cone, &cone),

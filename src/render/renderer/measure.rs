@@ -1,7 +1,7 @@
 //! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
 
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::{COUNTS, Frame, RenderError, Renderer};
+use super::{Frame, QUAD_COUNTS, RenderError, Renderer};
 use crate::flat::{Buffers, Warning};
 use crate::render::gpu::Gpu;
 use crate::render::passes::overlay::OverlaySettings;
@@ -18,8 +18,8 @@ pub struct Counts {
     pub rays: u64,
     /// Evaluations of fields by cones.
     pub cone_steps: u64,
-    /// Tiles that the cones have left, of all components.
-    pub tiles: u64,
+    /// Quads that the cones have left, of all components.
+    pub quads: u64,
     /// Evaluations by rays and cones, for each component.
     pub of_components: Vec<u64>,
     /// Cells of pruned lists that rays and cones looked up, for each component.
@@ -66,18 +66,19 @@ impl Renderer {
     /// What a frame has counted, with kernels that count.
     pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
         let words = self.component_counts(frame)?;
-        let lists = read_words_at(&self.gpu, self.tile_counts.buffer(), 0, frame.plan.lists as usize * COUNTS)?;
-        let sum = |i: usize| lists.chunks_exact(COUNTS).map(|c| u64::from(c[i])).sum();
+        let lists = read_words_at(&self.gpu, self.quad_counts.buffer(), 0, frame.plan.lists as usize * QUAD_COUNTS)?;
+        let sum = |i: usize| lists.chunks_exact(QUAD_COUNTS).map(|c| u64::from(c[i])).sum();
         let of_each = |i: usize| words.iter().map(|c| u64::from(c[i])).collect::<Vec<_>>();
         let mut of_components = of_each(1);
         for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
-            of_components[piece.work.component as usize] += u64::from(lists[piece.work.list as usize * COUNTS + 3]);
+            of_components[piece.work.component as usize] +=
+                u64::from(lists[piece.work.list as usize * QUAD_COUNTS + 3]);
         }
         Ok(Counts {
             steps: of_each(1).iter().sum(),
             rays: of_each(2).iter().sum(),
             cone_steps: sum(3),
-            tiles: sum(0),
+            quads: sum(4),
             of_components,
             cells: of_each(3),
             entries: of_each(4),

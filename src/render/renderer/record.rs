@@ -1,8 +1,8 @@
 //! Writes the dispatches of a frame down and hands them to the device.
 
 use super::upload::Groups;
-use super::{CONE_GROUP, Frame, Renderer, SlotState};
-use crate::render::schedule::{Piece, Stage};
+use super::{CONE_GROUP, Frame, QUAD_COUNTS, RAY_COUNTS, Renderer, SlotState};
+use crate::render::schedule::{Piece, QUADS, Stage, TILE};
 use crate::render::uniforms::UNIFORM_STRIDE;
 
 impl Renderer {
@@ -63,7 +63,11 @@ impl Renderer {
                     continue;
                 }
             }
-            let [x, y] = piece.tiles();
+            let [x, y] = if piece.stage == Stage::Farthest {
+                piece.tiles().map(|tiles| (tiles * QUADS).div_ceil(TILE))
+            } else {
+                piece.tiles()
+            };
             pass.dispatch_workgroups(x, y, 1);
         }
     }
@@ -90,8 +94,13 @@ impl Renderer {
             let [x, y] = piece.tiles();
             pass.dispatch_workgroups((x * y).div_ceil(CONE_GROUP), 1, 1);
         } else {
-            let counts = if piece.work.packed == 1 { &self.ray_counts } else { &self.tile_counts };
-            pass.dispatch_workgroups_indirect(counts.buffer(), u64::from(piece.work.list) * 16);
+            let list = piece.work.list as usize;
+            let (counts, word) = match (piece.stage, piece.work.packed) {
+                (Stage::Surface, _) => (&self.ray_counts, list * RAY_COUNTS + 3),
+                (_, 1) => (&self.ray_counts, list * RAY_COUNTS),
+                _ => (&self.quad_counts, list * QUAD_COUNTS),
+            };
+            pass.dispatch_workgroups_indirect(counts.buffer(), word as u64 * 4);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use wgpu::BindGroup;
 
-use super::{KERNEL_WINDOW, Renderer, TILE_BYTES};
+use super::{KERNEL_WINDOW, QUAD_BYTES, Renderer};
 use crate::flat::{CellTree, Component, FlatScene, ROW_ALIGNMENT, Row, gpu_lights};
 use crate::geometry::Camera;
 use crate::render::gpu::Gpu;
@@ -57,7 +57,9 @@ impl Renderer {
         plan: &Plan,
     ) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
-        let nothing = vec![[0_u32, 1, 1, 0]; plan.lists as usize];
+        // See `shaders/common/quads.wgsl`.
+        let no_quads = vec![[0_u32, 1, 1, 0, 0]; plan.lists as usize];
+        let no_rays = vec![[0_u32, 1, 1, 0, 1, 1, 0]; plan.lists as usize];
         let mut is_new = self.lists.hold(device, queue, trees);
         let placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, camera.position);
@@ -82,10 +84,10 @@ impl Renderer {
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_emissions.set(device, queue, bytemuck::cast_slice(&mesh_emissions(flat))),
             self.work.set(device, queue, &strided(plan.pieces.iter().map(|piece| piece.work))),
-            self.tiles.reserve(device, plan.tiles as usize * TILE_BYTES),
+            self.quads.reserve(device, 2 * plan.quads as usize * QUAD_BYTES),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
-            self.tile_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
-            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&nothing)),
+            self.quad_counts.reset(device, queue, bytemuck::cast_slice(&no_quads)),
+            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
         ];
         self.reset_counts(flat.components.len(), size) || is_new || uploads.contains(&true)
     }
@@ -104,8 +106,8 @@ impl Renderer {
             bind(device, "scene", &self.layouts.scene, &resources)
         });
         let lists = Lists {
-            tiles: self.tiles.buffer(),
-            tile_counts: self.tile_counts.buffer(),
+            quads: self.quads.buffer(),
+            quad_counts: self.quad_counts.buffer(),
             rays: self.rays.buffer(),
             ray_counts: self.ray_counts.buffer(),
             nothing: self.nothing.buffer(),

@@ -5,6 +5,7 @@ mod evaluate;
 use super::{DUAL_PRELUDE, DualError, dual};
 use crate::flat::Body;
 use crate::flat::twin::shape_distance;
+use crate::render::kernel::random::Random;
 use crate::render::kernel::{Evaluator, Features, Options, plain_source, source};
 use crate::scene::{Limits, ParamValue, Shape, ShapeKind};
 use evaluate::Machine;
@@ -17,20 +18,6 @@ fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
     let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
     let without_data = ShapeKind::ALL.iter().filter(|kind| !kind.has_data());
     without_data.map(named).map(move |(kind, name)| (kind, name, source(name)))
-}
-
-/// Numbers that look random, between 0 and 1.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn point(&mut self, reach: f64) -> [f64; 3] {
-        std::array::from_fn(|_| (2.0 * self.next() - 1.0) * reach)
-    }
 }
 
 /// Parameters of a shape, packed: lengths between 0.1 and 1.1, all angles and numbers of sides.

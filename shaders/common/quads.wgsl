@@ -1,0 +1,37 @@
+// Quarters of tiles, for the passes after the cone pass: a workgroup takes four of a list, from anywhere.
+
+struct Quad {
+    // Column and row, 16 bits each.
+    place: u32,
+    // Nothing of the component is nearer than this along any of its rays.
+    start: f32,
+}
+
+// Pixels along a side.
+const QUAD: u32 = 4u;
+// Words of a list of quads: the arguments of an indirect dispatch (groups of four quads, 1, 1), evaluations by the cones
+// that wrote it, quads.
+const QUAD_COUNTS: u32 = 5u;
+// Words of a list of what its rays leave: groups of 64 rays that have not ended, 1, 1; groups of four quads with hits, 1, 1,
+// these quads.
+const RAY_COUNTS: u32 = 7u;
+
+// Upper left pixel of a quad.
+fn quad_pixel(place: u32) -> vec2u {
+    return vec2u(place & 0xffffu, place >> 16u) * QUAD;
+}
+
+fn quad_at(place: vec2u) -> u32 {
+    return place.x | (place.y << 16u);
+}
+
+// Which of the workgroup's quads an invocation is in.
+fn quad_of(lane: u32) -> u32 {
+    return lane / 16u;
+}
+
+// Invocations that run together (eight on lavapipe, 32 or more on graphics cards) lie close together: halves of a quad are
+// blocks of 4 by 2 pixels.
+fn quad_place(lane: u32) -> vec2u {
+    return vec2u(lane & 3u, lane >> 2u & 3u);
+}
