@@ -9,16 +9,15 @@ pub struct Effort {
     pub interpreted: f64,
     /// By specialised kernels.
     pub specialised: f64,
+    /// Dispatches, which take their time however little they do.
+    pub dispatches: f64,
 }
 
 impl Effort {
-    /// An amount of one kind.
+    /// A dispatch of an amount of one kind.
     pub fn new(specialised: bool, amount: f64) -> Self {
-        if specialised {
-            Self { specialised: amount, ..Self::default() }
-        } else {
-            Self { interpreted: amount, ..Self::default() }
-        }
+        let [interpreted, specialised] = if specialised { [0.0, amount] } else { [amount, 0.0] };
+        Self { interpreted, specialised, dispatches: 1.0 }
     }
 }
 
@@ -26,7 +25,11 @@ impl std::ops::Add for Effort {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self { interpreted: self.interpreted + other.interpreted, specialised: self.specialised + other.specialised }
+        Self {
+            interpreted: self.interpreted + other.interpreted,
+            specialised: self.specialised + other.specialised,
+            dispatches: self.dispatches + other.dispatches,
+        }
     }
 }
 
@@ -35,20 +38,29 @@ impl std::ops::Add for Effort {
 pub struct Pace {
     interpreted: f64,
     specialised: f64,
+    /// Known, not learnt: lavapipe wakes its threads and waits for them.
+    dispatch: f64,
 }
+
+/// Seconds.
+const LEAST_MEASURED: f64 = 0.001;
 
 impl Pace {
     /// A first guess.
     pub fn new(software: bool) -> Self {
         if software {
-            Self { interpreted: 4e-8, specialised: 2e-9 }
+            Self { interpreted: 4e-8, specialised: 2e-9, dispatch: 25e-6 }
         } else {
-            Self { interpreted: 5e-11, specialised: 1e-11 }
+            Self { interpreted: 5e-11, specialised: 1e-11, dispatch: 3e-6 }
         }
     }
 
     /// Seconds that the effort is expected to take.
     pub fn seconds(&self, effort: Effort) -> f64 {
+        effort.dispatches * self.dispatch + self.seconds_of_work(effort)
+    }
+
+    fn seconds_of_work(&self, effort: Effort) -> f64 {
         effort.interpreted * self.interpreted + effort.specialised * self.specialised
     }
 
@@ -59,12 +71,15 @@ impl Pace {
 
     /// Learns from a measurement. Slower than expected counts at once, faster bit by bit.
     pub fn learn(&mut self, effort: Effort, took: Duration) {
-        let expected = self.seconds(effort);
-        // Below a millisecond it is the submission that is measured, not the work.
-        if expected <= 0.0 || took < Duration::from_millis(1) {
+        let expected = self.seconds_of_work(effort);
+        let took = took.as_secs_f64() - effort.dispatches * self.dispatch;
+        // Of less it is the submission that is measured, not the work: then all that is known is that it took no more.
+        let took = took.max(LEAST_MEASURED);
+        if expected <= 0.0 || (took <= LEAST_MEASURED && expected <= took) {
             return;
         }
-        let ratio = (took.as_secs_f64() / expected).clamp(0.05, 20.0);
+        // A driver that compiles, or a machine that does something else, takes ten times as long once in a while.
+        let ratio = (took / expected).clamp(0.05, 4.0);
         let gain = if ratio > 1.0 { 0.6 } else { 0.3 };
         let of_special = effort.specialised * self.specialised / expected;
         self.specialised *= 1.0 + (ratio - 1.0) * gain * of_special;
@@ -79,11 +94,17 @@ mod tests {
     #[test]
     fn the_pace_follows_what_is_measured() {
         let mut pace = Pace::new(true);
-        let effort = Effort { interpreted: 1e6, specialised: 1e7 };
+        let effort = Effort { interpreted: 1e6, specialised: 1e7, dispatches: 10.0 };
         for _ in 0..60 {
             pace.learn(effort, Duration::from_millis(100));
         }
         let expected = pace.seconds(effort);
         assert!((expected - 0.1).abs() < 0.01, "{expected}");
+        // What takes less than can be measured is known to take no more than that.
+        for _ in 0..60 {
+            pace.learn(effort, Duration::from_micros(30));
+        }
+        let expected = pace.seconds_of_work(effort);
+        assert!((expected - LEAST_MEASURED).abs() < 0.1 * LEAST_MEASURED, "{expected}");
     }
 }

@@ -315,6 +315,8 @@ impl Renderer {
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
     /// dispatches of about [`super::schedule::DISPATCH_TARGET`]. Waits for the device, and learns its pace.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
+        // What others have submitted before, the painting of a window above all, is none of this frame's time.
+        self.gpu.wait()?;
         let start = Instant::now();
         if self.kernels.collect() {
             self.kernels.refresh(&frame.keys, &mut frame.choices);

@@ -245,7 +245,9 @@ impl Plan {
                 let last_round = u32::from(round + 1 == rounds);
                 let work = Work { round, last_round, packed: u32::from(round > 0), ..list };
                 // Most rays have ended long before the last round.
-                self.push(Stage::Trace, work, effort(if round == 0 { TRACE_EVALUATIONS } else { 0.1 }));
+                let effort =
+                    if round == 0 { effort(TRACE_EVALUATIONS) } else { Effort { dispatches: 0.0, ..effort(0.1) } };
+                self.push(Stage::Trace, work, effort);
             }
             surfaces.push(Piece { stage: Stage::Surface, work: list, effort: effort(SURFACE_EVALUATIONS) });
             self.lists += 1;
