@@ -138,7 +138,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
         atomicMax(&quad_counts[list], (slot + count + 3u) / 4u);
         for (var i = 0u; i < 4u; i += 1u) {
             if start[i] < CONE_PASSED {
-                quads[work.first_quad + slot] = Quad(quad_at(cone_quad(place, i)), start[i]);
+                quads[work.first_quad + slot] = Quad(quad_packed(cone_quad(place, i)), start[i]);
                 slot += 1u;
             }
         }

@@ -85,8 +85,8 @@ fn trace(
     atomicMax(&farthest[quad_of(lane)], bitcast<u32>(depth));
     workgroupBarrier();
     if lane % 16u == 0u && is_listed {
-        let place = quad_pixel(quad.place) / QUAD;
-        textureStore(farthest_target, place, vec4f(bitcast<f32>(atomicLoad(&farthest[quad_of(lane)]))));
+        let deepest = bitcast<f32>(atomicLoad(&farthest[quad_of(lane)]));
+        textureStore(farthest_target, quad_unpacked(quad.place), vec4f(deepest));
         if work.round == 0u && atomicLoad(&has_hits[quad_of(lane)]) > 0u {
             let list = work.list * RAY_COUNTS;
             let hit = atomicAdd(&ray_counts[list + 6u], 1u);

@@ -203,7 +203,8 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
     assert!(huge > Duration::from_secs(100_000), "{huge:?}");
     let refused = renderer.begin(Slot::Full, &flat, &[], &camera, [8_192; 2], OverlaySettings::default());
-    assert!(matches!(refused, Err(RenderError::Work(8_192, 8_192, _))));
+    let Err(RenderError::Work(8_192, 8_192, node)) = refused else { panic!("it is not refused") };
+    assert!(flat.ids.contains(&node));
     assert!(is_same(&picture(&mut renderer, &flat, &camera), &picture(&mut plain, &flat, &camera)));
     wait_for_kernels(&mut renderer, &flat, &camera);
     let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");

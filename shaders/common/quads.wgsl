@@ -16,13 +16,18 @@ const QUAD_COUNTS: u32 = 5u;
 // these quads.
 const RAY_COUNTS: u32 = 7u;
 
-// Upper left pixel of a quad.
-fn quad_pixel(place: u32) -> vec2u {
-    return vec2u(place & 0xffffu, place >> 16u) * QUAD;
+// Column and row as one word, and back.
+fn quad_packed(place: vec2u) -> u32 {
+    return place.x | (place.y << 16u);
 }
 
-fn quad_at(place: vec2u) -> u32 {
-    return place.x | (place.y << 16u);
+fn quad_unpacked(place: u32) -> vec2u {
+    return vec2u(place & 0xffffu, place >> 16u);
+}
+
+// Upper left pixel of a quad.
+fn quad_pixel(place: u32) -> vec2u {
+    return quad_unpacked(place) * QUAD;
 }
 
 // Which of the workgroup's quads an invocation is in.

@@ -38,7 +38,7 @@ impl std::ops::Add for Effort {
 pub struct Pace {
     interpreted: f64,
     specialised: f64,
-    /// Known, not learnt: lavapipe wakes its threads and waits for them.
+    /// Not learnt: measured on lavapipe, which wakes its threads and waits for them; a guess for graphics cards.
     dispatch: f64,
 }
 
