@@ -22,7 +22,7 @@
 // Steps of a cone before it leaves the rest to the rays.
 const CONE_STEPS: u32 = 48u;
 // A cone stops where the surface may be nearer to its border than this, in footprints.
-const CONE_CLEARANCE: f32 = 0.25;
+const CONE_CLEARANCE: f32 = select(0.25, 0.1, LEAPS_FAR);
 // What stands for a quarter that needs no rays.
 const CONE_PASSED: f32 = 3e38;
 
@@ -81,6 +81,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
     // because the field is called from one place.
     var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
+    var falls = array<f32, 4>();
     if !CONES && enters {
         start = array<f32, 4>(t, t, t, t);
     }
@@ -91,11 +92,16 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     var evaluations = 0u;
     // Where the field was last evaluated on this cone's axis.
     var last = NEVER;
+    // The field there, and how it fell since the evaluation before.
+    var before = 0.0;
+    var fall = 0.0;
     let reach = length(component.eye);
     while quarter < 4u {
         ahead_begin(t - last, AHEAD_WINDOW * max(t - last, 0.0), 2.0 * SPACING * (t + reach));
-        last = t;
         let f = field(component.eye + cone.axis * t);
+        fall = select(fall, (before - f) / (t - last), t > last);
+        last = t;
+        before = f;
         steps += 1u;
         evaluations += 1u;
         let clear = f - cone.spread * t;
@@ -113,7 +119,9 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             whole = t * cone.cosine;
         } else {
             if stopped && t * cone.cosine <= exit {
-                start[quarter] = t * cone.cosine;
+                let free = f - 2.0 * SPACING * (t + reach);
+                start[quarter] = select(t * cone.cosine, t + free, LEAPS_FAR && free > cone.spread * t);
+                falls[quarter] = fall;
             }
             quarter += 1u;
         }
@@ -138,7 +146,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
         atomicMax(&quad_counts[list], (slot + count + 3u) / 4u);
         for (var i = 0u; i < 4u; i += 1u) {
             if start[i] < CONE_PASSED {
-                quads[work.first_quad + slot] = Quad(quad_packed(cone_quad(place, i)), start[i]);
+                quads[work.first_quad + slot] = Quad(quad_packed(cone_quad(place, i)), start[i], falls[i]);
                 slot += 1u;
             }
         }

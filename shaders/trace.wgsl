@@ -55,13 +55,14 @@ fn trace(
     let direction = view_direction(pixel);
     let interval = bounds_interval(component, direction, 0.0);
     let exit = min(min(interval.y, view.far), depth);
-    var start = max(max(interval.x, view.near), max(quad.start, bounds_half_space_entry(component, direction)));
+    var start = max(max(interval.x, view.near), max(select(quad.start, quad_start(quad, lane), LEAPS_FAR), bounds_half_space_entry(component, direction)));
     if work.round > 0u {
         start = textureLoad(march_target, pixel).x;
         start = select(start, NEVER, start == MARCH_ENDED);
     }
     let steps = select(0u, work.max_steps, exists && start <= exit);
-    let marched = march_along(component, direction, start, exit, steps);
+    let fall = select(0.0, quad.fall, LEAPS_FAR && work.round == 0u);
+    let marched = march_along(component, direction, start, exit, fall, steps);
     if exists {
         let is_nearer = marched.hit && marched.t < depth;
         if is_nearer || !marched.ended {

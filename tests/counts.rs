@@ -7,20 +7,25 @@ use isolith::render::kernel::Options;
 use isolith::render::{Counts, Method, OverlaySettings, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
 
-use crate::gpu::{Subject, shared};
+use crate::gpu::{Subject, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 128;
 
-/// What drawing the subject counts.
+/// What drawing the subject by pruned lists counts.
 fn count(subject: &Subject, options: impl Fn(Options) -> Options) -> Counts {
+    count_by(Method::Pruned, SIDE, subject, options)
+}
+
+/// What drawing the subject counts, in a picture of `side` by `side` pixels.
+fn count_by(method: Method, side: u32, subject: &Subject, options: impl Fn(Options) -> Options) -> Counts {
     let gpu = shared().gpu.clone();
     let options = options(Options { counting: true, ..Renderer::options(&gpu) });
     let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
-    renderer.set_method(Method::Pruned);
+    renderer.set_method(method);
     let overlay = OverlaySettings::default();
     let mut frame = renderer
-        .begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], overlay)
+        .begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, [side, side], overlay)
         .expect("a frame");
     renderer.advance(&mut frame, std::time::Duration::MAX).expect("a picture");
     renderer.counts(&frame).expect("counts")
@@ -53,22 +58,35 @@ fn what_is_hidden_or_out_of_view_costs_nothing() {
 }
 
 /// Evaluations of fields per pixel, by rays and cones.
-fn per_pixel(counts: &Counts) -> f64 {
-    (counts.steps + counts.cone_steps) as f64 / f64::from(SIDE * SIDE)
+fn per_pixel(counts: &Counts, side: u32) -> f64 {
+    (counts.steps + counts.cone_steps) as f64 / f64::from(side * side)
+}
+
+/// A wrong hit is as cheap as a right one: that the pictures are right is for the tests of agreement.
+#[test]
+fn kernels_take_few_evaluations_up_to_145_nodes() {
+    for (name, most) in [("random-37", 1.7), ("random-145", 2.2)] {
+        let subject = scenes().find(|subject| subject.name == name).expect("the scene is there");
+        let counts = count_by(Method::Specialised, 512, &subject, |options| options);
+        let reached = per_pixel(&counts, 512);
+        assert!(reached > 1.0 && reached <= most, "{name}: {reached} evaluations per pixel, {most} allowed");
+        let unrelaxed = count_by(Method::Specialised, 512, &subject, |options| Options { relaxed: false, ..options });
+        assert!(per_pixel(&unrelaxed, 512) > most, "{name}: the gate cannot see what leaps save");
+    }
 }
 
 #[test]
 fn no_more_is_evaluated_than_was_once_reached() {
     let scenes =
         [gallery::random(32, 2), gallery::random(128, 2), gallery::crowd(100, true, 2), gallery::crowd(400, true, 2)];
-    let reached = scenes.map(|scene| per_pixel(&count(&Subject::new("random", &scene, None), |options| options)));
+    let reached = scenes.map(|scene| per_pixel(&count(&Subject::new("random", &scene, None), |options| options), SIDE));
     assert!((0..4).all(|i| reached[i] <= MOST[i]), "{reached:?} evaluations per pixel, {MOST:?} allowed");
 }
 
 #[test]
 fn without_cones_more_is_evaluated() {
     let subject = Subject::new("random", &gallery::random(32, 2), None);
-    let [with, without] = [true, false].map(|cones| per_pixel(&count(&subject, |o| Options { cones, ..o })));
+    let [with, without] = [true, false].map(|cones| per_pixel(&count(&subject, |o| Options { cones, ..o }), SIDE));
     assert!(without > 1.5 * with, "{without} without cones, {with} with them");
 }
 

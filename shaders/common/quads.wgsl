@@ -3,8 +3,11 @@
 struct Quad {
     // Column and row, 16 bits each.
     place: u32,
-    // Nothing of the component is nearer than this along any of its rays.
+    // Nothing of the component is nearer than this along any of its rays; of kernels that leap far, along the middle ray: along
+    // the others by no more than they are apart there.
     start: f32,
+    // By how much the field falls there per distance along the middle ray; 0 where that is not known.
+    fall: f32,
 }
 
 // Pixels along a side.
@@ -33,6 +36,12 @@ fn quad_pixel(place: u32) -> vec2u {
 // Which of the workgroup's quads an invocation is in.
 fn quad_of(lane: u32) -> u32 {
     return lane / 16u;
+}
+
+// Of kernels that leap far: nothing of the component is nearer along the ray of the invocation. Rays are apart by a footprint for each pixel, or less.
+fn quad_start(quad: Quad, lane: u32) -> f32 {
+    let from_middle = vec2f(quad_place(lane)) - 0.5 * f32(QUAD - 1u);
+    return quad.start * (1.0 - 1.001 * length(from_middle) * view.footprint);
 }
 
 // Invocations that run together (eight on lavapipe, 32 or more on graphics cards) lie close together: halves of a quad are

@@ -4,8 +4,10 @@ fn sdf_torus(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     return length(vec2f(length(p.xz) - a.x, p.y)) - a.y;
 }
 
-// As far as this around a point the field is convex: away from the axis the distance to it is, and the field grows with that
-// outside of the ring's own circle.
-fn sdf_torus_convex(p: vec3f, a: vec4f, b: vec4f) -> f32 {
-    return length(p.xz) - a.x;
+// As far as `span` around a point, all in units of the component, the second derivative of the field along any line is nowhere
+// less than the negative of this. The distance to a circle bends that way only around the circle's axis and nearer to it than the
+// circle: there as the distance to the axis does, or less.
+fn sdf_torus_concavity(p: vec3f, a: vec4f, b: vec4f, scale: f32, span: f32) -> f32 {
+    let nearest = length(p.xz) * scale - span;
+    return select(1.0 / max(nearest, 1e-9), 0.0, nearest >= a.x * scale);
 }

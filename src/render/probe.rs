@@ -64,8 +64,9 @@ pub fn surface(
     Ok(found.as_chunks().0.iter().map(read).collect())
 }
 
-/// For each two points on a ray, both relative to the origin, the field at the second one and how far beyond it that is
-/// proven to be positive.
+/// For each two points on a ray, both relative to the origin, the field at the second one, how far beyond it that is
+/// proven to be positive, what it is proven to be at least within four times their distance before the first one, or less where
+/// it is less at the first one, and the field there.
 ///
 /// # Errors
 /// The device fails.
@@ -76,8 +77,8 @@ pub fn ahead(
     pairs: &[DVec3],
     evaluator: &Evaluator,
     options: Options,
-) -> Result<Vec<[f32; 2]>, RenderError> {
-    let probe = Probe { file: "probe_ahead.wgsl", entry: "probe_ahead", words: 1, evaluator, options };
+) -> Result<Vec<[f32; 4]>, RenderError> {
+    let probe = Probe { file: "probe_ahead.wgsl", entry: "probe_ahead", words: 2, evaluator, options };
     Ok(probe.run(gpu, flat, index, pairs)?.as_chunks().0.to_vec())
 }
 

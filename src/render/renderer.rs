@@ -127,7 +127,7 @@ pub struct Renderer {
 /// that the window on the last component does not end outside the buffer.
 pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
 /// Bytes of a quad in a list.
-const QUAD_BYTES: usize = 8;
+const QUAD_BYTES: usize = 12;
 /// Words of a list of quads, and of a list of what its rays leave: see `shaders/common/quads.wgsl`.
 const QUAD_COUNTS: usize = 5;
 const RAY_COUNTS: usize = 7;

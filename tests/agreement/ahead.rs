@@ -5,8 +5,8 @@ use super::*;
 /// Steps in which the way is looked at.
 const LOOKS: usize = 24;
 
-/// How many of the proofs go farther than the distance, and of how many.
-fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator, random: &mut Random) -> [usize; 2] {
+/// How many of the proofs go farther than the distance, of how many, and how many say more of the way behind than the distance does.
+fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator, random: &mut Random) -> [usize; 3] {
     let pairs: Vec<DVec3> = (0..POINTS)
         .flat_map(|i| {
             let from = random.point(if i % 2 == 0 { 1.5 } else { 0.7 }).as_vec3().as_dvec3();
@@ -16,8 +16,10 @@ fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator
         .collect();
     let options = Options { skipping: Skipping::Selects, ..Options::default() };
     let found = probe::ahead(&shared().gpu, flat, index, &pairs, evaluator, options).unwrap();
-    let mut farther = [0, 0];
-    for (pair, [f, proven]) in pairs.as_chunks::<2>().0.iter().zip(found).filter(|(_, [f, _])| *f > 1e-3) {
+    let mut farther = [0, 0, 0];
+    for (pair, [f, proven, least, first]) in
+        pairs.as_chunks::<2>().0.iter().zip(found).filter(|(_, found)| found[0] > 1e-3)
+    {
         let direction = (pair[1] - pair[0]).normalize();
         for i in 0..=LOOKS {
             let p = pair[1] + direction * (f64::from(proven) * i as f64 / LOOKS as f64);
@@ -29,6 +31,19 @@ fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator
                 pair[1]
             );
         }
+        let window = 4.0 * pair[0].distance(pair[1]);
+        let least = f64::from(least.min(first));
+        for i in 0..=LOOKS {
+            let p = pair[0] - direction * (window * i as f64 / LOOKS as f64);
+            let there = field(flat, &flat.components[index], p);
+            assert!(
+                there > least - 1e-5,
+                "{what}: before {}, from {}, at {p} it is {there}, at least {least} was said",
+                pair[0],
+                pair[1]
+            );
+        }
+        farther[2] += usize::from(least > f64::from(first) - 0.8 * window);
         farther[0] += usize::from(proven > 1.2 * f);
         farther[1] += 1;
     }
@@ -49,7 +64,7 @@ fn what_is_proven_ahead_is_so() {
         ShapeKind::Ellipsoid,
     ];
     let trees = (300..310).map(|seed| tree(seed, Recipe { blends: true, stretching: seed % 2 == 0, kinds }));
-    let [mut farther, mut all] = [0, 0];
+    let [mut farther, mut all, mut behind] = [0, 0, 0];
     for (seed, scene) in trees.chain([gallery::random(4, 1), long_rows(&mut Random::new(1))]).enumerate() {
         let flat = flatten(&scene, 0.0).unwrap();
         let used = flat.nodes.iter().filter(|node| node.is_leaf()).map(|n| ShapeKind::ALL[(n.code & 0xffff) as usize]);
@@ -58,11 +73,14 @@ fn what_is_proven_ahead_is_so() {
             let structures = [Structure::of(&flat, component), Structure::form(&flat, component, used)];
             for evaluator in structures.into_iter().flatten().map(Evaluator::Specialised) {
                 let mut random = Random::new(seed as u64);
-                let [more, of] = proofs_hold(&format!("scene {seed}"), &flat, index, &evaluator, &mut random);
+                let [more, of, more_behind] =
+                    proofs_hold(&format!("scene {seed}"), &flat, index, &evaluator, &mut random);
                 farther += more;
                 all += of;
+                behind += more_behind;
             }
         }
     }
+    assert!(behind > all / 20, "only {behind} of {all} proofs say more of the way behind");
     assert!(all > 20_000 && farther > all / 20, "only {farther} of {all} proofs go farther than the distance");
 }

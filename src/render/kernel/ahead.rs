@@ -2,27 +2,31 @@
 //!
 //! The distance to a convex body is a convex function along a ray: ahead it lies above the line through its last two
 //! values. So each leaf is known to be no less, some way ahead, than a number that costs nothing; and as a fold never
-//! falls where its operands rise, the same fold over these numbers is no more than the field is anywhere until there. Both
-//! folds are made side by side: a fold is a chain in which each joint waits for the one before, so the second one takes
-//! hardly any time.
+//! falls where its operands rise, the same fold over these numbers is no more than the field is anywhere until there. Where
+//! all joints are concave so is the fold of the lines themselves, also of those that rise: until there the field lies above
+//! the line from what it is to what that fold is there. Both folds are made side by side: a fold is a chain in which each
+//! joint waits for the one before, so the second one takes hardly any time.
+//!
+//! The same is true before the two values, and so a leap to where the surface is expected can be proven afterwards: see
+//! `shaders/common/march.wgsl`.
 
 use super::structure::{Entry, EntryKind, Structure};
 use super::{Evaluator, Options, Skipping};
 use crate::flat::Join;
 use crate::scene::{BlendKernel, ShapeKind};
 
-/// Where the field of a shape is convex.
+/// How convex the field of a shape is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convexity {
     /// Everywhere: the exact distance to a convex body.
     Everywhere,
-    /// Around a point as far as the function `sdf_…_convex` beside its field says.
-    Around,
+    /// But for what the function `sdf_…_concavity` beside its field says.
+    Nearly,
     /// It is not, or nobody knows.
     Unknown,
 }
 
-/// Where the field of a shape is convex.
+/// How convex the field of a shape is.
 pub fn convexity(kind: ShapeKind) -> Convexity {
     match kind {
         ShapeKind::Sphere
@@ -33,7 +37,7 @@ pub fn convexity(kind: ShapeKind) -> Convexity {
         | ShapeKind::Capsule
         | ShapeKind::Plane
         | ShapeKind::InfiniteCylinder => Convexity::Everywhere,
-        ShapeKind::Torus => Convexity::Around,
+        ShapeKind::Torus => Convexity::Nearly,
         _ => Convexity::Unknown,
     }
 }
@@ -44,16 +48,23 @@ pub fn looks_ahead(structure: &Structure, options: Options) -> bool {
     options.skipping == Skipping::Selects && !structure.is_modified() && !structure.has_further_joins()
 }
 
-/// Lines of constants: whether the kernel looks ahead, and whether the fold is concave, so that it lies above the line
-/// from what it is here to the least that it can be ahead.
+/// Lines of constants: whether the kernel looks ahead; whether the fold is concave, so that it lies above the line from what
+/// it is here to what it is of lines below its leaves; and whether each leaf has such a line, so that leaps can be proven.
 pub fn constants(evaluator: &Evaluator, options: Options) -> String {
-    let [ahead, concave] = match evaluator {
+    let [ahead, concave, convex] = match evaluator {
         Evaluator::Specialised(structure) => {
-            [looks_ahead(structure, options), structure.entries.iter().all(is_concave)]
+            let ahead = looks_ahead(structure, options);
+            [
+                ahead,
+                structure.entries.iter().all(is_concave),
+                ahead && structure.entries.iter().all(|one| is_concave(one) && has_convex_leaves(one)),
+            ]
         }
-        _ => [false; 2],
+        _ => [false; 3],
     };
-    format!("const AHEAD: bool = {ahead};\nconst AHEAD_IS_CONCAVE: bool = {concave};\n")
+    format!(
+        "const AHEAD: bool = {ahead};\nconst AHEAD_IS_CONCAVE: bool = {concave};\nconst LEAPS_FAR: bool = {convex};\n"
+    )
 }
 
 /// Whether what an entry joins with is a concave function of both operands: min is, and less a blend as long as the
@@ -62,6 +73,15 @@ fn is_concave(entry: &Entry) -> bool {
     let smooth =
         |kernel: u8| !matches!(BlendKernel::ALL[usize::from(kernel)], BlendKernel::Stairs | BlendKernel::Columns);
     matches!(entry.join, Join::First | Join::Union) && entry.kernel.is_none_or(smooth)
+}
+
+/// Whether the leaf's field, whichever shape it has, is convex or nearly so.
+fn has_convex_leaves(entry: &Entry) -> bool {
+    match entry.kind {
+        EntryKind::Leaf(kind) => convexity(kind) != Convexity::Unknown,
+        EntryKind::AnyLeaf(kinds) => kinds.shapes().all(|kind| convexity(kind) != Convexity::Unknown),
+        EntryKind::Nested | EntryKind::Modified(_) | EntryKind::Run => true,
+    }
 }
 
 /// Names the value of the leaf `at`, and the least (below an odd number of cuts the most) that it can be in the window
@@ -78,22 +98,26 @@ pub fn leaf(
     if is_cut {
         return out + &format!("    let a{at} = v{at} + ahead_window;\n");
     }
-    let holds = |kind: ShapeKind| match convexity(kind) {
-        Convexity::Everywhere => Some("true".to_owned()),
-        Convexity::Around => Some(format!("{}_convex({}) * q{row}.y >= ahead_span", kind.function(), arguments(kind))),
+    let concavity = |kind: ShapeKind| match convexity(kind) {
+        Convexity::Everywhere => Some("0.0".to_owned()),
+        Convexity::Nearly => Some(format!("{}_concavity({}, q{row}.y, ahead_span)", kind.function(), arguments(kind))),
         Convexity::Unknown => None,
     };
-    let is_convex = match entry.kind {
-        EntryKind::Leaf(kind) => holds(kind),
-        EntryKind::AnyLeaf(kinds) => kinds
-            .shapes()
-            .filter_map(|kind| Some(format!("(q{row}.w == {}.0 && {})", kind as u32, holds(kind)?)))
-            .reduce(|all, one| format!("{all} || {one}")),
+    let known = match entry.kind {
+        EntryKind::Leaf(kind) => concavity(kind),
+        EntryKind::AnyLeaf(kinds) => {
+            kinds.shapes().filter_map(|kind| Some((kind, concavity(kind)?))).fold(None, |others, (kind, concavity)| {
+                let others = others.unwrap_or("AHEAD_UNKNOWN".to_owned());
+                Some(format!("select({others}, {concavity}, q{row}.w == {}.0)", kind as u32))
+            })
+        }
         EntryKind::Nested | EntryKind::Modified(_) | EntryKind::Run => unreachable!("these are no leaves"),
     };
-    out += &is_convex.map_or_else(
+    out += &known.map_or_else(
         || format!("    let a{at} = v{at} - ahead_window;\n"),
-        |holds| format!("    let a{at} = v{at} - ahead_window * select(1.0, ahead_fall(b{at}, v{at}), {holds});\n    b{at} = v{at};\n"),
+        |known| {
+            format!("    let a{at} = ahead_base(b{at}, v{at}) - ahead_window * ahead_fall(b{at}, v{at}, {known});\n    b{at} = v{at};\n")
+        },
     );
     out
 }
@@ -104,8 +128,9 @@ mod tests {
     use crate::flat::twin::shape_distance;
     use crate::render::kernel::random::Random;
 
-    /// How far the middle of a chord is below the field, at most, over random chords of what `kind` is by default.
-    fn worst(kind: ShapeKind, holds: impl Fn([f64; 3], f64) -> bool) -> f64 {
+    /// How far the middle of a chord is below the field, at most, over random chords of what `kind` is by default, less
+    /// what a concavity as far around the first end as the chord is long allows.
+    fn worst(kind: ShapeKind, concavity: impl Fn([f64; 3], f64) -> f64) -> f64 {
         let body = crate::flat::Body::new(&kind.default_shape());
         let field = |p: [f64; 3]| shape_distance(kind, p, &body.parameters, &|row| body.rows[row]);
         let mut random = Random(1);
@@ -114,9 +139,8 @@ mod tests {
             let (middle, way) = (random.point(2.0), random.point(0.5));
             let length = way.iter().map(|v| v * v).sum::<f64>().sqrt();
             let end = |sign: f64| [0, 1, 2].map(|i| middle[i] + sign * way[i]);
-            if holds(end(-1.0), 2.0 * length) {
-                worst = worst.max(field(middle) - 0.5 * (field(end(-1.0)) + field(end(1.0))));
-            }
+            let allowed = 0.5 * concavity(end(-1.0), 2.0 * length) * length * length;
+            worst = worst.max(field(middle) - 0.5 * (field(end(-1.0)) + field(end(1.0))) - allowed);
         }
         worst
     }
@@ -125,20 +149,26 @@ mod tests {
     fn fields_are_convex_where_it_is_said() {
         for kind in ShapeKind::ALL.iter().copied() {
             if convexity(kind) == Convexity::Everywhere {
-                let worst = worst(kind, |_, _| true);
+                let worst = worst(kind, |_, _| 0.0);
                 assert!(worst < 1e-9, "{kind:?} by {worst}");
             }
         }
     }
 
-    /// Its twin on the GPU is `sdf_torus_convex`.
+    /// The twin of `sdf_torus_concavity`.
     #[test]
-    fn a_torus_is_convex_outside_of_its_ring() {
+    fn a_torus_is_concave_only_within_its_ring_and_by_no_more_than_is_said() {
         let body = crate::flat::Body::new(&ShapeKind::Torus.default_shape());
-        let convex = |p: [f64; 3]| p[0].hypot(p[2]) - body.parameters[0];
-        let within = worst(ShapeKind::Torus, |p, length| convex(p) >= length);
+        let from_axis = |p: [f64; 3], length: f64| p[0].hypot(p[2]) - length;
+        let concavity = |p: [f64; 3], length: f64| match from_axis(p, length) {
+            nearest if nearest >= body.parameters[0] => 0.0,
+            nearest => 1.0 / nearest.max(1e-9),
+        };
+        let within = worst(ShapeKind::Torus, concavity);
         assert!(within < 1e-9, "by {within}");
-        let anywhere = worst(ShapeKind::Torus, |_, _| true);
-        assert!(anywhere > 0.01, "the test cannot see that a torus is not convex everywhere: {anywhere}");
+        for less in [0.0, 0.05] {
+            let less = worst(ShapeKind::Torus, |p, length| less * concavity(p, length));
+            assert!(less > 1e-4, "the test cannot see that a torus is concave within its ring: {less}");
+        }
     }
 }
