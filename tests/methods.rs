@@ -20,7 +20,7 @@ use crate::gpu::{Subject, scenes, shared};
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 48;
 /// Largest difference of two depths, in pixel footprints, of all but the most extreme pixels: refinement stops at a
-/// thousandth, at grazing angles at three hundredths of a step.
+/// thousandth, of kernels that leap far at four, at grazing angles at three hundredths of a step.
 const MAX_DEPTH: f64 = 0.05;
 /// Share of the pixels that may differ by more: where a ray meets two surfaces within a footprint of one another,
 /// methods may find either.
