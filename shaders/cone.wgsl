@@ -92,7 +92,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     var evaluations = 0u;
     // Where the field was last evaluated on this cone's axis.
     var last = NEVER;
-    // The field there, and how it fell since the evaluation before.
+    // The field there, and how it fell since the evaluation before; a quarter that stops at its first one has that of the tile.
     var before = 0.0;
     var fall = 0.0;
     let reach = length(component.eye);

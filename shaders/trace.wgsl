@@ -55,7 +55,8 @@ fn trace(
     let direction = view_direction(pixel);
     let interval = bounds_interval(component, direction, 0.0);
     let exit = min(min(interval.y, view.far), depth);
-    var start = max(max(interval.x, view.near), max(select(quad.start, quad_start(quad, lane), LEAPS_FAR), bounds_half_space_entry(component, direction)));
+    let passed = select(quad.start, quad_start(quad, lane), LEAPS_FAR);
+    var start = max(max(interval.x, view.near), max(passed, bounds_half_space_entry(component, direction)));
     if work.round > 0u {
         start = textureLoad(march_target, pixel).x;
         start = select(start, NEVER, start == MARCH_ENDED);

@@ -3,8 +3,8 @@
 struct Quad {
     // Column and row, 16 bits each.
     place: u32,
-    // Nothing of the component is nearer than this along any of its rays; of kernels that leap far, along the middle ray: along
-    // the others by no more than they are apart there.
+    // Nothing of the component is nearer than this along any of its rays; of kernels that leap far, along the middle ray:
+    // along the others it may be as much nearer as they are apart there.
     start: f32,
     // By how much the field falls there per distance along the middle ray; 0 where that is not known.
     fall: f32,
@@ -38,7 +38,8 @@ fn quad_of(lane: u32) -> u32 {
     return lane / 16u;
 }
 
-// Of kernels that leap far: nothing of the component is nearer along the ray of the invocation. Rays are apart by a footprint for each pixel, or less.
+// Of kernels that leap far: nothing of the component is nearer along the ray of the invocation. Rays are apart by a footprint
+// for each pixel, or less; a thousandth more is for the middle ray, which is that of no pixel, and for rounding.
 fn quad_start(quad: Quad, lane: u32) -> f32 {
     let from_middle = vec2f(quad_place(lane)) - 0.5 * f32(QUAD - 1u);
     return quad.start * (1.0 - 1.001 * length(from_middle) * view.footprint);
