@@ -4,9 +4,11 @@
 mod ten_thousand;
 
 use std::hint::black_box;
+use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use isolith::flat::{FlatScene, Flattener, flatten};
+use isolith::gallery;
 use isolith::render::{Gpu, OverlaySettings, Renderer, Slot};
 
 /// Size of the viewport in pixels.
@@ -55,5 +57,30 @@ fn drag(c: &mut Criterion) {
     drop(shown);
 }
 
-criterion_group!(benches, stations, drag);
+/// Light and overlay alone, over what is found already.
+fn light(c: &mut Criterion) {
+    let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+    let mut renderer = Renderer::new(&gpu).expect("a renderer on a device that answers");
+    let (_, scene) = gallery::all().into_iter().find(|(name, _)| *name == "random-145").expect("a shipped scene");
+    let flat = flatten(&scene, 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 16.0 / 9.0);
+    let mut draw = |overlay: &OverlaySettings, light_only: bool| {
+        let mut frame = renderer.begin(Slot::Full, &flat, &[], &camera, SIZE, overlay.clone()).expect("a frame");
+        if light_only {
+            frame.skip_to_shading();
+        }
+        renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+    };
+    draw(&OverlaySettings::default(), false);
+    let outline = scene.nodes().iter().take(40).map(|node| node.id).collect();
+    for (name, overlay) in [
+        ("light", OverlaySettings::default()),
+        ("light and grid", OverlaySettings { grid: true, ..Default::default() }),
+        ("light and outline", OverlaySettings { outline, ..Default::default() }),
+    ] {
+        c.bench_function(name, |b| b.iter(|| draw(&overlay, true)));
+    }
+}
+
+criterion_group!(benches, stations, drag, light);
 criterion_main!(benches);

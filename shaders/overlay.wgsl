@@ -1,24 +1,21 @@
 // Pass `overlay`, editor only: a grid on the ground and the outline of the selection, blended over the
-// finished picture.
+// finished picture. Each has a pipeline of its own: lavapipe walks through an `if` that no pixel takes.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
+#include "common/screen.wgsl"
 
 struct Overlay {
     // The eye in the world, reduced to one coarse cell of the grid; y is its true height.
     eye: vec3f,
     // Side of a fine cell; ten of them make a coarse one.
     cell: f32,
-    grid: u32,
-    outline: u32,
     // Red and blue: the lines of X and Z run through these places of the reduced grid, if at all near.
     axis_x: f32,
     axis_z: f32,
     // Bits of `selected` before those of the meshes.
     leaf_count: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
+    padding: u32,
 }
 
 @group(1) @binding(0) var<uniform> overlay: Overlay;
@@ -27,34 +24,26 @@ struct Overlay {
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var leaf_target: texture_2d<u32>;
 
-@vertex
-fn overlay_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
-    // One triangle over the whole picture.
-    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+@fragment
+fn overlay_grid_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return overlay_grid(vec2u(at.xy));
 }
 
 @fragment
-fn overlay_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
-    let pixel = vec2u(at.xy);
-    if overlay.outline == 1u && overlay_is_edge(pixel) {
-        return vec4f(1.0, 0.62, 0.2, 1.0);
-    }
-    if overlay.grid == 1u {
-        return overlay_grid(pixel);
-    }
-    return vec4f(0.0);
+fn overlay_outline_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return vec4f(1.0, 0.62, 0.2, f32(overlay_is_edge(vec2u(at.xy))));
 }
 
 // Whether the pixel lies outside the selection with a selected one within two pixels.
 fn overlay_is_edge(pixel: vec2u) -> bool {
-    if overlay_is_selected(vec2i(pixel)) {
-        return false;
-    }
+    let here = overlay_is_selected(vec2i(pixel));
     var near = false;
-    for (var i = 0; i < 12; i += 1) {
-        // A ring of radius 2 without its corners.
-        let offset = vec2i(i32(round(2.0 * cos(f32(i) * 0.5235988))), i32(round(2.0 * sin(f32(i) * 0.5235988))));
-        near = near || overlay_is_selected(vec2i(pixel) + offset);
+    // A ring of radius 2 without its corners: three pixels on each of four sides. The loop ends where nothing is to be
+    // found any more, which an `if` in it would not.
+    for (var i = 0; i < 12 && !here && !near; i += 1) {
+        let along = i % 3 - 1;
+        let side = 2 - 4 * (i / 3 % 2);
+        near = overlay_is_selected(vec2i(pixel) + select(vec2i(side, along), vec2i(along, side), i < 6));
     }
     return near;
 }

@@ -1,8 +1,9 @@
-// Pass `shade`: light on what the passes before have found, and the background.
+// Pass `shade`: light on what the passes before have found, and the background. It is drawn, not dispatched: lavapipe
+// takes some 16 ns for each texel that a kernel stores, and less where it draws.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
-#include "common/work.wgsl"
+#include "common/screen.wgsl"
 #include "common/light.wgsl"
 
 @group(1) @binding(0) var<storage, read> lights: array<Light>;
@@ -12,30 +13,21 @@
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 @group(2) @binding(2) var diffuse_target: texture_2d<f32>;
 @group(2) @binding(3) var emission_target: texture_2d<f32>;
-@group(2) @binding(4) var color_target: texture_storage_2d<rgba8unorm, write>;
-@group(2) @binding(5) var owner_target: texture_2d<u32>;
-@group(2) @binding(6) var leaf_target: texture_storage_2d<r32uint, write>;
+@group(2) @binding(4) var owner_target: texture_2d<u32>;
 
 #include "light/shade.wgsl"
 
-@compute @workgroup_size(8, 8)
-fn shade(@builtin(global_invocation_id) id: vec3u) {
-    let pixel = work.origin + id.xy;
-    if pixel.x >= work.end.x || pixel.y >= work.end.y {
-        return;
-    }
+@fragment
+fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let pixel = vec2u(at.xy);
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let owner = textureLoad(owner_target, pixel, 0).x;
-    let is_field = (owner & MESH_BIT) == 0u;
-    if !is_field {
-        textureStore(leaf_target, pixel, vec4u(owner));
-    }
     var color = shade_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let diffuse = textureLoad(diffuse_target, pixel, 0);
         var emission = textureLoad(emission_target, pixel, 0);
-        if !is_field {
+        if (owner & MESH_BIT) != 0u {
             emission = mesh_emissions[owner & ~MESH_BIT];
         }
         color = shade_surface(
@@ -50,5 +42,5 @@ fn shade(@builtin(global_invocation_id) id: vec3u) {
             view.light_count,
         );
     }
-    textureStore(color_target, pixel, vec4f(shade_encode(color), 1.0));
+    return vec4f(shade_encode(color), 1.0);
 }

@@ -15,6 +15,7 @@ mod gpu;
 mod inspect;
 mod meshes;
 mod methods;
+mod overlay;
 mod random_scene;
 mod renderer;
 mod saving;

@@ -150,6 +150,57 @@ pub fn compute_pipeline(
     })
 }
 
+/// A pipeline that draws each pixel of the picture by `entry_point` of `module`, which holds `common/screen.wgsl`.
+pub fn screen_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layout: &wgpu::PipelineLayout,
+    blend: Option<wgpu::BlendState>,
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("screen_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                blend,
+                // What is drawn over it must leave it opaque.
+                write_mask: if blend.is_some() { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Begins to draw over the picture.
+pub fn screen_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    label: &str,
+    color: &wgpu::TextureView,
+) -> wgpu::RenderPass<'e> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+    let color = wgpu::RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(color)],
+        ..Default::default()
+    })
+}
+
 /// The layout of a pipeline's groups.
 pub fn pipeline_layout(device: &wgpu::Device, label: &str, layouts: &[&BindGroupLayout]) -> wgpu::PipelineLayout {
     let groups: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();

@@ -6,7 +6,7 @@
 use std::time::Duration;
 
 use bytemuck::Zeroable as _;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, UVec2};
 
 use super::pace::{Effort, Pace};
 use super::uniforms::Work;
@@ -229,6 +229,13 @@ impl Plan {
     /// Effort of the whole frame.
     pub fn effort(&self) -> Effort {
         self.pieces.iter().fold(Effort::default(), |sum, piece| sum + piece.effort)
+    }
+
+    /// Around the pixels that these components may cover, if any: upper left, and the first outside.
+    pub fn around(&self, is_meant: impl Fn(u32) -> bool) -> Option<[UVec2; 2]> {
+        let meant = self.pieces.iter().filter(|p| p.stage == Stage::Cone && is_meant(p.work.component));
+        let rects = meant.map(|p| [p.work.origin, p.work.end].map(UVec2::from_array));
+        rects.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
     fn push(&mut self, stage: Stage, work: Work, effort: Effort) {

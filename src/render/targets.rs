@@ -9,7 +9,7 @@
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
 //! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
 //! | emission | Rgba16Float | surface | emission, shininess |
-//! | leaf | R32Uint | surface, shade | entry of the subtree-extent array; where no field is, as owner |
+//! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; where no field is, as owner |
 //! | color | Rgba8Unorm | shade, inspect, overlay | the picture, sRGB encoded |
 //! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
 //!
@@ -74,7 +74,7 @@ impl Targets {
             normal: target("normal", TextureFormat::Rgba32Float, both),
             diffuse: target("diffuse", TextureFormat::Rgba16Float, both),
             emission: target("emission", TextureFormat::Rgba16Float, compute),
-            leaf: target("leaf", TextureFormat::R32Uint, compute),
+            leaf: target("leaf", TextureFormat::R32Uint, compute | TextureUsages::COPY_DST),
             color: target("color", TextureFormat::Rgba8Unorm, both),
             hardware_depth: target("hardware depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT),
         }

@@ -144,6 +144,12 @@ impl MeshPass {
 
     /// Clears the shared targets and draws.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
+        self.draw(encoder, targets, view);
+        let [from, to] = [&targets.owner, &targets.leaf].map(|target| target.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, targets.owner.texture.size());
+    }
+
+    fn draw(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
         // Another size, so another render pass; it only clears.
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("clear farthest"),

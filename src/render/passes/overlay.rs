@@ -1,13 +1,14 @@
 //! Pass `overlay`: grid and outline of the selection, over the finished picture; only the editor asks for it.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
-use wgpu::{BindGroup, BindGroupLayout, ShaderStages, TextureFormat};
+use glam::{DVec3, UVec2};
+use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use crate::flat::FlatScene;
 use crate::render::buffers::Mirror;
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
+use crate::render::schedule::Plan;
 use crate::render::targets::Targets;
 use crate::scene::NodeId;
 
@@ -35,10 +36,6 @@ pub struct Overlay {
     pub eye: [f32; 3],
     /// Side of a fine cell, in metres.
     pub cell: f32,
-    /// 1 to draw the grid.
-    pub grid: u32,
-    /// 1 to draw the outline.
-    pub outline: u32,
     /// Where the X axis runs in the reduced grid.
     pub axis_x: f32,
     /// Where the Z axis runs in the reduced grid.
@@ -46,17 +43,19 @@ pub struct Overlay {
     /// Bits before those of the meshes.
     pub leaf_count: u32,
     /// Unused.
-    pub padding_0: u32,
-    /// Unused.
-    pub padding_1: u32,
-    /// Unused.
-    pub padding_2: u32,
+    pub padding: u32,
 }
+
+/// Pixels from a selected one to the outline, at most: the ring in the shader.
+const REACH: u32 = 2;
 
 /// The pass.
 #[derive(Debug)]
 pub struct OverlayPass {
-    pipeline: wgpu::RenderPipeline,
+    grid: wgpu::RenderPipeline,
+    outline: wgpu::RenderPipeline,
+    draws_grid: bool,
+    outlined: Outlined,
     own: BindGroupLayout,
     targets: BindGroupLayout,
     uniform: Mirror,
@@ -78,34 +77,23 @@ impl OverlayPass {
             label: Some("overlay"),
             source: wgpu::ShaderSource::Wgsl(plain_source("overlay.wgsl")?.into()),
         });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("overlay"),
-            layout: Some(&pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets])),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("overlay_vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("overlay_fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(wgpu::ColorTargetState {
-                    format: TextureFormat::Rgba8Unorm,
-                    blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::COLOR,
-                })],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let layout = pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets]);
+        let blend = Some(wgpu::BlendState::ALPHA_BLENDING);
+        let [grid, outline] = ["overlay_grid_fragment", "overlay_outline_fragment"]
+            .map(|entry_point| screen_pipeline(device, &module, entry_point, &layout, blend));
         let uniform = Mirror::uniform(device, "overlay");
         let selected = Mirror::storage(device, "selected");
-        Ok(Self { pipeline, own, targets, uniform, selected, own_group: None })
+        Ok(Self {
+            grid,
+            outline,
+            draws_grid: false,
+            outlined: Outlined::default(),
+            own,
+            targets,
+            uniform,
+            selected,
+            own_group: None,
+        })
     }
 
     /// Uploads what is to be drawn, seen from `eye`, `distance` away from what is looked at.
@@ -117,6 +105,7 @@ impl OverlayPass {
         settings: &OverlaySettings,
         eye: DVec3,
     ) {
+        self.draws_grid = settings.grid;
         // The cell follows the eye's height in powers of ten.
         let cell = 10.0_f64.powf(eye.y.abs().max(1e-3).log10().floor()) * 0.1;
         let period = cell * 100.0;
@@ -124,17 +113,14 @@ impl OverlayPass {
         let overlay = Overlay {
             eye: reduced.as_vec3().to_array(),
             cell: cell as f32,
-            grid: u32::from(settings.grid),
-            outline: u32::from(!settings.outline.is_empty()),
             axis_x: (reduced.z - eye.z) as f32,
             axis_z: (reduced.x - eye.x) as f32,
             leaf_count: flat.nodes.len() as u32,
-            padding_0: 0,
-            padding_1: 0,
-            padding_2: 0,
+            padding: 0,
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);
+        self.outlined = Outlined::of(flat, &bits);
         let changed = self.selected.set(device, queue, bytemuck::cast_slice(&bits)) || changed;
         if changed || self.own_group.is_none() {
             let resources = [self.uniform.binding(), self.selected.binding()];
@@ -149,23 +135,58 @@ impl OverlayPass {
         encoder: &mut wgpu::CommandEncoder,
         targets: &Targets,
         view: &BindGroup,
+        plan: &Plan,
     ) {
         let Some(own) = &self.own_group else { return };
         let inputs = [&targets.depth, &targets.leaf].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let inputs = bind(device, "overlay targets", &self.targets, &inputs);
-        let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
-        let view_of = &targets.color.view;
-        let color = wgpu::RenderPassColorAttachment { view: view_of, depth_slice: None, resolve_target: None, ops };
-        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("overlay"),
-            color_attachments: &[Some(color)],
-            ..Default::default()
-        });
-        pass.set_pipeline(&self.pipeline);
+        let mut pass = screen_pass(encoder, "overlay", &targets.color.view);
         pass.set_bind_group(0, view, &[]);
         pass.set_bind_group(1, own, &[]);
         pass.set_bind_group(2, &inputs, &[]);
-        pass.draw(0..3, 0..1);
+        if self.draws_grid {
+            pass.set_pipeline(&self.grid);
+            pass.draw(0..3, 0..1);
+        }
+        if let Some([low, high]) = self.outlined.around(plan, targets.size.into()) {
+            pass.set_scissor_rect(low.x, low.y, high.x - low.x, high.y - low.y);
+            pass.set_pipeline(&self.outline);
+            pass.draw(0..3, 0..1);
+        }
+    }
+}
+
+/// Where an outline can be.
+#[derive(Debug, Default)]
+struct Outlined {
+    /// Components with a selected leaf, in rising order.
+    components: Vec<u32>,
+    /// Whether a mesh is selected.
+    meshes: bool,
+}
+
+impl Outlined {
+    fn of(flat: &FlatScene, bits: &[u32]) -> Self {
+        let mut set =
+            (0..flat.nodes.len() + flat.meshes.len()).filter(|i| bits[i / 32] >> (i % 32) & 1 == 1).peekable();
+        let mut components = Vec::new();
+        for (index, component) in (0..).zip(&flat.components) {
+            let end = (component.first + component.count) as usize;
+            if set.next_if(|i| *i < end).is_some() {
+                components.push(index);
+                while set.next_if(|i| *i < end).is_some() {}
+            }
+        }
+        Self { components, meshes: set.next().is_some() }
+    }
+
+    /// Around the pixels that the outline may cover: upper left, and the first outside.
+    fn around(&self, plan: &Plan, size: UVec2) -> Option<[UVec2; 2]> {
+        if self.meshes {
+            return Some([UVec2::ZERO, size]);
+        }
+        let [low, high] = plan.around(|component| self.components.binary_search(&component).is_ok())?;
+        Some([low.saturating_sub(UVec2::splat(REACH)), (high + REACH).min(size)])
     }
 }
 

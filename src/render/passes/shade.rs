@@ -1,25 +1,27 @@
 //! Pass `shade`: light on what the passes before have found, and the background.
 
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use crate::flat::truth::FILE_MATERIAL;
 use crate::flat::{FlatMaterial, FlatScene};
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
+use crate::render::schedule::Piece;
 use crate::render::targets::Targets;
+use crate::render::uniforms::Work;
 
 /// The pass.
 #[derive(Debug)]
 pub struct ShadePass {
-    pipeline: ComputePipeline,
+    pipeline: wgpu::RenderPipeline,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
 }
 
 impl ShadePass {
-    /// Builds the kernel.
+    /// Builds the pipeline.
     pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
-        let stage = ShaderStages::COMPUTE;
+        let stage = ShaderStages::FRAGMENT;
         let lights = layout(device, "lights", &[entry(0, stage, read_storage()), entry(1, stage, read_storage())]);
         let targets = layout(
             device,
@@ -29,27 +31,21 @@ impl ShadePass {
                 entry(1, stage, read_texture(false)),
                 entry(2, stage, read_texture(false)),
                 entry(3, stage, read_texture(false)),
-                entry(4, stage, write_texture(TextureFormat::Rgba8Unorm)),
-                entry(5, stage, read_texture(true)),
-                entry(6, stage, write_texture(TextureFormat::R32Uint)),
+                entry(4, stage, read_texture(true)),
             ],
         );
-        let groups = [&layouts.view, &lights, &targets, &layouts.work];
-        let pipeline = compute_pipeline(device, "shade", plain_source("shade.wgsl")?, "shade", &groups);
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("shade"),
+            source: wgpu::ShaderSource::Wgsl(plain_source("shade.wgsl")?.into()),
+        });
+        let layout = pipeline_layout(device, "shade", &[&layouts.view, &lights, &targets]);
+        let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
         Ok(Self { pipeline, lights, targets })
     }
 
     /// The pass's own bind group.
     pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let views = [
-            &targets.depth,
-            &targets.normal,
-            &targets.diffuse,
-            &targets.emission,
-            &targets.color,
-            &targets.owner,
-            &targets.leaf,
-        ];
+        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.owner];
         let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
         bind(device, "shade targets", &self.targets, &resources)
     }
@@ -59,9 +55,23 @@ impl ShadePass {
         bind(device, "lights", &self.lights, &resources)
     }
 
-    /// The kernel.
-    pub fn pipeline(&self) -> &ComputePipeline {
-        &self.pipeline
+    /// Draws these pieces of the picture.
+    pub fn record<'p>(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        color: &wgpu::TextureView,
+        groups: [&BindGroup; 3],
+        pieces: impl Iterator<Item = &'p Piece>,
+    ) {
+        let mut pass = screen_pass(encoder, "shade", color);
+        pass.set_pipeline(&self.pipeline);
+        for (at, group) in (0..).zip(groups) {
+            pass.set_bind_group(at, group, &[]);
+        }
+        for Work { origin, end, .. } in pieces.map(|piece| piece.work) {
+            pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
+            pass.draw(0..3, 0..1);
+        }
     }
 }
 

@@ -14,22 +14,29 @@ impl Renderer {
         let pieces = &frame.plan.pieces;
         let mut at = range.start;
         while at < range.end {
-            if pieces[at].stage == Stage::Mesh {
-                // No ray is left over yet.
-                encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
-                self.clear_pixel_counts(&mut encoder, targets.size);
-                self.mesh.record(&mut encoder, targets, &groups.view);
-                at += 1;
-                continue;
+            // One of them after the other, as far as they are recorded in one pass.
+            let is_alike = |stage| matches!(stage, Stage::Mesh | Stage::Shade).then_some(stage);
+            let kind = is_alike(pieces[at].stage);
+            let end = (at..range.end).find(|i| is_alike(pieces[*i].stage) != kind).unwrap_or(range.end);
+            match kind {
+                Some(Stage::Mesh) => {
+                    // No ray is left over yet.
+                    encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(frame.plan.lists.max(1)) * 4));
+                    self.clear_pixel_counts(&mut encoder, targets.size);
+                    self.mesh.record(&mut encoder, targets, &groups.view);
+                }
+                Some(_) => {
+                    let own = [&groups.view, &groups.lights, &groups.shade];
+                    self.shade.record(&mut encoder, &targets.color.view, own, pieces[at..end].iter());
+                }
+                None => self.record_compute(&mut encoder, groups, frame, at..end),
             }
-            let end = (at..range.end).find(|i| pieces[*i].stage == Stage::Mesh).unwrap_or(range.end);
-            self.record_compute(&mut encoder, groups, frame, at..end);
             at = end;
         }
         if range.end == pieces.len() {
             self.record_look(&mut encoder, frame);
             if !frame.overlay.is_empty() {
-                self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view);
+                self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view, &frame.plan);
             }
         }
         self.gpu.queue.submit([encoder.finish()]);
@@ -52,11 +59,6 @@ impl Renderer {
                     pass.set_pipeline(self.farthest.pipeline());
                     pass.set_bind_group(1, self.farthest.scene(), &[]);
                     pass.set_bind_group(2, &groups.farthest, &[]);
-                }
-                Stage::Shade => {
-                    pass.set_pipeline(self.shade.pipeline());
-                    pass.set_bind_group(1, &groups.lights, &[]);
-                    pass.set_bind_group(2, &groups.shade, &[]);
                 }
                 _ => {
                     self.record_field(&mut pass, groups, frame, piece);

@@ -1,0 +1,6 @@
+// One triangle over the whole picture, for passes that write each of its pixels.
+
+@vertex
+fn screen_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
