@@ -39,7 +39,8 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
             textureLoad(normal_target, pixel, 0).xyz,
             -direction,
             view.ambient,
-            view.light_count,
+            // Of the pixel as well, or lavapipe would compile the loop anew for each buffer that holds the number.
+            select(view.light_count, 0u, depth >= BACKGROUND),
         );
     }
     return vec4f(shade_encode(color), 1.0);

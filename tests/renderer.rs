@@ -7,7 +7,7 @@ use isolith::document::{Document, Edit};
 use isolith::flat::{Buffers, FlatScene, Flattener, flatten};
 use isolith::gallery;
 use isolith::geometry::Camera;
-use isolith::render::{Gpu, Method, OverlaySettings, RenderError, Renderer, Slot};
+use isolith::render::{Gpu, Method, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Shape};
 
 use crate::gpu::{Subject, shared};
@@ -107,8 +107,7 @@ fn note(text: &str) {
 fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> (Duration, [u32; 2]) {
     let start = Instant::now();
     let full = renderer.estimate(flat, camera, [TIMED_SIDE; 2]).expect("an estimate");
-    let factor = (full.as_secs_f64() / AT_ONCE.as_secs_f64()).sqrt().ceil().clamp(1.0, 8.0) as u32;
-    let size = [TIMED_SIDE.div_ceil(factor); 2];
+    let size = coarse_size([TIMED_SIDE; 2], full, AT_ONCE);
     let mut frame =
         renderer.begin(Slot::Preview, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
     renderer.advance(&mut frame, Duration::MAX).expect("a picture");

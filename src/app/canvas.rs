@@ -11,21 +11,21 @@ use crate::editor::{Editor, Message, Picture, View};
 use crate::flat::FlatScene;
 use crate::flat::inspect::{Look, Span};
 use crate::mesh::TriangleMesh;
-use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot};
+use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;
 
 /// A picture that takes longer than this is made coarse first.
 const AT_ONCE: Duration = Duration::from_millis(60);
-/// Time given to the full picture in each frame of the window: on a software driver painting the window
-/// takes about as long itself, so less would mostly repaint.
-const PER_FRAME: Duration = Duration::from_millis(60);
+/// Time given to the full picture in each frame of the window, in parts of what painting the window takes: that is a
+/// sixtieth of a second on a graphics card, but a tenth on a software driver, where less would mostly repaint.
+const PER_PAINTING: f32 = 1.5;
+/// That time, at least and at most.
+const PER_FRAME: [Duration; 2] = [Duration::from_millis(16), Duration::from_millis(120)];
 /// A full picture that takes longer than this waits for the kernels that are being built: they make it
 /// many times faster than the interpreter would.
 const WORTH_WAITING: Duration = Duration::from_millis(1500);
 /// The same for pruned lists, which are made sooner: some 200 ms in most scenes.
 const LISTS_WORTH_WAITING: Duration = Duration::from_millis(300);
-/// Pixels of the window to a side of a coarse pixel, at most.
-const COARSEST: u32 = 8;
 
 /// See the module.
 pub(super) struct Canvas {
@@ -36,10 +36,16 @@ pub(super) struct Canvas {
     wanted: Option<Wanted>,
     under_way: Option<(Frame, Instant)>,
     took: Duration,
+    /// What painting the window took the last time that it was measured.
+    painting: Duration,
+    /// When the last update ended, if it asked for the next one at once.
+    painting_since: Option<Instant>,
     /// The camera or a value is being dragged.
     navigating: bool,
     /// The full picture waits for the end of a drag, or for kernels or lists that are being made.
     waiting: bool,
+    /// Kernels may have become ready that no picture has used.
+    unmet: bool,
 }
 
 /// What draws the lit picture, and what draws the looks that count: counting costs time and memory, so the second one
@@ -85,8 +91,11 @@ impl Canvas {
             wanted: None,
             under_way: None,
             took: Duration::ZERO,
+            painting: PER_FRAME[0],
+            painting_since: None,
             navigating: false,
             waiting: false,
+            unmet: false,
         })
     }
 
@@ -114,6 +123,7 @@ impl Canvas {
     /// Brings the picture nearer to what the editor wants, in bounded time.
     pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
         self.renderers.plain.gpu().check()?;
+        self.painting = self.painting_since.take().map_or(self.painting, |since| since.elapsed());
         let View { navigating, .. } = editor.view();
         // Not part of what the picture depends on: letting go changes nothing in it.
         let view = View { navigating: false, ..editor.view() };
@@ -126,16 +136,18 @@ impl Canvas {
         let news = self.follow_kernels(editor, ctx);
         let settled = self.navigating && !navigating;
         self.navigating = navigating;
-        if self.wanted.as_ref() != Some(&wanted) || (self.waiting && (news || settled)) {
+        let is_other = self.wanted.as_ref() != Some(&wanted);
+        if is_other || (self.waiting && (news || settled)) {
             if self.differs_in_marks_only(&wanted) {
                 self.restyle(&wanted, &meshes)?;
             } else {
-                self.start(&wanted, &meshes)?;
+                self.start(&wanted, &meshes, is_other)?;
             }
             self.wanted = Some(wanted);
         }
         if let Some((frame, started)) = &mut self.under_way {
-            self.renderers.active().advance(frame, PER_FRAME)?;
+            let time = self.painting.mul_f32(PER_PAINTING).clamp(PER_FRAME[0], PER_FRAME[1]);
+            self.renderers.active().advance(frame, time)?;
             if frame.is_done() {
                 self.took = started.elapsed();
                 for mut warning in self.renderers.active().unfinished_rays(frame)? {
@@ -147,6 +159,12 @@ impl Canvas {
                 self.show(Slot::Full);
             }
             ctx.request_repaint();
+            self.painting_since = Some(Instant::now());
+        } else if let (true, Some(Wanted { view, flat, .. })) = (self.unmet && !self.waiting, &self.wanted) {
+            self.unmet = self.renderers.active().meet_kernels(flat, &view.camera, AT_ONCE)?;
+            if self.unmet {
+                ctx.request_repaint();
+            }
         }
         Ok(())
     }
@@ -182,7 +200,9 @@ impl Canvas {
             ctx.request_repaint_after(Duration::from_millis(30));
         }
         let kernels = self.renderers.plain.kernels();
-        news |= kernels.collect();
+        let built = kernels.collect();
+        news |= built;
+        self.unmet |= built;
         for failure in kernels.take_failures() {
             editor.report(Message::warning(failure));
         }
@@ -192,16 +212,20 @@ impl Canvas {
         news
     }
 
-    /// Begins the full picture, after a coarse one if the full one is not to be had at once.
-    fn start(&mut self, wanted: &Wanted, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
+    /// Begins the full picture, after a coarse one if the full one is not to be had at once and no coarse one is shown.
+    fn start(
+        &mut self,
+        wanted: &Wanted,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        is_other: bool,
+    ) -> Result<(), RenderError> {
         let View { camera, size_px, .. } = wanted.view;
         let flat = &*wanted.flat;
         self.renderers.choose(wanted.view.look)?;
         let full = self.renderers.active().estimate(flat, &camera, size_px)?;
         let started = Instant::now();
-        if full > AT_ONCE {
-            let factor = (full.as_secs_f64() / AT_ONCE.as_secs_f64()).sqrt().ceil().min(f64::from(COARSEST)) as u32;
-            let size = size_px.map(|v| v.div_ceil(factor).max(1));
+        if full > AT_ONCE && is_other {
+            let size = coarse_size(size_px, full, AT_ONCE);
             let mut frame = self.begin(Slot::Preview, wanted, meshes, size)?;
             self.renderers.active().advance(&mut frame, Duration::MAX)?;
             self.show(Slot::Preview);

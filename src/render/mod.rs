@@ -31,6 +31,7 @@ mod warm;
 
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use kernels::{Kernels, Method};
+pub use pace::coarse_size;
 pub use passes::inspect::Inspect;
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};

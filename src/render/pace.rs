@@ -40,6 +40,8 @@ pub struct Pace {
     specialised: f64,
     /// Not learnt: measured on lavapipe, which wakes its threads and waits for them; a guess for graphics cards.
     dispatch: f64,
+    /// The last whole frame, and how many seconds it took.
+    frame: Option<(Effort, f64)>,
 }
 
 /// Seconds.
@@ -49,15 +51,29 @@ impl Pace {
     /// A first guess.
     pub fn new(software: bool) -> Self {
         if software {
-            Self { interpreted: 4e-8, specialised: 2e-9, dispatch: 25e-6 }
+            Self { interpreted: 4e-8, specialised: 2e-9, dispatch: 25e-6, frame: None }
         } else {
-            Self { interpreted: 5e-11, specialised: 1e-11, dispatch: 3e-6 }
+            Self { interpreted: 5e-11, specialised: 1e-11, dispatch: 3e-6, frame: None }
         }
     }
 
     /// Seconds that the effort is expected to take.
     pub fn seconds(&self, effort: Effort) -> f64 {
         effort.dispatches * self.dispatch + self.seconds_of_work(effort)
+    }
+
+    /// Seconds that a whole frame of this effort is expected to take. What a dispatch is expected to take is wary, a sum of
+    /// that would be several times too much: where a frame has been measured, that is what others are compared with.
+    pub fn seconds_of_frame(&self, effort: Effort) -> f64 {
+        let share = self.frame.map_or(1.0, |(measured, took)| took / self.seconds(measured));
+        self.seconds(effort) * share
+    }
+
+    /// Learns what a whole frame took.
+    pub fn learn_frame(&mut self, effort: Effort, took: Duration) {
+        if self.seconds(effort) > 0.0 {
+            self.frame = Some((effort, took.as_secs_f64()));
+        }
     }
 
     fn seconds_of_work(&self, effort: Effort) -> f64 {
@@ -87,6 +103,17 @@ impl Pace {
     }
 }
 
+/// Pixels of a full picture to a side of a coarse pixel, at most.
+const COARSEST: f64 = 8.0;
+
+/// Size of the picture that is to be had in this time where one of `size` takes as long as `full`; never less than an eighth
+/// of a side. Between sizes lies half the time each, so that a drag does not make new targets for each of its pictures.
+pub fn coarse_size(size: [u32; 2], full: Duration, time: Duration) -> [u32; 2] {
+    let halvings = (full.as_secs_f64() / time.as_secs_f64().max(1e-9)).log2().ceil();
+    let factor = (0.5 * halvings).exp2().clamp(1.0, COARSEST);
+    size.map(|side| ((f64::from(side) / factor).ceil() as u32).max(1))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,5 +133,28 @@ mod tests {
         }
         let expected = pace.seconds_of_work(effort);
         assert!((expected - LEAST_MEASURED).abs() < 0.1 * LEAST_MEASURED, "{expected}");
+    }
+
+    #[test]
+    fn a_frame_is_compared_with_the_last_one() {
+        let mut pace = Pace::new(true);
+        let effort = Effort { interpreted: 1e6, specialised: 1e7, dispatches: 10.0 };
+        assert_eq!(pace.seconds_of_frame(effort), pace.seconds(effort));
+        pace.learn_frame(effort, Duration::from_millis(7));
+        // A slow dispatch makes dispatches shorter, and no frame longer.
+        pace.learn(effort, Duration::from_millis(900));
+        assert!((pace.seconds_of_frame(effort) - 0.007).abs() < 1e-12 && pace.seconds(effort) > 0.1);
+        assert!((pace.seconds_of_frame(effort + effort) - 0.014).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_coarse_picture_is_no_coarser_than_it_must_be() {
+        let at = |full| coarse_size([800, 600], Duration::from_millis(full), Duration::from_millis(60));
+        assert_eq!(
+            [at(0), at(60), at(61), at(120), at(121)],
+            [[800, 600], [800, 600], [566, 425], [566, 425], [400, 300]]
+        );
+        assert_eq!([at(1_000), at(1_000_000)], [[142, 107], [100, 75]]);
+        assert_eq!(coarse_size([1, 3], Duration::from_secs(9), Duration::ZERO), [1, 1]);
     }
 }

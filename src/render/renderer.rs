@@ -234,7 +234,7 @@ impl Renderer {
         let Chosen { evaluations, .. } = self.choose(flat, camera)?;
         match self.plan(flat, camera, size, &evaluations) {
             Err(RenderError::Work(..)) if self.pruner.building() > 0 => Ok(LONGEST),
-            plan => Ok(Duration::from_secs_f64(self.pace.seconds(plan?.effort()).min(LONGEST.as_secs_f64()))),
+            plan => Ok(Duration::from_secs_f64(self.pace.seconds_of_frame(plan?.effort()).min(LONGEST.as_secs_f64()))),
         }
     }
 
@@ -302,6 +302,7 @@ impl Renderer {
             choices,
             next: 0,
             seconds_done: 0.0,
+            measured: Some(Duration::ZERO),
             rounds_at_once: 0,
             slot,
             overlay,
@@ -331,11 +332,16 @@ impl Renderer {
             // The first dispatch of a kernel may include its compilation, and a later round marches an unknown
             // few of its rays: neither says that the pace is slow.
             let foreseen = rounds == 0 || took.as_secs_f64() < self.pace.seconds(effort);
-            if !frame.uses_fresh_kernel(pieces.clone()) && foreseen {
+            let is_typical = !frame.uses_fresh_kernel(pieces.clone());
+            if is_typical && foreseen {
                 self.pace.learn(effort, took);
             }
+            frame.measured = frame.measured.filter(|_| is_typical).map(|before| before + took);
             frame.learn_rounds(rounds, took);
             frame.next = pieces.end;
+            if let (true, Some(took)) = (frame.is_done(), frame.measured) {
+                self.pace.learn_frame(frame.plan.effort(), took);
+            }
             if frame.is_done() || start.elapsed() >= budget {
                 return Ok(());
             }

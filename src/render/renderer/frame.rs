@@ -20,6 +20,8 @@ pub struct Frame {
     /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
     pub(super) pace: Pace,
     pub(super) seconds_done: f64,
+    /// What its dispatches have taken; `None` where that says nothing about others.
+    pub(super) measured: Option<Duration>,
     /// So many later rounds may be submitted together with others; where it is 0 each stands alone.
     pub(super) rounds_at_once: u32,
     pub(super) seconds: f64,
@@ -85,6 +87,7 @@ impl Frame {
     pub fn skip_to_shading(&mut self) {
         let shading = self.plan.pieces.iter().position(|p| p.stage == Stage::Shade);
         self.next = shading.unwrap_or(self.plan.pieces.len());
+        self.measured = None;
     }
 
     /// Leaves out light and overlay: depth, normals and materials are all that is wanted.

@@ -51,7 +51,8 @@ impl Renderer {
         encoder.copy_texture_to_texture(from, to, size);
         queue.submit([encoder.finish()]);
         let seconds = frame.pace.seconds(plan.effort());
-        Frame { plan, next: 0, seconds_done: 0.0, seconds, overlay: OverlaySettings::default(), ..frame.clone() }
+        let overlay = OverlaySettings::default();
+        Frame { plan, next: 0, seconds_done: 0.0, seconds, measured: None, overlay, ..frame.clone() }
     }
 
     /// Sets what a frame has counted to nothing.
