@@ -82,7 +82,7 @@ impl Evaluation {
         Self {
             straight: false,
             iterations: ((4 + loops) * component.count + rounds + 2).saturating_mul(copies),
-            leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
+            leaves: f64::from(component.count + rounds) * f64::from(component.copies).sqrt(),
         }
     }
 
@@ -93,17 +93,17 @@ impl Evaluation {
         Self {
             straight: true,
             iterations: (2 + component.count + rounds).saturating_mul(copies),
-            leaves: f64::from(component.count) * f64::from(component.copies).sqrt(),
+            leaves: f64::from(component.count + rounds) * f64::from(component.copies).sqrt(),
         }
     }
 
     /// Of a component with pruned lists.
-    pub fn of_lists(tree: &CellTree, loops: u32, rounds: u32) -> Self {
+    pub fn of_lists(component: &Component, tree: &CellTree, loops: u32, rounds: u32) -> Self {
         // Two iterations find the cell.
         Self {
             straight: false,
             iterations: (4 + loops) * tree.longest() + rounds + 8,
-            leaves: tree.mean_length() + 2.0,
+            leaves: tree.mean_length() * (1.0 + f64::from(rounds) / f64::from(component.count)) + 2.0,
         }
     }
 }
@@ -133,7 +133,7 @@ pub struct Evaluation {
     pub straight: bool,
     /// Most loop iterations of one evaluation.
     pub iterations: u32,
-    /// Leaves that one evaluation visits, about.
+    /// Leaves that one evaluation visits, about; a round of a leaf's loop counts as one.
     pub leaves: f64,
 }
 

@@ -51,7 +51,7 @@ impl Renderer {
             let straight = || Evaluation::of_straight(&flat.components[i], rounds);
             let mut now = match (choices[i].walk, &trees[i], keys[i]) {
                 (Walk::Straight, _, Some(_)) => straight(),
-                (Walk::List, Some(tree), _) => Evaluation::of_lists(tree, loops, rounds),
+                (Walk::List, Some(tree), _) => Evaluation::of_lists(&flat.components[i], tree, loops, rounds),
                 _ => Evaluation::of_entries(&flat.components[i], loops, rounds),
             };
             // A kernel that becomes ready takes over within the frame.
