@@ -1,5 +1,7 @@
 //! The widgets of the inspector: a label on the left, a field on the right, all on one grid.
 
+use std::cell::RefCell;
+
 use egui::{Align, Color32, DragValue, Id, Key, Layout, Response, RichText, Ui, vec2};
 
 use super::{color_picker, expression, theme};
@@ -25,6 +27,9 @@ pub struct Answer {
     /// The new value, where the artist changed it.
     pub value: Option<f64>,
 }
+
+/// What a field shows where the selected nodes have different numbers.
+const MIXED: &str = "–";
 
 /// Width of the labels in points.
 const LABEL_WIDTH: f32 = 92.0;
@@ -82,6 +87,11 @@ fn prefixed_number(
     // A value beyond the soft range, typed before, is not thrown back by a drag.
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
     let mut edited = value;
+    let typed = RefCell::new(None);
+    let parse = |text: &str| {
+        typed.replace(Some(text.to_owned()));
+        expression::evaluate(text)
+    };
     let mut drag = DragValue::new(&mut edited)
         .range(range)
         .clamp_existing_to_range(false)
@@ -89,9 +99,9 @@ fn prefixed_number(
         .max_decimals(4)
         .min_size(vec2(width, theme::ROW_HEIGHT))
         .clip_text(true)
-        .custom_parser(expression::evaluate);
+        .custom_parser(parse);
     if mixed {
-        drag = drag.custom_formatter(|_, _| "–".into());
+        drag = drag.custom_formatter(|_, _| MIXED.into());
     }
     if !unit.is_empty() && axis.is_none() {
         drag = drag.suffix(RichText::new(format!(" {unit}")).color(theme::WEAK));
@@ -100,6 +110,11 @@ fn prefixed_number(
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
     if let Some(axis) = axis {
         paint_axis_mark(ui, &response, axis);
+    }
+    let is_done = response.lost_focus() && !ui.input(|i| i.key_pressed(Key::Escape));
+    let reason = typed.take().filter(|_| is_done).and_then(|text| refusal(name, &text, field.limits));
+    if let Some(reason) = reason {
+        ui.data_mut(|d| d.insert_temp(refused(), reason));
     }
     let changed = response.changed() && (edited != value || mixed);
     let mut answer = Answer { widget: response.id, value: changed.then_some(edited) };
@@ -112,6 +127,33 @@ fn prefixed_number(
         response.on_hover_text(field.help);
     }
     answer
+}
+
+/// Why a field does not show what was typed into it, if it does not.
+fn refusal(name: &str, typed: &str, limits: Limits) -> Option<String> {
+    let Limits { hard: [least, most], unit, .. } = limits;
+    let bound = |bound: f64| format!("{bound} {unit}").trim_end().to_owned();
+    match expression::evaluate(typed) {
+        _ if typed == MIXED => None,
+        None => Some(format!("{name}: “{typed}” is not a number, so it stays as it was.")),
+        Some(value) if value < least => {
+            Some(format!("{name}: {typed} is less than {}, the least there can be.", bound(least)))
+        }
+        Some(value) if value > most => {
+            Some(format!("{name}: {typed} is more than {}, the most there can be.", bound(most)))
+        }
+        Some(_) => None,
+    }
+}
+
+/// Where that waits for the editor.
+fn refused() -> Id {
+    Id::unique("what was typed and refused")
+}
+
+/// Why what was just typed is not taken as it is, to be told.
+pub fn take_refusal(ctx: &egui::Context) -> Option<String> {
+    ctx.data_mut(|d| d.remove_temp(refused()))
 }
 
 /// Three numbers side by side, marked in the axes' colours. Answers with the axis changed.

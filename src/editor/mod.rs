@@ -192,6 +192,9 @@ impl Editor {
         self.open_dropped(&ctx);
         commands::run_shortcuts(self, &ctx);
         self.show_panels(ui, picture);
+        if let Some(reason) = fields::take_refusal(&ctx) {
+            self.report(Message::warning(reason));
+        }
         self.poll_readings(&ctx);
         self.show_dialogs(&ctx);
         palette::show(self, &ctx);

@@ -358,3 +358,55 @@ impl Renderer {
         self.slots[slot as usize].as_ref().expect("begin makes the targets")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flat::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
+    use crate::render::buffers::RowTexture;
+    use crate::render::kernel::plain_source;
+    use crate::render::schedule::{QUADS, TILE};
+
+    /// The value of a constant in a shader.
+    fn constant(file: &str, name: &str) -> u32 {
+        let text = plain_source(file).unwrap_or_else(|error| panic!("{error}"));
+        let start = format!("const {name}: u32 = ");
+        let line =
+            text.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{file}: no {name}"));
+        let digits = line.trim_end_matches(';').trim_end_matches('u');
+        let number = digits.strip_prefix("0x").map_or_else(|| digits.parse(), |hex| u32::from_str_radix(hex, 16));
+        number.unwrap_or_else(|error| panic!("{file}: {name}: {digits}: {error}"))
+    }
+
+    #[test]
+    fn shaders_have_the_same_constants() {
+        let twins = [
+            ("common/quads.wgsl", "QUAD_COUNTS", QUAD_COUNTS as u32),
+            ("common/quads.wgsl", "RAY_COUNTS", RAY_COUNTS as u32),
+            ("common/quads.wgsl", "QUAD", TILE / QUADS),
+            ("common/work.wgsl", "TILE", TILE),
+            ("common/depth.wgsl", "NO_OWNER", NO_LEAF),
+            ("common/depth.wgsl", "MESH_BIT", MESH_BIT),
+            ("common/scene.wgsl", "LEAF_ROWS", LEAF_ROWS as u32),
+            ("common/scene.wgsl", "MODIFIER_ROWS", MODIFIER_ROWS as u32),
+            ("common/scene.wgsl", "GROUP", FlatNode::GROUP),
+            ("common/scene.wgsl", "RUN", FlatNode::RUN),
+            ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
+            ("common/scene.wgsl", "LINE", RowTexture::LINE as u32),
+            ("common/counts.wgsl", "COMPONENT_COUNTS", pixel_counts::COMPONENT_COUNTS as u32),
+            ("common/counts.wgsl", "PIXEL_COUNTS", pixel_counts::PIXEL_COUNTS as u32),
+        ];
+        for (file, name, ours) in twins {
+            assert_eq!(constant(file, name), ours, "{file}: {name}");
+        }
+    }
+
+    #[test]
+    fn quads_have_room() {
+        let text = plain_source("trace.wgsl").unwrap_or_else(|error| panic!("{error}"));
+        let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{error}"));
+        let (_, quad) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Quad")).expect("a quad");
+        let naga::TypeInner::Struct { span, .. } = quad.inner else { panic!("{quad:?}") };
+        assert_eq!(span as usize, QUAD_BYTES);
+    }
+}

@@ -9,7 +9,7 @@ use crate::render::schedule::TILE;
 /// cones cells and list entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
 pub(super) const COMPONENT_COUNTS: usize = 5;
 /// Words that are counted for each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
-const PIXEL_COUNTS: usize = 4;
+pub(super) const PIXEL_COUNTS: usize = 4;
 
 /// What rays or cones took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
