@@ -18,9 +18,9 @@ use crate::scene::NodeId;
 const AT_ONCE: Duration = Duration::from_millis(60);
 /// Time given to the full picture in each frame of the window, in parts of what painting the window takes: that is a
 /// sixtieth of a second on a graphics card, but a tenth on a software driver, where less would mostly repaint.
-const PER_PAINTING: f32 = 1.5;
+const PER_PAINTING: f32 = 2.0;
 /// That time, at least and at most.
-const PER_FRAME: [Duration; 2] = [Duration::from_millis(16), Duration::from_millis(120)];
+const PER_FRAME: [Duration; 2] = [Duration::from_millis(16), Duration::from_millis(150)];
 /// A full picture that takes longer than this waits for the kernels that are being built: they make it
 /// many times faster than the interpreter would.
 const WORTH_WAITING: Duration = Duration::from_millis(1500);
@@ -207,7 +207,8 @@ impl Canvas {
             editor.report(Message::warning(failure));
         }
         if kernels.building() > 0 {
-            ctx.request_repaint_after(Duration::from_millis(200));
+            // Painting takes from the threads that compile what a processor's driver draws with.
+            ctx.request_repaint_after(Duration::from_millis(if self.waiting { 200 } else { 1_000 }));
         }
         news
     }
