@@ -203,6 +203,10 @@ impl Canvas {
         let built = kernels.collect();
         news |= built;
         self.unmet |= built;
+        if built {
+            // The status bar of this frame still counts it.
+            ctx.request_repaint();
+        }
         for failure in kernels.take_failures() {
             editor.report(Message::warning(failure));
         }
