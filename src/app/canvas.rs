@@ -217,7 +217,8 @@ impl Canvas {
         news
     }
 
-    /// Begins the full picture, after a coarse one if the full one is not to be had at once and no coarse one is shown.
+    /// Begins the full picture, after a coarse one if the full one is not to be had at once. Where nothing but the kernels is
+    /// other than before, that is drawn again only if it becomes finer and has to last.
     fn start(
         &mut self,
         wanted: &Wanted,
@@ -229,16 +230,17 @@ impl Canvas {
         self.renderers.choose(wanted.view.look)?;
         let full = self.renderers.active().estimate(flat, &camera, size_px)?;
         let started = Instant::now();
-        if full > AT_ONCE && is_other {
-            let size = coarse_size(size_px, full, AT_ONCE);
-            let mut frame = self.begin(Slot::Preview, wanted, meshes, size)?;
-            self.renderers.active().advance(&mut frame, Duration::MAX)?;
-            self.show(Slot::Preview);
-        }
         let active = self.renderers.active();
         let kernels_pay = full > WORTH_WAITING && active.kernels_building() > 0;
         let lists_pay = full > LISTS_WORTH_WAITING && active.pruner().building() > 0;
         self.waiting = full > AT_ONCE && (self.navigating || kernels_pay || lists_pay);
+        let coarse = coarse_size(size_px, full, AT_ONCE);
+        let is_finer = self.waiting && self.textures[Slot::Preview as usize].is_some_and(|(_, shown)| coarse > shown);
+        if full > AT_ONCE && (is_other || is_finer) {
+            let mut frame = self.begin(Slot::Preview, wanted, meshes, coarse)?;
+            self.renderers.active().advance(&mut frame, Duration::MAX)?;
+            self.show(Slot::Preview);
+        }
         if self.waiting {
             self.under_way = None;
             return Ok(());

@@ -120,7 +120,7 @@ impl OverlayPass {
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);
-        self.outlined = Outlined::of(flat, &bits);
+        self.outlined = if settings.outline.is_empty() { Outlined::default() } else { Outlined::of(flat, &bits) };
         let changed = self.selected.set(device, queue, bytemuck::cast_slice(&bits)) || changed;
         if changed || self.own_group.is_none() {
             let resources = [self.uniform.binding(), self.selected.binding()];
@@ -167,17 +167,14 @@ struct Outlined {
 
 impl Outlined {
     fn of(flat: &FlatScene, bits: &[u32]) -> Self {
-        let mut set =
-            (0..flat.nodes.len() + flat.meshes.len()).filter(|i| bits[i / 32] >> (i % 32) & 1 == 1).peekable();
-        let mut components = Vec::new();
-        for (index, component) in (0..).zip(&flat.components) {
-            let end = (component.first + component.count) as usize;
-            if set.next_if(|i| *i < end).is_some() {
-                components.push(index);
-                while set.next_if(|i| *i < end).is_some() {}
-            }
+        let is_selected = |i: u32| bits[i as usize / 32] >> (i % 32) & 1 == 1;
+        let leaves = flat.nodes.len() as u32;
+        let components = (0..).zip(&flat.components);
+        let selected = components.filter(|(_, c)| (c.first..c.first + c.count).any(is_selected));
+        Self {
+            components: selected.map(|(index, _)| index).collect(),
+            meshes: (leaves..leaves + flat.meshes.len() as u32).any(is_selected),
         }
-        Self { components, meshes: set.next().is_some() }
     }
 
     /// Around the pixels that the outline may cover: upper left, and the first outside.
