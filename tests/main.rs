@@ -3,6 +3,7 @@
 mod accuracy;
 mod agreement;
 mod broken_files;
+mod cases;
 mod cli;
 mod contract;
 mod counts;

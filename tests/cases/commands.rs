@@ -1,0 +1,1 @@
+//! The command line: adapters, standard input and output, exit codes.

@@ -1,0 +1,1 @@
+//! Choice of evaluators, and how long compiling keeps a picture waiting.

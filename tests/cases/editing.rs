@@ -1,0 +1,1 @@
+//! Input in the editor: keys, clicks, numbers.

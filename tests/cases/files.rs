@@ -1,0 +1,1 @@
+//! Files written: pictures, scenes, recovery.

@@ -1,0 +1,1 @@
+//! Rays: flush cuts, thin things, rays that take many steps.

@@ -1,0 +1,1 @@
+//! The reference renderer, and how pictures are compared with it.

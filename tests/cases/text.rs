@@ -1,0 +1,1 @@
+//! Letters: shaping, direction, kerning, hostile fonts.
