@@ -12,9 +12,16 @@ use isolith::scene::{Scene, file};
 use crate::random_scene::{Random, random_scene};
 
 /// How often a saver is killed.
-const KILLS: u64 = 200;
+const KILLS: u64 = 500;
 /// Tells this test, started once more as a process of its own, which file to save for ever.
 const SAVER: &str = "ISOLITH_TEST_SAVER";
+/// The file and its backups.
+const KEPT: [&str; 4] = ["scene.json", "scene.json~", "scene.json~2~", "scene.json~3~"];
+
+/// Savers leave records of their temporaries here, and whoever opens a scene looks for them here.
+fn keep_records() {
+    file::keep_records_in(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("temporaries"));
+}
 
 fn big_scenes() -> [Scene; 2] {
     [random_scene(1, 700), random_scene(2, 650)]
@@ -22,6 +29,7 @@ fn big_scenes() -> [Scene; 2] {
 
 #[test]
 fn killed_savers_lose_nothing() {
+    keep_records();
     if let Some(path) = std::env::var_os(SAVER) {
         save_for_ever(Path::new(&path));
     }
@@ -29,20 +37,22 @@ fn killed_savers_lose_nothing() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("scene.json");
         let scenes = big_scenes();
-        // Twice, so that there is a backup from the start.
-        file::save(&scenes[1], &path).expect("the first save");
+        // So often that there are all backups from the start.
+        [1, 0, 1].iter().for_each(|i| file::save(&scenes[*i], &path).expect("the first saves"));
         let start = Instant::now();
-        file::save(&scenes[0], &path).expect("the second save");
+        file::save(&scenes[0], &path).expect("one more save");
         let one_save = start.elapsed();
         let (mut left_over, mut second) = (0, 0);
         for kill in (part..KILLS).step_by(2) {
             kill_one(&path, kill, one_save);
-            left_over += u64::from(names(folder.path()).len() > 2);
+            left_over += u64::from(names(folder.path()).len() > KEPT.len());
             let document = Document::open(&path).unwrap_or_else(|e| panic!("kill {kill}: {e}"));
             assert!(scenes.contains(document.scene()), "kill {kill}");
             second += u64::from(*document.scene() == scenes[1]);
-            assert!(file::load(&folder.path().join("scene.json~")).is_ok_and(|s| scenes.contains(&s)), "kill {kill}");
-            assert_eq!(names(folder.path()), ["scene.json", "scene.json~"], "kill {kill}");
+            for backup in &KEPT[1..] {
+                assert!(file::load(&folder.path().join(backup)).is_ok_and(|s| scenes.contains(&s)), "kill {kill}");
+            }
+            assert_eq!(names(folder.path()), KEPT, "kill {kill}");
         }
         (left_over, second)
     };
@@ -124,6 +134,73 @@ fn saving_where_nothing_can_be_saved_says_why_and_stays_changed() {
     }
     assert_eq!(fs::read_to_string(&read_only).expect("there"), "keep me");
     assert_eq!(names(folder.path()), ["plain.txt", "read_only.json"]);
+}
+
+/// Root may write everywhere but where the system itself allows nothing.
+#[cfg(unix)]
+#[test]
+fn a_read_only_folder_is_told_of_and_loses_nothing() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut document = Document::new(random_scene(7, 5));
+    let path = folder.path().join("scene.json");
+    document.save_as(&path).expect("saved");
+    let environment = isolith::scene::Environment { sky: [0.5; 3], ..document.scene().environment };
+    document.apply(Edit::SetEnvironment(environment)).expect("valid");
+    let set_mode = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("set");
+    set_mode(0o555);
+    let is_root = fs::write(folder.path().join("probe"), "").is_ok();
+    let target = if is_root { PathBuf::from("/sys/kernel/scene.json") } else { path.clone() };
+    let before = names(folder.path());
+    let result = document.save_as(&target);
+    let after = names(folder.path());
+    set_mode(0o755);
+    let error = result.expect_err("nothing can be made there");
+    assert!(error.reason.contains("making a temporary file beside it"), "{error}");
+    assert!(document.is_changed() && document.path() == Some(&path) && before == after);
+    assert!(Document::open(&path).is_ok());
+}
+
+/// Starts a test once more as a process of its own, in which no file may become longer than 4 KiB: the system fails the
+/// write in its middle, as on a full disk.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_loses_nothing() {
+    const FOLDER: &str = "ISOLITH_TEST_FULL_DISK";
+    if let Some(folder) = std::env::var_os(FOLDER) {
+        return save_on_a_full_disk(Path::new(&folder));
+    }
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("scene.json");
+    file::save(&random_scene(1, 0), &path).expect("saved");
+    file::save(&random_scene(2, 0), &path).expect("saved");
+    let program = std::env::current_exe().expect("this program");
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" --exact saving::a_full_disk_loses_nothing";
+    let mut shell = Command::new("sh");
+    shell.args(["-c", limited]).arg(program).env(FOLDER, folder.path());
+    // The limit holds for files that its output goes to as well.
+    let output = shell.output().expect("the shell starts");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    // What was done there, and nothing else, is here.
+    assert_eq!(file::load(&path), Ok(random_scene(3, 0)));
+    assert_eq!(file::load(&folder.path().join("scene.json~")), Ok(random_scene(2, 0)));
+    assert_eq!(names(folder.path()), ["scene.json", "scene.json~", "scene.json~2~"]);
+}
+
+#[cfg(unix)]
+fn save_on_a_full_disk(folder: &Path) {
+    let path = folder.join("scene.json");
+    let [big, _] = big_scenes();
+    let mut document = Document::recovered(big.clone(), Some(path.clone()), None);
+    for _ in 0..5 {
+        let error = document.save().expect_err("the scene is too large");
+        assert!(error.reason.contains("writing the temporary file"), "{error}");
+        assert!(error.reason.contains("too large"), "{error}");
+        assert!(document.is_changed());
+        assert_eq!(file::load(&path), Ok(random_scene(2, 0)));
+        assert_eq!(names(folder), ["scene.json", "scene.json~"]);
+    }
+    file::save(&random_scene(3, 0), &path).expect("a small one fits");
 }
 
 #[test]

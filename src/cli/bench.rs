@@ -1,10 +1,12 @@
 //! `isolith bench`: run time against error, for scenes by methods by qualities.
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use image::{ImageFormat, RgbImage};
 
 use super::failure::Failure;
+use super::outputs::write_bytes;
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
 use crate::bench::{
@@ -69,6 +71,9 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         found.ok_or_else(|| format!("{name} is none of draft, default, fine"))
     })?;
     let subjects = subjects(arguments)?;
+    if arguments.output.is_some() {
+        one_chart_each(&subjects)?;
+    }
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
     let bench = Bench::new(gpu);
@@ -213,6 +218,14 @@ fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), 
     Ok(())
 }
 
+/// Charts are named after scenes: of two of one name one would be lost.
+fn one_chart_each(subjects: &[Subject]) -> Result<(), Failure> {
+    let repeated = subjects.iter().enumerate().find(|(i, a)| subjects[..*i].iter().any(|b| b.name == a.name));
+    repeated.map_or(Ok(()), |(_, subject)| {
+        Err(Failure::Usage(format!("two scenes are called {0}, and {0}.png could show only one of them", subject.name)))
+    })
+}
+
 fn not_written(path: &Path, error: &dyn std::error::Error) -> Failure {
     Failure::Write { path: path.to_path_buf(), reason: error.to_string() }
 }
@@ -222,11 +235,12 @@ fn create_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 fn write_text(folder: &Path, name: &str, text: &str) -> Result<(), Failure> {
-    let path = folder.join(name);
-    std::fs::write(&path, text).map_err(|error| not_written(&path, &error))
+    write_bytes(&folder.join(name), text.as_bytes())
 }
 
 fn write_picture(folder: &Path, name: &str, picture: &RgbImage) -> Result<(), Failure> {
     let path = folder.join(name);
-    picture.save_with_format(&path, ImageFormat::Png).map_err(|error| not_written(&path, &error))
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, ImageFormat::Png).map_err(|error| not_written(&path, &error))?;
+    write_bytes(&path, bytes.get_ref())
 }

@@ -22,12 +22,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::app;
-use crate::document::Document;
+use crate::document::{Document, state_folder};
 use crate::editor::new_document;
 use clap::{Parser, Subcommand};
 
 use crate::render::Gpu;
 use crate::render::driver::loop_iterations;
+use crate::scene::file;
 use failure::Failure;
 
 /// What `--help` says about exit codes; the README has the same table.
@@ -77,6 +78,10 @@ enum Command {
 /// Runs the program with the arguments that it was started with.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(folder) = state_folder() {
+        file::keep_records_in(&folder.join("temporaries"));
+        file::remove_leftovers();
+    }
     match run(arguments) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

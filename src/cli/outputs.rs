@@ -1,14 +1,13 @@
-//! Buffers → files. A file is written beside its place and moved there whole, so that no reader ever sees
-//! half of it.
+//! Buffers → files, by the writer that scenes are saved with: no reader ever sees half of one.
 
-use std::fs;
-use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
+use std::io::Cursor;
+use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
 use super::failure::Failure;
 use crate::flat::{Buffers, FlatScene, Hitee};
+use crate::scene::file;
 
 /// What a file shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +39,7 @@ pub fn write(quantity: Quantity, path: &Path, buffers: &Buffers, flat: &FlatScen
     let mut bytes = Cursor::new(Vec::new());
     let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
     image.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
-    replace(path, bytes.get_ref()).map_err(|error| failed(error.to_string()))?;
+    write_bytes(path, bytes.get_ref())?;
     Ok(note)
 }
 
@@ -49,38 +48,28 @@ pub fn ending(path: &Path) -> String {
     path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
 }
 
-/// Refuses early what could not be written after minutes of rendering.
-pub fn check_writable(path: &Path) -> Result<(), Failure> {
-    let refuse = |reason: String| Err(Failure::Write { path: path.to_path_buf(), reason });
-    if path.is_dir() {
-        return refuse("it is a folder".into());
-    }
-    let probe = temporary(path);
-    match fs::File::create(&probe) {
-        Ok(_) => {
-            let _ = fs::remove_file(&probe);
-            Ok(())
+/// Writes one output, whole or not at all.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    file::replace(path, bytes, 0)
+        .map_err(|error| Failure::Write { path: path.to_path_buf(), reason: error.to_string() })
+}
+
+/// Refuses early what could not be written after minutes of rendering, and what would replace another output or one of
+/// the inputs: through a link, a name that ends in `.png` can lead to the scene.
+pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    for (index, path) in outputs.iter().enumerate() {
+        let refuse = |reason: String| Err(Failure::Write { path: path.to_path_buf(), reason });
+        if let Some(other) = outputs[..index].iter().find(|other| file::is_same_place(other, path)) {
+            return refuse(format!("it is the same file as {}, another output", other.display()));
         }
-        Err(error) => refuse(error.to_string()),
+        if let Some(input) = inputs.iter().find(|input| file::is_same_place(input, path)) {
+            return refuse(format!("it is the same file as {}, which is read", input.display()));
+        }
+        if let Err(error) = file::check_writable(path) {
+            return refuse(error.to_string());
+        }
     }
-}
-
-fn replace(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
-    let beside = temporary(path);
-    let written = fs::File::create(&beside).and_then(|mut file| {
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&beside, path)
-    });
-    if written.is_err() {
-        let _ = fs::remove_file(&beside);
-    }
-    written
-}
-
-fn temporary(path: &Path) -> PathBuf {
-    let name = path.file_name().map_or(String::new(), |n| n.to_string_lossy().into_owned());
-    path.with_file_name(format!(".{name}.tmp-{}", std::process::id()))
+    Ok(())
 }
 
 fn color(buffers: &Buffers) -> DynamicImage {

@@ -103,9 +103,8 @@ impl RenderArguments {
 /// Renders and writes every output. Nothing is written unless the whole picture is there.
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let started = Instant::now();
-    for (_, path) in arguments.outputs() {
-        outputs::check_writable(path)?;
-    }
+    let paths: Vec<_> = arguments.outputs().into_iter().map(|(_, path)| path).collect();
+    outputs::check_writable(&paths, &[&arguments.scene])?;
     let scene = file::load(&arguments.scene).map_err(Failure::Scene)?;
     let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?;
     let mut library = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));

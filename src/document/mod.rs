@@ -7,6 +7,7 @@ mod edit;
 mod history;
 mod placement;
 mod recent;
+mod state_folder;
 mod structure;
 
 use std::path::{Path, PathBuf};
@@ -16,8 +17,9 @@ pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
 pub use recent::{MAX_RECENT, RecentFiles};
+pub use state_folder::state_folder;
 
-use crate::scene::file::{self, FileError};
+use crate::scene::file::{self, FileError, Stamp};
 use crate::scene::{NodeId, Scene, SceneError};
 
 /// A scene with its selection, its past and its file.
@@ -28,7 +30,21 @@ pub struct Document {
     history: History,
     gesture: Option<Gesture>,
     path: Option<PathBuf>,
-    saved: u64,
+    /// The mark of the state that the file holds; none where it holds another one.
+    saved: Option<u64>,
+    /// How the file was when it was read or saved.
+    stamp: Option<Stamp>,
+}
+
+/// What saving a document to a path would replace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Replaced {
+    /// Nothing, or the document's own file as it was read or saved last.
+    Nothing,
+    /// The document's own file, which somebody else has changed since.
+    ChangedByOthers,
+    /// Another file.
+    OtherFile,
 }
 
 /// Edits that become one step.
@@ -43,14 +59,20 @@ impl Document {
     /// A document without a file. It counts as unchanged until the first edit.
     pub fn new(scene: Scene) -> Self {
         let state = State { scene: Arc::new(scene), selection: Vec::new(), mark: 0 };
-        Self { state, revision: 0, history: History::default(), gesture: None, path: None, saved: 0 }
+        Self { state, revision: 0, history: History::default(), gesture: None, path: None, saved: Some(0), stamp: None }
     }
 
-    /// Reads a file, and clears away what crashed savers of it have left behind.
+    /// Reads a file, and clears away the temporaries of this user's savers that were killed.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        let scene = file::load(path)?;
-        file::remove_leftovers(path);
-        Ok(Self { path: Some(path.to_path_buf()), ..Self::new(scene) })
+        let (scene, stamp) = file::load_stamped(path)?;
+        file::remove_leftovers();
+        Ok(Self { path: Some(path.to_path_buf()), stamp: Some(stamp), ..Self::new(scene) })
+    }
+
+    /// A document that was never saved in this state: it counts as changed. `stamp` tells how its file was when the lost
+    /// document was read from it.
+    pub fn recovered(scene: Scene, path: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
+        Self { path, stamp, saved: None, ..Self::new(scene) }
     }
 
     /// The scene as it is now.
@@ -172,7 +194,7 @@ impl Document {
 
     /// Whether the scene differs from the file. Undoing back to what was saved counts as unchanged.
     pub fn is_changed(&self) -> bool {
-        self.state.mark != self.saved
+        Some(self.state.mark) != self.saved
     }
 
     /// The document's file.
@@ -197,10 +219,34 @@ impl Document {
 
     /// Saves to a file, which is the document's from then on. On failure nothing changes.
     pub fn save_as(&mut self, path: &Path) -> Result<(), FileError> {
-        file::save(&self.state.scene, path)?;
+        self.stamp = Some(file::save_stamped(&self.state.scene, path)?);
         self.path = Some(path.to_path_buf());
-        self.saved = self.state.mark;
+        self.saved = Some(self.state.mark);
         Ok(())
+    }
+
+    /// What saving to this path would replace: to be asked before, because saving itself does not.
+    pub fn would_replace(&self, path: &Path) -> Replaced {
+        let is_own = self.path.as_deref().is_some_and(|own| own == path || file::is_same_place(own, path));
+        if !is_own {
+            return if path.exists() { Replaced::OtherFile } else { Replaced::Nothing };
+        }
+        match self.stamp {
+            Some(stamp) if !stamp.is_outdated(path) => Replaced::Nothing,
+            // Recovered, and nobody knows any more what its file was.
+            None if !path.exists() => Replaced::Nothing,
+            _ => Replaced::ChangedByOthers,
+        }
+    }
+
+    /// How the file was when it was read or saved last.
+    pub fn stamp(&self) -> Option<Stamp> {
+        self.stamp
+    }
+
+    /// Whether somebody else seems to have changed the file: cheap, for now and then.
+    pub fn seems_outdated(&self) -> bool {
+        matches!((&self.path, self.stamp), (Some(path), Some(stamp)) if stamp.seems_outdated(path))
     }
 
     fn close_gesture(&mut self) {

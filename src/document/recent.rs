@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use etcetera::BaseStrategy;
+use super::state_folder;
+use crate::scene::file;
 
 /// Most files remembered.
 pub const MAX_RECENT: usize = 12;
@@ -21,13 +22,7 @@ pub struct RecentFiles {
 impl RecentFiles {
     /// The list of this user, from the system's folder for such things.
     pub fn load() -> Self {
-        match etcetera::choose_base_strategy() {
-            Ok(base) => {
-                let folder = base.state_dir().unwrap_or_else(|| base.data_dir());
-                Self::load_from(&folder.join("isolith").join("recent.json"))
-            }
-            Err(_) => Self::default(),
-        }
+        state_folder().map_or_else(Self::default, |folder| Self::load_from(&folder.join("recent.json")))
     }
 
     /// The list in this file; empty where there is none or it cannot be understood.
@@ -44,6 +39,7 @@ impl RecentFiles {
     /// Puts a file first, and writes the list.
     pub fn add(&mut self, path: &Path) {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf());
+        self.follow_others();
         self.paths.retain(|p| *p != path);
         self.paths.insert(0, path);
         self.paths.truncate(MAX_RECENT);
@@ -52,6 +48,7 @@ impl RecentFiles {
 
     /// Takes a file out, such as one that has gone, and writes the list.
     pub fn remove(&mut self, path: &Path) {
+        self.follow_others();
         self.paths.retain(|p| p != path);
         self.write();
     }
@@ -62,15 +59,22 @@ impl RecentFiles {
         self.write();
     }
 
+    /// Takes what other windows have added since. Paths that only this one can remember stay, at the end.
+    fn follow_others(&mut self) {
+        let Some(paths) = self.store.as_deref().and_then(read) else { return };
+        let unwritten = std::mem::replace(&mut self.paths, paths).into_iter().filter(|path| path.to_str().is_none());
+        self.paths.extend(unwritten);
+    }
+
     fn write(&self) {
         let Some(store) = &self.store else { return };
         // Paths that are not Unicode cannot stand in JSON; they are remembered for this run only.
         let texts: Vec<&str> = self.paths.iter().filter_map(|p| p.to_str()).collect();
         let Ok(json) = serde_json::to_string_pretty(&texts) else { return };
         if let Some(folder) = store.parent() {
-            let _ = fs::create_dir_all(folder);
+            let _ = file::create_private_folder(folder);
         }
-        let _ = fs::write(store, json + "\n");
+        let _ = file::replace(store, (json + "\n").as_bytes(), 0);
     }
 }
 

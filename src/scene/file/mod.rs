@@ -18,7 +18,10 @@ mod place;
 mod read;
 mod write;
 
-pub use atomic::{attachment, load, remove_leftovers, save};
+pub use atomic::{
+    KEPT_BACKUPS, Stamp, WriteError, WriteStep, attachment, backup_path, check_writable, create_private_folder,
+    is_same_place, keep_records_in, load, load_stamped, random_name, remove_leftovers, replace, save, save_stamped,
+};
 pub use error::FileError;
 pub use format::{VERSION, schema};
 pub use read::parse;
