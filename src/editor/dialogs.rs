@@ -133,7 +133,7 @@ impl Editor {
         self.bench.finish();
         match self.bench.document.path().map(Path::to_path_buf) {
             None => self.choose_save_path(then, ctx),
-            Some(path) => self.save_to(&path, then, ctx),
+            Some(path) => self.save_unless_changed(&path, then, ctx),
         }
     }
 
@@ -151,7 +151,7 @@ impl Editor {
         }
     }
 
-    fn save_to(&mut self, path: &Path, then: Option<Intent>, ctx: &Context) {
+    pub(super) fn save_to(&mut self, path: &Path, then: Option<Intent>, ctx: &Context) {
         match self.bench.document.save_as(path) {
             Ok(()) => {
                 self.recent.add(path);
@@ -247,7 +247,7 @@ impl Editor {
             Purpose::Open => self.intend(Intent::Open(path.to_path_buf()), ctx),
             Purpose::Save(then) => {
                 let path = if path.extension().is_none() { path.with_extension("json") } else { path.to_path_buf() };
-                self.save_to(&path, then, ctx);
+                self.save_unless_changed(&path, then, ctx);
             }
             Purpose::Mesh => self.add_mesh(path),
             Purpose::Attach(wanted) => self.read_file(wanted, path, ctx),

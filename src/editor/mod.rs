@@ -11,10 +11,12 @@
 //! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 //! | `reading` | files that nodes keep, read beside the frames |
+//! | `conflict` | a file that another program has changed |
 
 mod bounds;
 mod color_picker;
 mod commands;
+mod conflict;
 mod dialogs;
 mod expression;
 mod fields;
@@ -118,6 +120,7 @@ pub struct Editor {
     examples: Vec<Example>,
     /// Files that nodes are to keep, on their way.
     readings: Vec<reading::Reading>,
+    conflict: conflict::Conflict,
     show_grid: bool,
     show_outline: bool,
     look: Look,
@@ -153,6 +156,7 @@ impl Editor {
             recent: RecentFiles::default(),
             examples: Vec::new(),
             readings: Vec::new(),
+            conflict: conflict::Conflict::default(),
             show_grid: true,
             show_outline: true,
             look: Look::Shaded,
@@ -197,6 +201,7 @@ impl Editor {
         }
         self.poll_readings(&ctx);
         self.show_dialogs(&ctx);
+        self.show_conflict(&ctx);
         palette::show(self, &ctx);
         let corner = self.viewport.rect();
         self.bench.messages.show_toasts(&ctx, corner);
@@ -206,6 +211,7 @@ impl Editor {
         self.bench.settle(&ctx);
         self.refresh_flat();
         self.send_title(&ctx);
+        self.watch_file(&ctx);
         self.typing = ctx.text_edit_focused();
     }
 
@@ -286,7 +292,7 @@ impl Editor {
 
     /// Whether a question waits for its answer.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.palette.is_open()
+        self.dialogs.is_open() || self.palette.is_open() || self.conflict.is_open()
     }
 
     fn replace_document(&mut self, document: Document) {

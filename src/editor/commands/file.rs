@@ -1,8 +1,12 @@
 //! Commands on documents.
 
+use std::path::Path;
+
 use egui::{Context, Key, Modifiers};
 use egui_material_icons::MaterialIcon;
-use egui_material_icons::icons::{ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_SAVE, ICON_SAVE_AS};
+use egui_material_icons::icons::{
+    ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_REFRESH, ICON_SAVE, ICON_SAVE_AS,
+};
 
 use super::{Command, Icon, Menu};
 use crate::editor::Editor;
@@ -21,6 +25,12 @@ pub(super) fn commands() -> Vec<Command> {
         new(ICON_SAVE, "Save", "Writes the scene to its file", |e, ctx| e.save(None, ctx)).key(CTRL, Key::S).group(),
         new(ICON_SAVE_AS, "Save as…", "Writes the scene to another file", |e, ctx| e.choose_save_path(None, ctx))
             .key(SHIFT_CTRL, Key::S),
+        new(ICON_REFRESH, "Reload", "Reads the scene's file again", |e, ctx| {
+            if let Some(path) = e.document().path().map(Path::to_path_buf) {
+                e.intend(Intent::Open(path), ctx);
+            }
+        })
+        .when(|e| e.document().path().is_some()),
         new(ICON_LOGOUT, "Quit", "Closes the window", |e, ctx| e.intend(Intent::Quit, ctx)).key(CTRL, Key::Q).group(),
     ]
 }
