@@ -23,8 +23,11 @@ test: lint ## Check formatting and lints, then run every test
 	cargo test --lib --tests
 
 # 200 times the points of `make test`: a million for each repetition against its copies. Numerical stress by all methods.
-nightly: setup ## Test the contract of fields at very many points
+# 50 real editors under Xvfb are driven by keys and killed: that takes half an hour and installs xvfb and xdotool.
+nightly: setup ## Test fields at very many points, and kill editors while they are driven
 	ISOLITH_TIMES=200 cargo test --test tests -- contract:: stress::
+	cargo build
+	tests/recovery.sh 50
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy

@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use crate::document::Document;
+use crate::document::recovery::Recovery;
+use crate::document::{Document, state_folder};
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
 use crate::render::Gpu;
@@ -51,17 +52,28 @@ enum Ending {
 const MAX_LOSSES: usize = 5;
 
 /// Opens the editor on the document and returns when it is closed. The document survives the loss of
-/// the graphics device: everything on the device is made anew from it.
-pub fn run(document: Document) -> Result<(), AppError> {
+/// the graphics device: everything on the device is made anew from it. A panic keeps what is not saved, and is told
+/// through `tell`.
+pub fn run(document: Document, tell: fn(&str)) -> Result<(), AppError> {
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
     editor.set_recent(crate::document::RecentFiles::load());
+    match start_recovery() {
+        Ok(recovery) => {
+            recovery.rescuer().rescue_at_panics(tell);
+            editor.set_recovery(recovery);
+        }
+        Err(reason) => editor.report(Message::warning(format!("Unsaved work cannot be kept for recovery: {reason}."))),
+    }
     let shared = Shared { editor: Rc::new(RefCell::new(editor)), gpu: Rc::default() };
     let mut losses: Vec<Instant> = Vec::new();
     loop {
         if open_window(&shared)? == Ending::Closed {
+            shared.editor.borrow_mut().end_recovery();
             return Ok(());
         }
+        // Painting on the lost device may have panicked.
+        shared.editor.borrow_mut().drop_notes();
         losses.retain(|at| at.elapsed() < Duration::from_secs(60));
         losses.push(Instant::now());
         if losses.len() > MAX_LOSSES {
@@ -70,6 +82,11 @@ pub fn run(document: Document) -> Result<(), AppError> {
         let message = "The graphics device was lost and has been opened again. Nothing else is lost.";
         shared.editor.borrow_mut().report(Message::warning(message));
     }
+}
+
+fn start_recovery() -> Result<Recovery, String> {
+    let folder = state_folder().ok_or("this user has no folder for it")?;
+    Recovery::start(&folder.join("recovery")).map_err(|error| error.to_string())
 }
 
 fn open_window(shared: &Shared) -> Result<Ending, AppError> {

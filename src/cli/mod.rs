@@ -110,7 +110,7 @@ fn open(scene: Option<&Path>) -> Result<(), Failure> {
             Some(path) => Document::open(path).map_err(Failure::Scene)?,
             None => new_document(),
         };
-        return app::run(document).map_err(|e| Failure::Graphics(e.to_string()));
+        return app::run(document, complain).map_err(|e| Failure::Graphics(e.to_string()));
     }
     let Some(scene) = scene else {
         return Err(Failure::Graphics("no display is set; give a scene and it is rendered to a picture".into()));

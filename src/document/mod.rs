@@ -7,6 +7,7 @@ mod edit;
 mod history;
 mod placement;
 mod recent;
+pub mod recovery;
 mod state_folder;
 mod structure;
 

@@ -154,6 +154,7 @@ impl Editor {
     pub(super) fn save_to(&mut self, path: &Path, then: Option<Intent>, ctx: &Context) {
         match self.bench.document.save_as(path) {
             Ok(()) => {
+                self.forget_kept();
                 self.recent.add(path);
                 self.meshes.set_folder(super::folder_of(path));
                 self.report(Message::success(format!("Saved {}", path.display())));

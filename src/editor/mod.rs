@@ -11,6 +11,7 @@
 //! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 //! | `reading` | files that nodes keep, read beside the frames |
+//! | `recovery` | unsaved work, kept beside the frames and offered again |
 //! | `conflict` | a file that another program has changed |
 
 mod bounds;
@@ -39,6 +40,7 @@ mod overlay;
 mod palette;
 mod picking;
 mod reading;
+mod recovery;
 mod selection;
 mod shape_change;
 mod sheet;
@@ -120,6 +122,8 @@ pub struct Editor {
     examples: Vec<Example>,
     /// Files that nodes are to keep, on their way.
     readings: Vec<reading::Reading>,
+    /// Keeps what is not saved; none where nothing is to be kept.
+    safekeeping: Option<recovery::Safekeeping>,
     conflict: conflict::Conflict,
     show_grid: bool,
     show_outline: bool,
@@ -156,6 +160,7 @@ impl Editor {
             recent: RecentFiles::default(),
             examples: Vec::new(),
             readings: Vec::new(),
+            safekeeping: None,
             conflict: conflict::Conflict::default(),
             show_grid: true,
             show_outline: true,
@@ -202,6 +207,7 @@ impl Editor {
         self.poll_readings(&ctx);
         self.show_dialogs(&ctx);
         self.show_conflict(&ctx);
+        self.show_recovery(&ctx);
         palette::show(self, &ctx);
         let corner = self.viewport.rect();
         self.bench.messages.show_toasts(&ctx, corner);
@@ -212,6 +218,7 @@ impl Editor {
         self.refresh_flat();
         self.send_title(&ctx);
         self.watch_file(&ctx);
+        self.follow_recovery(&ctx, picture);
         self.typing = ctx.text_edit_focused();
     }
 
@@ -292,12 +299,13 @@ impl Editor {
 
     /// Whether a question waits for its answer.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.palette.is_open() || self.conflict.is_open()
+        self.dialogs.is_open() || self.palette.is_open() || self.conflict.is_open() || self.is_offering()
     }
 
     fn replace_document(&mut self, document: Document) {
         self.bench.finish();
         self.readings.clear();
+        self.forget_kept();
         self.meshes.set_folder(document.path().and_then(folder_of));
         self.bench.document = document;
         self.outliner = outliner::Outliner::default();

@@ -1,16 +1,19 @@
 //! Files written: pictures, scenes, recovery.
 
 mod conflict;
+mod killed;
 mod outputs;
+mod recovery;
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
-use isolith::document::Document;
+use isolith::document::{Document, Edit};
 use isolith::editor::{Editor, Picture};
-use isolith::scene::{Group, Node, NodeKind, Scene};
+use isolith::scene::{Group, Node, NodeKind, Scene, file};
 
 /// Groups whose names can be shown, and end in `mark`.
 fn plain_scene(mark: u64, nodes: u64) -> Scene {
@@ -55,4 +58,39 @@ fn shows(harness: &Harness<'_, Editor>, label: &str) -> bool {
 
 fn last_message(harness: &Harness<'_, Editor>) -> String {
     harness.state().messages().next_back().map_or(String::new(), |message| message.text.clone())
+}
+
+fn add_group(document: &mut Document, name: &str) {
+    let node = Node::new(name, NodeKind::Group(Group::UNION));
+    document.apply(Edit::Insert { parent: None, position: 0, node }).expect("the scene takes a group");
+}
+
+/// A document with a change.
+fn changed(name: &str) -> Document {
+    let mut document = Document::new(Scene::new());
+    add_group(&mut document, name);
+    document
+}
+
+fn has(document: &Document, name: &str) -> bool {
+    document.scene().nodes().iter().any(|node| node.name == name)
+}
+
+/// Waits until it is true.
+fn until(what: &str, is_true: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !is_true() {
+        assert!(start.elapsed() < Duration::from_secs(20), "{what}");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// The scenes that lie below the folder, whoever they belong to.
+fn kept(root: &Path) -> Vec<PathBuf> {
+    let folders = fs::read_dir(root).into_iter().flatten().flatten();
+    folders.map(|entry| entry.path().join("scene.json")).filter(|path| path.exists()).collect()
+}
+
+fn kept_with(root: &Path, name: &str) -> bool {
+    kept(root).iter().any(|path| file::load(path).is_ok_and(|scene| scene.nodes().iter().any(|n| n.name == name)))
 }

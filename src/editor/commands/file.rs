@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::{Context, Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_REFRESH, ICON_SAVE, ICON_SAVE_AS,
+    ICON_FOLDER_OPEN, ICON_HISTORY, ICON_LOGOUT, ICON_NOTE_ADD, ICON_REFRESH, ICON_SAVE, ICON_SAVE_AS,
 };
 
 use super::{Command, Icon, Menu};
@@ -31,6 +31,10 @@ pub(super) fn commands() -> Vec<Command> {
             }
         })
         .when(|e| e.document().path().is_some()),
+        new(ICON_HISTORY, "Recover unsaved work…", "Lists what was not saved when Isolith ended", |e, _| {
+            e.offer_lost_work();
+        })
+        .when(Editor::has_safekeeping),
         new(ICON_LOGOUT, "Quit", "Closes the window", |e, ctx| e.intend(Intent::Quit, ctx)).key(CTRL, Key::Q).group(),
     ]
 }
