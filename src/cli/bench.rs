@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use image::{ImageFormat, RgbImage};
 
+use super::adapters::AdapterArguments;
 use super::failure::Failure;
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
@@ -54,6 +55,8 @@ pub struct BenchArguments {
     /// Print one JSON object a line instead of the tables
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    adapter: AdapterArguments,
 }
 
 /// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
@@ -61,7 +64,7 @@ pub struct BenchArguments {
 pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     arguments.output.as_deref().map_or(Ok(()), create_folder)?;
     if arguments.stress {
-        return stress(arguments.output.as_deref());
+        return stress(arguments);
     }
     let ways: Vec<Way> = parsed(&arguments.methods, |name| name.parse())?;
     let qualities: Vec<Quality> = parsed(&arguments.qualities, |name| {
@@ -69,7 +72,7 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
         found.ok_or_else(|| format!("{name} is none of draft, default, fine"))
     })?;
     let subjects = subjects(arguments)?;
-    let gpu = Gpu::headless()?;
+    let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let bench = Bench::new(gpu);
     let mut truths = Truths::default();
@@ -115,8 +118,8 @@ const PRINTED: usize = 40;
 
 /// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
 /// the ten worst subjects.
-fn stress(output: Option<&Path>) -> Result<(), Failure> {
-    let gpu = Gpu::headless()?;
+fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
+    let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let mut renderer = Renderer::new(&gpu)?;
     renderer.pruner().prune_all();
@@ -143,7 +146,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
     worst_first(&mut figures);
     say(&stress_table(&figures, PRINTED))?;
     say(&format!("{unseen} cases show no surface, {left_out} were left out."))?;
-    let Some(folder) = output else { return Ok(()) };
+    let Some(folder) = arguments.output.as_deref() else { return Ok(()) };
     write_text(folder, "stress.md", &stress_table(&figures, figures.len()))?;
     write_picture(folder, "stress.png", &stress_sheet(&first_of_each(&figures), SHOWN))
 }

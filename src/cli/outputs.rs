@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
+use super::exr_ids;
 use super::failure::Failure;
+use super::input::is_standard;
 use crate::flat::{Buffers, FlatScene, Hitee};
 
 /// What a file shows.
@@ -23,25 +25,50 @@ pub enum Quantity {
     NodeId,
 }
 
-/// Writes one quantity of the buffers, as the path's ending asks. Returns what a person needs to know to
-/// read it, to be put behind the file's name.
+impl Quantity {
+    /// Its name in JSON, as the option that asks for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Color => "output",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::NodeId => "node-id",
+        }
+    }
+}
+
+/// Writes one quantity of the buffers, as the path's ending asks; `-` is standard output and gets a PNG. Returns what a
+/// person needs to know to read it, to be put behind the file's name.
 pub fn write(quantity: Quantity, path: &Path, buffers: &Buffers, flat: &FlatScene) -> Result<String, Failure> {
-    let (image, note) = match (quantity, ending(path) == "exr") {
+    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
+    let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat).map_err(failed)?;
+    if is_standard(path) {
+        let mut out = std::io::stdout().lock();
+        out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| failed(error.to_string()))?;
+    } else {
+        replace(path, &bytes).map_err(|error| failed(error.to_string()))?;
+    }
+    Ok(note)
+}
+
+fn encode(quantity: Quantity, as_exr: bool, buffers: &Buffers, flat: &FlatScene) -> Result<(Vec<u8>, String), String> {
+    let (image, note) = match (quantity, as_exr) {
         (Quantity::Color, _) => (color(buffers), String::new()),
         (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (metres)".into()),
         (Quantity::Depth, false) => depth_picture(buffers),
         (Quantity::Normal, true) => (raw(buffers, |i| buffers.normal[i]), " (X, Y, Z)".into()),
         (Quantity::Normal, false) => (normal_picture(buffers), String::new()),
-        // A 32-bit float holds every whole number up to 2^24.
-        (Quantity::NodeId, true) => (raw(buffers, |i| [node_id(buffers, flat, i) as f32; 3]), " (ids)".into()),
+        (Quantity::NodeId, true) => {
+            let ids: Vec<u64> = (0..buffers.depth.len()).map(|i| node_id(buffers, flat, i)).collect();
+            let bytes = exr_ids::encode(buffers.width, buffers.height, &ids).map_err(|error| error.to_string())?;
+            return Ok((bytes, " (ids, whole numbers)".into()));
+        }
         (Quantity::NodeId, false) => (node_id_picture(buffers, flat), String::new()),
     };
-    let format = if ending(path) == "exr" { ImageFormat::OpenExr } else { ImageFormat::Png };
+    let format = if as_exr { ImageFormat::OpenExr } else { ImageFormat::Png };
     let mut bytes = Cursor::new(Vec::new());
-    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
-    image.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
-    replace(path, bytes.get_ref()).map_err(|error| failed(error.to_string()))?;
-    Ok(note)
+    image.write_to(&mut bytes, format).map_err(|error| error.to_string())?;
+    Ok((bytes.into_inner(), note))
 }
 
 /// The path's ending in small letters.
@@ -51,6 +78,9 @@ pub fn ending(path: &Path) -> String {
 
 /// Refuses early what could not be written after minutes of rendering.
 pub fn check_writable(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
+        return Ok(());
+    }
     let refuse = |reason: String| Err(Failure::Write { path: path.to_path_buf(), reason });
     if path.is_dir() {
         return refuse("it is a folder".into());
