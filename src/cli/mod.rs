@@ -45,7 +45,7 @@ const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something else went wrong while rendering
   2    the command was not understood
-  3    the scene file is missing, broken or beyond a limit
+  3    the scene file is missing, broken or beyond a limit, or has warnings under --strict
   4    no graphics: no Vulkan, Metal or DirectX driver answers, or no display
   5    an output cannot be written
   130  cancelled with Ctrl-C";
