@@ -4,8 +4,8 @@
 //! Straight-line code evaluates every leaf of a component at every step; lists evaluate some six, whose shape is chosen by
 //! a `switch` of which software drivers execute every arm. So lists cost about 6 (K + 6) where K is the cost of one leaf of
 //! each kind of shape in the scene, and straight-line code the sum over all leaves, all in leaves that are spheres. Measured
-//! with leaves in one blend on lavapipe 22.3.6, where both took the same time: 45 spheres (by this rule 42), 32 boxes (33),
-//! 35 tori (36), 10 ellipsoids (12), 65 of nine kinds (66).
+//! with leaves in one blend on lavapipe 22.3.6, where both took the same time: 45 spheres (by this rule 42), 32 boxes (34),
+//! 35 tori (39), 10 ellipsoids (10), 65 of nine kinds (70).
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -206,10 +206,9 @@ mod tests {
             ShapeKind::ALL.iter().map(|kind| format!("{kind:?} {:.2}", leaf_cost(*kind, 0))).collect();
         let cost = |kind| leaf_cost(kind, 0);
         assert_eq!(cost(ShapeKind::Sphere), 1.0);
-        let others = ShapeKind::ALL.iter().filter(|kind| **kind != ShapeKind::Plane);
-        assert!(others.clone().all(|kind| cost(*kind) >= 1.0), "{all:?}");
+        assert!(ShapeKind::ALL.iter().all(|kind| cost(*kind) > 0.8), "{all:?}");
         assert!((1.1..2.0).contains(&cost(ShapeKind::Box)) && (1.1..2.0).contains(&cost(ShapeKind::Torus)), "{all:?}");
-        assert!((4.0..8.0).contains(&cost(ShapeKind::Ellipsoid)), "{all:?}");
+        assert!((5.0..12.0).contains(&cost(ShapeKind::Ellipsoid)), "{all:?}");
         assert!(leaf_cost(ShapeKind::Tube, 30) > 2.0 * leaf_cost(ShapeKind::Tube, 3), "{all:?}");
     }
 
