@@ -107,6 +107,15 @@ fn keys(value: &Value) -> Vec<&str> {
     value.as_object().expect("an object").keys().map(String::as_str).collect()
 }
 
+/// The ids of an EXR file.
+fn ids(path: &Path) -> Vec<u32> {
+    let image = exr::prelude::read_all_flat_layers_from_file(path).expect("an EXR file");
+    match &image.layer_data[0].channel_data.list[0].sample_data {
+        exr::prelude::FlatSamples::U32(ids) => ids.clone(),
+        other => panic!("not whole numbers: {other:?}"),
+    }
+}
+
 fn open(path: &Path) -> image::DynamicImage {
     image::open(path).expect("a picture")
 }
@@ -179,14 +188,14 @@ fn numbers_are_written_as_numbers_and_the_truth_agrees() {
             arguments.push("--truth");
         }
         place.run(&arguments).succeeded();
-        let [depth, normal, id] =
-            ["depth", "normal", "id"].map(|name| open(&place.path(&format!("{name}.exr"))).into_rgb32f());
+        let [depth, normal] = ["depth", "normal"].map(|name| open(&place.path(&format!("{name}.exr"))).into_rgb32f());
+        let ids = ids(&place.path("id.exr"));
         let center = depth.get_pixel(12, 8)[0];
         assert!((center - 3.5).abs() < 0.1, "the ball is {center} m away");
         assert!(depth.get_pixel(12, 0)[0].is_infinite(), "the background has a depth");
         assert!(normal.get_pixel(12, 8)[2] > 0.9, "the ball does not face the camera");
-        assert_eq!((id.get_pixel(12, 8)[0], id.get_pixel(12, 0)[0]), (2.0, 0.0));
-        assert_eq!(id.get_pixel(12, 15)[0], 1.0, "the floor has another id");
+        assert_eq!((ids[8 * 24 + 12], ids[12]), (2, 0));
+        assert_eq!(ids[15 * 24 + 12], 1, "the floor has another id");
         depths.push(center);
     }
     assert!((depths[0] - depths[1]).abs() < 1e-4, "{depths:?}");
@@ -277,7 +286,9 @@ fn without_a_driver_it_says_so() {
 fn check_counts_what_is_there() {
     let place = Place::new();
     let report = place.run(&["check", "scene.json", "--json"]).succeeded().object();
-    assert_eq!(keys(&report), ["nodes", "components", "tree_depth", "warnings"]);
+    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "limits", "warnings"];
+    assert_eq!(keys(&report), all);
+    assert_eq!(report["cameras"], serde_json::json!(["front", "above"]));
     assert_eq!((&report["nodes"], &report["components"], &report["tree_depth"]), (&5.into(), &2.into(), &2.into()));
     assert_eq!(report["warnings"], Value::Array(Vec::new()));
     let text = place.run(&["check", "scene.json"]).succeeded().out.clone();
@@ -305,7 +316,8 @@ fn check_reports_what_cannot_be_used_as_one_object() {
     let outcome = place.run(&["check", "broken.json", "--json"]);
     outcome.failed(3, &["radius"]);
     let error = outcome.object();
-    assert_eq!(keys(&error), ["file", "node", "field", "reason"]);
+    assert_eq!(keys(&error), ["ok", "file", "node", "field", "reason"]);
+    assert_eq!(error["ok"], false);
     assert_eq!(error["file"], "broken.json");
     assert!(error["node"].as_str().is_some_and(|node| node.contains("ball")), "{error}");
     assert!(error["field"].as_str().is_some_and(|field| field.contains("radius")), "{error}");

@@ -17,6 +17,7 @@ const JOIN_TONGUE: u32 = 7u;
 const JOIN_ENGRAVE: u32 = 8u;
 const JOIN_MORPH: u32 = 9u;
 const JOIN_PAINT: u32 = 10u;
+const JOIN_REMAINDER: u32 = 11u;
 
 const KERNEL_CIRCULAR: u32 = 0u;
 const KERNEL_QUADRATIC: u32 = 1u;
@@ -116,6 +117,10 @@ fn op_further(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
     }
     if join == JOIN_ENGRAVE {
         return op_engrave(a, b, joint, kernel);
+    }
+    if join == JOIN_REMAINDER {
+        let joined = op_difference(b, a, joint, kernel);
+        return vec4f(joined.x, -joined.y, 1.0 - joined.y, 1.0 - joined.y);
     }
     return op_groove(join, a, b, joint, kernel);
 }

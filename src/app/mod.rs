@@ -16,7 +16,7 @@ use crate::document::recovery::Recovery;
 use crate::document::{Document, state_folder};
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
-use crate::render::Gpu;
+use crate::render::{AdapterChoice, Gpu};
 use crate::scene::Scene;
 use window::Window;
 
@@ -51,10 +51,10 @@ enum Ending {
 /// Most losses of the device within a minute before the program gives up.
 const MAX_LOSSES: usize = 5;
 
-/// Opens the editor on the document and returns when it is closed. The document survives the loss of
-/// the graphics device: everything on the device is made anew from it. A panic keeps what is not saved, and is told
-/// through `tell`.
-pub fn run(document: Document, tell: fn(&str)) -> Result<(), AppError> {
+/// Opens the editor on the document, drawn by the chosen adapter, and returns when it is closed. The document survives
+/// the loss of the graphics device: everything on the device is made anew from it. A panic keeps what is not saved, and
+/// is told through `tell`.
+pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Result<(), AppError> {
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
     editor.set_recent(crate::document::RecentFiles::load());
@@ -68,7 +68,7 @@ pub fn run(document: Document, tell: fn(&str)) -> Result<(), AppError> {
     let shared = Shared { editor: Rc::new(RefCell::new(editor)), gpu: Rc::default() };
     let mut losses: Vec<Instant> = Vec::new();
     loop {
-        if open_window(&shared)? == Ending::Closed {
+        if open_window(&shared, adapter)? == Ending::Closed {
             shared.editor.borrow_mut().end_recovery();
             return Ok(());
         }
@@ -89,13 +89,13 @@ fn start_recovery() -> Result<Recovery, String> {
     Recovery::start(&folder.join("recovery")).map_err(|error| error.to_string())
 }
 
-fn open_window(shared: &Shared) -> Result<Ending, AppError> {
+fn open_window(shared: &Shared, adapter: &AdapterChoice) -> Result<Ending, AppError> {
     let for_window = shared.clone();
     // Painting on a lost device panics in places. The editor is not part of what is torn then.
     let result = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
             "isolith",
-            options(),
+            options(adapter),
             Box::new(move |context| Ok(Box::new(Window::new(context, for_window)?))),
         )
     }));
@@ -109,9 +109,10 @@ fn open_window(shared: &Shared) -> Result<Ending, AppError> {
     }
 }
 
-fn options() -> eframe::NativeOptions {
+fn options(adapter: &AdapterChoice) -> eframe::NativeOptions {
     let mut setup = eframe::egui_wgpu::WgpuSetupCreateNew::without_display_handle();
     setup.instance_descriptor = crate::render::instance_descriptor();
+    setup.native_adapter_selector = Some(Arc::new(adapter.selector()));
     setup.device_descriptor = Arc::new(crate::render::device_descriptor);
     eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()

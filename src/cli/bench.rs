@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use image::{ImageFormat, RgbImage};
 
+use super::adapters::AdapterArguments;
 use super::failure::Failure;
 use super::outputs::write_bytes;
 use super::progress::{Interrupts, Progress};
@@ -56,6 +57,8 @@ pub struct BenchArguments {
     /// Print one JSON object a line instead of the tables
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    adapter: AdapterArguments,
 }
 
 /// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
@@ -63,7 +66,7 @@ pub struct BenchArguments {
 pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     arguments.output.as_deref().map_or(Ok(()), create_folder)?;
     if arguments.stress {
-        return stress(arguments.output.as_deref());
+        return stress(arguments);
     }
     let ways: Vec<Way> = parsed(&arguments.methods, |name| name.parse())?;
     let qualities: Vec<Quality> = parsed(&arguments.qualities, |name| {
@@ -74,7 +77,7 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     if arguments.output.is_some() {
         one_chart_each(&subjects)?;
     }
-    let gpu = Gpu::headless()?;
+    let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let bench = Bench::new(gpu);
     let mut truths = Truths::default();
@@ -120,8 +123,8 @@ const PRINTED: usize = 40;
 
 /// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
 /// the ten worst subjects.
-fn stress(output: Option<&Path>) -> Result<(), Failure> {
-    let gpu = Gpu::headless()?;
+fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
+    let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let mut renderer = Renderer::new(&gpu)?;
     renderer.pruner().prune_all();
@@ -148,7 +151,7 @@ fn stress(output: Option<&Path>) -> Result<(), Failure> {
     worst_first(&mut figures);
     say(&stress_table(&figures, PRINTED))?;
     say(&format!("{unseen} cases show no surface, {left_out} were left out."))?;
-    let Some(folder) = output else { return Ok(()) };
+    let Some(folder) = arguments.output.as_deref() else { return Ok(()) };
     write_text(folder, "stress.md", &stress_table(&figures, figures.len()))?;
     write_picture(folder, "stress.png", &stress_sheet(&first_of_each(&figures), SHOWN))
 }

@@ -1,51 +1,80 @@
-//! `isolith check`: what a scene holds, how much of each limit it uses, what is wrong with it.
+//! `isolith check`: what scenes hold, how much of each limit they use, what is wrong with them.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::failure::Failure;
-use super::say;
-use crate::flat::{self, FlatScene, MAX_COMPONENT_NODES, MAX_FLAT_NODES, MAX_STACK, flatten};
+use super::input::{folder, read_scene, shown};
+use super::{complain, say};
+use crate::flat::{self, FlatScene, MAX_COMPONENT_NODES, MAX_FLAT_NODES, MAX_FLAT_ROWS, MAX_STACK, flatten};
 use crate::mesh::MeshLibrary;
+use crate::scene::Scene;
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
-use crate::scene::{Scene, file};
 
 /// Arguments of `isolith check`.
 #[derive(Debug, clap::Args)]
 pub struct CheckArguments {
-    /// Scene file
-    scene: PathBuf,
-    /// Print one JSON object: {nodes, components, tree_depth, warnings}, or {file, node, field, reason}
-    /// when the scene cannot be used
+    /// Scene files; - reads standard input
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Print one JSON object a scene and line: {ok, file, nodes, components, tree_depth, cameras, limits, warnings}, or
+    /// {ok, file, node, field, reason} for a scene that cannot be used
     #[arg(long)]
     json: bool,
+    /// Make warnings errors, such as a model that is missing
+    #[arg(long)]
+    strict: bool,
 }
 
-/// Prints what the scene holds. With `--json`, a scene that cannot be used is reported on standard output
-/// too, as one object.
+/// Prints what each scene holds. With `--json`, a scene that cannot be used is reported on standard output too, as one
+/// object. All scenes are looked at; the first failure decides the exit code.
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
-    match read(&arguments.scene) {
-        Ok(report) if arguments.json => say(&report.to_json().to_string()),
-        Ok(report) => say(&report.to_text(&arguments.scene)),
-        Err(failure) => {
-            if let (true, Failure::Scene(error)) = (arguments.json, &failure) {
-                say(&serde_json::to_string(error).expect("four strings can always be written"))?;
+    let mut failures = Vec::new();
+    for path in &arguments.scenes {
+        let looked_at = read(path).and_then(|report| {
+            let is_fine = report.warnings.is_empty() || !arguments.strict;
+            match arguments.json {
+                true => say(&report.to_json(&shown(path), is_fine).to_string())?,
+                false => say(&report.to_text(&shown(path)))?,
             }
-            Err(failure)
+            let count = report.warnings.len();
+            if is_fine { Ok(()) } else { Err(Failure::Strict { file: shown(path), count }) }
+        });
+        match looked_at {
+            Ok(()) => {}
+            Err(failure @ Failure::Scene(_)) => {
+                if arguments.json {
+                    say(&failure.to_json(path).to_string())?;
+                }
+                failures.push(failure);
+            }
+            Err(failure @ Failure::Strict { .. }) => failures.push(failure),
+            Err(failure) => return Err(failure),
         }
     }
+    let (bad, all) = (failures.len(), arguments.scenes.len());
+    if bad <= 1 && all == 1 {
+        return failures.pop().map_or(Ok(()), Err);
+    }
+    failures.iter().for_each(|failure| complain(&format!("error: {failure}")));
+    if bad == 0 { Ok(()) } else { Err(Failure::Several { bad, all }) }
 }
 
 struct Report {
     nodes: usize,
     tree_depth: usize,
-    materials: usize,
     components: usize,
-    entries: usize,
-    largest_component: usize,
-    stack: u32,
+    limits: Vec<LimitUse>,
+    cameras: Vec<String>,
     warnings: Vec<Warning>,
+}
+
+/// How much of a limit the scene uses.
+struct LimitUse {
+    name: &'static str,
+    used: usize,
+    limit: usize,
 }
 
 struct Warning {
@@ -60,10 +89,10 @@ impl From<flat::Warning> for Warning {
 }
 
 fn read(path: &Path) -> Result<Report, Failure> {
-    let scene = file::load(path).map_err(Failure::Scene)?;
-    let flat = flatten(&scene, 0.0).map_err(|error| Failure::beyond_limit(path, &error))?;
+    let scene = read_scene(path)?;
+    let flat = flatten(&scene, 0.0).map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
     let mut report = Report::new(&scene, &flat);
-    let mut library = MeshLibrary::new(path.parent().map(Path::to_path_buf));
+    let mut library = MeshLibrary::new(folder(path));
     let (_, missing) = flat.load_meshes(&mut library);
     report.warnings.extend(missing.into_iter().map(Warning::from));
     Ok(report)
@@ -71,49 +100,60 @@ fn read(path: &Path) -> Result<Report, Failure> {
 
 impl Report {
     fn new(scene: &Scene, flat: &FlatScene) -> Self {
-        let counts = flat.components.iter().map(|component| component.count as usize);
+        let largest = |of: fn(&flat::Component) -> u32| flat.components.iter().map(of).max().unwrap_or(0) as usize;
+        let tree_depth = scene.depths().iter().max().map_or(0, |depth| *depth as usize + 1);
+        let limits = [
+            ("nodes", scene.nodes().len(), MAX_NODES),
+            ("depth of the tree", tree_depth, MAX_DEPTH),
+            ("materials", scene.materials().len(), MAX_MATERIALS),
+            ("entries when flat", flat.nodes.len(), MAX_FLAT_NODES),
+            ("rows of numbers", flat.numbers.len(), MAX_FLAT_ROWS),
+            ("largest component", largest(|component| component.count), MAX_COMPONENT_NODES),
+            ("stack", largest(|component| component.stack), MAX_STACK as usize),
+        ];
         Self {
             nodes: scene.nodes().len(),
-            tree_depth: scene.depths().iter().max().map_or(0, |depth| *depth as usize + 1),
-            materials: scene.materials().len(),
+            tree_depth,
             components: flat.components.len(),
-            entries: flat.nodes.len(),
-            largest_component: counts.max().unwrap_or(0),
-            stack: flat.components.iter().map(|component| component.stack).max().unwrap_or(0),
+            limits: limits.map(|(name, used, limit)| LimitUse { name, used, limit }).into(),
+            cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
             warnings: flat.warnings.iter().cloned().map(Warning::from).collect(),
         }
     }
 
-    fn to_json(&self) -> Value {
+    fn to_json(&self, path: &Path, is_fine: bool) -> Value {
         let warnings: Vec<Value> =
             self.warnings.iter().map(|w| json!({ "node": w.node, "reason": w.reason })).collect();
+        let limits: Vec<Value> =
+            self.limits.iter().map(|l| json!({ "name": l.name, "used": l.used, "limit": l.limit })).collect();
         json!({
+            "ok": is_fine,
+            "file": path.display().to_string(),
             "nodes": self.nodes,
             "components": self.components,
             "tree_depth": self.tree_depth,
+            "cameras": self.cameras,
+            "limits": limits,
             "warnings": warnings,
         })
     }
 
     fn to_text(&self, path: &Path) -> String {
-        let rows = [
-            ("nodes", self.nodes, Some(MAX_NODES)),
-            ("depth of the tree", self.tree_depth, Some(MAX_DEPTH)),
-            ("materials", self.materials, Some(MAX_MATERIALS)),
-            ("components", self.components, None),
-            ("entries when flat", self.entries, Some(MAX_FLAT_NODES)),
-            ("largest component", self.largest_component, Some(MAX_COMPONENT_NODES)),
-            ("stack", self.stack as usize, Some(MAX_STACK as usize)),
-            ("warnings", self.warnings.len(), None),
-        ];
         let mut text = path.display().to_string();
-        for (name, value, limit) in rows {
-            let of = limit.map_or(String::new(), |limit| format!(" of {limit}"));
-            text += &format!("\n  {name:<18} {value:>6}{of}");
+        for LimitUse { name, used, limit } in &self.limits {
+            text += &format!("\n  {name:<18} {used:>6} of {limit}");
         }
+        text += &format!("\n  {:<18} {:>6}", "components", self.components);
+        text += &format!("\n  {:<18} {:>6}", "cameras", self.cameras.len());
+        text += &format!("\n  {:<18} {:>6}", "warnings", self.warnings.len());
         for warning in &self.warnings {
-            text += &format!("\nwarning: {}: {}", warning.node, warning.reason);
+            text += &format!("\nwarning: {}: {}", one_line(&warning.node), one_line(&warning.reason));
         }
         text
     }
+}
+
+/// Text from a file as part of a line.
+fn one_line(text: &str) -> String {
+    text.replace('\n', " ")
 }

@@ -31,6 +31,22 @@ pub enum Failure {
     /// The person said stop.
     #[error("cancelled")]
     Cancelled,
+    /// There are warnings, and they were to be errors.
+    #[error("{}: {count} warnings, which --strict makes errors", file.display())]
+    Strict {
+        /// The scene.
+        file: PathBuf,
+        /// How many.
+        count: usize,
+    },
+    /// Several files were looked at, and some cannot be used; each was told of.
+    #[error("{bad} of {all} scenes cannot be used")]
+    Several {
+        /// How many cannot be used.
+        bad: usize,
+        /// Of how many.
+        all: usize,
+    },
     /// Anything else.
     #[error("{0}")]
     Other(String),
@@ -47,12 +63,22 @@ impl Failure {
         })
     }
 
+    /// The failure as one JSON object: `ok`, `file`, `node`, `field`, `reason`.
+    pub fn to_json(&self, file: &Path) -> serde_json::Value {
+        let (file, node, field, reason) = match self {
+            Self::Scene(error) => (error.file.clone(), error.node.clone(), error.field.clone(), error.reason.clone()),
+            Self::Write { path, reason } => (path.display().to_string(), None, None, reason.clone()),
+            other => (file.display().to_string(), None, None, other.to_string()),
+        };
+        serde_json::json!({ "ok": false, "file": file, "node": node, "field": field, "reason": reason })
+    }
+
     /// The program's exit code; `--help` and the README list them.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Other(_) => 1,
             Self::Usage(_) => 2,
-            Self::Scene(_) => 3,
+            Self::Scene(_) | Self::Strict { .. } | Self::Several { .. } => 3,
             Self::Graphics(_) => 4,
             Self::Write { .. } => 5,
             Self::Cancelled => 130,
@@ -63,8 +89,9 @@ impl Failure {
 impl From<GpuError> for Failure {
     fn from(error: GpuError) -> Self {
         match error {
-            GpuError::NoAdapter(_) | GpuError::NoDevice { .. } => Self::Graphics(error.to_string()),
-            GpuError::Lost(_) => Self::Other(error.to_string()),
+            GpuError::NoAdapter | GpuError::NoDevice { .. } => Self::Graphics(error.to_string()),
+            GpuError::NoSuchAdapter { .. } => Self::Usage(error.to_string()),
+            GpuError::Lost(_) | GpuError::Refused(_) => Self::Other(error.to_string()),
         }
     }
 }

@@ -7,17 +7,26 @@
 //! | `bench` | `isolith bench`: run time against error |
 //! | `check` | `isolith check`: what a scene holds, what is wrong with it |
 //! | `progress` | the bar, and Ctrl-C |
+//! | `adapters` | `isolith adapters`, and the option that chooses one |
+//! | `input` | scene files, standard input |
+//! | `text` | what is printed |
+//! | `exr_ids` | ids as OpenEXR channels |
+//! | `runtime_folder` | the folder that drivers ask for |
 //! | `failure` | what can go wrong, with its exit code |
 
+mod adapters;
 mod bench;
 mod check;
+mod exr_ids;
 mod failure;
+mod input;
 mod outputs;
 mod progress;
 mod render;
+mod runtime_folder;
+mod text;
 
 use std::ffi::OsString;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -30,13 +39,14 @@ use crate::render::Gpu;
 use crate::render::driver::loop_iterations;
 use crate::scene::file;
 use failure::Failure;
+use text::{complain, say};
 
 /// What `--help` says about exit codes; the README has the same table.
 const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something else went wrong while rendering
   2    the command was not understood
-  3    the scene file is missing, broken or beyond a limit
+  3    the scene file is missing, broken or beyond a limit, or has warnings under --strict
   4    no graphics: no Vulkan, Metal or DirectX driver answers, or no display
   5    an output cannot be written
   130  cancelled with Ctrl-C";
@@ -47,6 +57,8 @@ const EXIT_CODES: &str = "Exit codes:
 struct Arguments {
     /// Scene to open in the editor; without a display it is rendered to NAME.png in this folder
     scene: Option<PathBuf>,
+    #[command(flatten)]
+    adapter: adapters::AdapterArguments,
     #[command(subcommand)]
     command: Option<Command>,
 }
@@ -56,7 +68,7 @@ enum Command {
     /// Render a scene to a picture, without a window
     #[command(after_help = EXIT_CODES)]
     Render(render::RenderArguments),
-    /// Say what a scene file holds and what is wrong with it
+    /// Say what scene files hold and what is wrong with them
     #[command(after_help = EXIT_CODES)]
     Check(check::CheckArguments),
     /// Measure how long scenes take and how exact they are, by every method
@@ -64,6 +76,8 @@ enum Command {
     Bench(bench::BenchArguments),
     /// Print the JSON schema of scene files
     Schema,
+    /// List the graphics adapters
+    Adapters(adapters::AdaptersArguments),
     /// Write the example scenes into a folder
     #[command(hide = true)]
     Gallery {
@@ -72,11 +86,12 @@ enum Command {
     },
     /// Say which graphics driver answers
     #[command(hide = true)]
-    Probe,
+    Probe(adapters::AdapterArguments),
 }
 
 /// Runs the program with the arguments that it was started with.
 pub fn main() -> ExitCode {
+    runtime_folder::provide();
     let arguments = Arguments::parse();
     if let Some(folder) = state_folder() {
         file::keep_records_in(&folder.join("temporaries"));
@@ -93,24 +108,26 @@ pub fn main() -> ExitCode {
 
 fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.command {
-        None => open(arguments.scene.as_deref()),
+        None => open(arguments.scene.as_deref(), &arguments.adapter),
         Some(Command::Render(arguments)) => render::render(&arguments),
         Some(Command::Check(arguments)) => check::check(&arguments),
         Some(Command::Bench(arguments)) => bench::bench(&arguments),
         Some(Command::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
         Some(Command::Gallery { folder }) => write_gallery(&folder),
-        Some(Command::Probe) => probe(),
+        Some(Command::Adapters(arguments)) => adapters::list(&arguments),
+        Some(Command::Probe(adapter)) => probe(&adapter),
     }
 }
 
 /// Opens the editor; where no window can be shown, renders the scene to a file instead.
-fn open(scene: Option<&Path>) -> Result<(), Failure> {
+fn open(scene: Option<&Path>, adapter: &adapters::AdapterArguments) -> Result<(), Failure> {
+    scene.map_or(Ok(()), input::refuse_unknown_word)?;
     if has_display(|name| std::env::var_os(name)) {
         let document = match scene {
             Some(path) => Document::open(path).map_err(Failure::Scene)?,
             None => new_document(),
         };
-        return app::run(document, complain).map_err(|e| Failure::Graphics(e.to_string()));
+        return app::run(document, &adapter.choice(), complain).map_err(|e| Failure::Graphics(e.to_string()));
     }
     let Some(scene) = scene else {
         return Err(Failure::Graphics("no display is set; give a scene and it is rendered to a picture".into()));
@@ -118,7 +135,7 @@ fn open(scene: Option<&Path>) -> Result<(), Failure> {
     let stem = scene.file_stem().unwrap_or(scene.as_os_str());
     let output = PathBuf::from(stem).with_extension("png");
     say(&format!("There is no display: rendering {} to {}.", scene.display(), output.display()))?;
-    render::render(&render::RenderArguments::still(scene, &output))
+    render::render(&render::RenderArguments::still(scene, &output, adapter))
 }
 
 /// Whether a window can be shown. Only X11 and Wayland say it through the environment; elsewhere there is
@@ -137,27 +154,11 @@ fn write_gallery(folder: &Path) -> Result<(), Failure> {
 }
 
 /// Prints the driver's name, and how far its loops go.
-fn probe() -> Result<(), Failure> {
-    let gpu = Gpu::headless()?;
+fn probe(adapter: &adapters::AdapterArguments) -> Result<(), Failure> {
+    let gpu = Gpu::open(&adapter.choice())?;
     let iterations = loop_iterations(&gpu)?;
     let info = &gpu.info;
     say(&format!("{} ({}, {} {}), loops of {iterations}", info.name, info.backend, info.driver, info.driver_info))
-}
-
-/// One line on standard output. A reader that went away is no failure.
-fn say(line: &str) -> Result<(), Failure> {
-    match writeln!(std::io::stdout(), "{line}") {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::Write { path: "standard output".into(), reason: error.to_string() })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// One line on standard error.
-fn complain(line: &str) {
-    // Nothing is left to do if even this cannot be written.
-    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 #[cfg(test)]

@@ -1,11 +1,13 @@
 //! Buffers → files, by the writer that scenes are saved with: no reader ever sees half of one.
 
-use std::io::Cursor;
+use std::io::{Cursor, Write};
 use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
+use super::exr_ids;
 use super::failure::Failure;
+use super::input::is_standard;
 use crate::flat::{Buffers, FlatScene, Hitee};
 use crate::scene::file;
 
@@ -22,25 +24,50 @@ pub enum Quantity {
     NodeId,
 }
 
-/// Writes one quantity of the buffers, as the path's ending asks. Returns what a person needs to know to
-/// read it, to be put behind the file's name.
+impl Quantity {
+    /// Its name in JSON, as the option that asks for it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Color => "output",
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::NodeId => "node-id",
+        }
+    }
+}
+
+/// Writes one quantity of the buffers, as the path's ending asks; `-` is standard output and gets a PNG. Returns what a
+/// person needs to know to read it, to be put behind the file's name.
 pub fn write(quantity: Quantity, path: &Path, buffers: &Buffers, flat: &FlatScene) -> Result<String, Failure> {
-    let (image, note) = match (quantity, ending(path) == "exr") {
+    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
+    let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat).map_err(failed)?;
+    if is_standard(path) {
+        let mut out = std::io::stdout().lock();
+        out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| failed(error.to_string()))?;
+    } else {
+        write_bytes(path, &bytes)?;
+    }
+    Ok(note)
+}
+
+fn encode(quantity: Quantity, as_exr: bool, buffers: &Buffers, flat: &FlatScene) -> Result<(Vec<u8>, String), String> {
+    let (image, note) = match (quantity, as_exr) {
         (Quantity::Color, _) => (color(buffers), String::new()),
         (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (metres)".into()),
         (Quantity::Depth, false) => depth_picture(buffers),
         (Quantity::Normal, true) => (raw(buffers, |i| buffers.normal[i]), " (X, Y, Z)".into()),
         (Quantity::Normal, false) => (normal_picture(buffers), String::new()),
-        // A 32-bit float holds every whole number up to 2^24.
-        (Quantity::NodeId, true) => (raw(buffers, |i| [node_id(buffers, flat, i) as f32; 3]), " (ids)".into()),
+        (Quantity::NodeId, true) => {
+            let ids: Vec<u64> = (0..buffers.depth.len()).map(|i| node_id(buffers, flat, i)).collect();
+            let bytes = exr_ids::encode(buffers.width, buffers.height, &ids).map_err(|error| error.to_string())?;
+            return Ok((bytes, " (ids, whole numbers)".into()));
+        }
         (Quantity::NodeId, false) => (node_id_picture(buffers, flat), String::new()),
     };
-    let format = if ending(path) == "exr" { ImageFormat::OpenExr } else { ImageFormat::Png };
+    let format = if as_exr { ImageFormat::OpenExr } else { ImageFormat::Png };
     let mut bytes = Cursor::new(Vec::new());
-    let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
-    image.write_to(&mut bytes, format).map_err(|error| failed(error.to_string()))?;
-    write_bytes(path, bytes.get_ref())?;
-    Ok(note)
+    image.write_to(&mut bytes, format).map_err(|error| error.to_string())?;
+    Ok((bytes.into_inner(), note))
 }
 
 /// The path's ending in small letters.
@@ -57,12 +84,13 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// Refuses early what could not be written after minutes of rendering, and what would replace another output or one of
 /// the inputs: through a link, a name that ends in `.png` can lead to the scene.
 pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
+    let outputs: Vec<&Path> = outputs.iter().copied().filter(|path| !is_standard(path)).collect();
     for (index, path) in outputs.iter().enumerate() {
         let refuse = |reason: String| Err(Failure::Write { path: path.to_path_buf(), reason });
         if let Some(other) = outputs[..index].iter().find(|other| file::is_same_place(other, path)) {
             return refuse(format!("it is the same file as {}, another output", other.display()));
         }
-        if let Some(input) = inputs.iter().find(|input| file::is_same_place(input, path)) {
+        if let Some(input) = inputs.iter().find(|input| !is_standard(input) && file::is_same_place(input, path)) {
             return refuse(format!("it is the same file as {}, which is read", input.display()));
         }
         if let Err(error) = file::check_writable(path) {

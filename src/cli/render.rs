@@ -5,7 +5,11 @@ use std::str::FromStr;
 use std::sync::Mutex;
 use std::time::Instant;
 
+use serde_json::{Value, json};
+
+use super::adapters::AdapterArguments;
 use super::failure::Failure;
+use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
@@ -17,7 +21,6 @@ use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
 use crate::render::{Gpu, Method, Renderer};
-use crate::scene::file;
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -27,9 +30,9 @@ const MAX_PIXELS: u64 = 1 << 27;
 /// Arguments of `isolith render`.
 #[derive(Clone, Debug, clap::Args)]
 pub struct RenderArguments {
-    /// Scene file
+    /// Scene file; - reads standard input
     scene: PathBuf,
-    /// Picture to write, a .png
+    /// Picture to write, a .png; - writes it to standard output
     #[arg(short, long, value_name = "FILE", value_parser = png_path)]
     output: PathBuf,
     /// Width and height in pixels
@@ -58,14 +61,23 @@ pub struct RenderArguments {
     /// Render the truth: on the processor, in double precision, every ray to certainty. Slow
     #[arg(long)]
     truth: bool,
+    /// Make warnings errors, such as a model that is missing; then nothing is written
+    #[arg(long)]
+    strict: bool,
+    /// Print one JSON object: {ok, file, outputs, width, height, components, seconds, warnings}, or {ok, file, node,
+    /// field, reason} where there is no picture
+    #[arg(long)]
+    json: bool,
     /// Print nothing but errors
     #[arg(long)]
     quiet: bool,
+    #[command(flatten)]
+    adapter: AdapterArguments,
 }
 
 impl RenderArguments {
     /// One picture of a scene with everything else as by default.
-    pub fn still(scene: &Path, output: &Path) -> Self {
+    pub fn still(scene: &Path, output: &Path, adapter: &AdapterArguments) -> Self {
         Self {
             scene: scene.to_path_buf(),
             output: output.to_path_buf(),
@@ -77,14 +89,33 @@ impl RenderArguments {
             node_id: None,
             view: Look::Shaded,
             truth: false,
+            strict: false,
+            json: false,
             quiet: false,
+            adapter: adapter.clone(),
         }
     }
 
-    /// Prints what the artist should know; the picture is made all the same.
-    fn warn<'a>(&self, warnings: impl IntoIterator<Item = &'a Warning>) {
-        for Warning { node, name, reason } in warnings.into_iter().filter(|_| !self.quiet) {
-            complain(&format!("warning: {}: {name} {node}: {reason}", self.scene.display()));
+    /// Prints what the artist should know; the picture is made all the same, unless warnings are errors.
+    fn warn(&self, warnings: &[Warning]) -> Result<(), Failure> {
+        for Warning { node, name, reason } in warnings.iter().filter(|_| !self.quiet && !self.json) {
+            complain(&format!("warning: {}: {name} {node}: {reason}", shown(&self.scene).display()));
+        }
+        match warnings.len() {
+            count if count > 0 && self.strict => Err(Failure::Strict { file: shown(&self.scene), count }),
+            _ => Ok(()),
+        }
+    }
+
+    /// One line about what was done, where standard output does not hold the picture or an object.
+    fn tell(&self, line: &str) -> Result<(), Failure> {
+        match self.quiet || self.json {
+            true => Ok(()),
+            false if is_standard(&self.output) => {
+                complain(line);
+                Ok(())
+            }
+            false => say(line),
         }
     }
 
@@ -100,37 +131,64 @@ impl RenderArguments {
     }
 }
 
-/// Renders and writes every output. Nothing is written unless the whole picture is there.
+/// Renders and writes every output. Nothing is written unless the whole picture is there. With `--json` a failure is one
+/// object on standard output, too.
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
+    let done = make(arguments);
+    if arguments.json {
+        let object = done.as_ref().map_or_else(|failure| failure.to_json(&shown(&arguments.scene)), Value::clone);
+        say(&object.to_string())?;
+    }
+    done.map(|_| ())
+}
+
+/// What was done, as one object.
+fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     let started = Instant::now();
+    if arguments.json && is_standard(&arguments.output) {
+        return Err(Failure::Usage("standard output can hold the picture or the JSON object, not both".into()));
+    }
     let paths: Vec<_> = arguments.outputs().into_iter().map(|(_, path)| path).collect();
     outputs::check_writable(&paths, &[&arguments.scene])?;
-    let scene = file::load(&arguments.scene).map_err(Failure::Scene)?;
-    let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?;
-    let mut library = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));
+    let scene = read_scene(&arguments.scene)?;
+    let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?;
+    let mut library = MeshLibrary::new(folder(&arguments.scene));
     let (meshes, missing) = flat.load_meshes(&mut library);
-    arguments.warn(flat.warnings.iter().chain(&missing));
+    let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
+    arguments.warn(&warnings)?;
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.truth {
         truth_picture(arguments, &flat, &meshes, &camera)?
     } else {
-        gpu_picture(arguments, &flat, &meshes, &camera)?
+        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera)?;
+        arguments.warn(&unfinished)?;
+        warnings.extend(unfinished);
+        buffers
     };
+    let mut written = Vec::new();
     for (quantity, path) in arguments.outputs() {
         let mut note = outputs::write(quantity, path, &buffers, &flat)?;
         if quantity == Quantity::Color {
             note += &arguments.view.note(&Span::of(&flat.content(&meshes), camera.position));
         }
-        if !arguments.quiet {
-            say(&format!("wrote {}{note}", path.display()))?;
-        }
+        arguments.tell(&format!("wrote {}{note}", path.display()))?;
+        let file = path.display().to_string();
+        written.push(json!({ "quantity": quantity.name(), "file": file, "note": note.trim() }));
     }
-    if !arguments.quiet {
-        let [width, height] = arguments.size;
-        let seconds = started.elapsed().as_secs_f64();
-        say(&format!("{width}x{height} pixels, {} components, {seconds:.1} s", flat.components.len()))?;
-    }
-    Ok(())
+    let [width, height] = arguments.size;
+    let (components, seconds) = (flat.components.len(), started.elapsed().as_secs_f64());
+    arguments.tell(&format!("{width}x{height} pixels, {components} components, {seconds:.1} s"))?;
+    let told = warnings.iter().map(|w| json!({ "node": format!("{} {}", w.name, w.node), "reason": w.reason }));
+    Ok(json!({
+        "ok": true,
+        "file": shown(&arguments.scene).display().to_string(),
+        "outputs": written,
+        "width": width,
+        "height": height,
+        "components": components,
+        "seconds": seconds,
+        "warnings": told.collect::<Vec<_>>(),
+    }))
 }
 
 /// The scene's camera of this name, or the view that the scene has by itself.
@@ -150,8 +208,8 @@ fn gpu_picture(
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
-) -> Result<Buffers, Failure> {
-    let gpu = Gpu::headless()?;
+) -> Result<(Buffers, Vec<Warning>), Failure> {
+    let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let look = arguments.view;
     let mut renderer = if look.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
@@ -164,9 +222,7 @@ fn gpu_picture(
     let mut update = |share| progress.update(f64::from(share));
     let result = renderer.render_as(look, flat, meshes, camera, arguments.size, &mut update);
     progress.finish();
-    let (buffers, unfinished) = result?;
-    arguments.warn(&unfinished);
-    Ok(buffers)
+    Ok(result?)
 }
 
 fn truth_picture(
@@ -204,7 +260,8 @@ fn parse_time(text: &str) -> Result<f64, String> {
 fn png_path(text: &str) -> Result<PathBuf, String> {
     match outputs::ending(Path::new(text)).as_str() {
         "png" => Ok(text.into()),
-        _ => Err("the picture's name must end in .png".into()),
+        _ if is_standard(Path::new(text)) => Ok(text.into()),
+        _ => Err("the picture's name must end in .png, or be - for standard output".into()),
     }
 }
 

@@ -93,11 +93,13 @@ pub enum Join {
     Morph,
     /// Only its material.
     Paint,
+    /// What is in the operand and not in what stands so far: a difference whose operands are exchanged, see `stack`.
+    Remainder,
 }
 
 impl Join {
     /// Every join, by its number.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::First,
         Self::Union,
         Self::Intersection,
@@ -109,6 +111,7 @@ impl Join {
         Self::Engrave,
         Self::Morph,
         Self::Paint,
+        Self::Remainder,
     ];
 
     /// How the later children of a group join.

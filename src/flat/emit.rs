@@ -5,6 +5,7 @@ use glam::{DAffine3, DVec3};
 use super::arrays::*;
 use super::enclosure::{Enclosure, fold_bounds};
 use super::operands::{Operand, Value};
+use super::stack::shallow;
 use crate::geometry::Aabb;
 use crate::scene::{BlendKernel, MaterialId, ShapeKind};
 
@@ -15,6 +16,8 @@ pub(super) fn emit(
     material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
 ) -> Component {
     let bounds = fold_bounds(operands).bounds;
+    let shallow = shallow(operands);
+    let operands = shallow.as_deref().unwrap_or(operands);
     let origin = origin_of(&bounds, operands);
     let first = flat.nodes.len();
     let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);

@@ -52,6 +52,10 @@ pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> Enclosure {
                 growth = 0.0;
                 all.bounds = if all.slope > 0.0 { all.bounds.union(&all.skip) } else { Aabb::EVERYTHING };
             }
+            Join::Remainder => {
+                all = Enclosure { bounds: operand.bounds, skip: operand.skip, slope: operand.slope };
+                growth = 0.0;
+            }
             Join::First | Join::Difference | Join::Groove | Join::Engrave | Join::Paint => {}
         }
     }

@@ -39,6 +39,7 @@ pub mod pick;
 mod prune;
 mod reflatten;
 pub mod shade;
+mod stack;
 pub mod trace;
 pub mod truth;
 pub mod twin;

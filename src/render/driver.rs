@@ -15,7 +15,7 @@ const TRIED: u32 = 100_000;
 pub fn loop_iterations(gpu: &Gpu) -> Result<u32, GpuError> {
     let device = &gpu.device;
     let group_layout = layout(device, "driver", &[entry(0, wgpu::ShaderStages::COMPUTE, write_storage())]);
-    let text = plain_source("driver.wgsl").map_err(|e| GpuError::Lost(e.to_string()))?;
+    let text = plain_source("driver.wgsl").map_err(|e| GpuError::Refused(e.to_string()))?;
     let pipeline = compute_pipeline(device, "driver", text, "driver_count_iterations", &[&group_layout]);
     let mut counted = Mirror::read_back(device, "counted");
     counted.set(device, &gpu.queue, bytemuck::cast_slice(&[0, TRIED, 0, 0]));

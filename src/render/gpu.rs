@@ -5,15 +5,25 @@ use std::sync::{Arc, Mutex};
 
 use thiserror::Error;
 
+use super::adapter::{self, AdapterChoice};
+
 /// Why there is no device, or no more.
 #[derive(Clone, Debug, Error)]
 pub enum GpuError {
     /// No driver answers.
     #[error(
-        "no graphics driver answers ({0}). On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` installs one \
-         that needs no graphics card"
+        "no graphics driver answers. On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` installs one that \
+         needs no graphics card"
     )]
-    NoAdapter(String),
+    NoAdapter,
+    /// No adapter has the name that was asked for.
+    #[error("no graphics adapter is called \"{wanted}\"; there is {found}")]
+    NoSuchAdapter {
+        /// What was asked for.
+        wanted: String,
+        /// What there is.
+        found: String,
+    },
     /// The driver refuses a device.
     #[error("the graphics driver {adapter} gives no device: {reason}")]
     NoDevice {
@@ -25,6 +35,9 @@ pub enum GpuError {
     /// The device is gone.
     #[error("the graphics device was lost: {0}")]
     Lost(String),
+    /// The device works and refused something: a fault of the program, or too little memory.
+    #[error("the graphics driver refused a command: {0}")]
+    Refused(String),
 }
 
 /// A device and its queue, and what became of them.
@@ -46,21 +59,28 @@ struct Health {
 }
 
 impl Gpu {
-    /// A device without a window. `WGPU_BACKEND` and `WGPU_ADAPTER_NAME` choose among several.
+    /// A device without a window, on the adapter that the environment names or on the fastest.
     pub fn headless() -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(instance_descriptor());
-        let options = wgpu::RequestAdapterOptions {
-            power_preference: wgpu::PowerPreference::HighPerformance,
-            ..Default::default()
-        };
-        let adapter = match wgpu::util::initialize_adapter_from_env(&instance, None) {
-            found if std::env::var_os("WGPU_ADAPTER_NAME").is_some() => pollster::block_on(found),
-            _ => pollster::block_on(instance.request_adapter(&options)),
-        }
-        .map_err(|e| GpuError::NoAdapter(e.to_string()))?;
+        Self::open(&AdapterChoice::new(None))
+    }
+
+    /// A device without a window.
+    pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
+        let instance = adapter::instance();
+        Self::on(&choice.pick(&adapter::all(&instance), |_| true)?)
+    }
+
+    /// A second device on the same adapter.
+    pub fn another(&self) -> Result<Self, GpuError> {
+        let instance = adapter::instance();
+        let found = adapter::all(&instance).into_iter().find(|adapter| adapter.get_info() == self.info);
+        Self::on(&found.ok_or(GpuError::NoAdapter)?)
+    }
+
+    fn on(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
         let info = adapter.get_info();
-        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))
-            .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+        let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(adapter)))
+            .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: one_line(&e.to_string()) })?;
         Ok(Self::watch(device, queue, info))
     }
 
@@ -92,8 +112,13 @@ impl Gpu {
 
     /// An error if the device is gone or has complained since the last call.
     pub fn check(&self) -> Result<(), GpuError> {
+        let is_lost = self.is_lost();
         let messages = self.take_messages();
-        if self.is_lost() || !messages.is_empty() { Err(GpuError::Lost(messages.join("; "))) } else { Ok(()) }
+        match (is_lost, messages.is_empty()) {
+            (true, _) => Err(GpuError::Lost(messages.join("; "))),
+            (false, false) => Err(GpuError::Refused(messages.join("; "))),
+            (false, true) => Ok(()),
+        }
     }
 
     /// Waits until everything submitted so far is done.
@@ -110,6 +135,7 @@ impl Gpu {
 
 impl Health {
     fn say(&self, message: String) {
+        let message = one_line(&message);
         if let Ok(mut messages) = self.messages.lock() {
             // A broken device may complain without end.
             if messages.len() < 64 {
@@ -117,6 +143,11 @@ impl Health {
             }
         }
     }
+}
+
+/// A driver's message without its line breaks.
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// How an instance is made, with or without a window.
@@ -141,4 +172,30 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         ..wgpu::Limits::default()
     };
     wgpu::DeviceDescriptor { label: Some("isolith"), required_limits, ..Default::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the driver refuses says what it is, and the device goes on; only a device that is gone is lost.
+    #[test]
+    fn a_refused_command_is_not_a_lost_device() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        let usage = wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::STORAGE;
+        let _ = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: 16,
+            usage,
+            mapped_at_creation: false,
+        });
+        let error = gpu.check().expect_err("such a buffer is not allowed");
+        assert!(matches!(error, GpuError::Refused(_)), "{error}");
+        assert_eq!(error.to_string().lines().count(), 1);
+        assert!(gpu.check().is_ok(), "a complaint is made once");
+        gpu.another().unwrap_or_else(|error| panic!("{error}"));
+        gpu.device.destroy();
+        let error = gpu.wait().expect_err("the device is gone");
+        assert!(matches!(error, GpuError::Lost(_)), "{error}");
+    }
 }

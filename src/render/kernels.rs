@@ -332,7 +332,7 @@ impl Worker {
         let work = move || {
             // A driver that computes on the processor compiles at the first dispatch, in the queue's own
             // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
-            let warmer = if shared.gpu.is_software() { Warmer::new(shared.options).ok() } else { None };
+            let warmer = if shared.gpu.is_software() { Warmer::new(&shared.gpu, shared.options).ok() } else { None };
             for (key, evaluator) in ordered {
                 if should_end.load(Ordering::Relaxed) {
                     return;

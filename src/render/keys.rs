@@ -8,9 +8,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::kernel::{ShapeSet, Structure};
+use super::kernel::{Features, ShapeSet, Structure, lists_are_cheaper};
 use super::kernels::Method;
-use crate::flat::FlatScene;
+use crate::flat::{Component, FlatScene};
 
 /// What a component's kernel is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -47,7 +47,10 @@ impl Forms {
             Method::Generated => components.map(|c| Some(structure(Structure::baked_key(flat, c)))).collect(),
             Method::Specialised => components.map(|c| Structure::key(flat, c).map(structure)).collect(),
             Method::Auto => {
-                let keys: Vec<_> = components.map(|c| Structure::key(flat, c)).collect();
+                let kinds = Features::of(flat).shapes;
+                let is_straight = |c: &&Component| !lists_are_cheaper(flat, c, &kinds);
+                let keys: Vec<_> =
+                    components.map(|c| Some(c).filter(is_straight).and_then(|c| Structure::key(flat, c))).collect();
                 match entries(flat, &keys) {
                     0..=MANY_STRUCTURE_ENTRIES => keys.into_iter().map(|key| key.map(structure)).collect(),
                     entries => self.shared(flat, &keys, entries > MAX_STRUCTURE_ENTRIES),
@@ -58,7 +61,9 @@ impl Forms {
 
     /// The keys where the structures are many. Forms of many shapes are slow, and only for where they are too many.
     fn shared(&mut self, flat: &FlatScene, structures: &[Option<u128>], too_many: bool) -> Vec<Option<Key>> {
-        let forms: Vec<_> = flat.components.iter().map(|c| Structure::form_key(flat, c)).collect();
+        // What is drawn by lists has no key, and takes no part.
+        let form = |(c, key): (&Component, &Option<u128>)| key.and_then(|_| Structure::form_key(flat, c));
+        let forms: Vec<_> = flat.components.iter().zip(structures).map(form).collect();
         let mut of_form: HashMap<u128, HashSet<u128>> = HashMap::new();
         let mut met: HashMap<u128, ShapeSet> = HashMap::new();
         for ((form, shapes), structure) in forms.iter().zip(structures).filter_map(|(f, s)| Some(((*f)?, (*s)?))) {

@@ -11,6 +11,7 @@
 //! The frame, in order: mesh (clears, then triangles), farthest (only with meshes), cone and
 //! trace (each component, front to back), surface, shade, inspect (only where a look is asked for), overlay. See `schedule` for how it is cut into dispatches.
 
+mod adapter;
 mod buffers;
 pub mod driver;
 mod gpu;
@@ -29,6 +30,7 @@ mod targets;
 pub mod uniforms;
 mod warm;
 
+pub use adapter::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use kernels::{Kernels, Method};
 pub use pace::coarse_size;

@@ -86,9 +86,9 @@ fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     // Where several threads wait for one device, another of them may be about to call back.
     match receiver.recv_timeout(CALL_BACK) {
         Ok(Ok(())) => {}
-        _ => return Err(GpuError::Lost("a buffer could not be read back".into())),
+        _ => return Err(GpuError::Refused("a buffer could not be read back".into())),
     }
-    let mapped = slice.get_mapped_range().map_err(|e| GpuError::Lost(e.to_string()))?;
+    let mapped = slice.get_mapped_range().map_err(|e| GpuError::Refused(e.to_string()))?;
     Ok(mapped.to_vec())
 }
 

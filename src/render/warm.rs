@@ -22,9 +22,9 @@ pub struct Warmer {
 }
 
 impl Warmer {
-    /// Opens the device.
-    pub fn new(options: Options) -> Result<Self, GpuError> {
-        let gpu = Gpu::headless()?;
+    /// Opens a device on the adapter of `drawing`.
+    pub fn new(drawing: &Gpu, options: Options) -> Result<Self, GpuError> {
+        let gpu = drawing.another()?;
         let device = &gpu.device;
         let layouts = Layouts::new(device);
         let field = FieldLayouts::new(device);
@@ -107,7 +107,9 @@ mod tests {
     /// Nobody sees what a warmer's device complains about: kernels would only be compiled later, while a frame waits.
     #[test]
     fn what_is_dispatched_over_nothing_is_accepted() {
-        let warmer = Warmer::new(Options::default()).unwrap_or_else(|error| panic!("{error}"));
+        let warmer = Gpu::headless()
+            .and_then(|gpu| Warmer::new(&gpu, Options::default()))
+            .unwrap_or_else(|error| panic!("{error}"));
         let flat = crate::flat::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
         warmer.warm(&Evaluator::Interpreted(Features::of(&flat))).unwrap_or_else(|error| panic!("{error}"));
     }

@@ -115,7 +115,7 @@ fn fill_exact(entries: &Entries<'_>, range: Range<usize>, exact: f64, out: &mut 
 /// further operators.
 fn before_joint(node: &FlatNode, rows: &[Row]) -> f64 {
     match Join::ALL[node.join() as usize] {
-        Join::Union | Join::Intersection | Join::Difference => 2.0 * Joint::read(&rows[0]).support,
+        Join::Union | Join::Intersection | Join::Difference | Join::Remainder => 2.0 * Joint::read(&rows[0]).support,
         _ => f64::INFINITY,
     }
 }

@@ -83,6 +83,7 @@ impl Keep {
             Join::Engrave => [a + b.abs() - depth - 2.0 * support, f64::NEG_INFINITY],
             Join::Paint => [b - support, f64::NEG_INFINITY],
             Join::Pipe | Join::Morph => [f64::NEG_INFINITY; 2],
+            Join::Remainder => [-(a + b) - support, a + b - support],
         };
         match () {
             () if first >= reach => Self::First,
@@ -182,6 +183,10 @@ fn join_leaf(
     out: &mut Vec<Step>,
 ) -> Value {
     match Keep::of(token, entries, a, b, reach) {
+        Keep::First if token.join() == Join::Remainder as u32 => {
+            negate(token, start, out);
+            return Value { at: -a.at, ..a };
+        }
         Keep::First => return a,
         Keep::Second => {
             out.truncate(start);
@@ -202,7 +207,11 @@ fn join_group(token: Token, entries: &Entries<'_>, b: Value, frame: &Frame, reac
     match Keep::of(token, entries, frame.value, b, reach) {
         Keep::First => {
             out.truncate(frame.begin);
-            return frame.value;
+            if token.join() != Join::Remainder as u32 {
+                return frame.value;
+            }
+            negate(token, frame.start, out);
+            return Value { at: -frame.value.at, ..frame.value };
         }
         Keep::Second => {
             out.drain(frame.start..=frame.begin);

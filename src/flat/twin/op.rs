@@ -61,6 +61,10 @@ pub fn op_join<T: Real>(join: u32, a: T, b: T, joint: &Joint, kernel: u32) -> Jo
             Joined { value: a * (1.0 - share) + b * share, by_a: 1.0 - share, by_b: share, weight: share }
         }
         Join::Paint => Joined { value: a, by_a: 1.0, by_b: 0.0, weight: op_paint(b.value(), joint.support) },
+        Join::Remainder => {
+            let joined = op_difference(b, a, joint, kernel);
+            Joined { by_a: joined.by_b, by_b: joined.by_a, weight: 1.0 - joined.weight, ..joined }
+        }
     }
 }
 

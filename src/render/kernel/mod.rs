@@ -6,6 +6,7 @@
 mod ahead;
 mod dual;
 mod gradients;
+mod leaf_cost;
 mod modifiers;
 #[cfg(test)]
 mod random;
@@ -14,6 +15,7 @@ mod source;
 mod specialise;
 mod structure;
 
+pub use leaf_cost::lists_are_cheaper;
 pub use source::{FILES, Features, Further, ShaderError, fits_forms, plain_source, shape_loops, source};
 pub use structure::{MAX_KERNEL_ROWS, ShapeSet, Structure, form_rows};
 
