@@ -5,7 +5,7 @@
 #include "common/depth.wgsl"
 
 struct Instance {
-    // Rows of eye-relative world space from the mesh's space.
+    // Rows of world space, relative to the eye or to what `ahead` says, from the mesh's space.
     eye_from_local_x: vec4f,
     eye_from_local_y: vec4f,
     eye_from_local_z: vec4f,
@@ -20,7 +20,8 @@ struct Instance {
     overridden: u32,
     // 1: the placement turns left into right, and so the order of a triangle's corners.
     mirrored: u32,
-    padding: u32,
+    // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
+    ahead: f32,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
@@ -50,6 +51,10 @@ struct Written {
     @location(3) diffuse: vec4f,
 }
 
+// The near limit is a distance along the ray. Clipped is by the depth along the view axis, which is less, by no more than this
+// towards any corner of a picture: a power of two, so that it changes no bit of any depth.
+const NEAR_SHARE: f32 = 1.0 / 16777216.0;
+
 @vertex
 fn mesh_vertex(vertex: Vertex) -> Varying {
     let p = vec4f(vertex.position, 1.0);
@@ -64,10 +69,10 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     let clip = vec4f(
         dot(position, view.right) / dot(view.right, view.right),
         dot(position, view.up) / dot(view.up, view.up),
-        view.near * 0.5,
-        dot(position, view.forward),
+        view.near * NEAR_SHARE,
+        dot(position, view.forward) + instance.ahead,
     );
-    return Varying(clip, position, normal, vertex.color, vertex.uv);
+    return Varying(clip, position + view.forward * instance.ahead, normal, vertex.color, vertex.uv);
 }
 
 @fragment
