@@ -288,7 +288,7 @@ fn emit_operand(
         }
         Value::Fold(inner) => {
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
-                flat.numbers.extend(bounding_rows(joint, operand.slope, &operand.skip.translated(-origin)));
+            flat.numbers.extend(bounding_rows(joint, operand.slope, &operand.skip.translated(-origin)));
             let stack = emit_fold(flat, inner, origin, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1

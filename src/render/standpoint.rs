@@ -132,7 +132,11 @@ mod tests {
             let found = Standpoints::new(&flat, &camera, [1024, 1024]);
             assert!(matches!(found.numbers, Cow::Borrowed(_)), "{name}");
             for (component, at) in flat.components.iter().zip(&found.all) {
-                assert_eq!(*at, Standpoint { eye: camera.position - component.origin, ..Standpoint::default() }, "{name}");
+                assert_eq!(
+                    *at,
+                    Standpoint { eye: camera.position - component.origin, ..Standpoint::default() },
+                    "{name}"
+                );
             }
         }
     }
