@@ -37,7 +37,7 @@ struct Vertex {
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    // Relative to the eye.
+    // Relative to the point that `ahead` puts before the eye.
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec3f,
@@ -72,18 +72,29 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
         view.near * NEAR_SHARE,
         dot(position, view.forward) + instance.ahead,
     );
-    return Varying(clip, position + view.forward * instance.ahead, normal, vertex.color, vertex.uv);
+    return Varying(clip, position, normal, vertex.color, vertex.uv);
+}
+
+// How far from the eye a place on a triangle is. Far off, what it is more than the depth along the view axis is little, and
+// rounded for itself.
+fn mesh_distance(position: vec3f) -> f32 {
+    let beyond = dot(position, view.forward);
+    let aside = position - view.forward * beyond;
+    let depth = instance.ahead + beyond;
+    let more = dot(aside, aside) / (depth + length(vec2f(depth, length(aside))));
+    return select(length(position), depth + more, instance.ahead > 0.0);
 }
 
 @fragment
 fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     let texel = textureSample(base_color, base_sampler, in.uv).rgb;
-    let t = length(in.position);
+    let t = mesh_distance(in.position);
     if t < view.near || t > view.far {
         discard;
     }
     let length_of_normal = length(in.normal);
-    var normal = select(-in.position / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
+    let away = in.position + view.forward * instance.ahead;
+    var normal = select(-away / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
     // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
     // point away though the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));

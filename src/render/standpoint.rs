@@ -23,6 +23,9 @@ pub struct Standpoint {
 const ROUNDING: f64 = 0.5 * f32::EPSILON as f64;
 /// What rounding may move, in footprints of a pixel.
 const MOST_MOVED: f64 = 1.0 / 64.0;
+/// A component whose field takes more than so many leaves, about a millisecond, is taken for as near as the near limit allows
+/// where the eye is within its bounds.
+const MOST_EVALUATED: u64 = 1 << 14;
 /// Narrower pixels, in radians, are no more than 64 roundings of a direction apart.
 pub const NARROW: f64 = 64.0 * ROUNDING;
 
@@ -45,7 +48,8 @@ impl Standpoint {
         }
         let way = component.bounds.distance(from);
         // Within the bounds the field says how far the surface is at least.
-        let way = if way > 0.0 { way } else { field(flat, component, from) };
+        let is_cheap = u64::from(component.count) * u64::from(component.copies) <= MOST_EVALUATED;
+        let way = if way > 0.0 || !is_cheap { way } else { field(flat, component, from) };
         let allowed = allowed(way.max(least));
         if rounding <= allowed {
             return Self { ahead, shift: DVec3::ZERO, eye };
