@@ -27,31 +27,54 @@ const CONE_CLEARANCE: f32 = select(0.25, 0.1, LEAPS_FAR);
 const CONE_PASSED: f32 = 3e38;
 
 struct Cone {
-    axis: vec3f,
+    axis: Ray,
     // The tangent of the angle to the farthest ray, and the cosine of that angle.
     spread: f32,
     cosine: f32,
 }
 
-// Around the rays through the centres of `side` by `side` pixels.
-fn cone_around(pixel: vec2u, side: u32) -> Cone {
-    let first = view_direction(pixel);
-    let last = view_direction(pixel + side - 1u);
-    let left = view_direction(pixel + vec2u(0u, side - 1u));
-    let right = view_direction(pixel + vec2u(side - 1u, 0u));
-    let axis = normalize(first + last + left + right);
-    let cosine = min(min(dot(axis, first), dot(axis, last)), min(dot(axis, left), dot(axis, right)));
-    return Cone(axis, sqrt(max(1.0 - cosine * cosine, 0.0)) / cosine * 1.0001, cosine);
+// Around the rays through the centres of `side` by `side` pixels. Angles come from how far the places of rays in the picture
+// are apart: nothing is left of small ones in a cosine.
+fn cone_around(component: Component, pixel: vec2u, side: u32) -> Cone {
+    let middle = view_offset(vec2f(pixel) + 0.5 * f32(side));
+    let right = view.right * (f32(side - 1u) / f32(view.width));
+    let down = view.up * (f32(side - 1u) / -f32(view.height));
+    let a = right + down;
+    let b = right - down;
+    let forward = middle + view.forward;
+    let lengths = vec4f(length(forward + a), length(forward - a), length(forward + b), length(forward - b));
+    // The sum of the four unit directions leads through the mean of their places, each weighted by one over its length.
+    let weights = 1.0 / lengths;
+    let moved = (a * (weights.x - weights.y) + b * (weights.z - weights.w)) / dot(weights, vec4f(1.0));
+    let axis = forward + moved;
+    let ways = array<vec3f, 4>(a - moved, -a - moved, b - moved, -b - moved);
+    let along = dot(axis, axis) + vec4f(dot(axis, ways[0]), dot(axis, ways[1]), dot(axis, ways[2]), dot(axis, ways[3]));
+    let across = vec4f(
+        length(cross(axis, ways[0])),
+        length(cross(axis, ways[1])),
+        length(cross(axis, ways[2])),
+        length(cross(axis, ways[3])),
+    );
+    let tangents = across / along;
+    let cosines = along / (length(axis) * lengths);
+    return Cone(
+        ray_toward(component, middle + moved),
+        max(max(tangents.x, tangents.y), max(tangents.z, tangents.w)) * 1.0001,
+        min(min(cosines.x, cosines.y), min(cosines.z, cosines.w)),
+    );
 }
 
 // Where any ray of the square may enter the component's half space.
 fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
     let far = pixel + TILE - 1u;
     return min(
-        min(bounds_half_space_entry(component, view_direction(pixel)), bounds_half_space_entry(component, view_direction(far))),
         min(
-            bounds_half_space_entry(component, view_direction(vec2u(pixel.x, far.y))),
-            bounds_half_space_entry(component, view_direction(vec2u(far.x, pixel.y))),
+            bounds_half_space_entry(component, ray_through(component, pixel)),
+            bounds_half_space_entry(component, ray_through(component, far)),
+        ),
+        min(
+            bounds_half_space_entry(component, ray_through(component, vec2u(pixel.x, far.y))),
+            bounds_half_space_entry(component, ray_through(component, vec2u(far.x, pixel.y))),
         ),
     );
 }
@@ -65,9 +88,10 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     field_begin(component);
 
     // Where a ray of the cone can be inside: the box, grown by the cone's radius at its far end.
-    var cone = cone_around(place * TILE, TILE);
+    var cone = cone_around(component, place * TILE, TILE);
     let far_corner = max(abs(component.low - component.eye), abs(component.high - component.eye));
-    let interval = bounds_interval(component, cone.axis, cone.spread * min(length(far_corner), 1e9));
+    let reached = min(length(far_corner) + cone.axis.skipped, 1e9);
+    let interval = bounds_interval(component, cone.axis, cone.spread * reached);
     let entry = cone_half_space_entry(component, place * TILE);
     // Distances along a ray are longer than along the axis, by at most the cosine.
     let farthest = max(
@@ -98,7 +122,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let reach = length(component.eye);
     while quarter < 4u {
         ahead_begin(t - last, AHEAD_WINDOW * max(t - last, 0.0), 2.0 * SPACING * (t + reach));
-        let f = field(component.eye + cone.axis * t);
+        let f = field(ray_at(cone.axis, t));
         fall = select(fall, (before - f) / (t - last), t > last);
         last = t;
         before = f;
@@ -126,7 +150,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             quarter += 1u;
         }
         if quarter < 4u {
-            cone = cone_around(cone_quad(place, quarter) * QUAD, QUAD);
+            cone = cone_around(component, cone_quad(place, quarter) * QUAD, QUAD);
             exit = min(limit, cone_farthest(place, quarter));
             t = whole;
             last = NEVER;

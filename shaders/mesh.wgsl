@@ -5,7 +5,7 @@
 #include "common/depth.wgsl"
 
 struct Instance {
-    // Rows of eye-relative world space from the mesh's space.
+    // Rows of world space, relative to the eye or to what `ahead` says, from the mesh's space.
     eye_from_local_x: vec4f,
     eye_from_local_y: vec4f,
     eye_from_local_z: vec4f,
@@ -20,7 +20,8 @@ struct Instance {
     overridden: u32,
     // 1: the placement turns left into right, and so the order of a triangle's corners.
     mirrored: u32,
-    padding: u32,
+    // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
+    ahead: f32,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
@@ -36,7 +37,7 @@ struct Vertex {
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    // Relative to the eye.
+    // Relative to the point that `ahead` puts before the eye.
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec3f,
@@ -49,6 +50,10 @@ struct Written {
     @location(2) normal: vec4f,
     @location(3) diffuse: vec4f,
 }
+
+// The near limit is a distance along the ray. Clipped is by the depth along the view axis, which is less, by no more than this
+// towards any corner of a picture: a power of two, so that it changes no bit of any depth.
+const NEAR_SHARE: f32 = 1.0 / 16777216.0;
 
 @vertex
 fn mesh_vertex(vertex: Vertex) -> Varying {
@@ -64,21 +69,32 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     let clip = vec4f(
         dot(position, view.right) / dot(view.right, view.right),
         dot(position, view.up) / dot(view.up, view.up),
-        view.near * 0.5,
-        dot(position, view.forward),
+        view.near * NEAR_SHARE,
+        dot(position, view.forward) + instance.ahead,
     );
     return Varying(clip, position, normal, vertex.color, vertex.uv);
+}
+
+// How far from the eye a place on a triangle is. Far off, what it is more than the depth along the view axis is little, and
+// rounded for itself.
+fn mesh_distance(position: vec3f) -> f32 {
+    let beyond = dot(position, view.forward);
+    let aside = position - view.forward * beyond;
+    let depth = instance.ahead + beyond;
+    let more = dot(aside, aside) / (depth + length(vec2f(depth, length(aside))));
+    return select(length(position), depth + more, instance.ahead > 0.0);
 }
 
 @fragment
 fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     let texel = textureSample(base_color, base_sampler, in.uv).rgb;
-    let t = length(in.position);
+    let t = mesh_distance(in.position);
     if t < view.near || t > view.far {
         discard;
     }
     let length_of_normal = length(in.normal);
-    var normal = select(-in.position / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
+    let away = in.position + view.forward * instance.ahead;
+    var normal = select(-away / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
     // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
     // point away though the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));

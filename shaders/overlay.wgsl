@@ -72,7 +72,9 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     }
     let at = overlay_ground(pixel);
     // How far the ground moves from this pixel to its neighbours.
-    let width = abs(overlay_ground(pixel + vec2u(1u, 0u)) - at) + abs(overlay_ground(pixel + vec2u(0u, 1u)) - at);
+    let right = view.right * (2.0 / f32(view.width));
+    let down = view.up * (-2.0 / f32(view.height));
+    let width = overlay_step(pixel, right) + overlay_step(pixel, down);
     let fine = overlay_lines(at, overlay.cell, width) * 0.12;
     let coarse = overlay_lines(at, overlay.cell * 10.0, width) * 0.25;
     var color = vec3f(0.75);
@@ -94,6 +96,15 @@ fn overlay_ground(pixel: vec2u) -> vec2f {
     let direction = view_direction(pixel);
     let fall = select(direction.y, 1e-6, abs(direction.y) < 1e-6);
     return overlay.eye.xz - direction.xz * (overlay.eye.y / fall);
+}
+
+// How far the ground moves where the place in the picture moves by `step`: without a difference of places that are nearly
+// equal in narrow pictures.
+fn overlay_step(pixel: vec2u, step: vec3f) -> vec2f {
+    let along = view_offset(vec2f(pixel) + 0.5) + view.forward;
+    let falls = vec2f(along.y, along.y + step.y);
+    let safe = select(falls, vec2f(1e-6), abs(falls) < vec2f(1e-6));
+    return abs(step.xz * along.y - along.xz * step.y) * abs(overlay.eye.y / (safe.x * safe.y));
 }
 
 fn overlay_lines(at: vec2f, cell: f32, width: vec2f) -> f32 {

@@ -4,6 +4,7 @@
 #include "common/depth.wgsl"
 #include "common/work.wgsl"
 #include "common/quads.wgsl"
+#include "common/ray.wgsl"
 #include "generated/surface.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
@@ -28,11 +29,11 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     if RETURNS_EARLY && !seen {
         return;
     }
-    let direction = view_direction(pixel);
+    let ray = ray_through(component, pixel);
     let t = textureLoad(depth_target, pixel, 0).x;
-    let surface = surface(component.eye + direction * t);
+    let surface = surface(ray_at(ray, t));
     let size = length(surface.gradient);
-    let normal = select(-direction, surface.gradient / max(size, 1e-30), size > 0.0);
+    let normal = select(-ray.direction, surface.gradient / max(size, 1e-30), size > 0.0);
     if seen {
         textureStore(normal_target, pixel, vec4f(normal, size));
         textureStore(diffuse_target, pixel, surface.diffuse);

@@ -52,20 +52,21 @@ fn trace(
     let component = subject;
     field_begin(component);
     var depth = select(0.0, textureLoad(depth_target, pixel).x, exists);
-    let direction = view_direction(pixel);
-    let interval = bounds_interval(component, direction, 0.0);
+    let ray = ray_through(component, pixel);
+    let interval = bounds_interval(component, ray, 0.0);
     let exit = min(min(interval.y, view.far), depth);
     let passed = select(quad.start, quad_start(quad, lane), LEAPS_FAR);
-    var start = max(max(interval.x, view.near), max(passed, bounds_half_space_entry(component, direction)));
+    var start = max(max(interval.x, view.near), max(passed, bounds_half_space_entry(component, ray)));
     if work.round > 0u {
         start = textureLoad(march_target, pixel).x;
         start = select(start, NEVER, start == MARCH_ENDED);
     }
     let steps = select(0u, work.max_steps, exists && start <= exit);
     let fall = select(0.0, quad.fall, LEAPS_FAR && work.round == 0u);
-    let marched = march_along(component, direction, start, exit, fall, steps);
+    let marched = march_along(component, ray, start, exit, fall, steps);
     if exists {
-        let is_nearer = marched.hit && marched.t < depth;
+        // The last step may have ended behind the far limit.
+        let is_nearer = marched.hit && marched.t < min(depth, view.far);
         if is_nearer || !marched.ended {
             atomicOr(&has_hits[quad_of(lane)], 1u);
         }

@@ -155,7 +155,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 grid_low,
                 grid_side,
                 grid_counts,
-                lists
+                lists,
+                ahead
             }
         ),
         layout!(
@@ -179,7 +180,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 owner,
                 overridden,
                 mirrored,
-                padding
+                ahead
             }
         ),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, padding }),

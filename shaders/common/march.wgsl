@@ -2,6 +2,7 @@
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
+#include "common/ray.wgsl"
 #include "common/ahead.wgsl"
 #include "generated/value.wgsl"
 
@@ -37,7 +38,7 @@ struct March {
 // Steps are as long as the sphere around the next point is expected to touch the one around this (Ban and
 // Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023); where the two leave a gap, the step
 // is taken back to the first one's end.
-fn march_along(component: Component, direction: vec3f, start: f32, exit: f32, first_fall: f32, steps: u32) -> March {
+fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_fall: f32, steps: u32) -> March {
     let reach = length(component.eye);
     var t = start;
     // The last point known to be outside with nothing before it, its field, and how far it is free behind it.
@@ -65,7 +66,7 @@ fn march_along(component: Component, direction: vec3f, start: f32, exit: f32, fi
         } else {
             ahead_begin(t - last.x, AHEAD_WINDOW * (t - safe.x), rounding);
         }
-        var f = field(component.eye + direction * t);
+        var f = field(ray_at(ray, t));
         // The way behind a leap is free where the field is no less there than where the leap ended.
         let is_seen = ahead_least > min(select(f, last.y, t > last.x), 0.0);
         var proven = select(ahead_free(f), 0.0, looks_back);

@@ -17,7 +17,7 @@ struct FlatMaterial {
 
 // A component, as it stands to the eye.
 struct Component {
-    // The eye, relative to the component's origin.
+    // The point that `ahead` puts before the eye on the view axis, relative to the component's origin.
     eye: vec3f,
     first: u32,
     // Bounds, relative to the component's origin.
@@ -34,6 +34,8 @@ struct Component {
     grid_side: f32,
     grid_counts: vec3u,
     lists: u32,
+    // See `common/ray.wgsl`; mostly 0.
+    ahead: f32,
 }
 
 const GROUP: u32 = 0xffffu;

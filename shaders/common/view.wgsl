@@ -22,11 +22,16 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 
+// A place in the picture, in pixels, on the plane at distance 1 before the eye: how far it is from the picture's middle.
+fn view_offset(place: vec2f) -> vec3f {
+    let size = vec2f(f32(view.width), f32(view.height));
+    let at = place / size * 2.0 - 1.0;
+    return view.right * at.x - view.up * at.y;
+}
+
 // Unit direction of the ray through the centre of a pixel.
 fn view_direction(pixel: vec2u) -> vec3f {
-    let size = vec2f(f32(view.width), f32(view.height));
-    let at = (vec2f(pixel) + 0.5) / size * 2.0 - 1.0;
-    return normalize(view.right * at.x - view.up * at.y + view.forward);
+    return normalize(view_offset(vec2f(pixel) + 0.5) + view.forward);
 }
 
 fn view_contains(pixel: vec2u) -> bool {

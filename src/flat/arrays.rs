@@ -56,6 +56,11 @@ impl FlatNode {
         ModifierKind::ALL.get(code as usize).copied()
     }
 
+    /// Where the three rows of local-from-component stand among its rows; `None` for groups and runs.
+    pub fn placing_row(&self) -> Option<usize> {
+        if self.is_leaf() { Some(1) } else { self.modifier().map(|_| GROUP_ROWS) }
+    }
+
     /// How it joins what precedes it.
     pub fn join(&self) -> u32 {
         (self.code >> 16) & 0xff
@@ -310,9 +315,29 @@ pub struct Component {
     pub contents: Vec<Content>,
     /// How often an entry may be evaluated for one point: 1 without repetition.
     pub copies: u32,
+    /// What rounding to f32 took from local-from-component of each entry, zero for groups and runs; nothing for a component
+    /// that is not [`LARGE`].
+    pub rest: Vec<[Row; 3]>,
 }
 
 impl Component {
+    /// Local-from-component of the leaf or modifier at `index` of [`FlatScene::nodes`], three rows: where the component is
+    /// large, as it was before rounding. `None` for groups and runs.
+    pub fn placing(&self, flat: &FlatScene, index: usize) -> Option<[[f64; 4]; 3]> {
+        let node = &flat.nodes[index];
+        let rounded = flat.numbers[node.numbers as usize + node.placing_row()?..][..3].iter();
+        let mut rows = [[0.0; 4]; 3];
+        for (row, rounded) in rows.iter_mut().zip(rounded) {
+            *row = rounded.map(f64::from);
+        }
+        if let Some(rest) = self.rest.get(index - self.first as usize) {
+            for (row, rest) in rows.iter_mut().zip(rest) {
+                *row = [0, 1, 2, 3].map(|i| row[i] + f64::from(rest[i]));
+            }
+        }
+        Some(rows)
+    }
+
     /// Whether it holds modifiers.
     pub fn is_modified(&self) -> bool {
         !self.contents.is_empty()
@@ -372,6 +397,8 @@ pub struct FlatScene {
     pub warnings: Vec<Warning>,
 }
 
+/// A component whose numbers reach beyond this, in metres, is large: rounding to f32 moves what is in it by more than 2 µm.
+pub const LARGE: f64 = 64.0;
 /// Largest stack for which an evaluator exists, see [`Component::stack`].
 pub const MAX_STACK: u32 = 128;
 /// Most entries in one component: an invocation visits them seven times, twice each, for a normal and a

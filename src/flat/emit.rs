@@ -27,7 +27,13 @@ pub(super) fn emit(
     let data = flat.numbers.len();
     emit_data(flat, operands, &mut (first..));
     let mut contents = Vec::new();
-    collect_contents(operands, 1, &mut (first..).map(|at| (at - first, flat.nodes[at].is_run())), &mut contents);
+    let entries = || (first..).map(|at| (at - first, flat.nodes[at].is_run()));
+    collect_contents(operands, 1, &mut entries(), &mut contents);
+    let mut rest = Vec::new();
+    if reach(flat, first, &bounds) > LARGE {
+        rest.resize(flat.nodes.len() - first, [[0.0; 4]; 3]);
+        collect_rest(operands, origin, &mut entries(), &mut rest);
+    }
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
@@ -40,7 +46,19 @@ pub(super) fn emit(
         stack,
         contents,
         copies: operands.iter().map(copies).max().unwrap_or(1),
+        rest,
     }
+}
+
+/// How large the numbers of the component are whose entries begin at `first`: its bounds, and how far its origin is from
+/// where its shapes and modifiers stand.
+fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
+    let size = if bounds.is_finite() { bounds.half().max_element() } else { 0.0 };
+    let farthest = |node: &FlatNode| {
+        let placing = &flat.numbers[node.numbers as usize + node.placing_row()?..][..3];
+        Some(placing.iter().fold(0.0_f64, |most, row| most.max(f64::from(row[3].abs()))))
+    };
+    flat.nodes[first..].iter().filter_map(farthest).fold(size, f64::max)
 }
 
 /// Appends the materials of the leaves from the entry `first` on.
@@ -209,13 +227,40 @@ fn bounding_rows([support, size, depth]: [f32; 3], slope: f64, bounds: &Aabb) ->
     [[support, slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
 }
 
+/// Local from component, before rounding.
+fn exact_placing(local_from_world: &DAffine3, origin: DVec3) -> [[f64; 4]; 3] {
+    let shift = local_from_world.transform_point3(origin);
+    [0, 1, 2].map(|row| local_from_world.matrix3.row(row).extend(shift[row]).to_array())
+}
+
 /// Local from component.
 fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [Row; 3] {
-    let shift = local_from_world.transform_point3(origin);
-    [0, 1, 2].map(|row| {
-        let r = local_from_world.matrix3.row(row);
-        [r.x as f32, r.y as f32, r.z as f32, shift[row] as f32]
-    })
+    exact_placing(local_from_world, origin).map(|row| row.map(|v| v as f32))
+}
+
+/// See [`Component::rest`]; `entries` are those from here on, in the order in which they were written, and whether each is a
+/// run.
+fn collect_rest(
+    operands: &[Operand<'_>],
+    origin: DVec3,
+    entries: &mut impl Iterator<Item = (usize, bool)>,
+    out: &mut [[Row; 3]],
+) {
+    for operand in operands {
+        let (entry, _) = entries.find(|(_, is_run)| !is_run).expect("all were written");
+        let (local_from_world, inner) = match &operand.value {
+            Value::Leaf { local_from_world, .. } => (Some(local_from_world), None),
+            Value::Fold(inner) => (None, Some((inner, origin))),
+            Value::Modified { local_from_world, content, .. } => (Some(local_from_world), Some((content, DVec3::ZERO))),
+        };
+        if let Some(local_from_world) = local_from_world {
+            let exact = exact_placing(local_from_world, origin);
+            out[entry] = exact.map(|row| row.map(|v| (v - f64::from(v as f32)) as f32));
+        }
+        if let Some((inner, origin)) = inner {
+            collect_rest(inner, origin, entries, out);
+        }
+    }
 }
 
 /// Returns how many accumulators have to be put aside within the operand.

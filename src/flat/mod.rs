@@ -7,6 +7,7 @@
 //! | `body` | shape → the numbers that it is evaluated with |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
+//! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
@@ -34,6 +35,7 @@ mod leaf;
 pub mod mesh_rays;
 mod meshes;
 mod modify;
+mod moved;
 mod operands;
 pub mod pick;
 mod prune;
@@ -51,6 +53,7 @@ pub use buffers::*;
 pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_whole};
 pub use modify::{MAX_NEIGHBOURS, REPEAT_REACH, is_copying};
+pub use moved::move_rows;
 pub use prune::*;
 pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};

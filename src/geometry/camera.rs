@@ -13,9 +13,9 @@ pub struct Camera {
     pub rotation: DQuat,
     /// Full vertical angle of view in radians.
     pub fov_y: f64,
-    /// Nothing nearer than this along the ray is seen.
+    /// Nothing nearer than this is seen: a distance from the eye along the ray, as depth is, not along the view axis.
     pub near: f64,
-    /// Nothing farther than this along the ray is seen.
+    /// Nothing farther than this is seen, measured as `near` is.
     pub far: f64,
 }
 
@@ -50,6 +50,14 @@ impl Camera {
     /// Half the height of the picture at distance 1 in front of the eye.
     pub fn tan_half_fov(&self) -> f64 {
         (self.fov_y * 0.5).tan()
+    }
+
+    /// The cosine of the angle between the view axis and the rays through the corners of a picture of `size` pixels: no depth
+    /// along the axis is a smaller share of the distance along the ray.
+    pub fn corner_cosine(&self, size: [u32; 2]) -> f64 {
+        let up = self.tan_half_fov();
+        let right = up * f64::from(size[0]) / f64::from(size[1]);
+        1.0 / (1.0 + right * right + up * up).sqrt()
     }
 
     /// The ray through a point of the picture; `pixel` in pixels from the upper left corner (pixel
@@ -90,6 +98,20 @@ mod tests {
         for pixel in [DVec2::new(0.5, 0.5), DVec2::new(160.0, 100.0), DVec2::new(300.25, 17.5)] {
             let (back, _) = camera.project(camera.ray(pixel, size).at(7.0), size).unwrap();
             assert!((back - pixel).length() < 1e-9, "{pixel} {back}");
+        }
+    }
+
+    #[test]
+    fn no_ray_is_farther_from_the_view_axis_than_the_corners() {
+        let mut camera = Camera::looking_at(DVec3::ZERO, DVec3::new(0.3, -0.2, -1.0), 1.0);
+        let forward = camera.rotation * DVec3::NEG_Z;
+        for (degrees, size) in [(40.0_f64, [64, 64]), (120.0, [64, 36]), (170.0, [9, 90]), (0.1, [8192, 8])] {
+            camera.fov_y = degrees.to_radians();
+            let pixels = DVec2::new(size[0].into(), size[1].into());
+            let cosine = |x: f64, y: f64| camera.ray(pixels * DVec2::new(x, y), pixels).direction.dot(forward);
+            let corner = camera.corner_cosine(size);
+            assert!((cosine(0.0, 0.0) - corner).abs() < 1e-12 && (cosine(1.0, 0.0) - corner).abs() < 1e-12);
+            assert!(cosine(0.0, 0.5) > corner && cosine(0.3, 1.0) > corner);
         }
     }
 

@@ -26,6 +26,7 @@ pub mod probe;
 mod readback;
 mod renderer;
 pub mod schedule;
+pub mod standpoint;
 mod targets;
 pub mod uniforms;
 mod warm;

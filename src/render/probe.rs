@@ -12,6 +12,7 @@ use super::layouts::{
 };
 use super::readback::read_words;
 use super::renderer::{KERNEL_WINDOW, RenderError};
+use super::standpoint::Standpoint;
 use super::uniforms::GpuComponent;
 use crate::flat::{CellTree, FlatScene, ROW_ALIGNMENT, Row};
 
@@ -109,8 +110,8 @@ impl Probe<'_> {
         };
         let settings = uploaded(bytemuck::cast_slice(&[points.len() as u32, 0, 0, 0]));
         let tree = matches!(evaluator, Evaluator::Pruned(_)).then(|| CellTree::build(flat, &flat.components[index]));
-        let component = GpuComponent::new(&flat.components[index], flat.components[index].origin);
-        let component = tree.as_ref().map_or(component, |tree| component.with_grid(tree, 0));
+        let component = GpuComponent::new(&flat.components[index], &Standpoint::at_origin());
+        let component = tree.as_ref().map_or(component, |tree| component.with_grid(tree, 0, &Standpoint::at_origin()));
         let (rows, rows_at) = window_rows(flat, index, evaluator);
         let scene = [
             uploaded(bytemuck::cast_slice(&flat.nodes)),
@@ -158,7 +159,7 @@ fn window_rows(flat: &FlatScene, index: usize, evaluator: &Evaluator) -> (Vec<Ro
     // A kernel for a form has rows of its own form.
     if matches!(evaluator, Evaluator::Specialised(structure) if structure.is_form()) {
         let mut rows = Vec::new();
-        form_rows(flat, &flat.components[index], &mut rows);
+        form_rows(flat, &flat.numbers, &flat.components[index], &mut rows);
         return (rows, 0);
     }
     (flat.numbers.clone(), flat.components[index].numbers * size_of::<Row>() as u32)

@@ -26,6 +26,7 @@ use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
 use super::schedule::{Evaluation, Plan, TooLong, plan};
+use super::standpoint::Standpoints;
 use super::targets::Targets;
 use super::uniforms::UNIFORM_STRIDE;
 use crate::flat::inspect::Look;
@@ -277,9 +278,10 @@ impl Renderer {
             let targets = Targets::new(&self.gpu.device, size);
             self.slots[slot as usize] = Some(SlotState { targets, groups: None });
         }
-        let (form_rows, forms) = form_windows(flat, &keys);
+        let standpoints = Standpoints::new(flat, camera, size);
+        let (form_rows, forms) = form_windows(flat, &standpoints.numbers, &keys);
         let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
-        if self.upload(flat, &trees, camera, size, &plan) || forms_are_new {
+        if self.upload(flat, &standpoints, &trees, camera, size, &plan) || forms_are_new {
             for state in self.slots.iter_mut().flatten() {
                 state.groups = None;
             }
@@ -290,7 +292,7 @@ impl Renderer {
                 state.groups = Some(groups);
             }
         }
-        self.mesh.prepare(&self.gpu.device, &self.gpu.queue, flat, meshes, camera.position);
+        self.mesh.prepare(&self.gpu.device, &self.gpu.queue, flat, meshes, camera, size);
         if !overlay.is_empty() {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, camera.position);
         }

@@ -295,7 +295,8 @@ struct Projection {
     down: DVec3,
     /// The middle of the picture.
     center: DVec2,
-    /// What is nearer has no place in the picture.
+    /// What is nearer along the view axis has no place in the picture: the near limit is a distance along the ray, and in a
+    /// corner the depth along the axis is that times the cosine of the angle between the two.
     near: f64,
 }
 
@@ -309,7 +310,7 @@ impl Projection {
             right: camera.rotation * DVec3::X * scale,
             down: camera.rotation * DVec3::NEG_Y * scale,
             center,
-            near: (camera.near * 0.5).max(1e-12),
+            near: (camera.near * 0.5 * camera.corner_cosine(size)).max(1e-12),
         }
     }
 }

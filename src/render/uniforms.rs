@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+use super::standpoint::Standpoint;
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
 
@@ -64,15 +65,16 @@ impl View {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuComponent {
-    /// The eye, relative to the component's origin.
+    /// The eye, or the point that `ahead` puts before it, relative to what all positions here are relative to: the component's
+    /// origin, or a point near the eye, see [`Standpoint`].
     pub eye: [f32; 3],
     /// First entry.
     pub first: u32,
-    /// Lower corner of the bounds, relative to the origin.
+    /// Lower corner of the bounds.
     pub low: [f32; 3],
     /// Entry after the last.
     pub end: u32,
-    /// Upper corner of the bounds, relative to the origin.
+    /// Upper corner of the bounds.
     pub high: [f32; 3],
     /// First of its rows.
     pub numbers: u32,
@@ -86,6 +88,10 @@ pub struct GpuComponent {
     pub grid_counts: [u32; 3],
     /// Where its top cells stand in the buffer of lists; the headers of its contents stand before.
     pub lists: u32,
+    /// See [`Standpoint::ahead`].
+    pub ahead: f32,
+    /// Fills the last twelve bytes.
+    pub _padding: [u32; 3],
 }
 
 /// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
@@ -105,33 +111,37 @@ pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
 const UNBOUNDED: f32 = 1e18;
 
 impl GpuComponent {
-    /// As seen from `eye`, in the world.
-    pub fn new(component: &Component, eye: DVec3) -> Self {
+    /// As it stands to the eye.
+    pub fn new(component: &Component, at: &Standpoint) -> Self {
         // Rounding must never cut the surface off, and a ray should begin outside.
         let slack = (component.bounds.max - component.bounds.min).max_element().min(1e6) * 1e-5 + 1e-9;
-        let bounds = component.bounds.expanded(slack);
+        let bounds = component.bounds.expanded(slack).translated(-at.shift);
+        let [x, y, z, d] = component.half_space.unwrap_or_default();
+        let half_space = [x, y, z, d + DVec3::new(x, y, z).dot(at.shift)];
         let clamp = |v: Vec3| v.clamp(Vec3::splat(-UNBOUNDED), Vec3::splat(UNBOUNDED)).to_array();
         Self {
-            eye: (eye - component.origin).as_vec3().to_array(),
+            eye: at.eye.as_vec3().to_array(),
             first: component.first,
             low: clamp(bounds.min.as_vec3()),
             end: component.first + component.count,
             high: clamp(bounds.max.as_vec3()),
             numbers: component.numbers,
-            half_space: component.half_space.unwrap_or_default().map(|v| v as f32),
+            half_space: half_space.map(|v| v as f32),
             grid_low: [0.0; 3],
             grid_side: 0.0,
             grid_counts: [0; 3],
             lists: 0,
+            ahead: at.ahead as f32,
+            _padding: [0; 3],
         }
     }
 }
 
 impl GpuComponent {
     /// The same with a tree of cells that begins at `lists` in the buffer of lists.
-    pub fn with_grid(self, tree: &CellTree, lists: u32) -> Self {
+    pub fn with_grid(self, tree: &CellTree, lists: u32, at: &Standpoint) -> Self {
         let grid = &tree.grids[0];
-        let (grid_low, grid_side) = (grid.low.as_vec3().to_array(), grid.side as f32);
+        let (grid_low, grid_side) = ((grid.low - at.shift).as_vec3().to_array(), grid.side as f32);
         Self { grid_low, grid_side, grid_counts: grid.counts, lists: lists + tree.start as u32, ..self }
     }
 }

@@ -194,8 +194,8 @@ pub struct MeshNode {
 pub struct CameraNode {
     /// Full vertical angle of view, in degrees.
     pub fov_y: f64,
-    /// Nearest distance seen, in metres.
+    /// Nearest distance seen, in metres: from the eye along the ray of each pixel, as depth is, not along the view axis.
     pub near: f64,
-    /// Farthest distance seen, in metres.
+    /// Farthest distance seen, in metres, along the ray of each pixel.
     pub far: f64,
 }

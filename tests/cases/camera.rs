@@ -1,1 +1,156 @@
 //! Cameras: narrow and wide pixels, near and far planes, large scenes with small parts.
+
+mod hand;
+mod large;
+mod limits;
+mod narrow;
+
+use std::path::Path;
+
+use glam::{DQuat, DVec2, DVec3};
+use isolith::flat::Buffers;
+use isolith::flat::truth::truth;
+use isolith::geometry::Camera;
+use isolith::render::Method;
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
+
+use crate::gpu::{Subject, shared};
+use hand::Seen;
+
+/// Every way to evaluate a component.
+const METHODS: [Method; 3] = [Method::Interpreted, Method::Pruned, Method::Specialised];
+
+/// A scene of `tests/cases`, by its name without ending, seen by its own camera.
+fn case(name: &str) -> Subject {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(format!("{name}.json"));
+    let scene = file::load(&path).unwrap_or_else(|error| panic!("{error}"));
+    Subject::new(name, &scene, path.parent().map(Path::to_path_buf))
+}
+
+/// An object of the first material.
+fn object(shape: Shape, at: DVec3) -> Node {
+    Node::new("object", NodeKind::Object(Object { shape, material: MaterialId(1) })).at(at)
+}
+
+/// A scene of these nodes at the top.
+fn scene_of(nodes: impl IntoIterator<Item = Node>) -> Scene {
+    let mut scene = Scene::new();
+    for node in nodes {
+        scene.insert(None, usize::MAX, node).expect("the scene has room");
+    }
+    scene
+}
+
+/// A picture of the subject on the shared device.
+fn draw(subject: &Subject, size: [u32; 2], method: Method) -> Buffers {
+    let renderer = &mut shared().renderer;
+    renderer.set_method(method);
+    let picture = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
+    let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", subject.name));
+    assert!(unfinished.is_empty(), "{}: {unfinished:?}", subject.name);
+    buffers
+}
+
+/// A camera that looks at `target` from `distance` away, turned so that no axis of the picture is one of the world, and whose
+/// longer side sees an angle of `degrees`.
+fn looking(target: DVec3, distance: f64, degrees: f64, [width, height]: [u32; 2]) -> Camera {
+    let half = (0.5 * degrees).to_radians().tan();
+    let up = if height >= width { half } else { half * f64::from(height) / f64::from(width) };
+    let eye = target + DVec3::new(0.31, 0.52, 0.79).normalize() * distance;
+    let mut camera = Camera::looking_at(eye, target, 2.0 * up.atan());
+    camera.rotation *= DQuat::from_rotation_z(0.3);
+    camera.far = 1e9;
+    camera
+}
+
+/// The pixels of a picture that are not what `seen` says about their rays, in words; and how many show something.
+///
+/// Depth may be off by 0.05 footprints, where the ray meets the surface at an angle by what 0.02 footprints to the side come
+/// to besides, and by four roundings of f32, in which depth is stored. Rays that pass an outline by less than 0.02 footprints
+/// may be on either side of it.
+fn faults(picture: &Buffers, camera: &Camera, seen: &dyn Fn(&isolith::geometry::Ray) -> Seen) -> (Vec<String>, usize) {
+    let size = DVec2::new(picture.width.into(), picture.height.into());
+    let footprint = camera.footprint(size.y);
+    let (mut wrong, mut hits) = (Vec::new(), 0);
+    for y in 0..picture.height {
+        for x in 0..picture.width {
+            let ray = camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+            let seen = seen(&ray);
+            if seen.edge < 0.02 * footprint {
+                continue;
+            }
+            let drawn = f64::from(picture.depth[picture.index(x, y)]);
+            let allowed = |t: f64| t * (footprint * (0.05 + 0.02 * seen.slope) + 2.0 * f64::from(f32::EPSILON));
+            let entry = seen.span.map(|[entry, exit]| [entry.max(camera.near), exit]);
+            if let Some([t, exit]) = entry
+                && ((t - camera.far).abs() < allowed(t) || (exit - camera.near).abs() < allowed(exit))
+            {
+                continue;
+            }
+            let entry = entry.filter(|[t, exit]| *t <= camera.far && *exit >= camera.near).map(|[t, _]| t);
+            hits += usize::from(entry.is_some());
+            let is_right = match entry {
+                Some(t) => (drawn - t).abs() <= allowed(t),
+                None => drawn.is_infinite(),
+            };
+            if !is_right {
+                let off = entry.map_or(f64::NAN, |t| (drawn - t) / (footprint * t));
+                wrong.push(format!("({x}, {y}): {drawn} instead of {entry:?}, {off:.3} footprints"));
+            }
+        }
+    }
+    (wrong, hits)
+}
+
+/// Draws the subject by the methods and compares each picture with what `seen` says.
+fn check(
+    subject: &Subject,
+    size: [u32; 2],
+    methods: &[Method],
+    seen: &dyn Fn(&isolith::geometry::Ray) -> Seen,
+) -> Vec<String> {
+    let pixels = (size[0] * size[1]) as usize;
+    let mut all = Vec::new();
+    for method in methods {
+        let (wrong, hits) = faults(&draw(subject, size, *method), &subject.camera, seen);
+        assert!(hits > pixels / 200, "{}: only {hits} of {pixels} pixels show something", subject.name);
+        if let Some(first) = wrong.first() {
+            let middle = &wrong[wrong.len() / 2];
+            let name = &subject.name;
+            all.push(format!("{name}, {size:?}, {method:?}: {} of {hits} wrong: {first}; {middle}", wrong.len()));
+        }
+    }
+    all
+}
+
+/// Draws a case by all methods and compares each with the reference: no pixel but those whose ray passes an edge within
+/// rounding may show another thing, or be off by more than a footprint.
+fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
+    let subject = case(name);
+    let right = truth(&subject.flat, &subject.meshes, &subject.camera, size, &|_| ());
+    let right = right.unwrap_or_else(|error| panic!("{name}: {error}"));
+    let footprint = subject.camera.footprint(size[1].into());
+    let mut all = Vec::new();
+    for method in METHODS {
+        let picture = draw(&subject, size, method);
+        let is_wrong = |i: &usize| {
+            let [drawn, meant] = [picture.depth[*i], right.buffers.depth[*i]].map(f64::from);
+            let off = if drawn.is_infinite() && meant.is_infinite() {
+                0.0
+            } else {
+                (drawn - meant).abs() / (footprint * meant)
+            };
+            // Rays that pass an edge by less than a hundredth of a footprint.
+            !(off <= 1.0) && right.margin[*i] > 0.01
+        };
+        let wrong: Vec<_> = (0..picture.depth.len()).filter(is_wrong).collect();
+        let shown = picture.depth.iter().filter(|d| d.is_finite()).count();
+        assert!(shown > picture.depth.len() / 200, "{name}: {shown} pixels show something");
+        let accuracy = isolith::flat::Accuracy::against(&picture, &right, footprint);
+        if !wrong.is_empty() || !accuracy.faults().is_empty() {
+            let first: Vec<_> = wrong.iter().take(3).map(|i| (i, picture.depth[*i], right.buffers.depth[*i])).collect();
+            all.push(format!("{name}, {method:?}: {} wrong, {first:?}, {accuracy:?}", wrong.len()));
+        }
+    }
+    all
+}

@@ -66,7 +66,7 @@ pub(super) type Parts = Vec<Vec<Arc<Part>>>;
 
 impl<'a> Build<'a> {
     /// Of a component that has lists.
-    pub fn new(flat: &'a FlatScene, component: &Component) -> Self {
+    pub fn new(flat: &'a FlatScene, component: &'a Component) -> Self {
         let domains = domains_of(flat, component).expect("only components that have lists get here");
         Self { entries: Entries::new(flat, component), domains }
     }

@@ -105,6 +105,7 @@ impl Ball {
 /// All entries of a component; what does not apply to an entry is filled with something harmless.
 pub(super) struct Entries<'a> {
     flat: &'a FlatScene,
+    component: &'a Component,
     first: usize,
     /// Rows of the component begin here.
     pub numbers: u32,
@@ -123,12 +124,13 @@ pub(super) struct Entries<'a> {
 
 impl<'a> Entries<'a> {
     /// Those of `component`.
-    pub fn new(flat: &'a FlatScene, component: &Component) -> Self {
+    pub fn new(flat: &'a FlatScene, component: &'a Component) -> Self {
         let (first, count) = (component.first as usize, component.count as usize);
         let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
         let none = Leaf { kind: ShapeKind::Plane, rows: [(DVec3::ZERO, 0.0); 3], scale: 0.0, parameters, data };
         let mut entries = Self {
             flat,
+            component,
             first,
             numbers: component.numbers,
             leaves: vec![none; count],
@@ -165,7 +167,7 @@ impl<'a> Entries<'a> {
     /// The field of a leaf or of a modifier at `p`, in metres.
     pub fn distance(&self, entry: usize, p: DVec3) -> f64 {
         match self.node(entry).modifier() {
-            Some(_) => entry_field(self.flat, self.first + entry, p),
+            Some(_) => entry_field(self.flat, self.component, self.first + entry, p),
             None => self.leaves[entry].distance(p),
         }
     }

@@ -11,19 +11,19 @@ use crate::scene::{ModifierKind, ShapeKind};
 
 /// The field at `p`, in metres; `p` is relative to the component's origin.
 pub fn field(flat: &FlatScene, component: &Component, p: DVec3) -> f64 {
-    fold(flat, entries(component), at(p))
+    fold(flat, component, entries(component), at(p))
 }
 
 /// The field and its gradient at `p`. The gradient is exact where the field is smooth, one of the
 /// one-sided ones on a ridge, and may vanish on an axis or at a centre.
 pub fn gradient(flat: &FlatScene, component: &Component, p: DVec3) -> (f64, DVec3) {
-    let Dual { v, d } = fold(flat, entries(component), at(p));
+    let Dual { v, d } = fold(flat, component, entries(component), at(p));
     (v, d)
 }
 
 /// The field of one entry at `p`, which is relative to the space that the entry stands in.
-pub fn entry_field(flat: &FlatScene, index: usize, p: DVec3) -> f64 {
-    operand(flat, index, at(p))
+pub fn entry_field(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> f64 {
+    operand(flat, component, index, at(p))
 }
 
 /// What the surface near a point is like.
@@ -41,7 +41,7 @@ pub struct SurfacePoint {
 
 /// The field at `p` with everything that the surface there needs.
 pub fn surface(flat: &FlatScene, component: &Component, p: DVec3) -> SurfacePoint {
-    let Surface { distance, leaf, material } = fold(flat, entries(component), at(p));
+    let Surface { distance, leaf, material } = fold(flat, component, entries(component), at(p));
     SurfacePoint { distance: distance.v, gradient: distance.d, leaf, material }
 }
 
@@ -148,8 +148,8 @@ impl Operand for Surface {
 
 /// Folds the siblings in `range`. Recursion is as deep as groups are nested after flattening, at most
 /// [`crate::flat::MAX_STACK`].
-fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: [O::Number; 3]) -> O {
-    let mut so_far: O = operand(flat, range.start, p);
+fn fold<O: Operand>(flat: &FlatScene, component: &Component, range: Range<usize>, p: [O::Number; 3]) -> O {
+    let mut so_far: O = operand(flat, component, range.start, p);
     let mut at = range.start + flat.nodes[range.start].extent as usize;
     while at < range.end {
         let node = &flat.nodes[at];
@@ -158,7 +158,7 @@ fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: [O::Number; 3]) ->
             at += 1;
             continue;
         }
-        let next: O = operand(flat, at, p);
+        let next: O = operand(flat, component, at, p);
         let joint = Joint::read(&flat.numbers[node.numbers as usize]);
         let result = op_join(node.join(), so_far.distance(), next.distance(), &joint, node.kernel());
         so_far = so_far.joined(next, result);
@@ -167,30 +167,30 @@ fn fold<O: Operand>(flat: &FlatScene, range: Range<usize>, p: [O::Number; 3]) ->
     so_far
 }
 
-fn operand<O: Operand>(flat: &FlatScene, index: usize, p: [O::Number; 3]) -> O {
+fn operand<O: Operand>(flat: &FlatScene, component: &Component, index: usize, p: [O::Number; 3]) -> O {
     let node = &flat.nodes[index];
     let numbers = &flat.numbers[node.numbers as usize..];
     let content = index + 1..index + node.extent as usize;
+    let Some(placing) = component.placing(flat, index) else { return fold(flat, component, content, p) };
+    let local = placed(&placing, p);
     match node.modifier() {
-        Some(kind) => modified(kind, numbers, p, &|q| fold(flat, content.clone(), q)),
-        None if node.is_group() => fold(flat, content, p),
-        None => O::leaf(flat, index, leaf_distance(node, numbers, p)),
+        Some(kind) => modified(kind, numbers, local, &|q| fold(flat, component, content.clone(), q)),
+        None => O::leaf(flat, index, leaf_distance(node, numbers, local)),
     }
 }
 
 /// The field at `p` of a modifier whose rows `numbers` begins with; `content` is the field of what it holds, in its space.
 pub fn modified_field(kind: ModifierKind, numbers: &[Row], p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
-    modified(kind, numbers, p.to_array(), &|q| content(q.into()))
+    modified(kind, numbers, placed(&numbers[3..6], p.to_array()), &|q| content(q.into()))
 }
 
-/// The content of a modifier, in as many copies as it evaluates.
+/// The content of a modifier, in as many copies as it evaluates; `local` is in its space.
 fn modified<O: Operand>(
     kind: ModifierKind,
     numbers: &[Row],
-    p: [O::Number; 3],
+    local: [O::Number; 3],
     content: &dyn Fn([O::Number; 3]) -> O,
 ) -> O {
-    let local = placed(&numbers[3..6], p);
     let rows = &numbers[MODIFIER_ROWS..];
     let start = modifier_start(kind, local, rows);
     let mut nearest: Option<O> = None;
@@ -214,16 +214,15 @@ fn modified<O: Operand>(
 }
 
 /// The point mapped by three rows.
-fn placed<T: Real>(rows: &[Row], p: [T; 3]) -> [T; 3] {
+fn placed<T: Real, N: Copy + Into<f64>>(rows: &[[N; 4]], p: [T; 3]) -> [T; 3] {
     std::array::from_fn(|i| {
-        let [x, y, z, shift] = rows[i].map(f64::from);
+        let [x, y, z, shift] = rows[i].map(N::into);
         p[0] * x + p[1] * y + p[2] * z + shift
     })
 }
 
-fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], p: [T; 3]) -> T {
+fn leaf_distance<T: Real>(node: &FlatNode, numbers: &[Row], local: [T; 3]) -> T {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
-    let local = placed(&numbers[1..4], p);
     let mut parameters = [0.0; 8];
     for row in 0..kind.parameter_rows() {
         parameters[4 * row..4 * row + 4].copy_from_slice(&numbers[LEAF_ROWS + row].map(f64::from));

@@ -259,11 +259,11 @@ impl Structure {
 /// Rows of a leaf in a form: room for the parameters of any shape.
 const FORM_LEAF_ROWS: usize = LEAF_ROWS + SHAPE_FLOATS / 4;
 
-/// Appends the rows of a component as a kernel for its form reads them: every leaf takes as many, and the fourth
+/// Appends the rows of a component, from `numbers`, as a kernel for its form reads them: every leaf takes as many, and the fourth
 /// number of its first row, the depth that only further operators have, is the code of its shape.
-pub fn form_rows(flat: &FlatScene, component: &Component, out: &mut Vec<Row>) {
+pub fn form_rows(flat: &FlatScene, numbers: &[Row], component: &Component, out: &mut Vec<Row>) {
     for node in &flat.nodes[component.first as usize..][..component.count as usize] {
-        let (rows, first) = (&flat.numbers[node.numbers as usize..], out.len());
+        let (rows, first) = (&numbers[node.numbers as usize..], out.len());
         if !node.is_leaf() {
             out.extend_from_slice(&rows[..GROUP_ROWS]);
             continue;

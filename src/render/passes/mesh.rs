@@ -10,10 +10,12 @@ use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat
 
 use crate::flat::truth::FILE_MATERIAL;
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use crate::geometry::Camera;
 use crate::mesh::{Texture, TriangleMesh};
 use crate::render::buffers::Mirror;
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
+use crate::render::standpoint::ahead_of;
 use crate::render::targets::{BACKGROUND, Targets};
 
 /// The pass, and the meshes that are on the device.
@@ -35,7 +37,7 @@ pub struct MeshPass {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
-    /// First row of eye-relative world space from the mesh's space.
+    /// First row of world space, relative to the eye or to what `ahead` says, from the mesh's space.
     pub eye_from_local_x: [f32; 4],
     /// Second row.
     pub eye_from_local_y: [f32; 4],
@@ -57,8 +59,8 @@ pub struct Instance {
     pub overridden: u32,
     /// 1: the placement turns left into right, and so the order of a triangle's corners.
     pub mirrored: u32,
-    /// Unused.
-    pub padding: u32,
+    /// How far the point that positions are relative to is before the eye, see `shaders/common/ray.wgsl`.
+    pub ahead: f32,
 }
 
 /// Dynamic offsets are multiples of this.
@@ -120,7 +122,8 @@ impl MeshPass {
         queue: &wgpu::Queue,
         flat: &FlatScene,
         meshes: &[Option<Arc<TriangleMesh>>],
-        eye: DVec3,
+        camera: &Camera,
+        size: [u32; 2],
     ) {
         self.uploaded.retain(|_, u| u.mesh.strong_count() > 0);
         self.draws.clear();
@@ -133,7 +136,9 @@ impl MeshPass {
                 self.uploaded.insert(key, uploaded);
             }
             self.draws.push((key, bytes.len() as u32));
-            bytes.extend_from_slice(bytemuck::bytes_of(&instance(flat, placed, index, eye)));
+            let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
+            let ahead = ahead_of(&seen, camera, size);
+            bytes.extend_from_slice(bytemuck::bytes_of(&instance(flat, placed, index, camera, ahead)));
             bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
         }
         if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
@@ -242,7 +247,8 @@ fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColor
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
 }
 
-fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> Instance {
+fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ahead: f64) -> Instance {
+    let eye = camera.position + camera.rotation * DVec3::NEG_Z * ahead;
     let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
     let row = |i: usize| {
         let r = m.matrix3.row(i);
@@ -268,7 +274,7 @@ fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, eye: DVec3) -> In
         owner: MESH_BIT | index as u32,
         overridden: u32::from(material.is_some()),
         mirrored: u32::from(m.matrix3.determinant() < 0.0),
-        padding: 0,
+        ahead: ahead as f32,
     }
 }
 

@@ -14,6 +14,7 @@ use crate::render::layouts::{bind, window};
 use crate::render::passes::field::{FieldGroups, Lists};
 use crate::render::passes::shade::mesh_emissions;
 use crate::render::schedule::{Plan, TILE};
+use crate::render::standpoint::{Standpoint, Standpoints};
 use crate::render::targets::Targets;
 use crate::render::uniforms::{GpuComponent, View, Work, strided};
 
@@ -32,13 +33,13 @@ pub(super) struct Groups {
 
 /// The rows of components whose kernels are for forms, and where those of each begin, in bytes. As much room as a window
 /// takes is behind the last.
-pub(super) fn form_windows(flat: &FlatScene, keys: &[Option<Key>]) -> (Vec<Option<u32>>, Vec<u8>) {
+pub(super) fn form_windows(flat: &FlatScene, numbers: &[Row], keys: &[Option<Key>]) -> (Vec<Option<u32>>, Vec<u8>) {
     let mut rows: Vec<Row> = Vec::new();
     let window = |(component, key): (&Component, &Option<Key>)| {
         key.and_then(|key| key.form)?;
         rows.resize(rows.len().next_multiple_of(ROW_ALIGNMENT), [0.0; 4]);
         let first = rows.len();
-        form_rows(flat, component, &mut rows);
+        form_rows(flat, numbers, component, &mut rows);
         Some((first * size_of::<Row>()) as u32)
     };
     let windows = flat.components.iter().zip(keys).map(window).collect();
@@ -51,6 +52,7 @@ impl Renderer {
     pub(super) fn upload(
         &mut self,
         flat: &FlatScene,
+        standpoints: &Standpoints<'_>,
         trees: &[Option<Arc<CellTree>>],
         camera: &Camera,
         size: [u32; 2],
@@ -61,13 +63,13 @@ impl Renderer {
         let no_quads = vec![[0_u32, 1, 1, 0, 0]; plan.lists as usize];
         let no_rays = vec![[0_u32, 1, 1, 0, 1, 1, 0]; plan.lists as usize];
         let mut is_new = self.lists.hold(device, queue, trees);
-        let placed = |(component, tree): (&Component, &Option<Arc<CellTree>>)| {
-            let gpu = GpuComponent::new(component, camera.position);
+        let placed = |((component, at), tree): ((&Component, &Standpoint), &Option<Arc<CellTree>>)| {
+            let gpu = GpuComponent::new(component, at);
             let place = tree.as_ref().and_then(|tree| Some((tree, self.lists.place(tree)?)));
-            place.map_or(gpu, |(tree, at)| gpu.with_grid(tree, at))
+            place.map_or(gpu, |(tree, lists)| gpu.with_grid(tree, lists, at))
         };
-        let components = strided(flat.components.iter().zip(trees).map(placed));
-        let numbers: &[u8] = bytemuck::cast_slice(&flat.numbers);
+        let components = strided(flat.components.iter().zip(&standpoints.all).zip(trees).map(placed));
+        let numbers: &[u8] = bytemuck::cast_slice(&standpoints.numbers);
         let (rows_are_new, changed) = self.rows.set_with_room(device, queue, numbers, KERNEL_WINDOW, size_of::<Row>());
         let texture_is_new = self.numbers.reserve(device, numbers.len());
         if let Some(range) = if texture_is_new { Some(0..numbers.len()) } else { changed } {

@@ -1,0 +1,35 @@
+// Rays through a component.
+
+#include "common/view.wgsl"
+#include "common/scene.wgsl"
+
+// Neighbouring rays of a narrow picture are too close together for f32 over the whole way from the eye. So positions on a ray
+// count from a plane across the view, `component.ahead` before the eye: there places in the picture are known exactly. In
+// wide pictures it is 0, and the plane goes through the eye. `t` is the distance from the eye everywhere.
+struct Ray {
+    // Where the ray meets the plane, relative to the component's origin.
+    origin: vec3f,
+    // `t` of that place.
+    skipped: f32,
+    // Of unit length.
+    direction: vec3f,
+}
+
+// The ray through the place on the plane at distance 1 before the eye that is `offset` from the picture's middle.
+fn ray_toward(component: Component, offset: vec3f) -> Ray {
+    let along = offset + view.forward;
+    // The length of `along` less 1, without a difference of nearly equal numbers.
+    let longer = dot(offset, offset) / (1.0 + length(along));
+    let skipped = component.ahead + component.ahead * longer;
+    return Ray(component.eye + offset * component.ahead, skipped, normalize(along));
+}
+
+// The ray through the centre of a pixel.
+fn ray_through(component: Component, pixel: vec2u) -> Ray {
+    return ray_toward(component, view_offset(vec2f(pixel) + 0.5));
+}
+
+// Relative to the component's origin.
+fn ray_at(ray: Ray, t: f32) -> vec3f {
+    return ray.origin + ray.direction * (t - ray.skipped);
+}

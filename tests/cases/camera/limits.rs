@@ -1,0 +1,115 @@
+//! The near and far limits: distances along the ray, for everything that is drawn or picked.
+
+use glam::{DAffine3, DQuat};
+use isolith::flat::pick::pick;
+use isolith::scene::{Blend, Group, Operator};
+
+use super::hand::{self, Seen};
+use super::narrow::square;
+use super::*;
+
+#[test]
+fn what_stands_in_a_corner_is_not_nearer_than_it_is() {
+    let balls = [([0.75, 0.7, -0.45], 0.03), ([-0.8, -0.75, -0.46], 0.03), ([0.0, 0.0, -5.0], 0.5)];
+    let subject = case("numerics/near_cull_120");
+    assert_eq!((subject.camera.near, subject.camera.position), (1.0, DVec3::ZERO));
+    let found = check(&subject, [256, 256], &METHODS, &|ray| {
+        balls
+            .iter()
+            .map(|(center, radius)| hand::ball(ray, DVec3::from(*center), *radius))
+            .fold(hand::NOTHING, Seen::or)
+    });
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn nothing_behind_the_far_limit_is_drawn() {
+    for name in ["numerics/far_cut", "numerics/near_far_cut"] {
+        let found = check_by_reference(name, [256, 256]);
+        assert!(found.is_empty(), "{}", found.join("\n"));
+        let subject = case(name);
+        for method in METHODS {
+            let picture = draw(&subject, [256, 256], method);
+            let limits = subject.camera.near as f32..=subject.camera.far as f32;
+            let outside = picture.depth.iter().filter(|d| d.is_finite() && !limits.contains(d)).count();
+            assert_eq!(outside, 0, "{name}, {method:?}");
+        }
+    }
+}
+
+/// A ball that both limits cut, off the middle of a wide picture; its kernel leaps, and by a difference it does not.
+#[test]
+fn a_ball_is_cut_at_distances_along_the_ray() {
+    let (center, radius) = (DVec3::new(3.0, 2.5, -3.5), 1.75);
+    let ball = || object(Shape::Sphere { radius }, center);
+    let cut = || {
+        let mut scene = Scene::new();
+        let group = Node::new("cut", NodeKind::Group(Group::new(Operator::Difference, Blend::HARD)));
+        let group = scene.insert(None, 0, group).expect("room");
+        scene.insert(Some(group), 0, ball()).expect("room");
+        for i in 1..6 {
+            let away = object(Shape::Sphere { radius: 0.1 }, center + DVec3::X * (2.0 * f64::from(i)));
+            scene.insert(Some(group), usize::MAX, away).expect("room");
+        }
+        scene
+    };
+    let mut found = Vec::new();
+    for scene in [scene_of([ball()]), cut()] {
+        for [near, far] in [[1e-3, 1e4], [4.2, 1e4], [1e-3, 4.2], [3.9, 4.1], [5.5, 9.0]] {
+            let mut subject = Subject::new(&format!("ball from {near} to {far}"), &scene, None);
+            subject.camera = Camera::looking_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 120.0_f64.to_radians());
+            (subject.camera.near, subject.camera.far) = (near, far);
+            let seen = |ray: &isolith::geometry::Ray| hand::ball(ray, center, radius);
+            found.extend(check(&subject, [96, 64], &METHODS, &seen));
+            found.extend(check_picking(&subject, [96, 64], &seen));
+        }
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+/// Where picking finds something else than is seen.
+fn check_picking(
+    subject: &Subject,
+    [width, height]: [u32; 2],
+    seen: &dyn Fn(&isolith::geometry::Ray) -> Seen,
+) -> Vec<String> {
+    let size = DVec2::new(width.into(), height.into());
+    let Camera { near, far, .. } = subject.camera;
+    let mut wrong = Vec::new();
+    for y in (0..height).step_by(3) {
+        for x in (0..width).step_by(3) {
+            let ray = subject.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+            let meant = seen(&ray).span.filter(|[entry, exit]| *exit >= near && *entry <= far);
+            let found = pick(&subject.flat, &subject.meshes, &ray, near, far);
+            if found.is_some() != meant.is_some() {
+                wrong.push(format!("{}: picked {found:?} at ({x}, {y}) instead of {meant:?}", subject.name));
+            }
+        }
+    }
+    wrong
+}
+
+/// A mesh is clipped by the graphics driver, along the view axis.
+#[test]
+fn a_mesh_is_cut_at_distances_along_the_ray() {
+    let turn = DQuat::from_rotation_y(0.2);
+    // Nowhere farther than 0.8 along the view axis; in the corners of the picture more than 1 along the ray.
+    let place = DAffine3::from_scale_rotation_translation(DVec3::splat(9.0), turn, DVec3::new(0.0, 0.0, -0.6));
+    let mut found = Vec::new();
+    for [near, far] in [[1e-3, 1e4], [1.0, 1e4], [1.0, 1.3]] {
+        let mut camera = Camera::looking_at(DVec3::ZERO, DVec3::NEG_Z, 120.0_f64.to_radians());
+        (camera.near, camera.far) = (near, far);
+        let subject = square(place, camera);
+        let normal = turn * DVec3::Z;
+        let seen = |ray: &isolith::geometry::Ray| {
+            let plane = hand::half_space(ray, DVec3::new(0.0, 0.0, -0.6), normal);
+            let Some([t, _]) = plane.span else { return plane };
+            let aside = (turn.inverse() * (ray.at(t) - DVec3::new(0.0, 0.0, -0.6))).abs().max_element() - 9.0;
+            // Of no thickness: what the near limit cuts off shows nothing behind.
+            Seen { span: plane.span.map(|[t, _]| [t, t]).filter(|_| aside < 0.0), ..plane }
+        };
+        found.extend(check(&subject, [64, 64], &[Method::Interpreted], &seen));
+        found.extend(check_picking(&subject, [64, 64], &seen));
+    }
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
