@@ -112,7 +112,7 @@ mod tests {
 
     /// The value by the definition of the operators, in the artist's order.
     fn by_hand(scene: &Scene, operators: &[Operator], wide: bool, depth: usize, p: glam::DVec3) -> f64 {
-        use crate::flat::twin::op::{Joint, op_difference, op_intersection, op_union, op_xor};
+        use crate::flat::twin::{Joint, op_difference, op_intersection, op_union, op_xor};
         let balls: Vec<f64> = scene
             .nodes()
             .iter()
