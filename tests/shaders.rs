@@ -174,12 +174,15 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 normal_x,
                 normal_y,
                 normal_z,
+                color,
+                texture_x,
+                texture_y,
                 albedo,
                 specular,
                 owner,
                 overridden,
                 mirrored,
-                padding
+                alpha_cutoff
             }
         ),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, padding }),

@@ -58,11 +58,13 @@ fn check_sound(mesh: &TriangleMesh) {
     assert!(vertices == mesh.normals.len() && vertices == mesh.colors.len() && vertices == mesh.uvs.len());
     assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
     assert!(mesh.indices.iter().all(|i| (*i as usize) < vertices));
-    assert!(mesh.positions.iter().chain(&mesh.normals).chain(&mesh.colors).flatten().all(|c| c.is_finite()));
+    assert!(mesh.positions.iter().chain(&mesh.normals).flatten().all(|c| c.is_finite()));
+    assert!(mesh.colors.iter().flatten().all(|c| c.is_finite()));
     assert!(mesh.uvs.iter().flatten().all(|c| c.is_finite()));
+    assert!(mesh.parts.iter().all(|p| p.origin.is_finite()));
     assert_eq!(mesh.parts.first().map(|p| p.indices.start), Some(0));
     assert_eq!(mesh.parts.last().map(|p| p.indices.end as usize), Some(mesh.indices.len()));
-    assert!(mesh.parts.iter().all(|p| p.base_color_texture.is_none_or(|t| t < mesh.textures.len())));
+    assert!(mesh.parts.iter().all(|p| p.surface.texture.is_none_or(|t| t < mesh.textures.len())));
 }
 
 fn check(bytes: &[u8], text: std::ops::Range<usize>, count: usize, seed: u64) -> (usize, usize) {
