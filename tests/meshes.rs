@@ -11,3 +11,4 @@ mod rays;
 mod reading;
 mod surfaces;
 pub mod tiny;
+mod watching;

@@ -31,6 +31,7 @@ mod inspector_scene;
 mod inspector_transform;
 mod legend;
 mod messages;
+mod models;
 mod navigation;
 mod outliner;
 mod overlay;
@@ -59,7 +60,7 @@ pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
 use crate::flat::inspect::Look;
-use crate::flat::{FlatMesh, FlatScene, Flattener};
+use crate::flat::{FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
@@ -108,6 +109,7 @@ pub struct Editor {
     bench: Workbench,
     flat: Flattened,
     meshes: MeshLibrary,
+    models: models::Models,
     navigation: Navigation,
     viewport: viewport::Viewport,
     outliner: outliner::Outliner,
@@ -144,6 +146,7 @@ impl Editor {
             bench: Workbench::new(Document::new(Scene::new())),
             flat: Flattened::default(),
             meshes: MeshLibrary::new(None),
+            models: models::Models::default(),
             navigation: Navigation::default(),
             viewport: viewport::Viewport::default(),
             outliner: outliner::Outliner::default(),
@@ -205,6 +208,7 @@ impl Editor {
         }
         self.bench.settle(&ctx);
         self.refresh_flat();
+        self.poll_models(&ctx);
         self.send_title(&ctx);
         self.typing = ctx.text_edit_focused();
     }
@@ -313,8 +317,7 @@ impl Editor {
             }
             Err(error) => self.flat.problem = Some(error.to_string()),
         }
-        let broken = |mesh: &FlatMesh| Some((mesh.id, self.meshes.get(&mesh.path).err()?.to_string()));
-        self.flat.mesh_problem = self.flat.scene.meshes.iter().find_map(broken);
+        self.find_mesh_problem();
     }
 
     fn open_dropped(&mut self, ctx: &Context) {

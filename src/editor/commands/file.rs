@@ -2,7 +2,7 @@
 
 use egui::{Context, Key, Modifiers};
 use egui_material_icons::MaterialIcon;
-use egui_material_icons::icons::{ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_SAVE, ICON_SAVE_AS};
+use egui_material_icons::icons::{ICON_FOLDER_OPEN, ICON_LOGOUT, ICON_NOTE_ADD, ICON_REFRESH, ICON_SAVE, ICON_SAVE_AS};
 
 use super::{Command, Icon, Menu};
 use crate::editor::Editor;
@@ -21,6 +21,9 @@ pub(super) fn commands() -> Vec<Command> {
         new(ICON_SAVE, "Save", "Writes the scene to its file", |e, ctx| e.save(None, ctx)).key(CTRL, Key::S).group(),
         new(ICON_SAVE_AS, "Save as…", "Writes the scene to another file", |e, ctx| e.choose_save_path(None, ctx))
             .key(SHIFT_CTRL, Key::S),
+        new(ICON_REFRESH, "Reload models", "Reads the models of the scene again from disk", |e, _| e.reload_models())
+            .when(|e| !e.flat().meshes.is_empty())
+            .group(),
         new(ICON_LOGOUT, "Quit", "Closes the window", |e, ctx| e.intend(Intent::Quit, ctx)).key(CTRL, Key::Q).group(),
     ]
 }
