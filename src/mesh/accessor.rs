@@ -218,11 +218,17 @@ impl<'a> Source<'a> {
             let count = accessor.count.0;
             return Err(Refusal::at(user, format!("has {count} entries; 1 to {MAX_ACCESSOR_COUNT} are allowed")));
         }
-        self.entries_read.set(self.entries_read.get() + accessor.count.0);
+        self.charge(accessor.count.0, user)?;
+        Ok((accessor, component, shape))
+    }
+
+    /// Counts entries that are read or made up. A file may ask for the same ones again and again.
+    pub fn charge(&self, entries: u64, user: &str) -> Result<(), Refusal> {
+        self.entries_read.set(self.entries_read.get().saturating_add(entries));
         if self.entries_read.get() > MAX_ENTRIES_READ {
             return Err(Refusal::at(user, format!("makes more than {MAX_ENTRIES_READ} entries to read")));
         }
-        Ok((accessor, component, shape))
+        Ok(())
     }
 
     /// The dense data; `None` where the accessor starts from zeros.

@@ -24,6 +24,8 @@ pub const MAX_TRIANGLES: usize = 8 << 20;
 pub const MAX_ACCESSOR_COUNT: usize = MAX_TRIANGLES * 3;
 /// Most entries read from all accessors together; a file may name the same bytes many times over.
 pub const MAX_ENTRIES_READ: u64 = 4 * (MAX_ACCESSOR_COUNT as u64);
+/// Most attributes of primitives and of their morph targets, after every instance of every mesh is written out.
+pub const MAX_ATTRIBUTES: usize = 4 << 20;
 /// Most joints of a skin.
 pub const MAX_JOINTS: usize = 16_384;
 /// Farthest a coordinate may lie from the origin, in metres.

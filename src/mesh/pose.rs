@@ -46,6 +46,8 @@ fn joints(
             format!("has {count} entries; 1 to {MAX_JOINTS} are allowed"),
         ));
     }
+    // A skin may carry many meshes.
+    source.charge(skin.joints.len() as u64, place)?;
     let places = skin.joints.iter().map(|joint| world_from_node[joint.index()]);
     let Some(accessor) = skin.inverse_bind_matrices else { return Ok(places.collect()) };
     let user = format!("{place}.inverseBindMatrices");

@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::accessor::Source;
 use super::error::Refusal;
-use super::limits::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
+use super::limits::{MAX_ATTRIBUTES, MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use super::pose::{Pose, Vertices, same_count};
 use super::remarks::Remarks;
 use super::schema::{Mesh, Primitive, Whole};
@@ -24,6 +24,8 @@ pub(super) struct Writer<'a> {
     surfaces: Surfaces<'a>,
     mesh: TriangleMesh,
     remarks: Remarks,
+    /// Attributes that were looked at so far.
+    attributes: usize,
 }
 
 /// Primitives of one mesh whose vertices are the same.
@@ -59,7 +61,7 @@ impl<'a> Writer<'a> {
             warnings: Vec::new(),
             bvh: OnceLock::new(),
         };
-        Self { source, surfaces, mesh, remarks: Remarks::of(source.root) }
+        Self { source, surfaces, mesh, remarks: Remarks::of(source.root), attributes: 0 }
     }
 
     pub fn finish(mut self) -> TriangleMesh {
@@ -85,7 +87,13 @@ impl<'a> Writer<'a> {
     fn groups<'p>(&mut self, mesh: &'p Mesh, place: &str) -> Result<Vec<Group<'p>>, Refusal> {
         let mut groups: Vec<Group<'_>> = Vec::new();
         let mut known: HashMap<Key, usize> = HashMap::new();
+        let mut found = 0;
         for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let of_targets: usize = primitive.targets.iter().map(|target| 1 + target.len()).sum();
+            self.attributes += 1 + primitive.attributes.len() + of_targets;
+            if self.attributes > MAX_ATTRIBUTES {
+                return Err(Refusal::at(place, format!("makes more than {MAX_ATTRIBUTES} attributes to look at")));
+            }
             let mode = primitive.mode.map_or(TRIANGLES, |mode| mode.0);
             if !matches!(mode, TRIANGLES | STRIP | FAN) {
                 self.remarks.points_or_lines();
@@ -94,6 +102,8 @@ impl<'a> Writer<'a> {
             let place = format!("{place}.primitives[{p}]");
             let (surface, uv_set) = self.surfaces.of(primitive, &mut self.remarks);
             let triangles = self.triangles(primitive, mode, &place)?;
+            found += triangles.len();
+            self.reserve(0, found, &place)?;
             let list = |attributes: &super::schema::Attributes| -> Vec<_> {
                 attributes.iter().map(|(name, accessor)| (name.clone(), *accessor)).collect()
             };
@@ -117,7 +127,10 @@ impl<'a> Writer<'a> {
         }
         let corners = match primitive.indices {
             Some(accessor) => self.source.indices(accessor, &user)?,
-            None => (0..vertices as u32).collect(),
+            None => {
+                self.source.charge(vertices, &user)?;
+                (0..vertices as u32).collect()
+            }
         };
         if let Some(i) = corners.iter().position(|c| u64::from(*c) >= vertices) {
             let reason = format!("names vertex {} at entry {i}, but there are {vertices}", corners[i]);
@@ -126,6 +139,8 @@ impl<'a> Writer<'a> {
         if corners.len() < 3 || (mode == TRIANGLES && corners.len() % 3 != 0) {
             return Err(Refusal::at(user, format!("has {} entries, which does not make triangles", corners.len())));
         }
+        let count = if mode == TRIANGLES { corners.len() / 3 } else { corners.len() - 2 };
+        self.reserve(0, count, place)?;
         let mut triangles: Vec<[u32; 3]> = match mode {
             STRIP => {
                 (0..corners.len() - 2).map(|i| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]]).collect()
@@ -217,7 +232,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn reserve(&mut self, vertices: usize, triangles: usize, place: &str) -> Result<(), Refusal> {
+    /// Refuses what would make the mesh too large.
+    fn reserve(&self, vertices: usize, triangles: usize, place: &str) -> Result<(), Refusal> {
         if self.mesh.positions.len() + vertices > MAX_VERTICES {
             return Err(Refusal::at(place, format!("makes the mesh larger than {MAX_VERTICES} vertices")));
         }

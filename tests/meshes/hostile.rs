@@ -120,6 +120,53 @@ fn what_is_read_again_and_again_is_counted() {
     assert!(started.elapsed() < Duration::from_secs(20), "{:?}", started.elapsed());
 }
 
+/// Files of some hundred kilobytes in which everything is named by everything.
+#[test]
+fn what_many_nodes_name_is_counted() {
+    let nodes = |tiny: &mut Tiny, count: usize, node: Value| {
+        tiny.json["nodes"] = json!(vec![node; count]);
+        tiny.json["scenes"][0]["nodes"] = json!((0..count).collect::<Vec<_>>());
+    };
+    let primitives = |tiny: &mut Tiny, count: usize, primitive: Value| {
+        tiny.json["meshes"][0]["primitives"].as_array_mut().unwrap().extend(vec![primitive; count]);
+    };
+    let mut points = triangle();
+    nodes(&mut points, 50_000, json!({ "mesh": 0 }));
+    primitives(&mut points, 1_000, json!({ "attributes": { "POSITION": 0 }, "mode": 0 }));
+    let mut targets = triangle();
+    nodes(&mut targets, 50_000, json!({ "mesh": 0 }));
+    targets.json["meshes"][0]["primitives"][0]["targets"] = json!(vec![json!({}); 10_000]);
+    let mut joints = triangle();
+    nodes(&mut joints, 50_000, json!({ "mesh": 0, "skin": 0 }));
+    joints.json["skins"] = json!([{ "joints": vec![0; 10_000] }]);
+    let mut degenerate = triangle();
+    let same = degenerate.indices(&[0; 3]);
+    nodes(&mut degenerate, 50_000, json!({ "mesh": 0 }));
+    primitives(&mut degenerate, 1_000, json!({ "attributes": { "POSITION": 0 }, "indices": same }));
+    let mut large = triangle();
+    large.json["accessors"][0]["count"] = json!(8_000_000);
+    large.json["accessors"][0]["sparse"] = json!({
+        "count": 1,
+        "indices": { "bufferView": 0, "componentType": 5121 },
+        "values": { "bufferView": 0 },
+    });
+    large.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    large.json["meshes"][0]["primitives"] = json!([]);
+    primitives(&mut large, 100, json!({ "attributes": { "POSITION": 0 }, "mode": 5 }));
+    for (tiny, reason) in [
+        (points, "attributes to look at"),
+        (targets, "attributes to look at"),
+        (joints, "entries to read"),
+        (degenerate, "attributes to look at"),
+        (large, "triangles"),
+    ] {
+        let started = Instant::now();
+        let error = parse(&tiny.gltf(), Path::new("x.gltf"), None).unwrap_err();
+        assert!(error.reason.contains(reason), "{error}");
+        assert!(started.elapsed() < Duration::from_secs(20), "{reason}: {:?}", started.elapsed());
+    }
+}
+
 /// Textures of several files share one budget.
 #[test]
 fn textures_are_counted_for_the_scene_and_not_for_the_file() {
