@@ -44,7 +44,7 @@ impl Visitor<'_> for WholeVisitor {
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Whole, E> {
-        if value >= 0.0 && value < LARGEST_EXACT && value.fract() == 0.0 {
+        if (0.0..LARGEST_EXACT).contains(&value) && value.fract() == 0.0 {
             return Ok(Whole(value as u64));
         }
         Err(E::custom(format!("{value} is not a whole number")))
