@@ -13,15 +13,25 @@ struct Instance {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
+    // Factor of the vertices' colours and of their opacity.
+    color: vec4f,
+    // Rows of the texture's coordinates from those of the vertices.
+    texture_x: vec4f,
+    texture_y: vec4f,
     albedo: vec3f,
     specular: f32,
     owner: u32,
-    // 1: `albedo` stands for the mesh's own colours.
+    // 1: `albedo` stands for the mesh's own colours. What these cut out stays cut out.
     overridden: u32,
     // 1: the placement turns left into right, and so the order of a triangle's corners.
     mirrored: u32,
+    // Where the opacity is less, there is no surface.
+    alpha_cutoff: f32,
     // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
     ahead: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
@@ -31,7 +41,7 @@ struct Instance {
 struct Vertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    @location(2) color: vec3f,
+    @location(2) color: vec4f,
     @location(3) uv: vec2f,
 }
 
@@ -40,7 +50,7 @@ struct Varying {
     // Relative to the point that `ahead` puts before the eye.
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
-    @location(2) color: vec3f,
+    @location(2) color: vec4f,
     @location(3) uv: vec2f,
 }
 
@@ -72,7 +82,9 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
         view.near * NEAR_SHARE,
         dot(position, view.forward) + instance.ahead,
     );
-    return Varying(clip, position, normal, vertex.color, vertex.uv);
+    let uv = vec3f(vertex.uv, 1.0);
+    let place = vec2f(dot(instance.texture_x.xyz, uv), dot(instance.texture_y.xyz, uv));
+    return Varying(clip, position, normal, vertex.color, place);
 }
 
 // How far from the eye a place on a triangle is. Far off, what it is more than the depth along the view axis is little, and
@@ -87,9 +99,9 @@ fn mesh_distance(position: vec3f) -> f32 {
 
 @fragment
 fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
-    let texel = textureSample(base_color, base_sampler, in.uv).rgb;
+    let color = instance.color * in.color * textureSample(base_color, base_sampler, in.uv);
     let t = mesh_distance(in.position);
-    if t < view.near || t > view.far {
+    if t < view.near || t > view.far || color.a < instance.alpha_cutoff {
         discard;
     }
     let length_of_normal = length(in.normal);
@@ -98,6 +110,6 @@ fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
     // point away though the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));
-    let albedo = select(in.color * texel, instance.albedo, instance.overridden == 1u);
+    let albedo = select(color.rgb, instance.albedo, instance.overridden == 1u);
     return Written(t, instance.owner, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
 }

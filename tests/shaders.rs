@@ -175,12 +175,19 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 normal_x,
                 normal_y,
                 normal_z,
+                color,
+                texture_x,
+                texture_y,
                 albedo,
                 specular,
                 owner,
                 overridden,
                 mirrored,
-                ahead
+                alpha_cutoff,
+                ahead,
+                padding_0,
+                padding_1,
+                padding_2
             }
         ),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, padding }),

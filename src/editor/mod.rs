@@ -34,6 +34,7 @@ mod inspector_scene;
 mod inspector_transform;
 mod legend;
 mod messages;
+mod models;
 mod navigation;
 mod outliner;
 mod overlay;
@@ -63,7 +64,7 @@ pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
 use crate::flat::inspect::Look;
-use crate::flat::{FlatMesh, FlatScene, Flattener};
+use crate::flat::{FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
@@ -112,6 +113,7 @@ pub struct Editor {
     bench: Workbench,
     flat: Flattened,
     meshes: MeshLibrary,
+    models: models::Models,
     navigation: Navigation,
     viewport: viewport::Viewport,
     outliner: outliner::Outliner,
@@ -151,6 +153,7 @@ impl Editor {
             bench: Workbench::new(Document::new(Scene::new())),
             flat: Flattened::default(),
             meshes: MeshLibrary::new(None),
+            models: models::Models::default(),
             navigation: Navigation::default(),
             viewport: viewport::Viewport::default(),
             outliner: outliner::Outliner::default(),
@@ -216,6 +219,7 @@ impl Editor {
         }
         self.bench.settle(&ctx);
         self.refresh_flat();
+        self.poll_models(&ctx);
         self.send_title(&ctx);
         self.watch_file(&ctx);
         self.follow_recovery(&ctx, picture);
@@ -327,8 +331,7 @@ impl Editor {
             }
             Err(error) => self.flat.problem = Some(error.to_string()),
         }
-        let broken = |mesh: &FlatMesh| Some((mesh.id, self.meshes.get(&mesh.path).err()?.to_string()));
-        self.flat.mesh_problem = self.flat.scene.meshes.iter().find_map(broken);
+        self.find_mesh_problem();
     }
 
     fn open_dropped(&mut self, ctx: &Context) {

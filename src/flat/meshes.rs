@@ -1,17 +1,27 @@
 //! The meshes that a scene names, loaded.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::{FlatScene, Warning};
 use crate::mesh::{MeshLibrary, TriangleMesh};
 
 impl FlatScene {
-    /// The meshes beside [`FlatScene::meshes`], as rays and renderer want them, and a warning for each that cannot be had: the scene is
-    /// drawn without it.
+    /// The meshes beside [`FlatScene::meshes`], as rays and renderer want them, with warnings: about each that cannot be
+    /// had (the scene is drawn without it), and about what files contain that is not drawn, at the first node that
+    /// shows it.
     pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
         let mut warnings = Vec::new();
+        let mut told = HashSet::new();
         let load = |mesh: &super::FlatMesh| match library.get(&mesh.path) {
-            Ok(triangles) => Some(triangles),
+            Ok(triangles) => {
+                if !triangles.warnings.is_empty() && told.insert(mesh.path.clone()) {
+                    let warning =
+                        |reason: &String| Warning { node: mesh.id, name: mesh.path.clone(), reason: reason.clone() };
+                    warnings.extend(triangles.warnings.iter().map(warning));
+                }
+                Some(triangles)
+            }
             Err(error) => {
                 let reason = format!("the mesh is not drawn: {error}");
                 warnings.push(Warning { node: mesh.id, name: mesh.path.clone(), reason });

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::mesh_rays::{Meshes, trace_meshes};
@@ -11,7 +11,7 @@ use super::trace::{TraceError, Tracer};
 use super::twin::{SurfaceMaterial, surface};
 use super::{BACKGROUND_DEPTH, Buffers, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::{Camera, Ray};
-use crate::mesh::{MeshHit, Texture, TriangleMesh};
+use crate::mesh::{MeshHit, TriangleMesh};
 
 /// A picture, and how sure each pixel of it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,31 +122,12 @@ impl View<'_> {
 pub const FILE_MATERIAL: SurfaceMaterial =
     SurfaceMaterial { albedo: DVec3::ONE, specular: 0.2, emission: DVec3::ZERO, shininess: 32.0 };
 
-/// The mesh's own colour: that of the vertices times the texture.
+/// The mesh's own colour: that of vertices, part and texture.
 fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
-    let first = hit.triangle * 3;
-    let corners = [0, 1, 2].map(|i| mesh.indices[first as usize + i] as usize);
-    let mix = |corner: &dyn Fn(usize) -> DVec3| (0..3).map(|i| corner(corners[i]) * hit.weights[i]).sum::<DVec3>();
-    let color = mix(&|v| DVec3::from(mesh.colors[v].map(f64::from)));
-    let uv = mix(&|v| DVec3::new(mesh.uvs[v][0].into(), mesh.uvs[v][1].into(), 0.0));
-    let part = mesh.parts.iter().find(|part| part.indices.contains(&first));
-    match part.and_then(|part| part.base_color_texture) {
-        Some(texture) => color * sample(&mesh.textures[texture], uv.x, uv.y),
-        None => color,
-    }
-}
-
-/// The texture at (u, v), repeated, between the four nearest pixels; linear.
-fn sample(texture: &Texture, u: f64, v: f64) -> DVec3 {
-    let size = [texture.width, texture.height].map(i64::from);
-    let at = DVec2::new(u * size[0] as f64 - 0.5, v * size[1] as f64 - 0.5);
-    let (corner, part) = (at.floor(), at - at.floor());
-    let texel = |dx: i64, dy: i64| {
-        let x = (corner.x as i64 + dx).rem_euclid(size[0]);
-        let y = (corner.y as i64 + dy).rem_euclid(size[1]);
-        let start = 4 * (y * size[0] + x) as usize;
-        let [r, g, b] = [0, 1, 2].map(|i| f64::from(texture.rgba[start + i]) / 255.0);
-        shade_decode(DVec3::new(r, g, b))
+    let linear = |[r, g, b, a]: [u8; 4]| {
+        let [r, g, b, a] = [r, g, b, a].map(|c| f64::from(c) / 255.0);
+        shade_decode(DVec3::new(r, g, b)).extend(a)
     };
-    texel(0, 0).lerp(texel(1, 0), part.x).lerp(texel(0, 1).lerp(texel(1, 1), part.x), part.y)
+    let color: DVec4 = mesh.color(hit.triangle, hit.weights, linear);
+    color.truncate()
 }

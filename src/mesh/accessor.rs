@@ -3,12 +3,71 @@
 use std::borrow::Cow;
 use std::cell::Cell;
 
-use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
-use gltf::json::validation::Checked;
-use gltf::json::{Index, Root, buffer};
-
 use super::error::Refusal;
 use super::limits::{MAX_ACCESSOR_COUNT, MAX_ENTRIES_READ};
+use super::schema::{Accessor, Root, Whole};
+
+/// The type of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Component {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Component {
+    /// By the code that files hold.
+    pub fn of(code: Whole) -> Option<Self> {
+        Some(match code.0 {
+            5120 => Self::I8,
+            5121 => Self::U8,
+            5122 => Self::I16,
+            5123 => Self::U16,
+            5125 => Self::U32,
+            5126 => Self::F32,
+            _ => return None,
+        })
+    }
+
+    /// Whether indices may be of it.
+    pub fn is_index(self) -> bool {
+        matches!(self, Self::U8 | Self::U16 | Self::U32)
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+/// How many numbers make an entry. Matrices are more than rows of numbers: theirs may be padded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    Vector(usize),
+    Matrix(usize),
+}
+
+impl Shape {
+    /// By the name that files hold.
+    pub fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "SCALAR" => Self::Vector(1),
+            "VEC2" => Self::Vector(2),
+            "VEC3" => Self::Vector(3),
+            "VEC4" => Self::Vector(4),
+            "MAT2" => Self::Matrix(4),
+            "MAT3" => Self::Matrix(9),
+            "MAT4" => Self::Matrix(16),
+            _ => return None,
+        })
+    }
+}
 
 /// A document with the bytes of its buffers.
 pub(super) struct Source<'a> {
@@ -22,7 +81,7 @@ pub(super) struct Source<'a> {
 struct Layout<'a> {
     bytes: &'a [u8],
     stride: usize,
-    component: ComponentType,
+    component: Component,
     normalized: bool,
 }
 
@@ -32,12 +91,12 @@ impl Layout<'_> {
         let at = i * self.stride + c * self.component.size();
         let b = |k: usize| self.bytes[at + k];
         let (value, greatest) = match self.component {
-            ComponentType::F32 => return f32::from_le_bytes([b(0), b(1), b(2), b(3)]),
-            ComponentType::I8 => (f32::from(b(0) as i8), 127.0),
-            ComponentType::U8 => (f32::from(b(0)), 255.0),
-            ComponentType::I16 => (f32::from(i16::from_le_bytes([b(0), b(1)])), 32_767.0),
-            ComponentType::U16 => (f32::from(u16::from_le_bytes([b(0), b(1)])), 65_535.0),
-            ComponentType::U32 => (u32::from_le_bytes([b(0), b(1), b(2), b(3)]) as f32, 4_294_967_295.0),
+            Component::F32 => return f32::from_le_bytes([b(0), b(1), b(2), b(3)]),
+            Component::I8 => (f32::from(b(0) as i8), 127.0),
+            Component::U8 => (f32::from(b(0)), 255.0),
+            Component::I16 => (f32::from(i16::from_le_bytes([b(0), b(1)])), 32_767.0),
+            Component::U16 => (f32::from(u16::from_le_bytes([b(0), b(1)])), 65_535.0),
+            Component::U32 => (u32::from_le_bytes([b(0), b(1), b(2), b(3)]) as f32, 4_294_967_295.0),
         };
         if self.normalized { (value / greatest).max(-1.0) } else { value }
     }
@@ -46,9 +105,9 @@ impl Layout<'_> {
     fn index(&self, i: usize) -> Option<u32> {
         let b = |k: usize| self.bytes[i * self.stride + k];
         match self.component {
-            ComponentType::U8 => Some(u32::from(b(0))),
-            ComponentType::U16 => Some(u32::from(u16::from_le_bytes([b(0), b(1)]))),
-            ComponentType::U32 => Some(u32::from_le_bytes([b(0), b(1), b(2), b(3)])),
+            Component::U8 => Some(u32::from(b(0))),
+            Component::U16 => Some(u32::from(u16::from_le_bytes([b(0), b(1)]))),
+            Component::U32 => Some(u32::from_le_bytes([b(0), b(1), b(2), b(3)])),
             _ => None,
         }
     }
@@ -56,56 +115,91 @@ impl Layout<'_> {
 
 impl<'a> Source<'a> {
     /// The bytes of a buffer view.
-    pub fn view(&self, index: Index<buffer::View>) -> Result<&'a [u8], Refusal> {
-        let place = format!("bufferViews[{}]", index.value());
-        let view = self.root.get(index).ok_or_else(|| Refusal::at(&place, "is missing"))?;
-        let bytes = self.buffers.get(view.buffer.value()).ok_or_else(|| Refusal::at(&place, "has no buffer"))?;
-        let range = usize::try_from(view.byte_offset.unwrap_or_default().0).ok().and_then(|start| {
+    pub fn view(&self, index: Whole) -> Result<&'a [u8], Refusal> {
+        let place = format!("bufferViews[{}]", index.0);
+        let view = self.root.buffer_views.get(index.index()).ok_or_else(|| Refusal::at(&place, "is missing"))?;
+        let bytes = self.buffers.get(view.buffer.index()).ok_or_else(|| Refusal::at(&place, "has no buffer"))?;
+        let range = usize::try_from(view.byte_offset.0).ok().and_then(|start| {
             let end = start.checked_add(usize::try_from(view.byte_length.0).ok()?)?;
             bytes.get(start..end)
         });
         range.ok_or_else(|| Refusal::at(place, format!("reaches past the {} bytes of its buffer", bytes.len())))
     }
 
-    /// Vectors of `N` components, or of `N + 1` of which the last is left out where `or_longer` is set.
-    pub fn floats<const N: usize>(
+    /// Vectors of `N` components, or of fewer, down to `least`, which are filled up with ones.
+    pub fn floats<const N: usize>(&self, index: Whole, least: usize, user: &str) -> Result<Vec<[f32; N]>, Refusal> {
+        let (accessor, component, shape) = self.accessor(index, user)?;
+        let width = match shape {
+            Shape::Matrix(_) => return Err(Refusal::at(user, "is made of matrices")),
+            Shape::Vector(width) if width > N || width < least => {
+                return Err(Refusal::at(user, format!("has {width} components in each entry, not {N}")));
+            }
+            Shape::Vector(width) => width,
+        };
+        self.entries(accessor, component, width, user)
+    }
+
+    /// Matrices of 4 × 4, column by column.
+    pub fn matrices(&self, index: Whole, user: &str) -> Result<Vec<[f32; 16]>, Refusal> {
+        match self.accessor(index, user)? {
+            (accessor, component @ Component::F32, Shape::Matrix(16)) => self.entries(accessor, component, 16, user),
+            _ => Err(Refusal::at(user, "is not made of 4 × 4 matrices of floats")),
+        }
+    }
+
+    fn entries<const N: usize>(
         &self,
-        index: Index<Accessor>,
-        or_longer: bool,
+        accessor: &'a Accessor,
+        component: Component,
+        width: usize,
         user: &str,
     ) -> Result<Vec<[f32; N]>, Refusal> {
-        let (accessor, component, width) = self.accessor(index, user)?;
-        if width != N && !(or_longer && width == N + 1) {
-            return Err(Refusal::at(user, format!("has {width} components in each entry, not {N}")));
-        }
-        let count = accessor.count.0 as usize;
-        let mut out = vec![[0.0; N]; count];
-        if let Some(base) = self.base(accessor, component, width, user)? {
+        let read =
+            |layout: &Layout<'_>, i: usize| std::array::from_fn(|c| if c < width { layout.float(i, c) } else { 1.0 });
+        let base = self.base(accessor, component, width, user)?;
+        // Without data of its own an accessor holds zeros.
+        let zero = std::array::from_fn(|c| if c < width { 0.0 } else { 1.0 });
+        let mut out = vec![zero; accessor.count.0 as usize];
+        if let Some(base) = base {
             for (i, entry) in out.iter_mut().enumerate() {
-                *entry = std::array::from_fn(|c| base.float(i, c));
+                *entry = read(&base, i);
             }
         }
         if let Some(overlay) = self.overlay(accessor, component, width, user)? {
             for (i, target) in overlay.targets.into_iter().enumerate() {
-                out[target] = std::array::from_fn(|c| overlay.values.float(i, c));
+                out[target] = read(&overlay.values, i);
             }
         }
         Ok(out)
     }
 
+    /// How many entries the accessor says it has.
+    pub fn count(&self, index: Whole) -> u64 {
+        self.root.accessors.get(index.index()).map_or(0, |accessor| accessor.count.0)
+    }
+
+    /// Whether all entries are zero because the accessor has no data.
+    pub fn is_zero(&self, index: Whole) -> bool {
+        let accessor = self.root.accessors.get(index.index());
+        accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
+    }
+
     /// Vertex numbers.
-    pub fn indices(&self, index: Index<Accessor>, user: &str) -> Result<Vec<u32>, Refusal> {
-        let (accessor, component, width) = self.accessor(index, user)?;
-        if width != 1 || !matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) {
+    pub fn indices(&self, index: Whole, user: &str) -> Result<Vec<u32>, Refusal> {
+        let (accessor, component, shape) = self.accessor(index, user)?;
+        if shape != Shape::Vector(1) || !component.is_index() {
             return Err(Refusal::at(user, "are not unsigned whole numbers"));
         }
+        if self.is_zero(index) {
+            return Err(Refusal::at(user, "have no data"));
+        }
         let mut out = vec![0; accessor.count.0 as usize];
-        if let Some(base) = self.base(accessor, component, width, user)? {
+        if let Some(base) = self.base(accessor, component, 1, user)? {
             for (i, entry) in out.iter_mut().enumerate() {
                 *entry = base.index(i).unwrap_or(0);
             }
         }
-        if let Some(overlay) = self.overlay(accessor, component, width, user)? {
+        if let Some(overlay) = self.overlay(accessor, component, 1, user)? {
             for (i, target) in overlay.targets.into_iter().enumerate() {
                 out[target] = overlay.values.index(i).unwrap_or(0);
             }
@@ -113,44 +207,40 @@ impl<'a> Source<'a> {
         Ok(out)
     }
 
-    /// The accessor with its component type and its number of components; its count is within limits.
-    fn accessor(&self, index: Index<Accessor>, user: &str) -> Result<(&'a Accessor, ComponentType, usize), Refusal> {
+    /// The accessor with its component type and the shape of its entries; its count is within limits.
+    fn accessor(&self, index: Whole, user: &str) -> Result<(&'a Accessor, Component, Shape), Refusal> {
         let wrong = |reason: &str| Refusal::at(user, reason);
-        let accessor = self.root.get(index).ok_or_else(|| wrong("names an accessor that is missing"))?;
-        let Checked::Valid(GenericComponentType(component)) = accessor.component_type else {
-            return Err(wrong("has an unknown component type"));
-        };
-        let Checked::Valid(dimensions) = accessor.type_ else {
-            return Err(wrong("has an unknown type"));
-        };
-        if matches!(dimensions, Type::Mat2 | Type::Mat3 | Type::Mat4) {
-            return Err(wrong("is made of matrices"));
-        }
+        let missing = || wrong("names an accessor that is missing");
+        let accessor = self.root.accessors.get(index.index()).ok_or_else(missing)?;
+        let component = Component::of(accessor.component_type).ok_or_else(|| wrong("has an unknown component type"))?;
+        let shape = Shape::of(&accessor.kind).ok_or_else(|| wrong("has an unknown type"))?;
         if accessor.count.0 == 0 || accessor.count.0 > MAX_ACCESSOR_COUNT as u64 {
             let count = accessor.count.0;
             return Err(Refusal::at(user, format!("has {count} entries; 1 to {MAX_ACCESSOR_COUNT} are allowed")));
         }
-        // An accessor without bytes costs its author nothing, so it must not make us allocate much.
-        if accessor.buffer_view.is_none() && accessor.sparse.is_none() {
-            return Err(wrong("has no data"));
-        }
-        self.entries_read.set(self.entries_read.get() + accessor.count.0);
+        self.charge(accessor.count.0, user)?;
+        Ok((accessor, component, shape))
+    }
+
+    /// Counts entries that are read or made up. A file may ask for the same ones again and again.
+    pub fn charge(&self, entries: u64, user: &str) -> Result<(), Refusal> {
+        self.entries_read.set(self.entries_read.get().saturating_add(entries));
         if self.entries_read.get() > MAX_ENTRIES_READ {
             return Err(Refusal::at(user, format!("makes more than {MAX_ENTRIES_READ} entries to read")));
         }
-        Ok((accessor, component, dimensions.multiplicity()))
+        Ok(())
     }
 
     /// The dense data; `None` where the accessor starts from zeros.
     fn base(
         &self,
         accessor: &Accessor,
-        component: ComponentType,
+        component: Component,
         width: usize,
         user: &str,
     ) -> Result<Option<Layout<'a>>, Refusal> {
         let Some(view) = accessor.buffer_view else { return Ok(None) };
-        let offset = accessor.byte_offset.unwrap_or_default().0;
+        let offset = accessor.byte_offset.0;
         let mut layout = self.layout(view, offset, accessor.count.0, component, width, user)?;
         layout.normalized = accessor.normalized;
         Ok(Some(layout))
@@ -160,7 +250,7 @@ impl<'a> Source<'a> {
     fn overlay(
         &self,
         accessor: &Accessor,
-        component: ComponentType,
+        component: Component,
         width: usize,
         user: &str,
     ) -> Result<Option<Overlay<'a>>, Refusal> {
@@ -170,7 +260,7 @@ impl<'a> Source<'a> {
         if count == 0 || count > accessor.count.0 {
             return Err(Refusal::at(user, format!("replaces {count} of {} entries", accessor.count.0)));
         }
-        let Checked::Valid(gltf::json::accessor::IndexComponentType(index_type)) = sparse.indices.component_type else {
+        let Some(index_type) = Component::of(sparse.indices.component_type).filter(|c| c.is_index()) else {
             return Err(Refusal::at(user, "has indices of an unknown type"));
         };
         let indices =
@@ -190,21 +280,22 @@ impl<'a> Source<'a> {
 
     fn layout(
         &self,
-        view: Index<buffer::View>,
+        view: Whole,
         offset: u64,
         count: u64,
-        component: ComponentType,
+        component: Component,
         width: usize,
         user: &str,
     ) -> Result<Layout<'a>, Refusal> {
         let all = self.view(view)?;
         let size = component.size() * width;
-        let stride = self.root.get(view).and_then(|v| v.byte_stride).map_or(size, |stride| stride.0);
-        if stride < size {
+        let stride = self.root.buffer_views.get(view.index()).and_then(|v| v.byte_stride);
+        // 0 stands for tightly packed in files of some exporters, as it did in version 1.
+        let stride = stride.filter(|stride| stride.0 > 0).map_or(size as u64, |stride| stride.0);
+        if stride < size as u64 {
             return Err(Refusal::at(user, format!("has a stride of {stride} bytes for entries of {size}")));
         }
-        // Cannot overflow: counts and strides are bounded. The offset is the file's own, so it can.
-        let needed = (count - 1) * stride as u64 + size as u64;
+        let needed = (count - 1).saturating_mul(stride).saturating_add(size as u64);
         let range = usize::try_from(offset).ok().and_then(|start| {
             let end = start.checked_add(usize::try_from(needed).ok()?)?;
             all.get(start..end)
@@ -213,7 +304,7 @@ impl<'a> Source<'a> {
             let reason = format!("needs {needed} bytes from byte {offset}, but its view has {}", all.len());
             Refusal::at(user, reason)
         })?;
-        Ok(Layout { bytes, stride, component, normalized: false })
+        Ok(Layout { bytes, stride: stride as usize, component, normalized: false })
     }
 }
 

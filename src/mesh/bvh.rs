@@ -1,9 +1,8 @@
 //! A tree of boxes over triangles: the nearest hit of a ray in logarithmic time.
 //!
 //! Built by binned surface area heuristic (Wald, "On fast construction of SAH-based bounding volume
-//! hierarchies", 2007). Boxes are f32, as the positions are, so they are exact; rays are f64.
+//! hierarchies", 2007). Boxes are f64, since triangles may stand farther away than f32 can tell apart.
 
-use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use crate::geometry::{Aabb, Ray};
@@ -11,16 +10,13 @@ use crate::geometry::{Aabb, Ray};
 /// The corners of a triangle.
 pub type Triangle = [DVec3; 3];
 
-/// A node of the tree, laid out for upload. The left child of an inner node follows it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+/// A node of the tree. The left child of an inner node follows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BvhNode {
-    /// Least corner of its box.
-    pub min: [f32; 3],
+    /// Its box.
+    pub bounds: Aabb,
     /// Inner: index of the right child. Leaf: where its triangles start in [`Bvh::triangles`].
     pub first: u32,
-    /// Greatest corner of its box.
-    pub max: [f32; 3],
     /// Inner: 0. Leaf: how many triangles.
     pub count: u32,
 }
@@ -59,12 +55,7 @@ impl Bvh {
             }
             let own = &mut triangles[range.clone()];
             let bounds = own.iter().fold(Aabb::EMPTY, |b, t| b.union(&boxes[*t as usize]));
-            let mut node = BvhNode {
-                min: bounds.min.as_vec3().to_array(),
-                max: bounds.max.as_vec3().to_array(),
-                first: range.start as u32,
-                count: range.len() as u32,
-            };
+            let mut node = BvhNode { bounds, first: range.start as u32, count: range.len() as u32 };
             if range.len() > LEAF_TRIANGLES {
                 node.count = 0;
                 let middle = range.start + split(own, &boxes, depth);
@@ -77,8 +68,14 @@ impl Bvh {
     }
 
     /// The nearest hit with 0 ≤ t ≤ `max_t`: parameter, triangle, barycentric weights. Of equally near
-    /// ones, that of the lowest number.
-    pub fn hit(&self, ray: &Ray, max_t: f64, corners: impl Fn(u32) -> Triangle) -> Option<(f64, u32, [f64; 3])> {
+    /// ones, that of the lowest number. Only hits count of which `is_there` says so.
+    pub fn hit(
+        &self,
+        ray: &Ray,
+        max_t: f64,
+        corners: impl Fn(u32) -> Triangle,
+        is_there: impl Fn(u32, [f64; 3]) -> bool,
+    ) -> Option<(f64, u32, [f64; 3])> {
         let mut best: Option<(f64, u32, [f64; 3])> = None;
         let mut open = Vec::with_capacity(64);
         if !self.nodes.is_empty() {
@@ -101,6 +98,7 @@ impl Bvh {
                 if let Some((t, weights)) = hit_triangle(ray, &corners(triangle))
                     && t <= limit
                     && best.is_none_or(|(best_t, best_triangle, _)| t < best_t || triangle < best_triangle)
+                    && is_there(triangle, weights)
                 {
                     best = Some((t, triangle, weights));
                 }
@@ -130,8 +128,7 @@ pub fn hit_triangle(ray: &Ray, [a, b, c]: &Triangle) -> Option<(f64, [f64; 3])> 
 /// Where the ray enters the node's box; widened by a few units in the last place, so that rounding
 /// never loses a triangle that lies in a side of the box.
 fn entry(node: &BvhNode, ray: &Ray) -> Option<f64> {
-    let corner = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-    let (min, max) = (corner(node.min), corner(node.max));
+    let Aabb { min, max } = node.bounds;
     let slack = (min.abs().max(max.abs()).max_element() + ray.origin.abs().max_element()) * 1e-14;
     let (near, _) = Aabb::new(min - slack, max + slack).ray_interval(ray)?;
     Some(near * (1.0 - 1e-12))

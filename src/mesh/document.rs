@@ -1,26 +1,26 @@
 //! The JSON of a glTF file: taken out of its container, parsed, its references checked.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
-use gltf::json::{self, Root, mesh::Semantic, validation::Checked};
-
-use super::error::Refusal;
+use super::error::{Refusal, name};
+use super::limits::{MAX_JSON_COMMAS, MAX_JSON_OBJECTS};
+use super::references::check_references;
+use super::schema::{Asset, Root, Versioned};
 
 /// A checked document and the binary chunk of its container.
 ///
-/// Invariant: every index that the document holds is in range, so `root.get(index)` finds something.
+/// Invariant: every index that the document holds is in range.
 pub(super) struct Document<'a> {
     pub root: Root,
     pub binary_chunk: Option<&'a [u8]>,
 }
 
+/// Extensions that are read. Files that need another one are refused.
+pub(super) const SUPPORTED: &[&str] =
+    &["KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"];
+
 /// Parses a .gltf or .glb file.
 pub(super) fn read_document(bytes: &[u8]) -> Result<Document<'_>, Refusal> {
     let (text, binary_chunk) = if bytes.starts_with(MAGIC) { split_container(bytes)? } else { (bytes, None) };
-    // The crate has panicked on broken files; the checks here leave no known way, this is the net.
-    let root = catch_unwind(AssertUnwindSafe(|| parse(text)))
-        .unwrap_or_else(|_| Err(Refusal::at("", "is broken in a way that the glTF reader cannot name")))?;
-    Ok(Document { root, binary_chunk })
+    Ok(Document { root: parse(text)?, binary_chunk })
 }
 
 const MAGIC: &[u8] = b"glTF";
@@ -62,48 +62,57 @@ fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Refusal> {
 }
 
 fn parse(text: &[u8]) -> Result<Root, Refusal> {
-    let mut root: Root =
-        json::deserialize::from_slice(text).map_err(|e| Refusal::at("", format!("is not glTF JSON: {e}")))?;
-    // Integers in attributes are read as they are, which is all that this extension asks for.
-    root.extensions_required.retain(|name| name != "KHR_mesh_quantization");
-    // The crate's own validation indexes the accessors by these without a look.
-    for (m, mesh) in root.meshes.iter().enumerate() {
-        for (p, primitive) in mesh.primitives.iter().enumerate() {
-            let place = format!("meshes[{m}].primitives[{p}].attributes.POSITION");
-            match primitive.attributes.get(&Checked::Valid(Semantic::Positions)) {
-                None => return Err(Refusal::at(place, "is missing")),
-                Some(index) if index.value() >= root.accessors.len() => {
-                    return Err(Refusal::at(place, format!("names accessor {}, which is missing", index.value())));
-                }
-                Some(_) => {}
-            }
+    // Byte order marks are not allowed, and are written by some editors.
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    check_amount(text)?;
+    let versioned: Versioned =
+        serde_json::from_slice(text).map_err(|e| Refusal::at("", format!("is not glTF JSON: {e}")))?;
+    check_version(versioned.asset.as_ref())?;
+    let mut json = serde_json::Deserializer::from_slice(text);
+    let root: Root = serde_path_to_error::deserialize(&mut json).map_err(|error| {
+        let place = error.path().to_string();
+        Refusal::at(if place == "." { String::new() } else { place }, format!("is not glTF JSON: {}", error.inner()))
+    })?;
+    for (i, extension) in root.extensions_required.iter().enumerate() {
+        if !SUPPORTED.contains(&extension.as_str()) {
+            let reason = format!("the file needs {}, which is not supported", name(extension));
+            return Err(Refusal::at(format!("extensionsRequired[{i}]"), reason));
         }
     }
-    match gltf::Document::from_json(root) {
-        Ok(document) => Ok(document.into_json()),
-        Err(gltf::Error::Validation(faults)) => {
-            let (place, fault) = faults.first().map_or_else(
-                || (String::new(), "is not valid".into()),
-                |(path, fault)| (plain_place(path.as_str()), reason_of(*fault).to_owned()),
-            );
-            Err(Refusal::at(place, fault))
+    check_references(&root)?;
+    Ok(root)
+}
+
+/// Refuses text whose objects would take much more memory than the text. Brackets within strings count too.
+fn check_amount(text: &[u8]) -> Result<(), Refusal> {
+    let (mut objects, mut commas) = (0, 0);
+    for byte in text {
+        match byte {
+            b'{' | b'[' => objects += 1,
+            b',' => commas += 1,
+            _ => {}
         }
-        Err(other) => Err(Refusal::at("", other.to_string())),
     }
+    if objects > MAX_JSON_OBJECTS {
+        return Err(Refusal::at("", format!("holds {objects} objects, more than {MAX_JSON_OBJECTS}")));
+    }
+    if commas > MAX_JSON_COMMAS {
+        return Err(Refusal::at("", format!("holds {commas} values, more than {MAX_JSON_COMMAS}")));
+    }
+    Ok(())
 }
 
-/// The crate writes `a.b["c"]` and, for some, appends ` = "value"`: ours is `a.b.c`.
-fn plain_place(path: &str) -> String {
-    path.split(" = ").next().unwrap_or(path).replace("[\"", ".").replace("\"]", "")
-}
-
-fn reason_of(fault: json::validation::Error) -> &'static str {
-    use json::validation::Error;
-    match fault {
-        Error::IndexOutOfBounds => "names something that is missing",
-        Error::Invalid => "has a value that glTF does not allow",
-        Error::Missing => "lacks data that glTF demands",
-        Error::Oversize => "is too large",
-        Error::Unsupported => "is an extension that is needed but not supported",
+/// Before anything else is read: files of version 1 are made otherwise, and would be refused for a wrong reason.
+fn check_version(asset: Option<&Asset>) -> Result<(), Refusal> {
+    let Some(version) = asset.and_then(|asset| asset.version.as_deref()) else {
+        return Err(Refusal::at("", "has no asset.version, so it is no glTF file"));
+    };
+    let needed = asset.and_then(|asset| asset.min_version.as_deref()).unwrap_or(version);
+    if !version.starts_with("2.") {
+        return Err(Refusal::at("asset.version", format!("is {}; files of glTF 2 are read", name(version))));
     }
+    if !needed.starts_with("2.") || (needed != "2.0" && needed != version) {
+        return Err(Refusal::at("asset.minVersion", format!("is {}; files of glTF 2.0 are read", name(needed))));
+    }
+    Ok(())
 }

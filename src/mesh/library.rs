@@ -1,24 +1,67 @@
-//! Every mesh of a scene, loaded once.
+//! Every mesh of a scene, loaded once, and again when its files change.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::resolve::{inside, read_file};
-use super::{MeshError, TriangleMesh, parse};
+use super::limits::MAX_TEXTURE_BYTES;
+use super::load::parse_within;
+use super::resolve::{Reader, Stamp, inside, read_file};
+use super::{MeshError, TriangleMesh};
+
+/// A mesh, or why there is none.
+pub type MeshResult = Result<Arc<TriangleMesh>, Arc<MeshError>>;
 
 /// The meshes that a scene names, by their paths relative to the scene's folder. Failures are kept
 /// too, so that a broken file is read once and not once per frame.
 #[derive(Debug, Default)]
 pub struct MeshLibrary {
     folder: Option<PathBuf>,
-    loaded: HashMap<String, Result<Arc<TriangleMesh>, Arc<MeshError>>>,
+    loaded: HashMap<String, Loaded>,
+    revision: u64,
+}
+
+#[derive(Debug)]
+struct Loaded {
+    result: MeshResult,
+    /// The files that it was made from, as they were.
+    files: Vec<Stamp>,
+}
+
+/// A mesh of a library with the files that it was made from: enough to read it again on another thread.
+#[derive(Clone, Debug)]
+pub struct MeshSource {
+    folder: Option<PathBuf>,
+    path: String,
+    files: Vec<Stamp>,
+    /// Bytes that its textures may take.
+    texture_budget: u64,
+}
+
+/// A mesh that was read again.
+#[derive(Debug)]
+pub struct Reread {
+    source: MeshSource,
+    result: MeshResult,
+}
+
+/// What came of a mesh that was read again.
+#[derive(Clone, Debug)]
+pub enum Replaced {
+    /// It stands for the old one.
+    Fresh(Arc<TriangleMesh>),
+    /// It cannot be used, and the old one stays.
+    Kept(Arc<MeshError>),
+    /// There was none that could be used, and there is none now.
+    Broken(Arc<MeshError>),
+    /// Nobody waits for it: the library has moved to another folder.
+    Unwanted,
 }
 
 impl MeshLibrary {
     /// A library for scenes in `folder`; without one (a scene that was never saved) nothing is found.
     pub fn new(folder: Option<PathBuf>) -> Self {
-        Self { folder, loaded: HashMap::new() }
+        Self { folder, ..Self::default() }
     }
 
     /// The folder that paths are relative to.
@@ -29,34 +72,121 @@ impl MeshLibrary {
     /// Moves to another folder, and forgets everything where it is another one.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
         if self.folder != folder {
-            *self = Self::new(folder);
+            *self = Self { revision: self.revision + 1, ..Self::new(folder) };
         }
     }
 
-    /// Forgets everything, so that changed files are read again.
-    pub fn forget(&mut self) {
-        self.loaded.clear();
+    /// Another number whenever a mesh was loaded, replaced or forgotten.
+    pub fn revision(&self) -> u64 {
+        self.revision
     }
 
     /// The mesh in the file of this name, from memory if it was asked for before. The path must stay
     /// inside the folder; the error names it as the scene does.
-    pub fn get(&mut self, path: &str) -> Result<Arc<TriangleMesh>, Arc<MeshError>> {
+    pub fn get(&mut self, path: &str) -> MeshResult {
         if let Some(known) = self.loaded.get(path) {
-            return known.clone();
+            return known.result.clone();
         }
-        let result = self.read(path).map(Arc::new).map_err(Arc::new);
-        self.loaded.insert(path.to_owned(), result.clone());
+        let source = self.source(path.to_owned(), Vec::new());
+        let Reread { source, result } = source.read();
+        self.loaded.insert(path.to_owned(), Loaded { result: result.clone(), files: source.files });
+        self.revision += 1;
         result
     }
 
-    fn read(&self, path: &str) -> Result<TriangleMesh, MeshError> {
-        let refuse = |reason: String| MeshError { file: path.to_owned(), place: String::new(), reason };
+    /// The mesh of this name, if it was loaded before.
+    pub fn known(&self, path: &str) -> Option<&MeshResult> {
+        self.loaded.get(path).map(|loaded| &loaded.result)
+    }
+
+    /// All that was asked for, with the files that were read.
+    pub fn sources(&self) -> Vec<MeshSource> {
+        let sources = self.loaded.iter().map(|(path, loaded)| self.source(path.clone(), loaded.files.clone()));
+        sources.collect()
+    }
+
+    fn source(&self, path: String, files: Vec<Stamp>) -> MeshSource {
+        let others = self.loaded.iter().filter(|(other, _)| **other != path);
+        let taken: u64 =
+            others.filter_map(|(_, loaded)| loaded.result.as_ref().ok()).map(|mesh| texture_bytes(mesh)).sum();
+        let texture_budget = MAX_TEXTURE_BYTES.saturating_sub(taken);
+        MeshSource { folder: self.folder.clone(), path, files, texture_budget }
+    }
+
+    /// Puts a mesh that was read again in the place of the old one, unless it is broken and the old one is not.
+    pub fn replace(&mut self, fresh: Reread) -> Replaced {
+        let Reread { source, result } = fresh;
+        let Some(loaded) = self.loaded.get_mut(&source.path).filter(|_| self.folder == source.folder) else {
+            return Replaced::Unwanted;
+        };
+        self.revision += 1;
+        // Of the broken one, too, so that it is not read again until it changes again.
+        loaded.files = source.files;
+        match (&loaded.result, &result) {
+            (Ok(_), Err(error)) => Replaced::Kept(error.clone()),
+            (Err(_), Err(error)) => {
+                let error = error.clone();
+                loaded.result = result;
+                Replaced::Broken(error)
+            }
+            (_, Ok(mesh)) => {
+                let mesh = mesh.clone();
+                loaded.result = result;
+                Replaced::Fresh(mesh)
+            }
+        }
+    }
+}
+
+impl MeshSource {
+    /// The path, as the scene names it.
+    pub fn path(&self) -> &str {
+        &self.path
+    }
+
+    /// The files as they are now; the same as before where nothing has changed.
+    pub(super) fn look(&self) -> Vec<Stamp> {
+        self.files.iter().map(Stamp::again).collect()
+    }
+
+    /// The files as they were when they were read.
+    pub(super) fn files(&self) -> &[Stamp] {
+        &self.files
+    }
+
+    /// Reads it, with the files that it names.
+    pub fn read(mut self) -> Reread {
+        let mut files = Vec::new();
+        let result = self.read_into(&mut files);
+        self.files = files;
+        Reread { source: self, result: result.map(Arc::new).map_err(Arc::new) }
+    }
+
+    fn read_into(&self, files: &mut Vec<Stamp>) -> Result<TriangleMesh, MeshError> {
+        let refuse = |reason: String| MeshError::new(&self.path, "", &reason);
         let Some(folder) = &self.folder else {
             return Err(refuse("the scene has no folder to look in until it is saved".into()));
         };
-        let file = inside(folder, path).map_err(refuse)?;
+        // Before it is read: what changes meanwhile is seen later.
+        files.push(Stamp::of(&folder.join(&self.path)));
+        let file = inside(folder, &self.path).map_err(refuse)?;
         let bytes = read_file(&file).map_err(refuse)?;
         // What the glTF names must lie beside it or below, as for any glTF.
-        parse(&bytes, Path::new(path), file.parent())
+        let reader = Reader::new(file.parent());
+        let mut budget = self.texture_budget;
+        let result = parse_within(&bytes, Path::new(&self.path), &reader, &mut budget);
+        files.extend(reader.into_files());
+        result
     }
+}
+
+impl Reread {
+    /// Where it came from.
+    pub fn source(&self) -> &MeshSource {
+        &self.source
+    }
+}
+
+fn texture_bytes(mesh: &TriangleMesh) -> u64 {
+    mesh.textures.iter().map(|texture| texture.rgba.len() as u64).sum()
 }

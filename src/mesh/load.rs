@@ -5,15 +5,15 @@ use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use gltf::json::Root;
-
 use super::accessor::Source;
 use super::document::{Document, read_document};
 use super::error::Refusal;
-use super::forest::placed_meshes;
-use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES};
+use super::forest::walk;
+use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES, MAX_TEXTURE_BYTES};
+use super::pose::{Pose, morph_weights};
 use super::primitive::Writer;
-use super::resolve::{read_file, read_uri};
+use super::resolve::{Reader, read_file};
+use super::surface::Surfaces;
 use super::{MeshError, TriangleMesh};
 
 /// Reads a .gltf or .glb file, with the buffers and images it names in its own folder.
@@ -30,13 +30,25 @@ pub fn load(path: &Path) -> Result<TriangleMesh, MeshError> {
 /// # Errors
 /// As [`load`].
 pub fn parse(bytes: &[u8], file: &Path, folder: Option<&Path>) -> Result<TriangleMesh, MeshError> {
+    let mut texture_budget = MAX_TEXTURE_BYTES;
+    parse_within(bytes, file, &Reader::new(folder), &mut texture_budget)
+}
+
+/// The same by a given reader; `texture_budget` is how many bytes decoded textures may still take.
+pub(super) fn parse_within(
+    bytes: &[u8],
+    file: &Path,
+    reader: &Reader<'_>,
+    texture_budget: &mut u64,
+) -> Result<TriangleMesh, MeshError> {
     let read = || {
         if bytes.len() as u64 > MAX_FILE_BYTES {
             return Err(Refusal::at("", format!("has more than {MAX_FILE_BYTES} bytes")));
         }
         let document = read_document(bytes)?;
-        let buffers = read_buffers(&document, folder)?;
-        write_out(&Source { root: &document.root, buffers: &buffers, entries_read: Cell::new(0) }, folder)
+        let buffers = read_buffers(&document, reader)?;
+        let source = Source { root: &document.root, buffers: &buffers, entries_read: Cell::new(0) };
+        write_out(&source, Surfaces::new(&source, reader, texture_budget))
     };
     // No way into a panic is known, but image decoders and this code meet files that nobody has seen.
     catch_unwind(AssertUnwindSafe(read))
@@ -44,13 +56,13 @@ pub fn parse(bytes: &[u8], file: &Path, folder: Option<&Path>) -> Result<Triangl
         .map_err(|refusal| refusal.of(file))
 }
 
-fn read_buffers<'a>(document: &Document<'a>, folder: Option<&Path>) -> Result<Vec<Cow<'a, [u8]>>, Refusal> {
+fn read_buffers<'a>(document: &Document<'a>, reader: &Reader<'_>) -> Result<Vec<Cow<'a, [u8]>>, Refusal> {
     let mut total = 0;
     let mut buffers = Vec::with_capacity(document.root.buffers.len());
     for (i, buffer) in document.root.buffers.iter().enumerate() {
         let place = format!("buffers[{i}]");
         let bytes = match (&buffer.uri, document.binary_chunk) {
-            (Some(uri), _) => read_uri(uri, folder).map(Cow::Owned),
+            (Some(uri), _) => reader.uri(uri).map(Cow::Owned),
             (None, Some(chunk)) if i == 0 => Ok(Cow::Borrowed(chunk)),
             (None, _) => Err("has no data".to_owned()),
         };
@@ -73,14 +85,17 @@ fn read_buffers<'a>(document: &Document<'a>, folder: Option<&Path>) -> Result<Ve
     Ok(buffers)
 }
 
-fn write_out(source: &Source<'_>, folder: Option<&Path>) -> Result<TriangleMesh, Refusal> {
-    let root: &Root = source.root;
-    let mut writer = Writer::new(source, folder);
-    for placed in placed_meshes(root)? {
-        for (p, primitive) in root.meshes[placed.mesh].primitives.iter().enumerate() {
-            let place = format!("meshes[{}].primitives[{p}]", placed.mesh);
-            writer.add(primitive, &placed.world_from_local, &place)?;
-        }
+fn write_out<'a>(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Result<TriangleMesh, Refusal> {
+    let root = source.root;
+    let forest = walk(root)?;
+    let mut writer = Writer::new(source, surfaces);
+    for &index in &forest.shown {
+        let node = &root.nodes[index];
+        let Some((number, mesh)) = node.mesh.and_then(|mesh| Some((mesh.0, root.meshes.get(mesh.index())?))) else {
+            continue;
+        };
+        let pose = Pose::of(source, &forest.world_from_node, index)?;
+        writer.add(mesh, &pose, morph_weights(root, node), &format!("meshes[{number}]"))?;
     }
     let mesh = writer.finish();
     if mesh.indices.is_empty() { Err(Refusal::at("", "shows no triangles")) } else { Ok(mesh) }

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! .gltf / .glb ──► resolve (files, data URIs) ──► document (JSON, checked) ──► forest (who stands where)
-//!              ──► primitive (accessors, textures) ──► TriangleMesh ──► bvh (on the first ray)
+//!              ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
 //! ```
 //!
-//! Files come from strangers. Every number is checked before anything is read or allocated by it, the
-//! crate that parses the JSON runs behind `catch_unwind`, and nothing outside the file's own folder is
-//! opened. What is refused is named: file, place in the file, reason.
+//! Files come from strangers. Every number is checked before anything is read or allocated by it, all of it runs
+//! behind `catch_unwind`, and nothing outside the file's own folder is opened. What is refused is named: file, place
+//! in the file, reason. What a file contains that is not drawn is named, too (`remarks`).
 
 mod accessor;
 mod bvh;
@@ -17,13 +17,22 @@ mod forest;
 mod library;
 pub mod limits;
 mod load;
+mod pose;
 mod primitive;
+mod references;
+mod remarks;
 mod resolve;
+mod schema;
+mod surface;
 mod texture;
 mod triangle_mesh;
+mod watch;
 
 pub use bvh::{Bvh, BvhNode};
 pub use error::MeshError;
-pub use library::MeshLibrary;
+pub use library::{MeshLibrary, MeshResult, MeshSource, Replaced, Reread};
 pub use load::{load, parse};
-pub use triangle_mesh::{MeshHit, Part, Texture, TriangleMesh};
+pub use surface::Surface;
+pub use texture::{Sampler, Texture, Wrap};
+pub use triangle_mesh::{MeshHit, Part, TriangleMesh};
+pub use watch::Watcher;

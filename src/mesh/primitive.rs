@@ -1,41 +1,54 @@
 //! Primitives: from attributes to triangles in the file's space.
+//!
+//! Primitives of a mesh that name the same accessors share their vertices, and only vertices that a triangle uses are
+//! written: 850 primitives that take pieces of one large accessor cost no more than one.
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::OnceLock;
 
-use glam::{DAffine3, DMat3, DVec3};
-use gltf::json::mesh::{Mode, Primitive, Semantic};
-use gltf::json::validation::Checked;
-use gltf::json::{Index, accessor, image, texture};
+use glam::DVec3;
 
 use super::accessor::Source;
 use super::error::Refusal;
-use super::limits::{MAX_COORDINATE, MAX_TEXTURE_BYTES, MAX_TRIANGLES, MAX_VERTICES};
-use super::resolve::read_uri;
-use super::texture::{Place, decode, place_of};
+use super::limits::{MAX_ATTRIBUTES, MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
+use super::pose::{Pose, Vertices, same_count};
+use super::remarks::Remarks;
+use super::schema::{Mesh, Primitive, Whole};
+use super::surface::{Surface, Surfaces};
 use super::{Part, TriangleMesh};
 use crate::geometry::Aabb;
 
-/// Writes primitives into one mesh, one after the other.
+/// Writes meshes into one, one after the other.
 pub(super) struct Writer<'a> {
     source: &'a Source<'a>,
-    folder: Option<&'a Path>,
+    surfaces: Surfaces<'a>,
     mesh: TriangleMesh,
-    /// Which of the mesh's textures an image has become.
-    texture_of: HashMap<usize, usize>,
-    texture_budget: u64,
+    remarks: Remarks,
+    /// Attributes that were looked at so far.
+    attributes: usize,
 }
 
-/// What a primitive says of its surface.
-struct Surface {
-    factor: [f32; 3],
-    texture: Option<usize>,
-    uv_set: u32,
+/// Primitives of one mesh whose vertices are the same.
+struct Group<'p> {
+    /// The first of them, whose attributes stand for all.
+    primitive: &'p Primitive,
+    place: String,
+    /// Of the texture coordinates.
+    uv_set: u64,
+    runs: Vec<Run>,
 }
+
+/// The triangles of one primitive.
+struct Run {
+    surface: Surface,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// What two primitives must have in common to share vertices.
+type Key = (Vec<(String, Whole)>, Vec<Vec<(String, Whole)>>, u64);
 
 impl<'a> Writer<'a> {
-    pub fn new(source: &'a Source<'a>, folder: Option<&'a Path>) -> Self {
+    pub fn new(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Self {
         let mesh = TriangleMesh {
             positions: Vec::new(),
             normals: Vec::new(),
@@ -45,73 +58,182 @@ impl<'a> Writer<'a> {
             parts: Vec::new(),
             textures: Vec::new(),
             bounds: Aabb::EMPTY,
+            warnings: Vec::new(),
             bvh: OnceLock::new(),
         };
-        Self { source, folder, mesh, texture_of: HashMap::new(), texture_budget: MAX_TEXTURE_BYTES }
+        Self { source, surfaces, mesh, remarks: Remarks::of(source.root), attributes: 0 }
     }
 
     pub fn finish(mut self) -> TriangleMesh {
-        let corners = self.mesh.indices.iter().map(|i| self.mesh.positions[*i as usize]);
-        self.mesh.bounds = Aabb::from_points(corners.map(|p| DVec3::from(p.map(f64::from))));
+        let mesh = &self.mesh;
+        let corners = mesh.parts.iter().flat_map(|part| {
+            let indices = &mesh.indices[part.indices.start as usize..part.indices.end as usize];
+            indices.iter().map(|i| part.origin + point(mesh.positions[*i as usize]))
+        });
+        self.mesh.bounds = Aabb::from_points(corners);
+        self.mesh.textures = self.surfaces.textures;
+        self.mesh.warnings = self.remarks.finish();
         self.mesh
     }
 
-    /// Adds a primitive as it stands in the world. Points and lines have no surface and are left out.
-    pub fn add(&mut self, primitive: &Primitive, world_from_local: &DAffine3, place: &str) -> Result<(), Refusal> {
-        let Checked::Valid(mode) = primitive.mode else {
-            return Err(Refusal::at(format!("{place}.mode"), "is not known"));
-        };
-        if !matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan) {
-            return Ok(());
+    /// Adds a mesh as it stands in the file's space. Points and lines have no surface and are left out.
+    pub fn add(&mut self, mesh: &Mesh, pose: &Pose, morph: &[f64], place: &str) -> Result<(), Refusal> {
+        for group in self.groups(mesh, place)? {
+            self.add_group(&group, pose, morph)?;
         }
-        let surface = self.surface(primitive, place)?;
-        let positions = self.positions(primitive, world_from_local, place)?;
-        let triangles = self.triangles(primitive, mode, positions.len(), world_from_local, place)?;
-        let colors = self.colors(primitive, surface.factor, positions.len(), place)?;
-        let uvs = self.uvs(primitive, &surface, positions.len(), place)?;
-        let normals = self.normals(primitive, world_from_local, positions.len(), place)?;
-        let first_index = self.mesh.indices.len() as u32;
-        match normals {
-            Some(normals) => {
-                self.reserve(positions.len(), triangles.len(), place)?;
-                let base = self.mesh.positions.len() as u32;
-                self.mesh.indices.extend(triangles.iter().flatten().map(|v| base + v));
-                self.mesh.normals.extend(mended_normals(&positions, &triangles, normals));
-                self.mesh.positions.extend(positions);
-                self.mesh.colors.extend(colors);
-                self.mesh.uvs.extend(uvs);
-            }
-            // Without normals a surface is flat-shaded (specification, 3.7.2.1): no vertex is shared.
-            None => {
-                self.reserve(triangles.len() * 3, triangles.len(), place)?;
-                for triangle in &triangles {
-                    let corners = triangle.map(|v| v as usize);
-                    let normal = face_normal(corners.map(|v| positions[v])).unwrap_or(DVec3::Y);
-                    for v in corners {
-                        self.mesh.indices.push(self.mesh.positions.len() as u32);
-                        self.mesh.positions.push(positions[v]);
-                        self.mesh.normals.push(normal.as_vec3().to_array());
-                        self.mesh.colors.push(colors[v]);
-                        self.mesh.uvs.push(uvs[v]);
-                    }
-                }
-            }
-        }
-        self.add_part(first_index, surface.texture);
         Ok(())
     }
 
-    /// The run from `first_index` to the end; joined to the run before where the texture is the same.
-    fn add_part(&mut self, first_index: u32, texture: Option<usize>) {
+    fn groups<'p>(&mut self, mesh: &'p Mesh, place: &str) -> Result<Vec<Group<'p>>, Refusal> {
+        let mut groups: Vec<Group<'_>> = Vec::new();
+        let mut known: HashMap<Key, usize> = HashMap::new();
+        let mut found = 0;
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            let of_targets: usize = primitive.targets.iter().map(|target| 1 + target.len()).sum();
+            self.attributes += 1 + primitive.attributes.len() + of_targets;
+            if self.attributes > MAX_ATTRIBUTES {
+                return Err(Refusal::at(place, format!("makes more than {MAX_ATTRIBUTES} attributes to look at")));
+            }
+            let mode = primitive.mode.map_or(TRIANGLES, |mode| mode.0);
+            if !matches!(mode, TRIANGLES | STRIP | FAN) {
+                self.remarks.points_or_lines();
+                continue;
+            }
+            let place = format!("{place}.primitives[{p}]");
+            let (surface, uv_set) = self.surfaces.of(primitive, &mut self.remarks);
+            let triangles = self.triangles(primitive, mode, &place)?;
+            found += triangles.len();
+            self.reserve(0, found, &place)?;
+            let list = |attributes: &super::schema::Attributes| -> Vec<_> {
+                attributes.iter().map(|(name, accessor)| (name.clone(), *accessor)).collect()
+            };
+            let key = (list(&primitive.attributes), primitive.targets.iter().map(list).collect(), uv_set);
+            let group = *known.entry(key).or_insert(groups.len());
+            if group == groups.len() {
+                groups.push(Group { primitive, place, uv_set, runs: Vec::new() });
+            }
+            groups[group].runs.push(Run { surface, triangles });
+        }
+        Ok(groups)
+    }
+
+    /// Corners of each triangle, all of them among the vertices; those with a repeated corner are left out.
+    fn triangles(&self, primitive: &Primitive, mode: u64, place: &str) -> Result<Vec<[u32; 3]>, Refusal> {
+        let user = format!("{place}.indices");
+        let vertices = primitive.attributes.get("POSITION").map_or(0, |accessor| self.source.count(*accessor));
+        if vertices == 0 || vertices > MAX_VERTICES as u64 {
+            let reason = format!("has {vertices} entries; 1 to {MAX_VERTICES} are allowed");
+            return Err(Refusal::at(format!("{place}.attributes.POSITION"), reason));
+        }
+        let corners = match primitive.indices {
+            Some(accessor) => self.source.indices(accessor, &user)?,
+            None => {
+                self.source.charge(vertices, &user)?;
+                (0..vertices as u32).collect()
+            }
+        };
+        if let Some(i) = corners.iter().position(|c| u64::from(*c) >= vertices) {
+            let reason = format!("names vertex {} at entry {i}, but there are {vertices}", corners[i]);
+            return Err(Refusal::at(user, reason));
+        }
+        if corners.len() < 3 || (mode == TRIANGLES && corners.len() % 3 != 0) {
+            return Err(Refusal::at(user, format!("has {} entries, which does not make triangles", corners.len())));
+        }
+        let count = if mode == TRIANGLES { corners.len() / 3 } else { corners.len() - 2 };
+        self.reserve(0, count, place)?;
+        let mut triangles: Vec<[u32; 3]> = match mode {
+            STRIP => {
+                (0..corners.len() - 2).map(|i| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]]).collect()
+            }
+            FAN => corners[1..].windows(2).map(|w| [w[0], w[1], corners[0]]).collect(),
+            _ => corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
+        };
+        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        Ok(triangles)
+    }
+
+    fn add_group(&mut self, group: &Group<'_>, pose: &Pose, morph: &[f64]) -> Result<(), Refusal> {
+        let place = &group.place;
+        let vertices = Vertices::read(self.source, group.primitive, pose, morph, place)?;
+        let colors = self.colors(group.primitive, vertices.positions.len(), place)?;
+        let uvs = self.uvs(group, vertices.positions.len())?;
+        let used = Used::by(&group.runs, vertices.positions.len());
+        if used.list.is_empty() {
+            return Ok(());
+        }
+        let bounds = bounds(&vertices, &used, place)?;
+        let origin = self.origin(&bounds);
+        let local = |v: u32| (vertices.world(v as usize) - origin).as_vec3().to_array();
+        let turned = |[a, b, c]: [u32; 3]| if vertices.is_mirrored(a as usize) { [a, c, b] } else { [a, b, c] };
+        let count: usize = group.runs.iter().map(|run| run.triangles.len()).sum();
+        let write = |mesh: &mut TriangleMesh, v: u32, position: [f32; 3]| {
+            mesh.positions.push(position);
+            mesh.colors.push(colors.as_ref().map_or([1.0; 4], |colors| colors[v as usize]));
+            mesh.uvs.push(uvs.as_ref().map_or([0.0; 2], |uvs| uvs[v as usize]));
+        };
+        if vertices.normals.is_some() {
+            self.reserve(used.list.len(), count, place)?;
+            let base = self.mesh.positions.len() as u32;
+            let mut normals = Vec::with_capacity(used.list.len());
+            for v in &used.list {
+                write(&mut self.mesh, *v, local(*v));
+                normals.push(vertices.normal(*v as usize).unwrap_or(DVec3::ZERO));
+            }
+            let mut written = Vec::with_capacity(count);
+            for run in &group.runs {
+                let first = self.mesh.indices.len() as u32;
+                let triangles = run.triangles.iter().map(|t| turned(*t).map(|v| used.number(v)));
+                written.extend(triangles);
+                let fresh = &written[written.len() - run.triangles.len()..];
+                self.mesh.indices.extend(fresh.iter().flatten().map(|v| base + v));
+                self.add_part(first, origin, run.surface);
+            }
+            let normals = mended_normals(&self.mesh.positions[base as usize..], &written, normals);
+            self.mesh.normals.extend(normals);
+        } else {
+            // Without normals a surface is flat-shaded (specification, 3.7.2.1): no vertex is shared.
+            self.reserve(count * 3, count, place)?;
+            for run in &group.runs {
+                let first = self.mesh.indices.len() as u32;
+                for corners in run.triangles.iter().map(|t| turned(*t)) {
+                    let positions = corners.map(local);
+                    let normal = face_normal(positions).unwrap_or(DVec3::Y).as_vec3().to_array();
+                    for (v, position) in corners.into_iter().zip(positions) {
+                        self.mesh.indices.push(self.mesh.positions.len() as u32);
+                        self.mesh.normals.push(normal);
+                        write(&mut self.mesh, v, position);
+                    }
+                }
+                self.add_part(first, origin, run.surface);
+            }
+        }
+        Ok(())
+    }
+
+    /// What the positions in this box are to be relative to. Near it rounding to f32 does no harm: 0 does, or what the
+    /// part before is relative to.
+    fn origin(&self, bounds: &Aabb) -> DVec3 {
+        let size = (bounds.max - bounds.min).max_element();
+        let is_near = |origin: &DVec3| {
+            let farthest = (bounds.min - origin).abs().max((bounds.max - origin).abs()).max_element();
+            farthest <= MOST_SIZES_AWAY * size
+        };
+        let before = self.mesh.parts.last().map(|part| part.origin);
+        [Some(DVec3::ZERO), before].into_iter().flatten().find(is_near).unwrap_or_else(|| bounds.center())
+    }
+
+    /// The run from `first_index` to the end; joined to the run before where nothing differs.
+    fn add_part(&mut self, first_index: u32, origin: DVec3, surface: Surface) {
         let end = self.mesh.indices.len() as u32;
         match self.mesh.parts.last_mut() {
             _ if end == first_index => {}
-            Some(last) if last.base_color_texture == texture => last.indices.end = end,
-            _ => self.mesh.parts.push(Part { indices: first_index..end, base_color_texture: texture }),
+            Some(last) if last.surface == surface && last.origin == origin => last.indices.end = end,
+            _ => self.mesh.parts.push(Part { indices: first_index..end, origin, surface }),
         }
     }
 
-    fn reserve(&mut self, vertices: usize, triangles: usize, place: &str) -> Result<(), Refusal> {
+    /// Refuses what would make the mesh too large.
+    fn reserve(&self, vertices: usize, triangles: usize, place: &str) -> Result<(), Refusal> {
         if self.mesh.positions.len() + vertices > MAX_VERTICES {
             return Err(Refusal::at(place, format!("makes the mesh larger than {MAX_VERTICES} vertices")));
         }
@@ -121,177 +243,92 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    fn positions(
-        &self,
-        primitive: &Primitive,
-        world_from_local: &DAffine3,
-        place: &str,
-    ) -> Result<Vec<[f32; 3]>, Refusal> {
-        let place = format!("{place}.attributes.POSITION");
-        let accessor = attribute(primitive, Semantic::Positions).ok_or_else(|| Refusal::at(&place, "is missing"))?;
-        let mut positions = self.source.floats::<3>(accessor, false, &place)?;
-        for (i, position) in positions.iter_mut().enumerate() {
-            let world = world_from_local.transform_point3(DVec3::from(position.map(f64::from)));
-            if !world.is_finite() || world.abs().max_element() > MAX_COORDINATE {
-                return Err(Refusal::at(place, format!("puts vertex {i} at {world}, too far away")));
-            }
-            *position = world.as_vec3().to_array();
-        }
-        Ok(positions)
-    }
-
-    /// Corners of each triangle, all of them among the vertices; seen from the front they run
-    /// counter-clockwise, mirrored nodes included. Triangles with a repeated corner are left out.
-    fn triangles(
-        &self,
-        primitive: &Primitive,
-        mode: Mode,
-        vertices: usize,
-        world_from_local: &DAffine3,
-        place: &str,
-    ) -> Result<Vec<[u32; 3]>, Refusal> {
-        let user = format!("{place}.indices");
-        let corners = match primitive.indices {
-            Some(accessor) => self.source.indices(accessor, &user)?,
-            None => (0..vertices as u32).collect(),
-        };
-        if let Some(i) = corners.iter().position(|c| *c as usize >= vertices) {
-            let reason = format!("names vertex {} at entry {i}, but there are {vertices}", corners[i]);
-            return Err(Refusal::at(user, reason));
-        }
-        if corners.len() < 3 || (mode == Mode::Triangles && corners.len() % 3 != 0) {
-            return Err(Refusal::at(user, format!("has {} entries, which does not make triangles", corners.len())));
-        }
-        let mut triangles: Vec<[u32; 3]> = match mode {
-            Mode::TriangleStrip => {
-                (0..corners.len() - 2).map(|i| [corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]]).collect()
-            }
-            Mode::TriangleFan => corners[1..].windows(2).map(|w| [w[0], w[1], corners[0]]).collect(),
-            _ => corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect(),
-        };
-        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
-        if world_from_local.matrix3.determinant() < 0.0 {
-            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-        }
-        Ok(triangles)
-    }
-
-    /// The normals in the world, zero where the file's are; `None` where it has none.
-    fn normals(
-        &self,
-        primitive: &Primitive,
-        world_from_local: &DAffine3,
-        vertices: usize,
-        place: &str,
-    ) -> Result<Option<Vec<DVec3>>, Refusal> {
-        let Some(accessor) = attribute(primitive, Semantic::Normals) else { return Ok(None) };
-        let place = format!("{place}.attributes.NORMAL");
-        let normals = self.source.floats::<3>(accessor, false, &place)?;
-        same_count(normals.len(), vertices, &place)?;
-        let cofactors = cofactors(&world_from_local.matrix3);
-        let mut out = Vec::with_capacity(vertices);
-        for (i, normal) in normals.into_iter().enumerate() {
-            let normal = DVec3::from(normal.map(f64::from));
-            if !normal.is_finite() {
-                return Err(Refusal::at(place, format!("is not finite at vertex {i}")));
-            }
-            out.push((cofactors * normal).try_normalize().unwrap_or(DVec3::ZERO));
-        }
-        Ok(Some(out))
-    }
-
-    fn colors(
-        &self,
-        primitive: &Primitive,
-        factor: [f32; 3],
-        vertices: usize,
-        place: &str,
-    ) -> Result<Vec<[f32; 3]>, Refusal> {
-        let Some(accessor) = attribute(primitive, Semantic::Colors(0)) else { return Ok(vec![factor; vertices]) };
+    fn colors(&self, primitive: &Primitive, vertices: usize, place: &str) -> Result<Option<Vec<[f32; 4]>>, Refusal> {
+        let Some(accessor) = primitive.attributes.get("COLOR_0") else { return Ok(None) };
         let place = format!("{place}.attributes.COLOR_0");
-        let mut colors = self.source.floats::<3>(accessor, true, &place)?;
-        same_count(colors.len(), vertices, &place)?;
+        same_count(self.source.count(*accessor), vertices, &place)?;
+        let mut colors = self.source.floats::<4>(*accessor, 3, &place)?;
         for (i, color) in colors.iter_mut().enumerate() {
             if color.iter().any(|c| !c.is_finite()) {
                 return Err(Refusal::at(place, format!("is not finite at vertex {i}")));
             }
-            *color = [0, 1, 2].map(|c| color[c].clamp(0.0, 1.0) * factor[c]);
+            *color = color.map(|c| c.clamp(0.0, 1.0));
         }
-        Ok(colors)
+        Ok(Some(colors))
     }
 
-    fn uvs(
-        &self,
-        primitive: &Primitive,
-        surface: &Surface,
-        vertices: usize,
-        place: &str,
-    ) -> Result<Vec<[f32; 2]>, Refusal> {
-        let accessor = match surface.texture {
-            None => None,
-            Some(_) => attribute(primitive, Semantic::TexCoords(surface.uv_set)),
-        };
-        let Some(accessor) = accessor else { return Ok(vec![[0.0; 2]; vertices]) };
-        let place = format!("{place}.attributes.TEXCOORD_{}", surface.uv_set);
-        let uvs = self.source.floats::<2>(accessor, false, &place)?;
-        same_count(uvs.len(), vertices, &place)?;
+    /// The texture coordinates, where a texture needs them.
+    fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, Refusal> {
+        if group.runs.iter().all(|run| run.surface.texture.is_none()) {
+            return Ok(None);
+        }
+        let name = format!("TEXCOORD_{}", group.uv_set);
+        let Some(accessor) = group.primitive.attributes.get(&name) else { return Ok(None) };
+        let place = format!("{}.attributes.{name}", group.place);
+        same_count(self.source.count(*accessor), vertices, &place)?;
+        let uvs = self.source.floats::<2>(*accessor, 2, &place)?;
         match uvs.iter().position(|uv| uv.iter().any(|c| !c.is_finite())) {
             Some(i) => Err(Refusal::at(place, format!("is not finite at vertex {i}"))),
-            None => Ok(uvs),
+            None => Ok(Some(uvs)),
         }
     }
+}
 
-    fn surface(&mut self, primitive: &Primitive, place: &str) -> Result<Surface, Refusal> {
-        let plain = Surface { factor: [1.0; 3], texture: None, uv_set: 0 };
-        let Some(index) = primitive.material else { return Ok(plain) };
-        let root = self.source.root;
-        let material = root.get(index).ok_or_else(|| Refusal::at(format!("{place}.material"), "is missing"))?;
-        let pbr = &material.pbr_metallic_roughness;
-        let [r, g, b, _] = pbr.base_color_factor.0;
-        let factor = [r, g, b].map(|c| if c.is_finite() { c.clamp(0.0, 1.0) } else { 1.0 });
-        let Some(info) = &pbr.base_color_texture else { return Ok(Surface { factor, ..plain }) };
-        let texture = self.texture(info.index)?;
-        Ok(Surface { factor, texture: Some(texture), uv_set: info.tex_coord })
-    }
+const TRIANGLES: u64 = 4;
+const STRIP: u64 = 5;
+const FAN: u64 = 6;
 
-    fn texture(&mut self, index: Index<texture::Texture>) -> Result<usize, Refusal> {
-        let missing = || Refusal::at(format!("textures[{}]", index.value()), "is missing");
-        let image: Index<image::Image> = self.source.root.get(index).ok_or_else(missing)?.source;
-        if let Some(known) = self.texture_of.get(&image.value()) {
-            return Ok(*known);
+/// How many times its size a part may reach from its origin: rounding to f32 then moves a vertex by at most 4e-6 of
+/// the part's size.
+const MOST_SIZES_AWAY: f64 = 64.0;
+
+/// The vertices that triangles use, in the order of the file.
+struct Used {
+    list: Vec<u32>,
+    /// Where each vertex stands in the list; empty where too few are used for a table to pay.
+    table: Vec<u32>,
+}
+
+impl Used {
+    fn by(runs: &[Run], vertices: usize) -> Self {
+        let corners = || runs.iter().flat_map(|run| run.triangles.iter().flatten());
+        if corners().count() < vertices / 8 {
+            let mut list: Vec<u32> = corners().copied().collect();
+            list.sort_unstable();
+            list.dedup();
+            return Self { list, table: Vec::new() };
         }
-        let place = format!("images[{}]", image.value());
-        let entry = self.source.root.get(image).ok_or_else(|| Refusal::at(&place, "is missing"))?;
-        let texture = match place_of(entry) {
-            None => return Err(Refusal::at(place, "has no data")),
-            Some(Place::View(view)) => decode(self.source.view(view)?, &mut self.texture_budget),
-            Some(Place::Uri(uri)) => {
-                read_uri(uri, self.folder).and_then(|bytes| decode(&bytes, &mut self.texture_budget))
-            }
-        };
-        let number = self.mesh.textures.len();
-        self.mesh.textures.push(texture.map_err(|reason| Refusal::at(place, reason))?);
-        self.texture_of.insert(image.value(), number);
-        Ok(number)
+        let mut table = vec![u32::MAX; vertices];
+        corners().for_each(|v| table[*v as usize] = 0);
+        let mut list = Vec::new();
+        for (v, number) in table.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
+            *number = list.len() as u32;
+            list.push(v as u32);
+        }
+        Self { list, table }
+    }
+
+    /// Where a vertex that is used stands in the list.
+    fn number(&self, vertex: u32) -> u32 {
+        match self.table.get(vertex as usize) {
+            Some(number) => *number,
+            None => self.list.partition_point(|v| *v < vertex) as u32,
+        }
     }
 }
 
-fn attribute(primitive: &Primitive, semantic: Semantic) -> Option<Index<accessor::Accessor>> {
-    primitive.attributes.get(&Checked::Valid(semantic)).copied()
-}
-
-fn same_count(count: usize, vertices: usize, place: &str) -> Result<(), Refusal> {
-    if count == vertices {
-        return Ok(());
+/// The box around the vertices that are used.
+fn bounds(vertices: &Vertices<'_>, used: &Used, place: &str) -> Result<Aabb, Refusal> {
+    let mut bounds = Aabb::EMPTY;
+    for v in &used.list {
+        let world = vertices.world(*v as usize);
+        if !world.is_finite() || world.abs().max_element() > MAX_COORDINATE {
+            let place = format!("{place}.attributes.POSITION");
+            return Err(Refusal::at(place, format!("puts vertex {v} at {world}, too far away")));
+        }
+        bounds = bounds.union(&Aabb { min: world, max: world });
     }
-    Err(Refusal::at(place, format!("has {count} entries for {vertices} vertices")))
-}
-
-/// What carries normals along with `m`: the inverse transpose times the determinant's magnitude, which
-/// exists for flattened matrices too.
-fn cofactors(m: &DMat3) -> DMat3 {
-    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
-    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * m.determinant().signum()
+    Ok(bounds)
 }
 
 /// Unit normals in f32; those that are zero are replaced by the mean of the faces around the vertex.
@@ -311,6 +348,10 @@ fn mended_normals(positions: &[[f32; 3]], triangles: &[[u32; 3]], mut normals: V
 
 /// The unit normal on the side from which the corners run counter-clockwise; `None` without area.
 fn face_normal(corners: [[f32; 3]; 3]) -> Option<DVec3> {
-    let [a, b, c] = corners.map(|p| DVec3::from(p.map(f64::from)));
+    let [a, b, c] = corners.map(point);
     (b - a).cross(c - a).try_normalize()
+}
+
+fn point(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
 }

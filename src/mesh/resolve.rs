@@ -1,39 +1,92 @@
 //! Where bytes come from: files inside a folder, and data URIs. Nothing outside the folder is opened.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::time::SystemTime;
 
+use super::error::name;
 use super::limits::MAX_FILE_BYTES;
 
-/// The bytes that a glTF file names by `uri`; `folder` is the folder of the glTF file. The error is a
-/// reason for people.
-pub(super) fn read_uri(uri: &str, folder: Option<&Path>) -> Result<Vec<u8>, String> {
-    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
-        return read_data_uri(&uri[5..]);
+/// A file as it was at some moment: what changes when it is written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Stamp {
+    path: PathBuf,
+    /// When it was written and how long it was; `None` where there was no file.
+    state: Option<(Option<SystemTime>, u64)>,
+}
+
+impl Stamp {
+    /// Of the file as it is now.
+    pub fn of(path: &Path) -> Self {
+        let state = path.metadata().ok().map(|metadata| (metadata.modified().ok(), metadata.len()));
+        Self { path: path.to_path_buf(), state }
     }
-    let Some(folder) = folder else {
-        return Err("names another file, but this glTF stands in no folder".into());
-    };
-    let path = percent_decoded(uri)?;
-    if path.contains([':', '?', '#']) {
-        return Err(format!("“{}” is not a plain relative path", shortened(uri)));
+
+    /// Of the same file as it is now.
+    pub fn again(&self) -> Self {
+        Self::of(&self.path)
     }
-    read_file(&inside(folder, &path)?)
+}
+
+/// Reads what a glTF names, and keeps in mind which files were asked for, whether they are there or not.
+#[derive(Debug)]
+pub(super) struct Reader<'a> {
+    /// The folder of the glTF file; `None`: it stands in none, and can name no other file.
+    folder: Option<&'a Path>,
+    files: RefCell<Vec<Stamp>>,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(folder: Option<&'a Path>) -> Self {
+        Self { folder, files: RefCell::default() }
+    }
+
+    /// The files that were asked for.
+    pub fn into_files(self) -> Vec<Stamp> {
+        self.files.into_inner()
+    }
+
+    /// The bytes that a glTF file names by `uri`. The error is a reason for people.
+    pub fn uri(&self, uri: &str) -> Result<Vec<u8>, String> {
+        if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+            return read_data_uri(&uri[5..]);
+        }
+        let Some(folder) = self.folder else {
+            return Err("names another file, but this glTF stands in no folder".into());
+        };
+        // These have a meaning in URIs, unless they are written as `%23`.
+        if uri.contains([':', '?', '#']) {
+            return Err(format!("“{}” is not a plain relative path", name(uri)));
+        }
+        let path = percent_decoded(uri)?;
+        let file = inside(folder, &path);
+        // Before it is read: what changes meanwhile is seen later.
+        let stamp =
+            file.as_ref().map_or_else(|_| Stamp { path: folder.join(&path), state: None }, |file| Stamp::of(file));
+        self.files.borrow_mut().push(stamp);
+        read_file(&file?)
+    }
 }
 
 /// The whole file, unless it is too large or not a plain file. The error is a reason for people.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let cannot = |e: std::io::Error| format!("cannot be read: {e}");
+    let check = |metadata: std::fs::Metadata| {
+        if !metadata.is_file() {
+            return Err("is not a file".to_owned());
+        }
+        match metadata.len() {
+            length if length > MAX_FILE_BYTES => Err(format!("has {length} bytes, more than {MAX_FILE_BYTES}")),
+            length => Ok(length),
+        }
+    };
+    // Before it is opened: to open a pipe may wait for ever, and to open a device may do anything.
+    check(path.metadata().map_err(cannot)?)?;
     let file = File::open(path).map_err(cannot)?;
-    let metadata = file.metadata().map_err(cannot)?;
-    if !metadata.is_file() {
-        return Err("is not a file".into());
-    }
-    if metadata.len() > MAX_FILE_BYTES {
-        return Err(format!("has {} bytes, more than {MAX_FILE_BYTES}", metadata.len()));
-    }
-    let mut bytes = Vec::with_capacity(metadata.len() as usize);
+    let length = check(file.metadata().map_err(cannot)?)?;
+    let mut bytes = Vec::with_capacity(length as usize);
     // The file may grow while it is read: one byte more than allowed is enough to know.
     file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
@@ -45,7 +98,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, String> {
 /// The file that `relative` names, if it exists and lies in `folder`, links followed. The error is a
 /// reason for people.
 pub(super) fn inside(folder: &Path, relative: &str) -> Result<PathBuf, String> {
-    let shown = shortened(relative);
+    let shown = name(relative);
     if relative.is_empty() {
         return Err("names no file".into());
     }
@@ -111,7 +164,7 @@ fn base64_decoded(text: &[u8]) -> Result<Vec<u8>, String> {
 
 /// A URI's path with its `%41` written out.
 fn percent_decoded(uri: &str) -> Result<String, String> {
-    let wrong = || format!("“{}” is not a valid URI", shortened(uri));
+    let wrong = || format!("“{}” is not a valid URI", name(uri));
     let mut out = Vec::with_capacity(uri.len());
     let mut bytes = uri.bytes();
     while let Some(b) = bytes.next() {
@@ -123,12 +176,6 @@ fn percent_decoded(uri: &str) -> Result<String, String> {
         out.push((digit()? * 16 + digit()?) as u8);
     }
     String::from_utf8(out).map_err(|_| wrong())
-}
-
-/// A name short enough for a message.
-fn shortened(text: &str) -> String {
-    const LONGEST: usize = 80;
-    if text.chars().count() <= LONGEST { text.into() } else { text.chars().take(LONGEST).chain(['…']).collect() }
 }
 
 #[cfg(test)]
@@ -152,7 +199,7 @@ mod tests {
         assert_eq!(percent_decoded("a%20b").unwrap(), "a b");
         assert!(percent_decoded("a%2").is_err() && percent_decoded("%ff").is_err());
         let folder = std::env::temp_dir();
-        let reason = read_uri("%2e%2e/secret.bin", Some(&folder)).unwrap_err();
+        let reason = Reader::new(Some(&folder)).uri("%2e%2e/secret.bin").unwrap_err();
         assert!(reason.contains(".."), "{reason}");
     }
 }

@@ -3,9 +3,11 @@
 use std::ops::Range;
 use std::sync::OnceLock;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3, DVec4};
 
 use super::bvh::{Bvh, Triangle};
+use super::surface::Surface;
+use super::texture::Texture;
 use crate::geometry::{Aabb, Ray};
 
 /// An indexed triangle mesh in one space: the file's scene with all its nodes written out.
@@ -15,50 +17,37 @@ use crate::geometry::{Aabb, Ray};
 /// every number is finite; normals have unit length. Counter-clockwise triangles face the viewer.
 #[derive(Debug)]
 pub struct TriangleMesh {
-    /// Places of the vertices, in metres.
+    /// Places of the vertices, in metres, relative to the origin of the part that they belong to.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals of the vertices.
     pub normals: Vec<[f32; 3]>,
-    /// Linear albedo of the vertices: the material's base colour factor times the vertex colour.
-    pub colors: Vec<[f32; 3]>,
-    /// Texture coordinates of the vertices; the origin is the upper left corner, textures repeat.
+    /// Linear colours of the vertices with their opacity, to be multiplied with that of the part.
+    pub colors: Vec<[f32; 4]>,
+    /// Texture coordinates of the vertices; the origin is the upper left corner.
     pub uvs: Vec<[f32; 2]>,
     /// Three vertices per triangle.
     pub indices: Vec<u32>,
-    /// Runs of triangles that wear the same texture.
+    /// Runs of triangles that look alike and stand near each other.
     pub parts: Vec<Part>,
-    /// Base colour textures, to be multiplied with `colors` after conversion to linear.
+    /// Base colour textures.
     pub textures: Vec<Texture>,
     /// The smallest box around all triangles.
     pub bounds: Aabb,
+    /// What the file contains that is not drawn, for people.
+    pub warnings: Vec<String>,
     /// For rays; built by the first one.
     pub(super) bvh: OnceLock<Bvh>,
 }
 
-/// A run of triangles that wear the same texture.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A run of triangles that look alike and stand near each other.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Which of [`TriangleMesh::indices`].
     pub indices: Range<u32>,
-    /// Index into [`TriangleMesh::textures`].
-    pub base_color_texture: Option<usize>,
-}
-
-/// A picture.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Texture {
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// Rows from the top, four bytes per pixel, sRGB with straight alpha.
-    pub rgba: Vec<u8>,
-}
-
-impl std::fmt::Debug for Texture {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Texture({} × {})", self.width, self.height)
-    }
+    /// What its positions are relative to: 0 unless they lie so far away that f32 would change their shape.
+    pub origin: DVec3,
+    /// What it looks like.
+    pub surface: Surface,
 }
 
 /// Where a ray meets a mesh first.
@@ -82,14 +71,43 @@ impl TriangleMesh {
 
     /// The corners of a triangle.
     pub fn corners(&self, triangle: u32) -> Triangle {
-        self.vertices(triangle).map(|v| point(self.positions[v]))
+        let origin = self.part(triangle).origin;
+        self.vertices(triangle).map(|v| origin + point(self.positions[v]))
     }
 
-    /// The nearest triangle that the ray meets with 0 ≤ t ≤ `max_t`, from either side. The ray is in
-    /// the mesh's own space; its direction may have any length but zero, and `t` is in its units.
+    /// The part that a triangle belongs to.
+    pub fn part(&self, triangle: u32) -> &Part {
+        let after = self.parts.partition_point(|part| part.indices.start <= 3 * triangle);
+        &self.parts[after - 1]
+    }
+
+    /// The nearest triangle that the ray meets with 0 ≤ t ≤ `max_t`, from either side, where it is not cut out by
+    /// its opacity. The ray is in the mesh's own space; its direction may have any length but zero, and `t` is in its
+    /// units.
     pub fn hit(&self, ray_local: &Ray, max_t: f64) -> Option<MeshHit> {
-        let (t, triangle, weights) = self.bvh().hit(ray_local, max_t, |triangle| self.corners(triangle))?;
+        let is_there = |triangle, weights| !self.is_cut_out(triangle, weights);
+        let corners = |triangle| self.corners(triangle);
+        let (t, triangle, weights) = self.bvh().hit(ray_local, max_t, corners, is_there)?;
         Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
+    }
+
+    /// Colour and opacity at a point of a triangle: of vertices, part and texture together. `decode` makes linear
+    /// numbers of a texture's bytes.
+    pub fn color(&self, triangle: u32, weights: [f64; 3], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
+        let Surface { color, texture, sampler, .. } = self.part(triangle).surface;
+        let corners = self.vertices(triangle);
+        let own: DVec4 = (0..3).map(|i| DVec4::from(self.colors[corners[i]].map(f64::from)) * weights[i]).sum();
+        let own = own * DVec4::from(color.map(f64::from));
+        let Some(texture) = texture else { return own };
+        let uv: DVec2 = (0..3).map(|i| DVec2::from(self.uvs[corners[i]].map(f64::from)) * weights[i]).sum();
+        let at = self.part(triangle).surface.texture_place(uv);
+        own * self.textures[texture].sample(sampler, at.x, at.y, decode)
+    }
+
+    fn is_cut_out(&self, triangle: u32, weights: [f64; 3]) -> bool {
+        let Some(cutoff) = self.part(triangle).surface.alpha_cutoff else { return false };
+        let opacity = self.color(triangle, weights, |[.., a]| DVec4::splat(f64::from(a) / 255.0)).w;
+        opacity < f64::from(cutoff)
     }
 
     /// The tree over the triangles, built on first use.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use isolith::mesh::{MeshLibrary, load};
+use isolith::mesh::{MeshLibrary, Replaced, load};
 
 pub fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
@@ -16,7 +16,7 @@ fn the_shipped_model_loads_as_it_is_documented() {
     assert_eq!((mesh.positions.len(), mesh.triangle_count()), (7503, 14_842));
     assert_eq!(mesh.parts.len(), 1);
     assert_eq!(mesh.parts[0].indices, 0..3 * 14_842);
-    assert!(mesh.textures.is_empty() && mesh.parts[0].base_color_texture.is_none());
+    assert!(mesh.textures.is_empty() && mesh.warnings.is_empty() && mesh.parts[0].surface.texture.is_none());
     assert!((mesh.bounds.half() - DVec3::new(0.9297, 0.6690, 0.5605)).length() < 1e-3, "{:?}", mesh.bounds);
     assert!(mesh.bounds.center().length() < 0.02);
     let readme = std::fs::read_to_string(scenes().join("../assets/README.md")).unwrap();
@@ -48,7 +48,8 @@ fn the_library_reads_a_file_once_and_remembers_failures() {
     let missing = library.get("models/nobody.glb").unwrap_err();
     assert!(Arc::ptr_eq(&missing, &library.get("models/nobody.glb").unwrap_err()));
     assert_eq!(missing.file, "models/nobody.glb");
-    library.forget();
+    let source = library.sources().into_iter().find(|source| source.path() == "models/suzanne.glb").unwrap();
+    assert!(matches!(library.replace(source.read()), Replaced::Fresh(_)));
     assert!(!Arc::ptr_eq(&first, &library.get("models/suzanne.glb").unwrap()));
     library.set_folder(None);
     assert!(library.get("models/suzanne.glb").unwrap_err().reason.contains("no folder"));

@@ -62,7 +62,7 @@ fn accessors_and_views() {
     set("/accessors/0/type", json!("VEC9"), "accessors[0].type", "not allow");
     set("/accessors/0/componentType", json!(77), "accessors[0].componentType", "not allow");
     set("/accessors/0/bufferView", json!(9), "accessors[0].bufferView", "missing");
-    set("/accessors/0/bufferView", Value::Null, "accessors[0].bufferView", "lacks data");
+    set("/accessors/0/bufferView", Value::Null, &position, "lacks data");
     set("/bufferViews/0/byteLength", json!(9999), "bufferViews[0]", "reaches past");
     set("/bufferViews/0/byteOffset", json!(u64::MAX), "bufferViews[0]", "reaches past");
     set("/bufferViews/0/buffer", json!(3), "bufferViews[0].buffer", "missing");
@@ -133,16 +133,19 @@ fn sparse_accessors() {
 
 #[test]
 fn nodes() {
+    let position = place("attributes.POSITION");
     set("/nodes/0/children", json!([0]), "nodes[0]", "own ancestor");
     set("/nodes", json!([{ "mesh": 0 }, { "children": [2] }, { "children": [1] }]), "nodes[1]", "own ancestor");
     set("/nodes", json!([{ "children": [2] }, { "children": [2] }, { "mesh": 0 }]), "nodes[1].children[0]", "already");
     set("/nodes/0/children", json!([5]), "nodes[0].children[0]", "missing");
     set("/nodes/0/mesh", json!(5), "nodes[0].mesh", "missing");
     set("/nodes/0/matrix", json!([1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), "nodes[0].matrix", "affine");
-    set("/nodes/0/matrix", json!([1e300, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), "", "out of range");
+    set("/nodes/0/matrix", json!([1e300, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), &position, "too far");
+    set("/nodes/0/matrix", json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0]), "nodes[0].matrix", "affine");
+    set("/nodes/0/matrix", json!([1, 0, 0]), "nodes[0].matrix", "not glTF JSON");
     set("/nodes/0/rotation", json!([0, 0, 0, 0]), "nodes[0].rotation", "not a rotation");
-    set("/nodes/0/scale", json!([1e300, 1, 1]), "", "out of range");
-    set("/nodes/0/translation", json!([0, 1e300, 1]), "", "out of range");
+    set("/nodes/0/scale", json!([1e300, 1, 1]), &position, "too far");
+    set("/nodes/0/translation", json!([0, 1e300, 1]), &position, "too far");
     set("/scenes/0/nodes", json!([0, 0]), "scenes[0].nodes", "twice");
     set("/scenes/0/nodes", json!([4]), "scenes[0].nodes[0]", "missing");
     set("/scene", json!(4), "scene", "missing");
@@ -159,23 +162,54 @@ fn materials_and_images() {
         "missing",
     );
     set_rich("/textures/0/source", json!(5), "textures[0].source", "missing");
-    set_rich("/images/0", json!({}), "images[0]", "no data");
-    set_rich("/images/0", json!({ "uri": "data:;base64,R0lGODlh" }), "images[0]", "neither PNG nor JPEG");
-    set_rich("/images/0", json!({ "uri": "nothing.png" }), "images[0]", "no folder");
-    let view = everything().json["images"][0]["bufferView"].as_u64().unwrap();
-    set_rich(&format!("/bufferViews/{view}/byteLength"), json!(40), "images[0]", "cannot be decoded");
+}
+
+/// Sets a value in the file that has everything; it is drawn without its texture, and says why.
+#[track_caller]
+fn without_texture(tiny: &Tiny, reason: &str) {
+    let mesh = parse(&tiny.gltf(), Path::new("x.gltf"), None).expect(reason);
+    assert!(mesh.textures.is_empty() && mesh.parts.iter().all(|part| part.surface.texture.is_none()));
+    let [warning] = &mesh.warnings[..] else { panic!("{reason}: {:?}", mesh.warnings) };
+    assert!(warning.starts_with("images[0]: ") && warning.contains(reason), "{warning}");
 }
 
 #[test]
-fn an_image_of_too_many_pixels_is_refused_before_it_is_decoded() {
+fn an_image_that_cannot_be_used_leaves_the_surface_plain() {
+    for (image, reason) in [
+        (json!({}), "no data"),
+        (json!({ "uri": "data:;base64,R0lGODlh" }), "neither PNG nor JPEG"),
+        (json!({ "uri": "nothing.png" }), "no folder"),
+        (json!({ "uri": "data:image/png;base64,iVBORw0KGgo=" }), "cannot be decoded"),
+    ] {
+        let mut tiny = everything();
+        tiny.json["images"][0] = image;
+        without_texture(&tiny, reason);
+    }
+    let mut tiny = everything();
+    let view = tiny.json["images"][0]["bufferView"].as_u64().unwrap();
+    set_in(&mut tiny, &format!("/bufferViews/{view}/byteLength"), json!(40));
+    without_texture(&tiny, "cannot be decoded");
+}
+
+/// The file that has everything, its image said to be of this size; the check sum of the header is right.
+fn with_image_size(width: u32, height: u32) -> Tiny {
     let mut tiny = everything();
     let view = tiny.json["images"][0]["bufferView"].as_u64().unwrap() as usize;
     let at = tiny.json["bufferViews"][view]["byteOffset"].as_u64().unwrap() as usize;
-    // Width and height of the PNG header, with its check sum set right.
-    tiny.bytes[at + 16..at + 20].copy_from_slice(&60_000_u32.to_be_bytes());
+    tiny.bytes[at + 16..at + 20].copy_from_slice(&width.to_be_bytes());
+    tiny.bytes[at + 20..at + 24].copy_from_slice(&height.to_be_bytes());
     let sum = crc32(&tiny.bytes[at + 12..at + 29]);
     tiny.bytes[at + 29..at + 33].copy_from_slice(&sum.to_be_bytes());
-    refused(&tiny, "images[0]", "60000 × 2 pixels");
+    tiny
+}
+
+#[test]
+fn an_image_of_too_many_pixels_is_left_out_before_it_is_decoded() {
+    without_texture(&with_image_size(60_000, 2), "60000 × 2 pixels");
+    // 768 MiB as RGBA: more than all textures of a scene may take.
+    without_texture(&with_image_size(16_384, 12_288), "together would take more than");
+    // Too much for the decoder.
+    without_texture(&with_image_size(16_384, 16_384), "more than");
 }
 
 /// The check sum of PNG chunks (ISO 3309).
@@ -188,8 +222,13 @@ fn crc32(bytes: &[u8]) -> u32 {
 #[test]
 fn documents_and_extensions() {
     set("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "extensionsRequired[0]", "not supported");
+    set("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "extensionsRequired[0]", "KHR_draco");
     set("/asset", json!({}), "", "version");
-    set("/meshes/0/primitives", json!(7), "", "not glTF JSON");
+    set("/asset/version", json!("1.0"), "asset.version", "is 1.0");
+    set("/asset/minVersion", json!("2.1"), "asset.minVersion", "is 2.1");
+    set("/meshes/0/primitives", json!(7), "meshes[0].primitives", "not glTF JSON");
+    set("/meshes/0/primitives/0/indices", json!(0.5), "meshes[0].primitives[0].indices", "not a whole number");
+    set("/meshes/0/primitives/0/indices", json!(-1), "meshes[0].primitives[0].indices", "negative");
     for (bytes, reason) in [(&b""[..], "EOF"), (b"[1, 2", "not glTF JSON"), (b"{}", "asset"), (b"\xff\xfe", "not glTF")]
     {
         let error = parse(bytes, Path::new("x.gltf"), None).unwrap_err();

@@ -3,10 +3,12 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use glam::{DVec3, DVec4};
+use isolith::geometry::Ray;
 use isolith::mesh::{TriangleMesh, load, parse};
 
 use super::asset::scenes;
-use super::tiny::{Random, everything};
+use super::tiny::{Random, everything, posed};
 
 /// Numbers that break arithmetic which trusts its input.
 const NASTY: [&str; 12] = [
@@ -58,11 +60,18 @@ fn check_sound(mesh: &TriangleMesh) {
     assert!(vertices == mesh.normals.len() && vertices == mesh.colors.len() && vertices == mesh.uvs.len());
     assert!(!mesh.indices.is_empty() && mesh.indices.len().is_multiple_of(3));
     assert!(mesh.indices.iter().all(|i| (*i as usize) < vertices));
-    assert!(mesh.positions.iter().chain(&mesh.normals).chain(&mesh.colors).flatten().all(|c| c.is_finite()));
+    assert!(mesh.positions.iter().chain(&mesh.normals).flatten().all(|c| c.is_finite()));
+    assert!(mesh.colors.iter().flatten().all(|c| c.is_finite()));
     assert!(mesh.uvs.iter().flatten().all(|c| c.is_finite()));
+    assert!(mesh.parts.iter().all(|p| p.origin.is_finite()));
     assert_eq!(mesh.parts.first().map(|p| p.indices.start), Some(0));
     assert_eq!(mesh.parts.last().map(|p| p.indices.end as usize), Some(mesh.indices.len()));
-    assert!(mesh.parts.iter().all(|p| p.base_color_texture.is_none_or(|t| t < mesh.textures.len())));
+    assert!(mesh.parts.iter().all(|p| p.surface.texture.is_none_or(|t| t < mesh.textures.len())));
+    let ray = Ray { origin: mesh.bounds.center() + DVec3::new(0.01, 0.02, 3.0), direction: DVec3::NEG_Z };
+    if let Some(hit) = mesh.hit(&ray, f64::INFINITY) {
+        let opacity = mesh.color(hit.triangle, hit.weights, |_| DVec4::ONE).w;
+        assert!(hit.t >= 0.0 && (-1e-6..=1.000_001).contains(&opacity), "{hit:?}: {opacity}");
+    }
 }
 
 fn check(bytes: &[u8], text: std::ops::Range<usize>, count: usize, seed: u64) -> (usize, usize) {
@@ -93,12 +102,17 @@ fn check(bytes: &[u8], text: std::ops::Range<usize>, count: usize, seed: u64) ->
 #[test]
 fn a_thousand_mutated_files_are_read_or_refused() {
     let tiny = everything();
-    let (gltf, glb) = (tiny.gltf(), tiny.glb());
+    let (gltf, glb, posed) = (tiny.gltf(), tiny.glb(), posed().gltf());
     let json = 20..20 + serde_json::to_vec(&tiny.json).unwrap().len();
     let suzanne = std::fs::read(scenes().join("models/suzanne.glb")).unwrap();
     assert!(load(&scenes().join("models/suzanne.glb")).is_ok() && parse(&gltf, Path::new("whole"), None).is_ok());
-    let results =
-        [check(&gltf, 0..gltf.len(), 450, 11), check(&glb, json, 450, 12), check(&suzanne, 20..1_000, 100, 13)];
+    check_sound(&parse(&posed, Path::new("posed"), None).unwrap());
+    let results = [
+        check(&gltf, 0..gltf.len(), 300, 11),
+        check(&glb, json, 300, 12),
+        check(&suzanne, 20..1_000, 100, 13),
+        check(&posed, 0..posed.len(), 300, 14),
+    ];
     let (read, refused) = results.iter().fold((0, 0), |(r, f), (read, refused)| (r + read, f + refused));
     assert_eq!(read + refused, 1_000);
     // Both ends are reached: harmless changes, and harmful ones.

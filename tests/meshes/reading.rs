@@ -34,7 +34,7 @@ fn a_triangle_without_normals_is_flat() {
     let mesh = read(&triangle());
     assert_eq!(corner(&mesh, 0), [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     assert_eq!(mesh.normals, [[0.0, 0.0, 1.0]; 3]);
-    assert_eq!(mesh.colors, [[1.0; 3]; 3]);
+    assert_eq!(mesh.colors, [[1.0; 4]; 3]);
     assert_eq!(mesh.bounds.max, DVec3::new(1.0, 1.0, 0.0));
 }
 
@@ -108,11 +108,13 @@ fn colors_textures_and_sparse_accessors() {
     assert_eq!((mesh.triangle_count(), mesh.textures.len()), (4, 1));
     assert_eq!((mesh.textures[0].width, mesh.textures[0].height), (2, 2));
     assert_eq!(&mesh.textures[0].rgba[..4], [200, 100, 50, 255]);
-    let textures: Vec<_> = mesh.parts.iter().map(|p| (p.indices.clone(), p.base_color_texture)).collect();
+    let textures: Vec<_> = mesh.parts.iter().map(|p| (p.indices.clone(), p.surface.texture)).collect();
     assert_eq!(textures, [(0..6, Some(0)), (6..12, None)]);
     assert_eq!(mesh.uvs[1], [1.0, 1.0]);
-    let [r, g, b] = mesh.colors[0];
-    assert_eq!((r, b), (0.5, 0.0));
+    let [r, g, b, a] = mesh.colors[0];
+    assert_eq!((r, b, a), (1.0, 0.0, 1.0));
+    assert_eq!(mesh.parts[0].surface.color, [0.5, 1.0, 1.0, 1.0]);
+    assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
     assert!((g - 128.0 / 255.0).abs() < 1e-6);
     // The sparse corner, twice as high by its node's scale, one farther by the parent's place.
     assert_eq!(mesh.bounds.max, DVec3::new(2.0, 4.0, 1.5));
@@ -164,5 +166,13 @@ fn a_deep_tree_is_no_danger() {
     let nodes: Vec<_> =
         (0..depth).map(|i| if i + 1 < depth { json!({ "children": [i + 1] }) } else { json!({ "mesh": 0 }) }).collect();
     tiny.json["nodes"] = json!(nodes);
+    assert_eq!(read(&tiny).triangle_count(), 1);
+}
+
+#[test]
+fn whole_numbers_may_be_written_with_a_point() {
+    let mut tiny = triangle();
+    tiny.json["nodes"][0]["mesh"] = json!(0.0);
+    tiny.json["accessors"][0]["count"] = json!(3.0);
     assert_eq!(read(&tiny).triangle_count(), 1);
 }

@@ -126,6 +126,34 @@ pub fn everything() -> Tiny {
     tiny
 }
 
+/// The same with a skin, morph targets, a sampler, a transformed texture that is masked, and what is not drawn.
+pub fn posed() -> Tiny {
+    let mut tiny = everything();
+    let joints = tiny.accessor(&[0, 1, 0, 0].repeat(4), U8, "VEC4", 4);
+    let weights = tiny.floats(&[[0.5, 0.5, 0.0, 0.0]; 4]);
+    let matrix = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let bytes: Vec<u8> = [matrix; 2].iter().flatten().flat_map(|v: &f32| v.to_le_bytes()).collect();
+    let inverse = tiny.accessor(&bytes, FLOAT, "MAT4", 2);
+    let [moved, turned] = [[1.0, 0.0, 0.0], [0.1, 0.0, 0.0]].map(|offset| tiny.floats(&[offset; 4]));
+    let primitive = &mut tiny.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["JOINTS_0"] = json!(joints);
+    primitive["attributes"]["WEIGHTS_0"] = json!(weights);
+    primitive["targets"] = json!([{ "POSITION": moved, "NORMAL": turned }, { "POSITION": moved }]);
+    tiny.json["meshes"][0]["weights"] = json!([0.5, 0.25]);
+    tiny.json["nodes"][0]["skin"] = json!(0);
+    let nodes = tiny.json["nodes"].as_array_mut().unwrap();
+    nodes.extend([json!({ "translation": [1, 2, 3] }), json!({ "scale": [2, 1, 1] })]);
+    tiny.json["skins"] = json!([{ "joints": [2, 3], "inverseBindMatrices": inverse }]);
+    tiny.json["samplers"] = json!([{ "wrapS": 33071, "wrapT": 33648, "magFilter": 9728 }]);
+    tiny.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    tiny.json["materials"][0]["alphaMode"] = json!("MASK");
+    tiny.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
+        json!({ "KHR_texture_transform": { "offset": [0.5, 0.25], "rotation": 0.5, "scale": [2, 3] } });
+    tiny.json["animations"] = json!([{}]);
+    tiny.json["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_materials_unlit"]);
+    tiny
+}
+
 /// A picture of one colour.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
     let mut out = std::io::Cursor::new(Vec::new());

@@ -24,7 +24,6 @@ const CRATES: &[(&str, &[&str])] = &[
     ("eframe", &["editor", "app"]),
     ("egui", &["editor", "app"]),
     ("rfd", &["editor", "app"]),
-    ("gltf", &["mesh"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),
     ("ab_glyph", &["font", "bench"]),

@@ -31,6 +31,8 @@ pub(super) fn commands() -> Vec<Command> {
             }
         })
         .when(|e| e.document().path().is_some()),
+        new(ICON_REFRESH, "Reload models", "Reads the models of the scene again from disk", |e, _| e.reload_models())
+            .when(|e| !e.flat().meshes.is_empty()),
         new(ICON_HISTORY, "Recover unsaved work…", "Lists what was not saved when Isolith ended", |e, _| {
             e.offer_lost_work();
         })

@@ -1,5 +1,6 @@
 //! Pass `mesh`: clears the targets that fields and meshes share, and draws the meshes into them.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
@@ -11,7 +12,7 @@ use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat
 use crate::flat::truth::FILE_MATERIAL;
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::Camera;
-use crate::mesh::{Texture, TriangleMesh};
+use crate::mesh::{Part, Sampler, Surface, Texture, TriangleMesh, Wrap};
 use crate::render::buffers::Mirror;
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
@@ -24,16 +25,16 @@ pub struct MeshPass {
     pipeline: wgpu::RenderPipeline,
     instance_layout: BindGroupLayout,
     texture_layout: BindGroupLayout,
-    sampler: wgpu::Sampler,
+    /// For every way to look a texture up.
+    samplers: HashMap<Sampler, wgpu::Sampler>,
     instances: Mirror,
     instance_group: Option<BindGroup>,
     /// By the address of the mesh on the CPU; dropped with it.
     uploaded: HashMap<usize, Uploaded>,
-    /// What to draw, with the dynamic offset of its instance.
-    draws: Vec<(usize, u32)>,
+    draws: Vec<Draw>,
 }
 
-/// One placed mesh, as the shader reads it.
+/// A part of a placed mesh, as the shader reads it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
@@ -49,6 +50,12 @@ pub struct Instance {
     pub normal_y: [f32; 4],
     /// Third row.
     pub normal_z: [f32; 4],
+    /// Factor of the vertices' colours and of their opacity.
+    pub color: [f32; 4],
+    /// Row of the texture's U from the coordinates of the vertices.
+    pub texture_x: [f32; 4],
+    /// The same of its V.
+    pub texture_y: [f32; 4],
     /// See `overridden`.
     pub albedo: [f32; 3],
     /// Strength of the highlight.
@@ -59,8 +66,27 @@ pub struct Instance {
     pub overridden: u32,
     /// 1: the placement turns left into right, and so the order of a triangle's corners.
     pub mirrored: u32,
+    /// Where the opacity is less, there is no surface; negative: it is everywhere.
+    pub alpha_cutoff: f32,
     /// How far the point that positions are relative to is before the eye, see `shaders/common/ray.wgsl`.
     pub ahead: f32,
+    /// Unused.
+    pub padding_0: u32,
+    /// Unused.
+    pub padding_1: u32,
+    /// Unused.
+    pub padding_2: u32,
+}
+
+/// What to draw.
+#[derive(Clone, Copy, Debug)]
+struct Draw {
+    /// In [`MeshPass::uploaded`].
+    mesh: usize,
+    /// In [`Uploaded::parts`].
+    part: usize,
+    /// Of its instance.
+    offset: u32,
 }
 
 /// Dynamic offsets are multiples of this.
@@ -94,19 +120,11 @@ impl MeshPass {
             &[entry(0, ShaderStages::FRAGMENT, filtered), entry(1, ShaderStages::FRAGMENT, sampling)],
         );
         let pipeline = build_pipeline(device, &[&layouts.view, &instance_layout, &texture_layout])?;
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("mesh"),
-            address_mode_u: wgpu::AddressMode::Repeat,
-            address_mode_v: wgpu::AddressMode::Repeat,
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
         Ok(Self {
             pipeline,
             instance_layout,
             texture_layout,
-            sampler,
+            samplers: samplers(device),
             instances: Mirror::uniform(device, "mesh instances"),
             instance_group: None,
             uploaded: HashMap::new(),
@@ -135,11 +153,22 @@ impl MeshPass {
                 let uploaded = self.upload(device, queue, mesh);
                 self.uploaded.insert(key, uploaded);
             }
-            self.draws.push((key, bytes.len() as u32));
             let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
-            let ahead = ahead_of(&seen, camera, size);
-            bytes.extend_from_slice(bytemuck::bytes_of(&instance(flat, placed, index, camera, ahead)));
-            bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
+            let placed = Placed::new(flat, placed, index, camera, ahead_of(&seen, camera, size));
+            let mut last = None;
+            for (part, look) in mesh.parts.iter().enumerate() {
+                let instance = placed.of_part(look);
+                // Most parts of a mesh differ in their texture only, which is no part of the instance.
+                if last != Some(instance) {
+                    self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32 });
+                    bytes.extend_from_slice(bytemuck::bytes_of(&instance));
+                    bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
+                    last = Some(instance);
+                } else {
+                    let offset = self.draws.last().map_or(0, |draw| draw.offset);
+                    self.draws.push(Draw { mesh: key, part, offset });
+                }
+            }
         }
         if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
             let binding = window(self.instances.buffer(), size_of::<Instance>());
@@ -184,17 +213,21 @@ impl MeshPass {
         }
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, view, &[]);
-        for (key, offset) in &self.draws {
+        let mut bound = None;
+        for Draw { mesh: key, part, offset } in &self.draws {
             let mesh = &self.uploaded[key];
             pass.set_bind_group(1, instances, &[*offset]);
-            for (slot, buffer) in [&mesh.positions, &mesh.normals, &mesh.colors, &mesh.uvs].into_iter().enumerate() {
-                pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+            if bound != Some(key) {
+                let buffers = [&mesh.positions, &mesh.normals, &mesh.colors, &mesh.uvs];
+                for (slot, buffer) in buffers.into_iter().enumerate() {
+                    pass.set_vertex_buffer(slot as u32, buffer.slice(..));
+                }
+                pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
+                bound = Some(key);
             }
-            pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
-            for (range, texture) in &mesh.parts {
-                pass.set_bind_group(2, texture, &[]);
-                pass.draw_indexed(range.clone(), 0, 0..1);
-            }
+            let (range, texture) = &mesh.parts[*part];
+            pass.set_bind_group(2, texture, &[]);
+            pass.draw_indexed(range.clone(), 0, 0..1);
         }
     }
 
@@ -203,12 +236,19 @@ impl MeshPass {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
         let white = Texture { width: 1, height: 1, rgba: vec![255; 4] };
-        let group = |texture: &Texture| self.upload_texture(device, queue, texture);
-        let parts = mesh
-            .parts
-            .iter()
-            .map(|p| (p.indices.clone(), group(p.base_color_texture.map_or(&white, |i| &mesh.textures[i]))))
-            .collect();
+        let white = upload_texture(device, queue, &white);
+        let views: Vec<_> = mesh.textures.iter().map(|texture| upload_texture(device, queue, texture)).collect();
+        // Many parts wear the same texture.
+        let mut groups: HashMap<(Option<usize>, Sampler), BindGroup> = HashMap::new();
+        let mut group = |Surface { texture, sampler, .. }: Surface| {
+            let make = || {
+                let view = wgpu::BindingResource::TextureView(texture.map_or(&white, |i| &views[i]));
+                let sampler = wgpu::BindingResource::Sampler(&self.samplers[&sampler]);
+                bind(device, "mesh texture", &self.texture_layout, &[view, sampler])
+            };
+            groups.entry((texture, sampler)).or_insert_with(make).clone()
+        };
+        let parts = mesh.parts.iter().map(|part| (part.indices.clone(), group(part.surface))).collect();
         Uploaded {
             mesh: Arc::downgrade(mesh),
             positions: buffer("positions", bytemuck::cast_slice(&mesh.positions), BufferUsages::VERTEX),
@@ -219,25 +259,61 @@ impl MeshPass {
             parts,
         }
     }
+}
 
-    fn upload_texture(&self, device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> BindGroup {
-        let descriptor = wgpu::TextureDescriptor {
-            label: Some("base colour"),
-            size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TextureFormat::Rgba8UnormSrgb,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        };
-        let order = wgpu::util::TextureDataOrder::LayerMajor;
-        let view = device
-            .create_texture_with_data(queue, &descriptor, order, &texture.rgba)
-            .create_view(&wgpu::TextureViewDescriptor::default());
-        let resources = [wgpu::BindingResource::TextureView(&view), wgpu::BindingResource::Sampler(&self.sampler)];
-        bind(device, "mesh texture", &self.texture_layout, &resources)
+fn upload_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
+    let texture = fitting(texture, device.limits().max_texture_dimension_2d);
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("base colour"),
+        size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: TextureFormat::Rgba8UnormSrgb,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    device
+        .create_texture_with_data(queue, &descriptor, order, &texture.rgba)
+        .create_view(&wgpu::TextureViewDescriptor::default())
+}
+
+/// The texture with every second pixel left out, until the device can hold it.
+fn fitting(texture: &Texture, longest: u32) -> Cow<'_, Texture> {
+    let mut fitting = Cow::Borrowed(texture);
+    while fitting.width.max(fitting.height) > longest {
+        let [width, height] = [fitting.width, fitting.height].map(|side| side.div_ceil(2));
+        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let start = |(x, y): (u32, u32)| 4 * (2 * y as usize * fitting.width as usize + 2 * x as usize);
+        let rgba = pixels.map(start).flat_map(|at| fitting.rgba[at..at + 4].iter().copied()).collect();
+        fitting = Cow::Owned(Texture { width, height, rgba });
     }
+    fitting
+}
+
+fn samplers(device: &wgpu::Device) -> HashMap<Sampler, wgpu::Sampler> {
+    const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
+    let address = |wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
+    let ways = WRAPS.iter().flat_map(|u| WRAPS.iter().map(move |v| [*u, *v]));
+    let ways = ways.flat_map(|wrap| [false, true].map(|nearest| Sampler { wrap, nearest }));
+    ways.map(|way| {
+        let filter = if way.nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
+        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("mesh"),
+            address_mode_u: address(way.wrap[0]),
+            address_mode_v: address(way.wrap[1]),
+            mag_filter: filter,
+            min_filter: filter,
+            ..Default::default()
+        });
+        (way, sampler)
+    })
+    .collect()
 }
 
 /// An attachment that begins as `value` everywhere.
@@ -247,34 +323,59 @@ fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColor
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
 }
 
-fn instance(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ahead: f64) -> Instance {
-    let eye = camera.position + camera.rotation * DVec3::NEG_Z * ahead;
-    let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
-    let row = |i: usize| {
-        let r = m.matrix3.row(i);
-        [r.x as f32, r.y as f32, r.z as f32, m.translation[i] as f32]
-    };
-    // Normals go by the inverse transpose; only its direction counts.
-    let n = m.matrix3.inverse().transpose();
-    let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
-    let normal_row = |i: usize| {
-        let r = n.row(i);
-        [r.x as f32, r.y as f32, r.z as f32, 0.0]
-    };
-    let material = placed.material.map(|i| flat.materials[i as usize]);
-    Instance {
-        eye_from_local_x: row(0),
-        eye_from_local_y: row(1),
-        eye_from_local_z: row(2),
-        normal_x: normal_row(0),
-        normal_y: normal_row(1),
-        normal_z: normal_row(2),
-        albedo: material.map_or([1.0; 3], |m| m.albedo),
-        specular: material.map_or(FILE_MATERIAL.specular as f32, |m| m.specular),
-        owner: MESH_BIT | index as u32,
-        overridden: u32::from(material.is_some()),
-        mirrored: u32::from(m.matrix3.determinant() < 0.0),
-        ahead: ahead as f32,
+/// A placed mesh: what its parts have in common.
+struct Placed {
+    eye_from_local: DAffine3,
+    /// As it is for a part at the mesh's own origin that looks like nothing special.
+    common: Instance,
+}
+
+impl Placed {
+    fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ahead: f64) -> Self {
+        let eye = camera.position + camera.rotation * DVec3::NEG_Z * ahead;
+        let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
+        // Normals go by the inverse transpose; only its direction counts.
+        let n = m.matrix3.inverse().transpose();
+        let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
+        let normal_row = |i: usize| {
+            let r = n.row(i);
+            [r.x as f32, r.y as f32, r.z as f32, 0.0]
+        };
+        let material = placed.material.map(|i| flat.materials[i as usize]);
+        let common = Instance {
+            normal_x: normal_row(0),
+            normal_y: normal_row(1),
+            normal_z: normal_row(2),
+            albedo: material.map_or([1.0; 3], |m| m.albedo),
+            specular: material.map_or(FILE_MATERIAL.specular as f32, |m| m.specular),
+            owner: MESH_BIT | index as u32,
+            overridden: u32::from(material.is_some()),
+            mirrored: u32::from(m.matrix3.determinant() < 0.0),
+            ahead: ahead as f32,
+            ..Instance::zeroed()
+        };
+        Self { eye_from_local: m, common }
+    }
+
+    fn of_part(&self, part: &Part) -> Instance {
+        let Part { origin, surface, .. } = part;
+        let m = &self.eye_from_local;
+        let translation = m.translation + m.matrix3 * *origin;
+        let row = |i: usize| {
+            let r = m.matrix3.row(i);
+            [r.x as f32, r.y as f32, r.z as f32, translation[i] as f32]
+        };
+        let [texture_x, texture_y] = surface.texture_from_uv.map(|[a, b, c]| [a, b, c, 0.0]);
+        Instance {
+            eye_from_local_x: row(0),
+            eye_from_local_y: row(1),
+            eye_from_local_z: row(2),
+            color: surface.color,
+            texture_x,
+            texture_y,
+            alpha_cutoff: surface.alpha_cutoff.unwrap_or(-1.0),
+            ..self.common
+        }
     }
 }
 
@@ -283,9 +384,9 @@ fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<
         label: Some("mesh"),
         source: wgpu::ShaderSource::Wgsl(plain_source("mesh.wgsl")?.into()),
     });
-    use wgpu::VertexFormat::{Float32x2, Float32x3};
+    use wgpu::VertexFormat::{Float32x2, Float32x3, Float32x4};
     // Position, normal, colour, texture coordinate.
-    let formats = [Float32x3, Float32x3, Float32x3, Float32x2];
+    let formats = [Float32x3, Float32x3, Float32x4, Float32x2];
     let attributes: Vec<_> = formats
         .iter()
         .enumerate()

@@ -1,0 +1,241 @@
+//! Where the vertices of a primitive stand: as their node does, or as the joints of a skin carry them; with morph
+//! targets by the weights that the file gives at rest.
+
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+
+use super::accessor::Source;
+use super::error::Refusal;
+use super::limits::MAX_JOINTS;
+use super::schema::{Node, Primitive, Root, Skin};
+
+/// What places the vertices of a mesh in the file's space.
+pub(super) enum Pose {
+    /// All alike.
+    Rigid(DAffine3),
+    /// Each by the joints that it names; the node's own place does not count (specification, 3.7.3.1).
+    Skinned {
+        /// From the bind pose to the file's space, for each joint.
+        joints: Vec<DAffine3>,
+        /// Places what names no joints.
+        world_from_node: DAffine3,
+    },
+}
+
+impl Pose {
+    /// Of the mesh at a node.
+    pub fn of(source: &Source<'_>, world_from_node: &[DAffine3], node: usize) -> Result<Self, Refusal> {
+        let root: &Root = source.root;
+        let Some(skin) = root.nodes[node].skin else { return Ok(Self::Rigid(world_from_node[node])) };
+        let place = format!("skins[{}]", skin.0);
+        let Some(entry) = root.skins.get(skin.index()) else { return Err(Refusal::at(place, "is missing")) };
+        let joints = joints(source, world_from_node, entry, &place)?;
+        Ok(Self::Skinned { joints, world_from_node: world_from_node[node] })
+    }
+}
+
+fn joints(
+    source: &Source<'_>,
+    world_from_node: &[DAffine3],
+    skin: &Skin,
+    place: &str,
+) -> Result<Vec<DAffine3>, Refusal> {
+    if skin.joints.is_empty() || skin.joints.len() > MAX_JOINTS {
+        let count = skin.joints.len();
+        return Err(Refusal::at(
+            format!("{place}.joints"),
+            format!("has {count} entries; 1 to {MAX_JOINTS} are allowed"),
+        ));
+    }
+    // A skin may carry many meshes.
+    source.charge(skin.joints.len() as u64, place)?;
+    let places = skin.joints.iter().map(|joint| world_from_node[joint.index()]);
+    let Some(accessor) = skin.inverse_bind_matrices else { return Ok(places.collect()) };
+    let user = format!("{place}.inverseBindMatrices");
+    let inverse = source.matrices(accessor, &user)?;
+    if inverse.len() < skin.joints.len() {
+        let reason = format!("has {} entries for {} joints", inverse.len(), skin.joints.len());
+        return Err(Refusal::at(user, reason));
+    }
+    let bound = places.zip(&inverse).map(|(place, m)| {
+        let m = DMat4::from_cols_array(&m.map(f64::from));
+        let w = if m.w_axis.w == 0.0 { 1.0 } else { m.w_axis.w };
+        place * DAffine3::from_mat3_translation(DMat3::from_mat4(m) * (1.0 / w), m.w_axis.truncate() / w)
+    });
+    let bound: Vec<_> = bound.collect();
+    match bound.iter().position(|m| !m.is_finite()) {
+        Some(joint) => Err(Refusal::at(user, format!("is not finite for joint {joint}"))),
+        None => Ok(bound),
+    }
+}
+
+/// The vertices of a primitive as they are stored and moved by morph targets, with what places them.
+pub(super) struct Vertices<'a> {
+    pub positions: Vec<[f32; 3]>,
+    /// `None` where the file has none.
+    pub normals: Option<Vec<[f32; 3]>>,
+    pose: &'a Pose,
+    /// Joints and their weights, four at a time; empty where the pose is rigid.
+    influences: Vec<Influences>,
+}
+
+struct Influences {
+    joints: Vec<[f32; 4]>,
+    weights: Vec<[f32; 4]>,
+}
+
+impl<'a> Vertices<'a> {
+    /// Reads what places the vertices. `place` is that of the primitive.
+    pub fn read(
+        source: &Source<'_>,
+        primitive: &Primitive,
+        pose: &'a Pose,
+        morph: &[f64],
+        place: &str,
+    ) -> Result<Self, Refusal> {
+        let at = |name: &str| format!("{place}.attributes.{name}");
+        let Some(accessor) = primitive.attributes.get("POSITION") else {
+            return Err(Refusal::at(at("POSITION"), "is missing"));
+        };
+        if source.is_zero(*accessor) {
+            return Err(Refusal::at(at("POSITION"), "lacks data: its accessor names no buffer view"));
+        }
+        let positions = source.floats::<3>(*accessor, 3, &at("POSITION"))?;
+        let count = positions.len();
+        let normals = match primitive.attributes.get("NORMAL") {
+            None => None,
+            Some(accessor) => {
+                same_count(source.count(*accessor), count, &at("NORMAL"))?;
+                let normals = source.floats::<3>(*accessor, 3, &at("NORMAL"))?;
+                if let Some(i) = normals.iter().position(|n| n.iter().any(|c| !c.is_finite())) {
+                    return Err(Refusal::at(at("NORMAL"), format!("is not finite at vertex {i}")));
+                }
+                Some(normals)
+            }
+        };
+        let mut vertices = Self { positions, normals, pose, influences: Vec::new() };
+        vertices.morph(source, primitive, morph, place)?;
+        if let Pose::Skinned { joints, .. } = pose {
+            vertices.read_influences(source, primitive, joints.len(), place)?;
+        }
+        Ok(vertices)
+    }
+
+    /// Adds the morph targets. Those whose weight is 0 are not even read.
+    fn morph(&mut self, source: &Source<'_>, primitive: &Primitive, morph: &[f64], place: &str) -> Result<(), Refusal> {
+        for (t, (target, weight)) in primitive.targets.iter().zip(morph).enumerate() {
+            for (name, values) in [("POSITION", Some(&mut self.positions)), ("NORMAL", self.normals.as_mut())] {
+                let (Some(accessor), Some(values)) = (target.get(name), values) else { continue };
+                if *weight == 0.0 || source.is_zero(*accessor) {
+                    continue;
+                }
+                let user = format!("{place}.targets[{t}].{name}");
+                same_count(source.count(*accessor), values.len(), &user)?;
+                for (value, offset) in values.iter_mut().zip(source.floats::<3>(*accessor, 3, &user)?) {
+                    *value = [0, 1, 2].map(|c| (f64::from(value[c]) + weight * f64::from(offset[c])) as f32);
+                }
+                if let Some(i) = values.iter().position(|v| v.iter().any(|c| !c.is_finite())) {
+                    return Err(Refusal::at(user, format!("is not finite at vertex {i}")));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn read_influences(
+        &mut self,
+        source: &Source<'_>,
+        primitive: &Primitive,
+        joint_count: usize,
+        place: &str,
+    ) -> Result<(), Refusal> {
+        let count = self.positions.len();
+        for set in 0.. {
+            let names = [format!("JOINTS_{set}"), format!("WEIGHTS_{set}")];
+            let [Some(joints), Some(weights)] = names.each_ref().map(|name| primitive.attributes.get(name)) else {
+                break;
+            };
+            let users = names.each_ref().map(|name| format!("{place}.attributes.{name}"));
+            let read = |accessor, user: &str| {
+                same_count(source.count(accessor), count, user)?;
+                source.floats::<4>(accessor, 4, user)
+            };
+            let (joints, weights) = (read(*joints, &users[0])?, read(*weights, &users[1])?);
+            for (i, (joints, weights)) in joints.iter().zip(&weights).enumerate() {
+                if weights.iter().any(|w| !w.is_finite() || *w < 0.0) {
+                    return Err(Refusal::at(&users[1], format!("is no share at vertex {i}")));
+                }
+                let names_joint = |joint: f32| joint >= 0.0 && joint.fract() == 0.0 && (joint as usize) < joint_count;
+                // Where the weight is 0 the joint does not matter, and many exporters leave anything there.
+                if joints.iter().zip(weights).any(|(joint, weight)| *weight > 0.0 && !names_joint(*joint)) {
+                    return Err(Refusal::at(&users[0], format!("names a joint that is missing at vertex {i}")));
+                }
+            }
+            self.influences.push(Influences { joints, weights });
+        }
+        Ok(())
+    }
+
+    /// From the stored place of a vertex to that in the file's space.
+    pub fn world_from_local(&self, vertex: usize) -> DAffine3 {
+        let joints = match self.pose {
+            Pose::Rigid(world_from_local) => return *world_from_local,
+            Pose::Skinned { world_from_node, .. } if self.influences.is_empty() => return *world_from_node,
+            Pose::Skinned { joints, .. } => joints,
+        };
+        let (mut matrix3, mut translation, mut total) = (DMat3::ZERO, DVec3::ZERO, 0.0);
+        for set in &self.influences {
+            for (joint, weight) in set.joints[vertex].iter().zip(set.weights[vertex]) {
+                if weight > 0.0 {
+                    let (joint, weight) = (&joints[*joint as usize], f64::from(weight));
+                    matrix3 += joint.matrix3 * weight;
+                    translation += joint.translation * weight;
+                    total += weight;
+                }
+            }
+        }
+        // Weights should sum to 1; what quantization leaves of that would scale the vertex towards the origin.
+        if total > 0.0 {
+            DAffine3 { matrix3: matrix3 * (1.0 / total), translation: translation / total }
+        } else {
+            joints[0]
+        }
+    }
+
+    /// The place of a vertex in the file's space.
+    pub fn world(&self, vertex: usize) -> DVec3 {
+        self.world_from_local(vertex).transform_point3(DVec3::from(self.positions[vertex].map(f64::from)))
+    }
+
+    /// The unit normal of a vertex in the file's space, zero where the file's is; `None` without normals.
+    pub fn normal(&self, vertex: usize) -> Option<DVec3> {
+        let normal = DVec3::from(self.normals.as_ref()?[vertex].map(f64::from));
+        let cofactors = cofactors(&self.world_from_local(vertex).matrix3);
+        Some((cofactors * normal).try_normalize().unwrap_or(DVec3::ZERO))
+    }
+
+    /// Whether a triangle at this vertex is turned inside out, so that its corners run the other way.
+    pub fn is_mirrored(&self, vertex: usize) -> bool {
+        self.world_from_local(vertex).matrix3.determinant() < 0.0
+    }
+}
+
+/// The weights of the morph targets of the mesh at a node, at rest.
+pub(super) fn morph_weights<'a>(root: &'a Root, node: &'a Node) -> &'a [f64] {
+    let of_mesh = || node.mesh.and_then(|mesh| root.meshes.get(mesh.index())?.weights.as_deref());
+    node.weights.as_deref().or_else(of_mesh).unwrap_or(&[])
+}
+
+/// Refuses an attribute whose entries are not as many as the vertices.
+pub(super) fn same_count(count: u64, vertices: usize, place: &str) -> Result<(), Refusal> {
+    if count == vertices as u64 {
+        return Ok(());
+    }
+    Err(Refusal::at(place, format!("has {count} entries for {vertices} vertices")))
+}
+
+/// What carries normals along with `m`: the inverse transpose times the determinant's magnitude, which
+/// exists for flattened matrices too.
+fn cofactors(m: &DMat3) -> DMat3 {
+    let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * m.determinant().signum()
+}

@@ -1,0 +1,113 @@
+//! Whether everything that a document names is there, so that no later step has to ask.
+
+use super::accessor::{Component, Shape};
+use super::error::Refusal;
+use super::schema::{Accessor, Primitive, Root, Whole};
+
+/// Refuses the first reference that leads nowhere, and codes that glTF does not know.
+pub(super) fn check_references(root: &Root) -> Result<(), Refusal> {
+    for (i, accessor) in root.accessors.iter().enumerate() {
+        check_accessor(root, accessor, &format!("accessors[{i}]"))?;
+    }
+    for (i, view) in root.buffer_views.iter().enumerate() {
+        check("buffer", Some(view.buffer), root.buffers.len(), || format!("bufferViews[{i}].buffer"))?;
+    }
+    for (m, mesh) in root.meshes.iter().enumerate() {
+        for (p, primitive) in mesh.primitives.iter().enumerate() {
+            check_primitive(root, primitive, &format!("meshes[{m}].primitives[{p}]"))?;
+        }
+    }
+    for (i, node) in root.nodes.iter().enumerate() {
+        check("mesh", node.mesh, root.meshes.len(), || format!("nodes[{i}].mesh"))?;
+        check("skin", node.skin, root.skins.len(), || format!("nodes[{i}].skin"))?;
+        for (c, child) in node.children.iter().enumerate() {
+            check("node", Some(*child), root.nodes.len(), || format!("nodes[{i}].children[{c}]"))?;
+        }
+    }
+    for (i, scene) in root.scenes.iter().enumerate() {
+        for (n, node) in scene.nodes.iter().enumerate() {
+            check("node", Some(*node), root.nodes.len(), || format!("scenes[{i}].nodes[{n}]"))?;
+        }
+    }
+    check("scene", root.scene, root.scenes.len(), || "scene".into())?;
+    for (i, skin) in root.skins.iter().enumerate() {
+        check("accessor", skin.inverse_bind_matrices, root.accessors.len(), || {
+            format!("skins[{i}].inverseBindMatrices")
+        })?;
+        for (j, joint) in skin.joints.iter().enumerate() {
+            check("node", Some(*joint), root.nodes.len(), || format!("skins[{i}].joints[{j}]"))?;
+        }
+    }
+    check_surfaces(root)
+}
+
+fn check_surfaces(root: &Root) -> Result<(), Refusal> {
+    for (i, image) in root.images.iter().enumerate() {
+        check("bufferView", image.buffer_view, root.buffer_views.len(), || format!("images[{i}].bufferView"))?;
+    }
+    for (i, texture) in root.textures.iter().enumerate() {
+        check("image", texture.source, root.images.len(), || format!("textures[{i}].source"))?;
+        check("sampler", texture.sampler, root.samplers.len(), || format!("textures[{i}].sampler"))?;
+    }
+    for (i, material) in root.materials.iter().enumerate() {
+        let diffuse = material.extensions.specular_glossiness.as_ref().and_then(|s| s.diffuse_texture.as_ref());
+        let fields = [
+            (material.pbr_metallic_roughness.base_color_texture.as_ref(), "pbrMetallicRoughness.baseColorTexture"),
+            (diffuse, "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture"),
+        ];
+        for (info, field) in fields {
+            check("texture", info.map(|i| i.index), root.textures.len(), || format!("materials[{i}].{field}.index"))?;
+        }
+    }
+    Ok(())
+}
+
+fn check_accessor(root: &Root, accessor: &Accessor, place: &str) -> Result<(), Refusal> {
+    let views = root.buffer_views.len();
+    check("bufferView", accessor.buffer_view, views, || format!("{place}.bufferView"))?;
+    let wrong = |field: &str| Err(Refusal::at(format!("{place}.{field}"), "has a value that glTF does not allow"));
+    if Component::of(accessor.component_type).is_none() {
+        return wrong("componentType");
+    }
+    if Shape::of(&accessor.kind).is_none() {
+        return wrong("type");
+    }
+    if let Some(sparse) = &accessor.sparse {
+        check("bufferView", Some(sparse.indices.buffer_view), views, || format!("{place}.sparse.indices.bufferView"))?;
+        check("bufferView", Some(sparse.values.buffer_view), views, || format!("{place}.sparse.values.bufferView"))?;
+        if !Component::of(sparse.indices.component_type).is_some_and(Component::is_index) {
+            return wrong("sparse.indices.componentType");
+        }
+    }
+    Ok(())
+}
+
+fn check_primitive(root: &Root, primitive: &Primitive, place: &str) -> Result<(), Refusal> {
+    let accessors = root.accessors.len();
+    if !primitive.attributes.contains_key("POSITION") {
+        return Err(Refusal::at(format!("{place}.attributes.POSITION"), "is missing"));
+    }
+    for (name, accessor) in &primitive.attributes {
+        check("accessor", Some(*accessor), accessors, || format!("{place}.attributes.{name}"))?;
+    }
+    for (t, target) in primitive.targets.iter().enumerate() {
+        for (name, accessor) in target {
+            check("accessor", Some(*accessor), accessors, || format!("{place}.targets[{t}].{name}"))?;
+        }
+    }
+    check("accessor", primitive.indices, accessors, || format!("{place}.indices"))?;
+    check("material", primitive.material, root.materials.len(), || format!("{place}.material"))?;
+    if primitive.mode.is_some_and(|mode| mode.0 > 6) {
+        return Err(Refusal::at(format!("{place}.mode"), "has a value that glTF does not allow"));
+    }
+    Ok(())
+}
+
+fn check(kind: &str, index: Option<Whole>, count: usize, place: impl Fn() -> String) -> Result<(), Refusal> {
+    match index {
+        Some(index) if index.index() >= count => {
+            Err(Refusal::at(place(), format!("names {kind} {}, which is missing", index.0)))
+        }
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,128 @@
+//! What a file contains that is not drawn, or not as it stands there: said, and each thing once.
+
+use std::collections::BTreeMap;
+
+use super::document::SUPPORTED;
+use super::error::{LONGEST_TEXT, name, shown};
+use super::forest::shown_scene;
+use super::limits::MAX_WARNINGS;
+use super::schema::{Material, Root};
+
+/// Extensions that change nothing that could be seen, or whose plain data stand beside.
+const WITHOUT_EFFECT: &[&str] = &[
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "EXT_feature_metadata",
+    "EXT_instance_features",
+    "EXT_meshopt_compression",
+    "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+];
+
+/// The remarks about one file, in the making.
+#[derive(Debug, Default)]
+pub(super) struct Remarks {
+    texts: Vec<String>,
+    /// How many are not kept.
+    omitted: usize,
+    /// Materials by what of them is not drawn: their titles by their numbers.
+    materials: BTreeMap<&'static str, BTreeMap<usize, String>>,
+    points_and_lines: usize,
+}
+
+impl Remarks {
+    /// What can be said of the document as a whole.
+    pub fn of(root: &Root) -> Self {
+        let mut remarks = Self::default();
+        for extension in &root.extensions_used {
+            if let Some(effect) = effect(extension) {
+                remarks.add(format!("{}: {effect}", name(extension)));
+            }
+        }
+        let count = |n: usize, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
+        if !root.animations.is_empty() {
+            let animations = count(root.animations.len(), "animation");
+            remarks.add(format!("{animations} not played: the model is shown at rest"));
+        }
+        if !root.cameras.is_empty() {
+            remarks.add(format!("{} not used", count(root.cameras.len(), "camera")));
+        }
+        if root.scenes.len() > 1 {
+            let shown = shown_scene(root);
+            let title = root.scenes.get(shown).and_then(|scene| scene.name.as_deref());
+            let title = title.map_or(String::new(), |title| format!(" “{}”", name(title)));
+            remarks.add(format!("of its {} scenes only scenes[{shown}]{title} is drawn", root.scenes.len()));
+        }
+        remarks
+    }
+
+    /// Adds a remark, unless it was made before.
+    pub fn add(&mut self, text: String) {
+        if self.texts.contains(&text) {
+            return;
+        }
+        if self.texts.len() < 2 * MAX_WARNINGS { self.texts.push(text) } else { self.omitted += 1 }
+    }
+
+    /// Counts a primitive that has no surface.
+    pub fn points_or_lines(&mut self) {
+        self.points_and_lines += 1;
+    }
+
+    /// Says what of a material that is used is not drawn.
+    pub fn material(&mut self, index: usize, material: &Material) {
+        let pbr = &material.pbr_metallic_roughness;
+        let emits = material.emissive_factor.is_some_and(|factor| factor.iter().any(|c| *c > 0.0));
+        let things = [
+            (material.normal_texture.is_some(), "normal textures"),
+            (material.occlusion_texture.is_some(), "occlusion textures"),
+            (pbr.metallic_roughness_texture.is_some(), "metallic-roughness textures"),
+            (emits, "emission"),
+            (material.alpha_mode.as_deref() == Some("BLEND"), "transparency (alphaMode BLEND, drawn as opaque)"),
+        ];
+        for (has, what) in things {
+            if has {
+                let title = || material.name.as_deref().map_or(String::new(), |title| format!(" “{}”", name(title)));
+                let users = self.materials.entry(what).or_default();
+                users.entry(index).or_insert_with(|| format!("materials[{index}]{}", title()));
+            }
+        }
+    }
+
+    /// The remarks as texts, bounded in number and length.
+    pub fn finish(mut self) -> Vec<String> {
+        const NAMED: usize = 3;
+        if self.points_and_lines > 0 {
+            let count = self.points_and_lines;
+            self.add(format!("{count} primitives made of points or lines not drawn"));
+        }
+        for (what, users) in std::mem::take(&mut self.materials) {
+            let named: Vec<&str> = users.values().take(NAMED).map(String::as_str).collect();
+            let more = users.len() - named.len();
+            let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+            self.add(format!("{what} not drawn: {}{more}", named.join(", ")));
+        }
+        let mut texts = self.texts;
+        if texts.len() > MAX_WARNINGS {
+            let more = texts.len() + 1 - MAX_WARNINGS + self.omitted;
+            texts.truncate(MAX_WARNINGS - 1);
+            texts.push(format!("{more} more things are not drawn"));
+        }
+        texts.iter().map(|text| shown(text, LONGEST_TEXT)).collect()
+    }
+}
+
+/// What the lack of an extension does to the picture; `None`: nothing.
+fn effect(extension: &str) -> Option<&'static str> {
+    Some(match extension {
+        "KHR_materials_pbrSpecularGlossiness" => "only its diffuse colour is drawn",
+        "KHR_lights_punctual" => "the lights of the file are not used",
+        "KHR_materials_variants" => "only the first variant is drawn",
+        "EXT_mesh_gpu_instancing" => "not supported: each instanced mesh is drawn once",
+        "CESIUM_RTC" => "not supported: the model stands without its offset",
+        known if SUPPORTED.contains(&known) || WITHOUT_EFFECT.contains(&known) => return None,
+        _ => "not supported, drawn without",
+    })
+}
