@@ -73,12 +73,22 @@ impl Renderers {
 }
 
 /// Everything that the picture depends on.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 struct Wanted {
     view: View,
     flat: Arc<FlatScene>,
     meshes: Vec<Option<usize>>,
     outline: Vec<NodeId>,
+}
+
+impl PartialEq for Wanted {
+    /// A flat scene is another one when it has been made anew: comparing its numbers in every frame would take longer.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.flat, &other.flat)
+            && self.view == other.view
+            && self.meshes == other.meshes
+            && self.outline == other.outline
+    }
 }
 
 impl Canvas {

@@ -1,5 +1,7 @@
 //! The window: shows the editor, keeps its picture up to date.
 
+use std::time::Duration;
+
 use super::Shared;
 use super::canvas::Canvas;
 use crate::editor::{Editor, Message};
@@ -11,7 +13,12 @@ pub(super) struct Window {
     shared: Shared,
     /// Whether the window has been painted: before its first picture, for which a driver may compile for seconds.
     is_open: bool,
+    /// How long each frame waits, to see the window as it is on a slow machine.
+    delay: Duration,
 }
+
+/// Names that time, in milliseconds.
+const FRAME_DELAY: &str = "ISOLITH_FRAME_DELAY";
 
 impl Window {
     /// Shows the editor that is in `shared`.
@@ -21,7 +28,8 @@ impl Window {
         let gpu = Gpu::watch(state.device.clone(), state.queue.clone(), state.adapter.get_info());
         *shared.gpu.borrow_mut() = Some(gpu.clone());
         crate::render::driver::loop_iterations(&gpu)?;
-        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false })
+        let delay = std::env::var(FRAME_DELAY).ok().and_then(|text| text.parse().ok()).map(Duration::from_millis);
+        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false, delay: delay.unwrap_or_default() })
     }
 }
 
@@ -31,6 +39,9 @@ impl eframe::App for Window {
             // Nothing can be painted any more.
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             return;
+        }
+        if !self.delay.is_zero() {
+            std::thread::sleep(self.delay);
         }
         let mut slot = self.shared.editor.borrow_mut();
         let editor = &mut *slot;
