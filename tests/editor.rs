@@ -73,6 +73,12 @@ fn field<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::N
     found.unwrap_or_else(|| panic!("no field {name}"))
 }
 
+/// The drop-down list of this name.
+fn list_box<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::Node<'h> {
+    let found = harness.get_all_by_label(name).find(|n| n.accesskit_node().role() == Role::ComboBox);
+    found.unwrap_or_else(|| panic!("no list {name}"))
+}
+
 fn pointer(harness: &mut Harness<'_, Editor>, pos: Pos2, pressed: bool) {
     harness.event(Event::PointerMoved(pos));
     harness.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE });

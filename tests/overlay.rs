@@ -96,7 +96,9 @@ fn marked(subject: &Subject, size: u32, selected: &[NodeId]) -> Vec<bool> {
         renderer.read_shown(Slot::Preview).expect("colours")
     };
     let (plain, outlined) = (shown(&[]), shown(selected));
-    plain.iter().zip(&outlined).map(|(a, b)| a != b).collect()
+    // Half a pixel of smoothing on either side does not count.
+    let differs = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 60);
+    plain.iter().zip(&outlined).map(differs).collect()
 }
 
 /// The most pixels side by side in a row that are marked, in the median of the rows that have some: the outline of an

@@ -138,6 +138,9 @@ pub fn list_room(ctx: &Context) -> f32 {
 
 /// The entries of a menu, which scroll where they take more than `room`.
 pub fn scrolling<R>(ui: &mut Ui, room: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    // That there is more below must be seen before the pointer is there.
+    let scroll = &mut ui.spacing_mut().scroll;
+    (scroll.floating_width, scroll.dormant_handle_opacity) = (4.0, 0.7);
     ScrollArea::vertical().max_height(room).show(ui, add).inner
 }
 

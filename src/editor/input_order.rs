@@ -55,42 +55,47 @@ impl InputOrder {
     /// The events up to the next one that changes what later ones mean.
     fn next_events(&mut self, typing: bool) -> Vec<Event> {
         let mut events = Vec::new();
-        let mut moved = false;
-        while let Some(event) = self.waiting.pop_front() {
-            match &event {
-                Event::PointerMoved(_) => moved = true,
-                // What is dragged arrives before it is let go.
-                Event::PointerButton { pressed: false, .. } if moved => {
-                    self.waiting.push_front(event);
-                    break;
-                }
-                Event::WindowFocused(_) => self.held.clear(),
-                _ => {}
+        while let Some(event) = self.waiting.front() {
+            let ends = self.ends_pass(event, typing);
+            if ends && comes_later(&events, event) {
+                break;
             }
-            let ends = self.ends_pass(&event, typing);
+            let is_key = matches!(event, Event::Key { .. });
+            let Some(event) = self.waiting.pop_front() else { break };
+            self.follow_keys(&event);
             events.push(event);
             if ends {
                 self.take_what_belongs(&mut events, typing);
-                self.settling = true;
+                // A field that gets the keyboard by a key selects its text in the pass after that.
+                self.settling = is_key || !self.waiting.is_empty();
                 break;
             }
         }
         events
     }
 
-    fn ends_pass(&mut self, event: &Event, typing: bool) -> bool {
+    fn ends_pass(&self, event: &Event, typing: bool) -> bool {
         match event {
             Event::PointerButton { .. } => true,
             Event::Key { key, pressed: true, modifiers, .. } => {
                 // A key that is held repeats faster than a slow frame could follow.
-                let is_first = self.held.insert(*key);
-                is_first && (!typing || ends_typing(*key, *modifiers))
+                !self.held.contains(key) && (!typing || ends_typing(*key, *modifiers))
+            }
+            _ => false,
+        }
+    }
+
+    fn follow_keys(&mut self, event: &Event) {
+        match event {
+            Event::Key { key, pressed: true, .. } => {
+                self.held.insert(*key);
             }
             Event::Key { key, pressed: false, .. } => {
                 self.held.remove(key);
-                false
             }
-            _ => false,
+            // What is let go elsewhere is not told.
+            Event::WindowFocused(_) => self.held.clear(),
+            _ => {}
         }
     }
 
@@ -99,12 +104,12 @@ impl InputOrder {
         while let Some(event) = self.waiting.front() {
             match event {
                 Event::Text(_) if !typing && matches!(events.last(), Some(Event::Key { pressed: true, .. })) => {}
-                Event::Key { key, pressed: false, .. } => {
-                    self.held.remove(key);
-                }
+                Event::Key { pressed: false, .. } => {}
                 _ => break,
             }
-            events.extend(self.waiting.pop_front());
+            let Some(event) = self.waiting.pop_front() else { break };
+            self.follow_keys(&event);
+            events.push(event);
         }
     }
 
@@ -142,6 +147,17 @@ impl InputOrder {
             Popup::close_all(ctx);
         }
     }
+}
+
+/// Whether an event needs a pass behind that of those before it: a field that loses the keyboard does not look at what was
+/// typed in the same pass, and what is dragged arrives before it is let go.
+fn comes_later(before: &[Event], event: &Event) -> bool {
+    before.iter().any(|event| match event {
+        Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Copy | Event::Ime(_) => true,
+        Event::Key { pressed, .. } => *pressed,
+        _ => false,
+    }) || (matches!(event, Event::PointerButton { pressed: false, .. })
+        && before.iter().any(|event| matches!(event, Event::PointerMoved(_))))
 }
 
 fn is_beside_popups(ctx: &Context, pos: Pos2) -> bool {
@@ -199,7 +215,7 @@ mod tests {
         events.extend(typed("2", Key::Num2));
         assert_eq!(groups(true, events.clone()), [6]);
         events.insert(3, key(Key::Tab, true));
-        assert_eq!(groups(true, events), [4, 3]);
+        assert_eq!(groups(true, events), [3, 1, 3]);
     }
 
     #[test]

@@ -62,7 +62,11 @@ fn prefixed_number(
     let mut edited = value;
     let typed = RefCell::new(None);
     let shown = if mixed { MIXED.to_owned() } else { number_text(value) };
+    let was_cancelled = cancelled(ui, ui.next_auto_id());
     let parse = |text: &str| {
+        if was_cancelled {
+            return None;
+        }
         typed.replace(Some(text.to_owned()));
         // What is left as it was shown keeps the digits that were not shown.
         if text == shown { (!mixed).then_some(value) } else { expression::evaluate(text) }
@@ -85,7 +89,11 @@ fn prefixed_number(
     if let Some(axis) = axis {
         paint_axis_mark(ui, &response, axis);
     }
-    let is_done = response.lost_focus() && !ui.input(|i| i.key_pressed(Key::Escape));
+    let escaped = ui.input(|i| i.key_pressed(Key::Escape));
+    if response.lost_focus() && escaped {
+        cancel(ui, response.id);
+    }
+    let is_done = response.lost_focus() && !escaped;
     let finished = typed.take().filter(|text| is_done && *text != shown);
     let mut answer = Answer { widget: response.id, value: (response.changed() && edited != value).then_some(edited) };
     if let Some(text) = finished {
@@ -105,6 +113,19 @@ fn prefixed_number(
         response.on_hover_text(field.help);
     }
     answer
+}
+
+/// Passes in which egui still takes the text of a field that has lost the keyboard, though it was by Escape.
+const PASSES_OF_LOSS: u64 = 2;
+
+fn cancel(ui: &Ui, widget: Id) {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|d| d.insert_temp(widget.with("cancelled"), pass));
+}
+
+fn cancelled(ui: &Ui, widget: Id) -> bool {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data(|d| d.get_temp::<u64>(widget.with("cancelled"))).is_some_and(|before| pass <= before + PASSES_OF_LOSS)
 }
 
 /// As many digits as say the number: none behind the point for whole ones, four for most, more for small ones.
@@ -157,7 +178,7 @@ pub fn refuse(ui: &Ui, widget: Id, reason: Option<String>) {
     let pass = ui.ctx().cumulative_pass_nr();
     ui.data_mut(|d| {
         let told = widget.with("refused");
-        if reason.is_none() || d.get_temp::<u64>(told).is_some_and(|before| pass <= before + 3) {
+        if reason.is_none() || d.get_temp::<u64>(told).is_some_and(|before| pass <= before + PASSES_OF_LOSS) {
             return;
         }
         d.insert_temp(told, pass);

@@ -10,8 +10,8 @@ use super::{field, open_tall, row, scene, select, shape, undo_all};
 /// All of this happens in one frame.
 fn at_once(harness: &mut Harness<'_, Editor>, events: Vec<Event>) {
     harness.input_mut().events.extend(events);
-    harness.run();
-    harness.run_steps(40);
+    // A pass for each of them, and some to settle.
+    harness.run_steps(60);
 }
 
 fn button(pos: Pos2, pressed: bool) -> [Event; 2] {
