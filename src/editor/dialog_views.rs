@@ -35,7 +35,7 @@ impl Editor {
         let title = self.bench.document.title();
         let name = title.trim_end_matches(" *").to_owned();
         let shown = question(ctx, ("Save the changes to", &name, "They are lost otherwise."), Some("Discard"), "Save");
-        let enter = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter));
+        let enter = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter)) || wants_save(ctx);
         match shown.or(enter.then_some(Answer::Agree)) {
             None => self.dialogs.question = Some(Question::Unsaved(next)),
             Some(Answer::Agree) => self.save(Some(next), ctx),
@@ -103,7 +103,8 @@ fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     if response.changed() {
         field.problem = None;
     }
-    if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
+    let saves = matches!(field.purpose, Purpose::Save(_)) && wants_save(ui.ctx());
+    if saves || (response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))) {
         done = Some(true);
     }
     if let Some(problem) = &field.problem {
@@ -157,6 +158,11 @@ fn question(
         });
     });
     answer.or(response.should_close().then_some(Answer::Cancel))
+}
+
+/// Ctrl S agrees where saving is what is asked about.
+fn wants_save(ctx: &Context) -> bool {
+    ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::S))
 }
 
 fn accented(ui: &mut Ui, text: &str) -> bool {

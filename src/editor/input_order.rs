@@ -21,7 +21,14 @@ pub struct InputOrder {
     swallowed: Vec<PointerButton>,
     /// Popups close before the next pass: a field in one of them has been told that it loses the keyboard.
     closing: bool,
+    /// When the last frame began, in seconds of the program's clock.
+    time: Option<f64>,
 }
+
+/// Longest time between press and release of a click, in seconds; and the same in frames, where those are slow: press and
+/// release get a pass each.
+const LONGEST_CLICK: f64 = 0.8;
+const FRAMES_OF_CLICK: f64 = 8.0;
 
 impl Plugin for InputOrder {
     fn debug_name(&self) -> &'static str {
@@ -34,6 +41,7 @@ impl Plugin for InputOrder {
         if ctx.current_pass_index() > 0 {
             return;
         }
+        self.allow_slow_clicks(ctx, input.time);
         if std::mem::take(&mut self.closing) {
             Popup::close_all(ctx);
         }
@@ -52,6 +60,13 @@ impl Plugin for InputOrder {
 }
 
 impl InputOrder {
+    fn allow_slow_clicks(&mut self, ctx: &Context, time: Option<f64>) {
+        let Some(now) = time else { return };
+        let frame = now - self.time.replace(now).unwrap_or(now);
+        let longest = LONGEST_CLICK.max(FRAMES_OF_CLICK * frame);
+        ctx.options_mut(|options| options.input_options.max_click_duration = longest);
+    }
+
     /// The events up to the next one that changes what later ones mean.
     fn next_events(&mut self, typing: bool) -> Vec<Event> {
         let mut events = Vec::new();

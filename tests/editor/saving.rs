@@ -78,6 +78,11 @@ fn ctrl_s_always_answers() {
     press(&mut harness, CTRL, Key::S);
     assert!(!egui::Popup::is_any_open(&harness.ctx));
     assert_eq!(saved(&path).node(ball).unwrap().name, "Ball");
+    // With the palette open, which closes, too.
+    press(&mut harness, Modifiers::NONE, Key::F3);
+    std::fs::remove_file(&path).unwrap();
+    press(&mut harness, CTRL, Key::S);
+    assert!(!harness.state().has_dialog() && path.is_file());
     // In the middle of a drag.
     harness.run_steps(40);
     let radius = field(&harness, "Radius").rect().center();
@@ -204,6 +209,24 @@ fn a_broken_example_is_refused_before_the_question() {
     click(&mut harness, entry);
     assert!(harness.query_by_label("Discard").is_none());
     assert!(last(&harness).contains("example.json"), "{}", last(&harness));
+}
+
+#[test]
+fn ctrl_s_answers_a_question_about_saving() {
+    let (mut harness, folder, path) = with_file();
+    harness.get_by_label("Add sphere").click();
+    harness.run();
+    press(&mut harness, CTRL, Key::N);
+    press(&mut harness, CTRL, Key::S);
+    assert_eq!(saved(&path).nodes().len(), 5);
+    assert_eq!(harness.state().document().scene().nodes().len(), 1, "and goes on with what was wanted");
+    press(&mut harness, CTRL, Key::S);
+    press(&mut harness, CTRL, Key::A);
+    let new = folder.path().join("new.json");
+    harness.event(Event::Text(new.display().to_string()));
+    harness.run();
+    press(&mut harness, CTRL, Key::S);
+    assert!(new.is_file() && !harness.state().has_dialog());
 }
 
 #[test]

@@ -11,6 +11,7 @@ use std::sync::LazyLock;
 use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Popup, Response, RichText, Ui};
 use egui_material_icons::MaterialIcon;
 
+use super::palette::Palette;
 use super::{Editor, glyphs, theme};
 use crate::scene::ShapeKind;
 
@@ -164,19 +165,20 @@ impl CommandId {
 /// dragged, or a menu is open: there the keys mean other things. Only documents are saved, opened and closed at any time:
 /// after what is being typed has been taken, so at the end of the frame.
 pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
-    if editor.has_dialog() {
+    if editor.dialogs.is_open() {
         return;
     }
     let is_of_document = |command: &Command| command.menu == Menu::File;
     if let Some(command) = ctx.input_mut(|i| take_shortcut(i, is_of_document)) {
         ctx.memory_mut(|memory| memory.stop_text_input());
         Popup::close_all(ctx);
+        editor.palette = Palette::default();
         editor.pending = Some(command);
         return;
     }
     let dragging = ctx.input(|i| i.pointer.any_down());
     // Not what `Context::any_popup_open` says: that knows only of popups shown in this pass already.
-    if editor.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
+    if editor.has_dialog() || editor.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
         return;
     }
     let log = &mut editor.bench.messages.show_log;
