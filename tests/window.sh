@@ -60,12 +60,12 @@ start() {
     settle
 }
 
-# So many frames pass. A step is shown in one frame and what it opens in the next, so three are enough for most.
-settle() { sleep "${1:-4}"; }
+# So many seconds, and about as many frames. A click takes three of them: press, release, and one between.
+settle() { sleep "${1:-6}"; }
 keys() { xdotool key --delay 15 "$@"; }
 letters() { xdotool type --delay 15 "$1"; }
 click() { xdotool mousemove "$1" "$2" click 1; }
-save() { keys ctrl+s; settle 5; }
+save() { keys ctrl+s; settle; }
 title() { xdotool getwindowname "$window"; }
 picture() { [ -z "$pictures" ] || { mkdir -p "$pictures"; import -window root "$pictures/$1.png"; }; }
 
@@ -80,8 +80,13 @@ check() {
         failures=$((failures + 1))
     fi
 }
-# A value in the saved scene: the lines from the node's name to the next one.
-node() { awk -v name="\"name\": \"$1\"" 'index($0, "\"name\":") { on = index($0, name) > 0 } on' "$scene"; }
+# What the saved scene says of a node.
+node() {
+    awk -v name="\"name\": \"$1\"" '
+        /^    \{/ { block = "" }
+        { block = block $0 "\n" }
+        /^    \}/ && index(block, name) { printf "%s", block }' "$scene"
+}
 holds() { node "$1" | grep -qE "$2"; }
 lacks() { ! holds "$@"; }
 exists() { grep -q "\"name\": \"$1\"" "$scene"; }
@@ -106,18 +111,18 @@ run() {
 
     # Digits, Tab, digits, all in one frame.
     click $(row $BALL); settle
-    click $FIELD_X; letters 1; keys Tab; letters 25; keys Tab; letters 3; keys Return; settle 14
+    click $FIELD_X; letters 1; keys Tab; letters 25; keys Tab; letters 3; keys Return; settle 20
     picture digits
     save
     check "typed digits land where they were typed" holds Ball '"translation": \[1.0, 25.0, 3.0\]'
 
-    click $FIELD_X; settle; letters 7; keys Escape; settle; save
+    click $FIELD_X; letters 7; keys Escape; settle 8; save
     check "Escape cancels a number" holds Ball '"translation": \[1.0, 25.0, 3.0\]'
 
     click $FIELD_X; settle; letters 1/0; keys Return; settle; picture one-by-zero; save
     check "1/0 keeps the value" holds Ball '"translation": \[1.0, 25.0, 3.0\]'
 
-    click $FIELD_X; settle; letters 8; keys ctrl+s; settle 6
+    click $FIELD_X; settle; letters 8; keys ctrl+s; settle 10
     check "Ctrl S takes the number being typed" holds Ball '"translation": \[8.0, 25.0, 3.0\]'
 
     # What is selected shows in what H hides.
@@ -138,21 +143,21 @@ run() {
     check "undo brings it back" exists Ring
 
     # A fast drag: press, move, release within a frame.
-    xdotool mousemove $(row $BALL) mousedown 1 mousemove $EMPTY_ROOM mouseup 1; settle 7; picture dropped; save
+    xdotool mousemove $(row $BALL) mousedown 1 mousemove $EMPTY_ROOM mouseup 1; settle 8; picture dropped; save
     check "a row dropped beside the others goes to the top" lacks Ball '"parent"'
 
     # Files.
     local other=$work/other.json
     echo precious >"$other"
-    keys ctrl+shift+s; settle; keys ctrl+a; letters "$other"; keys Return Return; settle 6; picture replace
+    keys ctrl+shift+s; settle; keys ctrl+a; letters "$other"; keys Return Return; settle 9; picture replace
     check "saving over a file asks" grep -q precious "$other"
     keys Escape; settle; keys Escape; settle
-    keys ctrl+shift+s; settle; keys ctrl+a; letters "$work"; keys Return; settle 5; picture folder
+    keys ctrl+shift+s; settle; keys ctrl+a; letters "$work"; keys Return; settle; picture folder
     keys Escape; settle
     check "a folder is no file" [ "$(find "$work" -maxdepth 1 -name '*.json' | wc -l)" = 2 ]
     echo '{' >"$work/broken.json"
     click $(row $BODY); settle; keys h; settle
-    keys ctrl+o; settle; keys ctrl+a; letters "$work/broken.json"; keys Return; settle 5; picture broken
+    keys ctrl+o; settle; keys ctrl+a; letters "$work/broken.json"; keys Return; settle; picture broken
     # No question is open: H shows the node again, and the title says that all is saved.
     keys h; settle; save
     check "a broken file is refused without a question" grep -q '^scene.json – Isolith' <<<"$(title)"

@@ -65,7 +65,7 @@ impl eframe::App for Window {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             return;
         }
-        if !self.delay.is_zero() {
+        if !self.delay.is_zero() && ui.ctx().current_pass_index() == 0 {
             std::thread::sleep(self.delay);
         }
         let mut slot = self.shared.editor.borrow_mut();
