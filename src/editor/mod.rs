@@ -56,7 +56,7 @@ mod workbench;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{CentralPanel, Context, Frame, Key, Margin, Panel, TextureId, Ui, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Key, Margin, Panel, SurrenderFocusOn, TextureId, Ui, ViewportCommand};
 
 pub use commands::{Command, CommandId, Menu};
 pub use messages::{Message, Severity};
@@ -178,6 +178,8 @@ impl Editor {
     pub fn setup(ctx: &Context) {
         theme::install(ctx);
         ctx.add_plugin(input_order::InputOrder::default());
+        // A field takes what was typed when the pointer is pressed elsewhere: the click may already select another node.
+        ctx.options_mut(|options| options.input_options.surrender_focus_on = SurrenderFocusOn::Presses);
     }
 
     /// Remembers files between runs in this list.
