@@ -47,11 +47,13 @@ impl Inspector {
         let Some(mut sheet) = Sheet::new(bench, if is_free { free } else { locked.clone() }) else { return };
         ui.add_enabled_ui(is_free, |ui| self.transform.show(ui, &mut sheet));
         if !locked.is_empty() {
-            let text = format!(
-                "{} locked and not moved",
-                if locked.len() == 1 { "One is".into() } else { format!("{} are", locked.len()) }
-            );
-            ui.label(RichText::new(text).small().color(theme::WARNING));
+            let which = match (locked.len(), all.len()) {
+                (1, 1) => "It is".to_owned(),
+                (1, _) => "One is".to_owned(),
+                (count, _) => format!("{count} are"),
+            };
+            let text = RichText::new(format!("{which} locked and not moved")).small().color(theme::WARNING);
+            ui.label(text);
         }
     }
 
