@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Button, Context, Id, Key, Modal, RichText, vec2};
 
-use super::dialogs::Intent as Next;
+use super::dialogs::Next;
 use super::messages::Message;
 use super::{Editor, theme};
 use crate::document::{Document, Replaced};

@@ -24,6 +24,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("eframe", &["editor", "app"]),
     ("egui", &["editor", "app"]),
     ("rfd", &["editor", "app"]),
+    ("zbus", &["editor"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),
     ("ab_glyph", &["font", "bench"]),
