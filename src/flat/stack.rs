@@ -72,7 +72,7 @@ mod tests {
     fn nest(depth: usize, operators: &[Operator], wide: bool) -> Scene {
         let mut scene = Scene::new();
         let mut parent: Option<NodeId> = None;
-        let mut ball = |scene: &mut Scene, parent, i: usize| {
+        let ball = |scene: &mut Scene, parent, i: usize| {
             let at = 0.37 * i as f64;
             let object = Object { shape: Shape::Sphere { radius: 0.5 + 0.002 * i as f64 }, material: MaterialId(1) };
             let node = Node::new("ball", NodeKind::Object(object)).at(0.4 * glam::DVec3::new(at.cos(), at.sin(), 0.0));
