@@ -7,12 +7,12 @@ use std::time::Instant;
 
 use super::failure::Failure;
 use super::outputs::{self, Quantity};
-use super::progress::{Interrupts, Progress};
+use super::progress::{Interrupts, Progress, cancel_by_interrupts};
 use super::{complain, say};
 use crate::flat::inspect::{Look, Span};
 use crate::flat::mesh_rays::Meshes;
 use crate::flat::truth::truth;
-use crate::flat::{Buffers, FlatScene, Warning, flatten};
+use crate::flat::{Buffers, Cancel, FlatScene, Warning, flatten_until};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
@@ -107,15 +107,22 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
         outputs::check_writable(path)?;
     }
     let scene = file::load(&arguments.scene).map_err(Failure::Scene)?;
-    let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?;
+    let cancel = cancel_by_interrupts();
+    let flat = flatten_until(&scene, arguments.time, &cancel)
+        .map_err(|e| Failure::beyond_limit(&arguments.scene, &e))?
+        .map(|(flat, _)| flat)
+        .ok_or(Failure::Cancelled)?;
     let mut library = MeshLibrary::new(arguments.scene.parent().map(Path::to_path_buf));
     let (meshes, missing) = flat.load_meshes(&mut library);
     arguments.warn(flat.warnings.iter().chain(&missing));
+    if cancel.is_cancelled() {
+        return Err(Failure::Cancelled);
+    }
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.truth {
         truth_picture(arguments, &flat, &meshes, &camera)?
     } else {
-        gpu_picture(arguments, &flat, &meshes, &camera)?
+        gpu_picture(arguments, &flat, &meshes, &camera, &cancel)?
     };
     for (quantity, path) in arguments.outputs() {
         let mut note = outputs::write(quantity, path, &buffers, &flat)?;
@@ -151,6 +158,7 @@ fn gpu_picture(
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
+    cancel: &Cancel,
 ) -> Result<Buffers, Failure> {
     let gpu = Gpu::headless()?;
     loop_iterations(&gpu)?;
@@ -161,6 +169,7 @@ fn gpu_picture(
         // made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
         renderer.set_method(Method::Pruned);
     }
+    renderer.set_cancel(cancel);
     let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
     let mut update = |share| progress.update(f64::from(share));
     let result = renderer.render_as(look, flat, meshes, camera, arguments.size, &mut update);

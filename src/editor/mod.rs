@@ -11,6 +11,7 @@
 //! | `legend` | what the colours of a picture mean that is not lit |
 //! | `dialogs`, `palette`, `messages` | what comes up in front |
 //! | `reading` | files that nodes keep, read beside the frames |
+//! | `flattening` | the document as arrays, made beside the frames where that takes long |
 
 mod bounds;
 mod color_picker;
@@ -18,6 +19,7 @@ mod commands;
 mod dialogs;
 mod expression;
 mod fields;
+mod flattening;
 mod gizmo;
 mod glyphs;
 mod insertion;
@@ -58,11 +60,11 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
+use crate::flat::FlatScene;
 use crate::flat::inspect::Look;
-use crate::flat::{FlatMesh, FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
-use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
+use crate::scene::{Light, Node, NodeKind, Scene};
 use workbench::Workbench;
 
 /// What the renderer has made.
@@ -106,7 +108,7 @@ pub struct Example {
 /// The editor.
 pub struct Editor {
     bench: Workbench,
-    flat: Flattened,
+    flat: flattening::Flattened,
     meshes: MeshLibrary,
     navigation: Navigation,
     viewport: viewport::Viewport,
@@ -126,23 +128,12 @@ pub struct Editor {
     typing: bool,
 }
 
-/// The flat scene of a revision of the document.
-#[derive(Default)]
-struct Flattened {
-    flattener: Flattener,
-    scene: Arc<FlatScene>,
-    revision: Option<u64>,
-    problem: Option<String>,
-    /// A mesh that cannot be read, and why.
-    mesh_problem: Option<(NodeId, String)>,
-}
-
 impl Editor {
     /// An editor for the document.
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
             bench: Workbench::new(Document::new(Scene::new())),
-            flat: Flattened::default(),
+            flat: flattening::Flattened::default(),
             meshes: MeshLibrary::new(None),
             navigation: Navigation::default(),
             viewport: viewport::Viewport::default(),
@@ -205,6 +196,7 @@ impl Editor {
         }
         self.bench.settle(&ctx);
         self.refresh_flat();
+        self.is_flattening(&ctx);
         self.send_title(&ctx);
         self.typing = ctx.text_edit_focused();
     }
@@ -295,26 +287,8 @@ impl Editor {
         self.meshes.set_folder(document.path().and_then(folder_of));
         self.bench.document = document;
         self.outliner = outliner::Outliner::default();
-        self.flat.revision = None;
+        self.flat.reset();
         self.refresh_flat();
-        self.show_as_saved();
-    }
-
-    fn refresh_flat(&mut self) {
-        let revision = self.bench.document.revision();
-        if self.flat.revision == Some(revision) {
-            return;
-        }
-        self.flat.revision = Some(revision);
-        match self.flat.flattener.flatten(self.bench.document.scene(), 0.0) {
-            Ok(flat) => {
-                self.flat.scene = flat;
-                self.flat.problem = None;
-            }
-            Err(error) => self.flat.problem = Some(error.to_string()),
-        }
-        let broken = |mesh: &FlatMesh| Some((mesh.id, self.meshes.get(&mesh.path).err()?.to_string()));
-        self.flat.mesh_problem = self.flat.scene.meshes.iter().find_map(broken);
     }
 
     fn open_dropped(&mut self, ctx: &Context) {

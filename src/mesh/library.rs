@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::resolve::{inside, read_file};
 use super::{MeshError, TriangleMesh, parse};
+use crate::guard::guarded;
 
 /// The meshes that a scene names, by their paths relative to the scene's folder. Failures are kept
 /// too, so that a broken file is read once and not once per frame.
@@ -44,7 +45,8 @@ impl MeshLibrary {
         if let Some(known) = self.loaded.get(path) {
             return known.clone();
         }
-        let result = self.read(path).map(Arc::new).map_err(Arc::new);
+        let broken = |reason| Err(MeshError { file: path.to_owned(), place: String::new(), reason });
+        let result = guarded(|| self.read(path)).unwrap_or_else(broken).map(Arc::new).map_err(Arc::new);
         self.loaded.insert(path.to_owned(), result.clone());
         result
     }
