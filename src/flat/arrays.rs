@@ -378,6 +378,8 @@ pub const MAX_COMPONENT_NODES: usize = 4_200;
 pub const MAX_FLAT_NODES: usize = 1 << 18;
 /// Most rows of numbers in a scene, and of data while it is flattened: 128 MiB, and fewer than a 32-bit float can count.
 pub const MAX_FLAT_ROWS: usize = 1 << 23;
+/// Most components: each is drawn by itself, and that many take lavapipe half a gigabyte and several seconds.
+pub const MAX_COMPONENTS: usize = 1 << 16;
 /// Most bytes of the arrays.
 pub const MAX_FLAT_BYTES: usize = 160 << 20;
 /// Most steps of flattening: visits of nodes, and operands that are moved, copies included. They stand for time, and are

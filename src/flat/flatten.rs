@@ -27,6 +27,9 @@ use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
 /// See [`MAX_COMPONENT_NODES`].
 const TOGETHER: &str = "the number of shapes that are blended or cut together";
 
+/// See [`MAX_COMPONENTS`].
+const APART: &str = "the number of parts that meet others by hard union only, copies included";
+
 /// See [`MAX_COPIES`].
 const COPIES: &str = "the number of copies of copies that are evaluated for one point";
 
@@ -163,7 +166,11 @@ fn flatten_surveyed(
     if cancel.is_cancelled() {
         return Ok(None);
     }
-    for operands in &batched(operands) {
+    let components = batched(operands);
+    if let Some(first) = components.get(MAX_COMPONENTS).and_then(|beyond| beyond.first()) {
+        return Err(FlattenError::new(first.outermost, APART, components.len(), MAX_COMPONENTS));
+    }
+    for operands in &components {
         add_component(&mut flat, &mut materials, operands, limits.rows)?;
         if cancel.is_cancelled() {
             return Ok(None);

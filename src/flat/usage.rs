@@ -22,11 +22,14 @@ pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
     };
     let (largest, largest_node) = most(&|component| component.count as usize);
     let (stack, stack_node) = most(&|component| component.stack as usize);
+    let (copies, copies_node) = most(&|component| component.copies as usize);
     let (_, rows_node) = most(&|component| component.rows as usize);
     let row = |name, used, limit, node| Usage { name, used, limit, node };
     vec![
         row("entries", flat.nodes.len(), MAX_FLAT_NODES, largest_node),
         row("entries of one component", largest, MAX_COMPONENT_NODES, largest_node),
+        row("components", flat.components.len(), MAX_COMPONENTS, None),
+        row("copies evaluated for one point", copies, MAX_COPIES, copies_node),
         row("stack", stack, MAX_STACK as usize, stack_node),
         row("rows", flat.numbers.len(), MAX_FLAT_ROWS, rows_node),
         row("bytes", flat.bytes(), MAX_FLAT_BYTES, rows_node),

@@ -2,6 +2,7 @@
 
 mod empty;
 mod hostile;
+mod opening;
 
 use std::path::PathBuf;
 

@@ -90,7 +90,7 @@ fn what_turns_out_to_be_nothing_is_not_copied_either() {
         rounding: 0.0,
     };
     let mut scene = Scene::new();
-    let cut = blended(Operator::Intersection).modified(around(512)).modified(around(255));
+    let cut = blended(Operator::Intersection).modified(around(255)).modified(around(255));
     let parent = add(&mut scene, None, cut);
     add(&mut scene, Some(parent), object(text));
     let started = Instant::now();
@@ -112,6 +112,12 @@ fn chains_of_copies_are_counted_before_they_are_made() {
         let (node, what, value) = refused(name, &scene);
         assert!(node == 1 && what.contains("copies included") && value > MAX_FLAT_NODES, "{name}: {what} {value}");
     }
+    // Too many parts to be drawn one by one.
+    let mut scene = Scene::new();
+    let ring = ball().modified(Modifier::Round { radius: 0.01 }).modified(around(512)).modified(around(255));
+    add(&mut scene, None, ring);
+    let (node, what, value) = refused("separate parts", &scene);
+    assert!(node == 1 && what.contains("hard union") && value == 512 * 255, "{what} {value}");
     // Many that are small by themselves: the group that holds too many is named.
     let mut scene = Scene::new();
     let parent = add(&mut scene, None, blended(Operator::Union));
