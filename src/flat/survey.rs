@@ -13,7 +13,7 @@ use crate::scene::{Modifier, Node, NodeKind, Object, Scene, Shape};
 
 /// So many levels fit into the stack of any thread, 2 MiB for most.
 const MOST_ON_ANY_STACK: usize = 100;
-/// What a level takes of a stack: measured 4 KiB in a build for tests, so this has room.
+/// What a level takes of a stack: measured 5 KiB at most in a build for tests, so this has room.
 const STACK_PER_LEVEL: usize = 16 << 10;
 /// What evaluating a shape and writing the arrays take besides.
 const LEAST_STACK: usize = 2 << 20;
