@@ -11,6 +11,7 @@ pub mod flat;
 pub mod font;
 pub mod gallery;
 pub mod geometry;
+pub mod guard;
 pub mod mesh;
 pub mod render;
 pub mod scene;

@@ -209,6 +209,7 @@ impl Canvas {
     fn follow_kernels(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
         let lists = self.renderers.plain.pruner();
         let mut news = lists.collect();
+        let failures = lists.take_failures();
         if lists.building() > 0 {
             ctx.request_repaint_after(Duration::from_millis(30));
         }
@@ -220,7 +221,7 @@ impl Canvas {
             // The status bar of this frame still counts it.
             ctx.request_repaint();
         }
-        for failure in kernels.take_failures() {
+        for failure in failures.into_iter().chain(kernels.take_failures()) {
             editor.report(Message::warning(failure));
         }
         if kernels.building() > 0 {

@@ -1,11 +1,13 @@
 //! The progress bar, and Ctrl-C.
 
 use std::io::IsTerminal;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{LazyLock, OnceLock};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::flat::Cancel;
 
 /// Where standard error is no terminal, a line is written this often instead of a bar.
 const LINE_EVERY: Duration = Duration::from_secs(10);
@@ -33,7 +35,9 @@ pub struct Progress {
 impl Progress {
     /// Nothing done yet.
     pub fn start(task: &'static str, quiet: bool, interrupts: Interrupts) -> Self {
-        if interrupts == Interrupts::StopTheTask {
+        let ends = interrupts == Interrupts::EndTheProgram;
+        AT_ONCE.store(ends, Ordering::Relaxed);
+        if !ends {
             catch_interrupts();
         }
         let shown = (!quiet && std::io::stderr().is_terminal()).then(|| bar(task));
@@ -69,19 +73,29 @@ fn bar(task: &'static str) -> ProgressBar {
 
 /// Whether Ctrl-C was pressed.
 pub fn is_cancelled() -> bool {
-    CANCELLED.load(Ordering::Relaxed)
+    CANCEL.is_cancelled()
 }
 
-static CANCELLED: AtomicBool = AtomicBool::new(false);
+/// Whether Ctrl-C ends the program at once.
+static AT_ONCE: AtomicBool = AtomicBool::new(false);
+
+static CANCEL: LazyLock<Cancel> = LazyLock::new(Cancel::default);
+
+/// What Ctrl-C cancels from now on.
+pub fn cancel_by_interrupts() -> Cancel {
+    catch_interrupts();
+    CANCEL.clone()
+}
 
 fn catch_interrupts() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
         // Without a handler Ctrl-C still ends the program, only less gently.
         let _ = ctrlc::set_handler(|| {
-            if CANCELLED.swap(true, Ordering::Relaxed) {
+            if is_cancelled() || AT_ONCE.load(Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);
             }
+            CANCEL.cancel();
         });
     });
 }

@@ -11,12 +11,12 @@ use super::adapters::AdapterArguments;
 use super::failure::Failure;
 use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
-use super::progress::{Interrupts, Progress};
+use super::progress::{Interrupts, Progress, cancel_by_interrupts};
 use super::{complain, say};
 use crate::flat::inspect::{Look, Span};
 use crate::flat::mesh_rays::Meshes;
 use crate::flat::truth::truth;
-use crate::flat::{Buffers, FlatScene, Warning, flatten};
+use crate::flat::{Buffers, Cancel, FlatScene, Warning, flatten_until};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
@@ -151,16 +151,23 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     let paths: Vec<_> = arguments.outputs().into_iter().map(|(_, path)| path).collect();
     outputs::check_writable(&paths, &[&arguments.scene])?;
     let scene = read_scene(&arguments.scene)?;
-    let flat = flatten(&scene, arguments.time).map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?;
+    let cancel = cancel_by_interrupts();
+    let flat = flatten_until(&scene, arguments.time, &cancel)
+        .map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?
+        .map(|(flat, _)| flat)
+        .ok_or(Failure::Cancelled)?;
     let mut library = MeshLibrary::new(folder(&arguments.scene));
     let (meshes, missing) = flat.load_meshes(&mut library);
     let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
     arguments.warn(&warnings)?;
+    if cancel.is_cancelled() {
+        return Err(Failure::Cancelled);
+    }
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.truth {
         truth_picture(arguments, &flat, &meshes, &camera)?
     } else {
-        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera)?;
+        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera, &cancel)?;
         arguments.warn(&unfinished)?;
         warnings.extend(unfinished);
         buffers
@@ -208,6 +215,7 @@ fn gpu_picture(
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
+    cancel: &Cancel,
 ) -> Result<(Buffers, Vec<Warning>), Failure> {
     let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
@@ -218,6 +226,7 @@ fn gpu_picture(
         // made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
         renderer.set_method(Method::Pruned);
     }
+    renderer.set_cancel(cancel);
     let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
     let mut update = |share| progress.update(f64::from(share));
     let result = renderer.render_as(look, flat, meshes, camera, arguments.size, &mut update);

@@ -14,6 +14,7 @@
 //! | `reading` | files that nodes keep, read beside the frames |
 //! | `recovery` | unsaved work, kept beside the frames and offered again |
 //! | `conflict` | a file that another program has changed |
+//! | `flattening` | the document as arrays, made beside the frames where that takes long |
 
 mod bounds;
 mod color_picker;
@@ -23,6 +24,7 @@ mod dialog_views;
 mod dialogs;
 mod expression;
 mod fields;
+mod flattening;
 mod gizmo;
 mod glyphs;
 mod input_order;
@@ -68,11 +70,11 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
+use crate::flat::FlatScene;
 use crate::flat::inspect::Look;
-use crate::flat::{FlatScene, Flattener};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
-use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
+use crate::scene::{Light, Node, NodeKind, Scene};
 use workbench::Workbench;
 
 /// Most characters of a file's name in the window's title.
@@ -119,7 +121,7 @@ pub struct Example {
 /// The editor.
 pub struct Editor {
     bench: Workbench,
-    flat: Flattened,
+    flat: flattening::Flattened,
     meshes: MeshLibrary,
     models: models::Models,
     navigation: Navigation,
@@ -145,23 +147,12 @@ pub struct Editor {
     pending: Option<CommandId>,
 }
 
-/// The flat scene of a revision of the document.
-#[derive(Default)]
-struct Flattened {
-    flattener: Flattener,
-    scene: Arc<FlatScene>,
-    revision: Option<u64>,
-    problem: Option<String>,
-    /// A mesh that cannot be read, and why.
-    mesh_problem: Option<(NodeId, String)>,
-}
-
 impl Editor {
     /// An editor for the document.
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
             bench: Workbench::new(Document::new(Scene::new())),
-            flat: Flattened::default(),
+            flat: flattening::Flattened::default(),
             meshes: MeshLibrary::new(None),
             models: models::Models::default(),
             navigation: Navigation::default(),
@@ -240,6 +231,7 @@ impl Editor {
         self.bench.settle(&ctx);
         self.refresh_flat();
         self.poll_models(&ctx);
+        self.is_flattening(&ctx);
         self.send_title(&ctx);
         self.watch_file(&ctx);
         self.follow_recovery(&ctx, picture);
@@ -333,25 +325,8 @@ impl Editor {
         self.meshes.set_folder(document.path().and_then(folder_of));
         self.bench.document = document;
         self.outliner = outliner::Outliner::default();
-        self.flat.revision = None;
+        self.flat.reset();
         self.refresh_flat();
-        self.show_as_saved();
-    }
-
-    fn refresh_flat(&mut self) {
-        let revision = self.bench.document.revision();
-        if self.flat.revision == Some(revision) {
-            return;
-        }
-        self.flat.revision = Some(revision);
-        match self.flat.flattener.flatten(self.bench.document.scene(), 0.0) {
-            Ok(flat) => {
-                self.flat.scene = flat;
-                self.flat.problem = None;
-            }
-            Err(error) => self.flat.problem = Some(error.to_string()),
-        }
-        self.find_mesh_problem();
     }
 
     fn open_dropped(&mut self, ctx: &Context) {

@@ -10,6 +10,7 @@ use super::Editor;
 use super::messages::Message;
 use super::workbench::WantedFile;
 use crate::document::Edit;
+use crate::guard::guarded;
 use crate::scene::{Attached, Node, file};
 
 /// A file on its way.
@@ -36,7 +37,7 @@ impl Editor {
         let (ctx, path, instead_of) = (ctx.clone(), path.to_path_buf(), wanted.instead_of.clone());
         let spawned = std::thread::Builder::new().name("file to keep".into()).spawn(move || {
             // The receiver is gone when the document is another one: then nobody waits for the file.
-            let _ = sender.send(read(&path, &instead_of));
+            let _ = sender.send(guarded(|| read(&path, &instead_of)).flatten());
             ctx.request_repaint();
         });
         match spawned {

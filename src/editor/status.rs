@@ -44,6 +44,10 @@ fn left(editor: &mut Editor, ui: &mut Ui) {
         ui.add(egui::Label::new(RichText::new(format!("Reading {name}…")).color(theme::WEAK)).truncate());
         return;
     }
+    if editor.is_flattening(ui.ctx()) {
+        ui.label(RichText::new("Preparing the scene…").color(theme::WEAK));
+        return;
+    }
     if let Some(problem) = &editor.flat.problem {
         let text = format!("Not shown: {problem}");
         ui.label(super::messages::Severity::Error.icon().size(14.0));

@@ -404,7 +404,21 @@ pub const MAX_STACK: u32 = 128;
 /// Most entries in one component: an invocation visits them seven times, twice each, for a normal and a
 /// material, and lavapipe ends every loop after 65 535 iterations.
 pub const MAX_COMPONENT_NODES: usize = 4_200;
-/// Most entries in all components together.
-pub const MAX_FLAT_NODES: usize = 1 << 20;
-/// Most rows of numbers in a scene, and of data while it is flattened: more could not be counted by 32-bit floats, nor held by some devices.
-pub const MAX_FLAT_ROWS: usize = 1 << 24;
+/// Most entries in all components together: with so many of them flattening takes a second and half a gigabyte at most.
+pub const MAX_FLAT_NODES: usize = 1 << 18;
+/// Most rows of numbers in a scene, and of data while it is flattened: 128 MiB, and fewer than a 32-bit float can count.
+pub const MAX_FLAT_ROWS: usize = 1 << 23;
+/// Most components: each is drawn by itself, and that many take lavapipe half a gigabyte and several seconds.
+pub const MAX_COMPONENTS: usize = 1 << 16;
+/// Most bytes of the arrays.
+pub const MAX_FLAT_BYTES: usize = 160 << 20;
+/// Most steps of flattening: visits of nodes, and operands that are moved, copies included. They stand for time, and are
+/// the same on every machine.
+pub const MAX_FLAT_STEPS: usize = 1 << 23;
+/// Deepest nesting of groups and of their modifiers together, each axis of a mirror counted.
+pub const MAX_FLAT_LEVELS: usize = 2_048;
+/// Most copies of one entry that are evaluated for one point, where repetitions stand within each other.
+pub const MAX_COPIES: usize = 1 << 14;
+/// Most entries of components that have pruned lists at once, the largest first: lists of small components take 12 KB and
+/// a tenth of a millisecond for each entry.
+pub const MAX_LISTED_ENTRIES: usize = 1 << 15;

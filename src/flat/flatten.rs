@@ -1,10 +1,10 @@
 //! Scene → arrays.
 //!
-//! Two steps: the visible nodes become folds of operands in world space (`operands`), split into
-//! components at hard unions, small ones joined again by place (`batch`); then each component is written out relative to
-//! its own origin (`emit`).
+//! Three steps: what it will take is counted (`survey`); the visible nodes become folds of operands in world space
+//! (`collect`), split into components at hard unions, small ones joined again by place (`batch`); then each component is
+//! written out relative to its own origin (`emit`).
 //!
-//! What never reaches the arrays: hidden nodes, empty groups, groups of one operand, and groups that
+//! What never reaches the arrays: hidden nodes, the empty set, groups of one operand, and groups that
 //! come first in their parent (their fold simply is the beginning of the parent's fold).
 
 use std::collections::HashMap;
@@ -14,11 +14,24 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::batch::{batched, united};
+use super::budget::{BYTES, Budget, Cancel, LEVELS, Limits, ROWS, STACK, Usage};
+use super::collect::{Components, collect};
 use super::emit::emit;
 use super::enclosure::fold_bounds;
-use super::operands::{Operand, collect};
+use super::operands::{Operand, size_of_fold};
+use super::survey::Survey;
+use super::usage::usage;
 use crate::geometry::Camera;
 use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
+
+/// See [`MAX_COMPONENT_NODES`].
+const TOGETHER: &str = "the number of shapes that are blended or cut together";
+
+/// See [`MAX_COMPONENTS`].
+const APART: &str = "the number of parts that meet others by hard union only, copies included";
+
+/// See [`MAX_COPIES`].
+const COPIES: &str = "the number of copies of copies that are evaluated for one point";
 
 /// Why a scene has no arrays.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -36,13 +49,31 @@ pub struct FlattenError {
     pub limit: usize,
 }
 
-/// What is limited by [`MAX_FLAT_ROWS`].
-pub(super) const ROWS: &str = "the number of rows of points, letters and images, copies included";
+impl FlattenError {
+    pub(super) fn new(node: &Node, what: &'static str, value: usize, limit: usize) -> Self {
+        Self { node: node.id, name: node.name.clone(), what, value, limit }
+    }
+}
 
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node, four times as much where thousands of separate shapes
-/// are joined by place.
+/// are joined by place. What it takes is counted before it is done, see [`MAX_FLAT_NODES`] and the limits beside it.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
-    flatten_with_cuts(scene, time).map(|(flat, _)| flat)
+    let made = flatten_with_cuts(scene, time, &Cancel::default())?;
+    let (flat, _) = made.expect("nobody else holds the flag, so nobody cancels");
+    Ok(flat)
+}
+
+/// The same with how much of each limit is used; nothing where it was cancelled.
+pub fn flatten_until(
+    scene: &Scene,
+    time: f64,
+    cancel: &Cancel,
+) -> Result<Option<(FlatScene, Vec<Usage>)>, FlattenError> {
+    let made = flatten_within(scene, time, Limits::default(), cancel)?;
+    Ok(made.map(|Made { flat, steps, .. }| {
+        let usage = usage(&flat, steps);
+        (flat, usage)
+    }))
 }
 
 /// The arrays with all components joined into one, as a renderer has them that knows of no components: what
@@ -53,48 +84,99 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     flat.numbers.clear();
     flat.ids.clear();
     flat.components.clear();
-    let mut materials =
-        Materials { scene, index: flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect() };
-    let components = collect(scene, MAX_FLAT_ROWS, &mut |_, _| {});
-    let whole = united(components.operands);
-    if !whole.is_empty() {
-        add_component(&mut flat, &mut materials, &whole, MAX_FLAT_ROWS)?;
+    let index = flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect();
+    let limits = Limits::default();
+    let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
+    on_a_stack(scene, &survey, || {
+        let mut materials = Materials { scene, index };
+        let budget = Budget::new(limits, &Cancel::default());
+        let whole = united(collect(scene, &survey, budget, &mut |_, _| {}).operands);
+        if !whole.is_empty() {
+            add_component(&mut flat, &mut materials, &whole, limits.rows)?;
+        }
+        Ok(flat)
+    })
+}
+
+/// The same, and whether something is cut away from several components; nothing where it was cancelled.
+pub(super) fn flatten_with_cuts(
+    scene: &Scene,
+    time: f64,
+    cancel: &Cancel,
+) -> Result<Option<(FlatScene, bool)>, FlattenError> {
+    let made = flatten_within(scene, time, Limits::default(), cancel)?;
+    Ok(made.map(|Made { flat, has_cuts, .. }| (flat, has_cuts)))
+}
+
+/// The arrays, and what else is known of how they were made.
+struct Made {
+    flat: FlatScene,
+    has_cuts: bool,
+    steps: usize,
+}
+
+fn flatten_within(scene: &Scene, time: f64, limits: Limits, cancel: &Cancel) -> Result<Option<Made>, FlattenError> {
+    debug_assert!(time.is_finite(), "time is checked at the border");
+    let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
+    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
+}
+
+/// Does the work where the stack is deep enough for it.
+fn on_a_stack<T: Send>(
+    scene: &Scene,
+    survey: &Survey,
+    work: impl FnOnce() -> Result<T, FlattenError> + Send,
+) -> Result<T, FlattenError> {
+    if !survey.is_deep() {
+        return work();
     }
-    Ok(flat)
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().name("flatten".into()).stack_size(survey.stack_bytes());
+        match thread.spawn_scoped(scope, work) {
+            Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+            // The system has no room for the stack.
+            Err(_) => Err(FlattenError::new(&scene.nodes()[0], LEVELS, survey.levels, 0)),
+        }
+    })
 }
 
-/// The same, and whether something is cut away from several components.
-pub(super) fn flatten_with_cuts(scene: &Scene, time: f64) -> Result<(FlatScene, bool), FlattenError> {
-    flatten_within(scene, time, MAX_FLAT_ROWS)
-}
-
-fn flatten_within(scene: &Scene, time: f64, most_rows: usize) -> Result<(FlatScene, bool), FlattenError> {
+fn flatten_surveyed(
+    scene: &Scene,
+    survey: &Survey,
+    limits: Limits,
+    cancel: &Cancel,
+) -> Result<Option<Made>, FlattenError> {
     let mut flat = FlatScene {
         nodes: Vec::with_capacity(scene.nodes().len()),
         numbers: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
-        materials: Vec::new(),
-        material_ids: Vec::new(),
-        components: Vec::new(),
-        lights: Vec::new(),
-        meshes: Vec::new(),
-        cameras: Vec::new(),
         environment: scene.environment,
-        warnings: Vec::new(),
+        ..FlatScene::default()
     };
-    debug_assert!(time.is_finite(), "time is checked at the border");
     let mut materials = Materials { scene, index: HashMap::new() };
-    let components = collect(scene, most_rows, &mut |node, world_from_local| {
+    let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
         add_bystander(&mut flat, &mut materials, node, world_from_local);
     });
-    flat.warnings = components.warnings;
-    if let Some(problem) = components.problem {
+    let Components { operands, warnings, has_cuts, budget } = components;
+    flat.warnings = warnings;
+    let steps = budget.steps();
+    if let Some(problem) = budget.problem {
         return Err(problem);
     }
-    for operands in &batched(components.operands) {
-        add_component(&mut flat, &mut materials, operands, most_rows)?;
+    if cancel.is_cancelled() {
+        return Ok(None);
     }
-    Ok((flat, components.has_cuts))
+    let components = batched(operands);
+    if let Some(first) = components.get(MAX_COMPONENTS).and_then(|beyond| beyond.first()) {
+        return Err(FlattenError::new(first.outermost, APART, components.len(), MAX_COMPONENTS));
+    }
+    for operands in &components {
+        add_component(&mut flat, &mut materials, operands, limits.rows)?;
+        if cancel.is_cancelled() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(Made { flat, has_cuts, steps }))
 }
 
 /// Index of materials in use, in the order of first use.
@@ -172,28 +254,40 @@ fn add_component(
     if fold_bounds(operands).bounds.is_empty() {
         return Ok(());
     }
+    let (entries, depth) = size_of_fold(operands);
+    let refuse = |what, value, limit| Err(FlattenError::new(first.outermost, what, value, limit));
+    // Before it is written: groups that share their content in memory have none of it in common in the arrays.
+    if entries > MAX_COMPONENT_NODES {
+        return refuse(TOGETHER, entries, MAX_COMPONENT_NODES);
+    }
+    if depth > MAX_STACK {
+        return refuse(STACK, depth as usize, MAX_STACK as usize);
+    }
     let start = flat.nodes.len();
     let component = emit(flat, operands, &mut |flat, id| materials.resolve(flat, id));
+    let copies = component.copies as usize;
+    flat.components.push(component);
     let limits = [
-        ("the number of shapes that are blended or cut together", flat.nodes.len() - start, MAX_COMPONENT_NODES),
-        ("the nesting of groups that cannot be simplified", component.stack as usize, MAX_STACK as usize),
+        (TOGETHER, flat.nodes.len() - start, MAX_COMPONENT_NODES),
         ("the number of shapes and groups", flat.nodes.len(), MAX_FLAT_NODES),
         (ROWS, flat.numbers.len(), most_rows),
+        (BYTES, flat.bytes(), MAX_FLAT_BYTES),
+        (COPIES, copies, MAX_COPIES),
     ];
-    for (what, value, limit) in limits {
-        if value > limit {
-            let blamed = first.outermost;
-            return Err(FlattenError { node: blamed.id, name: blamed.name.clone(), what, value, limit });
-        }
+    match limits.into_iter().find(|(_, value, limit)| value > limit) {
+        Some((what, value, limit)) => refuse(what, value, limit),
+        None => Ok(()),
     }
-    flat.components.push(component);
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Attachment, Axis, Modifier, Object, ShapeKind};
+
+    fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
+        flatten_within(scene, 0.0, Limits { rows, ..Limits::default() }, &Cancel::default())
+    }
 
     /// Sixty-four copies of a plate that is displaced by an image of 900 pixels; the name of the plate's node.
     fn copies() -> (Scene, NodeId) {
@@ -212,8 +306,8 @@ mod tests {
         let (scene, id) = copies();
         let rows = flatten(&scene, 0.0).unwrap().numbers.len();
         assert!(rows > 64 * 900);
-        assert!(flatten_within(&scene, 0.0, rows).is_ok());
-        let refused = |most| flatten_within(&scene, 0.0, most).unwrap_err();
+        assert!(flatten_in_rows(&scene, rows).is_ok());
+        let refused = |most| flatten_in_rows(&scene, most).err().expect("too many rows");
         // The last component is one row too long.
         let error = refused(rows - 1);
         assert_eq!((error.node, error.value, error.limit), (id, rows, rows - 1));
@@ -230,7 +324,7 @@ mod tests {
         let mut scene = Scene::new();
         let object = Object { shape: ShapeKind::Heightmap.default_shape(), material: scene.materials()[0].id };
         let id = scene.insert(None, 0, Node::new("Alps", NodeKind::Object(object))).unwrap();
-        let error = flatten_within(&scene, 0.0, 500).unwrap_err();
+        let error = flatten_in_rows(&scene, 500).err().expect("too many rows");
         // 24 times 24 heights, and the ball around them.
         assert_eq!((error.node, error.value, error.limit), (id, 577, 500));
     }

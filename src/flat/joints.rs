@@ -1,9 +1,12 @@
 //! How the children of a group join: operator, kernel, radius in metres, and who does not blend with whom.
 
+use std::collections::{HashMap, HashSet};
+
 use super::arrays::Join;
-use super::operands::{Operand, begin_with, group_of, join};
+use super::budget::Budget;
+use super::operands::{Operand, begin_with, group_of, join, size_of_fold};
 use crate::geometry::Aabb;
-use crate::scene::{Blend, BlendKernel, Group, Joining, Node};
+use crate::scene::{Blend, BlendKernel, Group, Joining, Node, NodeId};
 
 /// Radii below this have no effect that f32 could hold, and are taken for 0.
 const LEAST_RADIUS: f64 = 1e-30;
@@ -21,19 +24,32 @@ pub(super) struct Joiner<'g, 'a> {
     bounds: Aabb,
     /// The operands so far, each with its node, where one of the children has siblings to keep apart from.
     so_far: Vec<(&'a Node, Operand<'a>)>,
-    keeps: bool,
+    /// From which siblings each child keeps apart, whichever of the two says so.
+    apart: HashMap<NodeId, HashSet<NodeId>>,
 }
 
 impl<'g, 'a> Joiner<'g, 'a> {
-    /// A joiner; `keeps` says whether any child names siblings with which it does not blend.
-    pub fn new(group: &'g Group, keeps: bool) -> Self {
-        Self { group, size: None, bounds: Aabb::EMPTY, so_far: Vec::new(), keeps }
+    /// A joiner for these children of the group.
+    pub fn new(group: &'g Group, children: impl Iterator<Item = &'a Node> + Clone) -> Self {
+        let mut apart: HashMap<NodeId, HashSet<NodeId>> = HashMap::new();
+        if children.clone().any(|child| !child.apart.is_empty()) {
+            let siblings: HashSet<NodeId> = children.clone().map(|child| child.id).collect();
+            for child in children {
+                for other in child.apart.iter().filter(|id| siblings.contains(id)) {
+                    apart.entry(child.id).or_default().insert(*other);
+                    apart.entry(*other).or_default().insert(child.id);
+                }
+            }
+        }
+        Self { group, size: None, bounds: Aabb::EMPTY, so_far: Vec::new(), apart }
     }
 
     /// The first operand.
     pub fn begin(&mut self, node: &'a Node, operand: &Operand<'a>) {
+        (self.bounds, self.size) = (Aabb::EMPTY, None);
+        self.so_far.clear();
         self.grow(&operand.bounds);
-        if self.keeps {
+        if !self.apart.is_empty() {
             self.so_far.push((node, operand.clone()));
         }
     }
@@ -78,18 +94,25 @@ impl<'g, 'a> Joiner<'g, 'a> {
     /// Appends the operand. Where it must not blend with some before it, it blends with a fold of all others before
     /// it alone, and the result joins what stands so far without a blend: so nothing that stands is lost, and where
     /// none of the others is near, the joint is hard. What cuts cuts hard where there is any such sibling.
-    pub fn join(&mut self, node: &'a Node, mut operand: Operand<'a>, fold: &mut Vec<Operand<'a>>) {
-        if !self.keeps {
+    pub fn join(&mut self, node: &'a Node, mut operand: Operand<'a>, fold: &mut Vec<Operand<'a>>, budget: &mut Budget) {
+        if self.apart.is_empty() {
             join(fold, operand);
             return;
         }
         let own = operand.clone();
         let is_symmetric = matches!(operand.join, Join::Union | Join::Intersection);
-        let is_apart = |other: &Node| node.apart.contains(&other.id) || other.apart.contains(&node.id);
-        if operand.blend.radius > 0.0 && self.so_far.iter().any(|(other, _)| is_apart(other)) {
+        let is_apart = |other: &Node| self.apart.get(&node.id).is_some_and(|apart| apart.contains(&other.id));
+        if operand.blend.radius > 0.0
+            && self.apart.contains_key(&node.id)
+            && self.so_far.iter().any(|(other, _)| is_apart(other))
+        {
             let hard = Blend { radius: 0.0, ..operand.blend };
             let allowed = if is_symmetric { self.allowed(&is_apart) } else { Vec::new() };
             let how = operand.join;
+            // Those that stand before are written once more.
+            if !budget.take_entries(node, size_of_fold(&allowed).0) || !budget.take_steps(node, self.so_far.len()) {
+                return;
+            }
             if let [_, ..] = allowed[..] {
                 let mut inner = allowed;
                 inner.push(operand);

@@ -1,27 +1,31 @@
 //! A shape in its place, as an operand.
 
+use std::rc::Rc;
+
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::Join;
 use super::body::Body;
 use super::operands::{Operand, Value};
 use crate::geometry::singular_values;
-use crate::scene::{Blend, MaterialId, Node, Shape};
+use crate::scene::{Blend, Node, Object, Shape};
 
-/// The shape of a node as an operand, still to be joined.
+/// The shape of a node as an operand, still to be joined. `drawn` is what its shape is evaluated with where that has data
+/// and was made before.
 pub(super) fn leaf<'a>(
     node: &'a Node,
     outermost: &'a Node,
     world_from_local: &DAffine3,
-    shape: &Shape,
-    material: MaterialId,
+    object: &Object,
+    drawn: Option<Rc<Body>>,
 ) -> Operand<'a> {
+    let Object { shape, material } = object;
     let (shape, mut world_from_local, least, greatest) = normalise(shape, world_from_local);
     if least == 1.0 && matches!(shape, Shape::Sphere { .. }) {
         // A ball looks the same from every side: without a rotation its kernel is shorter.
         world_from_local.matrix3 = DMat3::IDENTITY;
     }
-    let body = Body::new(&shape);
+    let body = drawn.unwrap_or_else(|| Rc::new(Body::new(&shape)));
     let bounds = body.bounds.transformed(&world_from_local);
     Operand {
         node,
@@ -32,7 +36,14 @@ pub(super) fn leaf<'a>(
         bounds,
         skip: bounds,
         slope: if bounds.is_finite() { least / greatest } else { 0.0 },
-        value: Value::Leaf { local_from_world: world_from_local.inverse(), distance_scale: least, body, material },
+        entries: 1,
+        depth: 0,
+        value: Value::Leaf {
+            local_from_world: world_from_local.inverse(),
+            distance_scale: least,
+            body,
+            material: *material,
+        },
     }
 }
 

@@ -5,6 +5,8 @@
 //! |---|---|
 //! | `batch` | small components joined by place |
 //! | `body` | shape → the numbers that it is evaluated with |
+//! | `budget`, `survey`, `usage` | what flattening may take, counted before it is done |
+//! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `moved` | the numbers of a component relative to a point near the eye |
@@ -24,11 +26,15 @@
 mod arrays;
 mod batch;
 mod body;
+mod budget;
 mod buffers;
+mod collect;
 pub mod compare;
+mod cuts;
 mod emit;
 mod enclosure;
 mod flatten;
+mod fold;
 pub mod inspect;
 mod joints;
 mod leaf;
@@ -42,18 +48,22 @@ mod prune;
 mod reflatten;
 pub mod shade;
 mod stack;
+mod survey;
 pub mod trace;
 pub mod truth;
 pub mod twin;
+mod usage;
 pub mod view;
 
 pub use arrays::*;
 pub use body::Body;
+pub use budget::{Cancel, Usage};
 pub use buffers::*;
 pub use compare::Accuracy;
-pub use flatten::{FlattenError, flatten, flatten_whole};
+pub use flatten::{FlattenError, flatten, flatten_until, flatten_whole};
 pub use modify::{MAX_NEIGHBOURS, REPEAT_REACH, is_copying};
 pub use moved::move_rows;
 pub use prune::*;
 pub use reflatten::Flattener;
 pub use shade::{GpuLight, gpu_lights};
+pub use survey::is_quick;

@@ -5,6 +5,9 @@
 //! the field is max(d, min(g, 2m − d)), g being the divided field. That never grows faster than 1 per metre,
 //! has the sign of g within, and far away is simply d.
 
+use std::collections::HashMap;
+use std::rc::Rc;
+
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::arrays::modifier_rows;
@@ -28,7 +31,7 @@ pub(super) struct Modified {
     /// Its rows, see `shaders/mod/`.
     pub rows: Vec<[f64; 4]>,
     /// Its data; nothing for most.
-    pub data: Vec<[f64; 4]>,
+    pub data: Rc<[[f64; 4]]>,
     /// Around the result, in the node's own space.
     pub bounds: Aabb,
     /// The field is at least `slope` times the distance to this.
@@ -40,6 +43,9 @@ pub(super) struct Modified {
     /// What the artist should know.
     pub warning: Option<String>,
 }
+
+/// The rows of images that displace, with their steepest slopes, by the modifier: all copies share them.
+pub(super) type Splines = HashMap<*const Modifier, (Rc<[[f64; 4]]>, f64)>;
 
 /// Copies without end reach so many cells in each direction: what f32 can still count and place.
 pub const REPEAT_REACH: f64 = 1e6;
@@ -59,10 +65,10 @@ const MOST_INWARDS: f64 = 0.9;
 const NARROWEST: f64 = 0.05;
 
 /// What a modifier makes of its content; an error says why it can do nothing.
-pub(super) fn modify(modifier: &Modifier, content: &Enclosure) -> Result<Modified, Refusal> {
+pub(super) fn modify(modifier: &Modifier, content: &Enclosure, splines: &mut Splines) -> Result<Modified, Refusal> {
     let same = Modified {
         rows: Vec::new(),
-        data: Vec::new(),
+        data: Rc::default(),
         bounds: content.bounds,
         skip: content.skip,
         slope: content.slope,
@@ -106,7 +112,13 @@ pub(super) fn modify(modifier: &Modifier, content: &Enclosure) -> Result<Modifie
             grown(same, amplitude, vec![numbers, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
         }
         Modifier::Displacement { ref image, height, tile, axis } => {
-            displacement(image.content().expect("idle without an image"), height, tile, axis, same)
+            let image = image.content().expect("idle without an image");
+            let side = tile / image.size[0] as f64;
+            let made = splines.entry(std::ptr::from_ref(modifier)).or_insert_with(|| {
+                let (data, steepest) = spline(image, [side; 2], height);
+                (data.into(), steepest)
+            });
+            displacement(image, made.clone(), height, tile, axis, same)
         }
     };
     modified.rows.resize(modifier_rows(modifier.kind()), [0.0; 4]);
@@ -152,10 +164,16 @@ fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
 }
 
 /// Where the surface is moved outwards by h, the field is f − h; its slope is at most 1 and that of the heights.
-fn displacement(image: &Heights, height: f64, tile: f64, axis: Axis, same: Modified) -> Modified {
+fn displacement(
+    image: &Heights,
+    (data, steepest): (Rc<[[f64; 4]]>, f64),
+    height: f64,
+    tile: f64,
+    axis: Axis,
+    same: Modified,
+) -> Modified {
     let [columns, lines] = image.size.map(|n| n as f64);
     let side = tile / columns;
-    let (data, steepest) = spline(image, [side; 2], height);
     let heights = || image.values.iter().map(|v| v * height);
     let (least, greatest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
     let rows = vec![

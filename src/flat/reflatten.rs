@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::arrays::{Component, FlatScene};
 use super::batch::{may_be_joined, united};
+use super::budget::Cancel;
+use super::collect::{component_of, is_opened};
 use super::emit::emit;
 use super::enclosure::fold_bounds;
 use super::flatten::{FlattenError, flatten_with_cuts};
-use super::operands::{Operand, component_of, is_opened};
+use super::operands::Operand;
 use crate::scene::{Material, Node, NodeKind, Scene};
 
 /// Keeps the arrays of the last scene, and makes those of the next one from them where little has
@@ -35,14 +37,35 @@ impl Flattener {
     /// # Errors
     /// A limit is hit, see [`super::flatten`]; the next call starts from nothing.
     pub fn flatten(&mut self, scene: &Scene, time: f64) -> Result<Arc<FlatScene>, FlattenError> {
-        if let Some(mut last) = self.last.take()
-            && last.update(scene, time)
-        {
-            let flat = last.flat.clone();
-            self.last = Some(last);
-            return Ok(flat);
+        let flat = self.flatten_until(scene, time, &Cancel::default())?;
+        Ok(flat.expect("nobody else holds the flag, so nobody cancels"))
+    }
+
+    /// The arrays if little has changed since the last time, so that they are there at once.
+    pub fn update(&mut self, scene: &Scene, time: f64) -> Option<Arc<FlatScene>> {
+        let mut last = self.last.take()?;
+        if !last.update(scene, time) {
+            return None;
         }
-        let (flat, has_cuts) = flatten_with_cuts(scene, time)?;
+        let flat = last.flat.clone();
+        self.last = Some(last);
+        Some(flat)
+    }
+
+    /// The same as [`Flattener::flatten`]; nothing where it was cancelled.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn flatten_until(
+        &mut self,
+        scene: &Scene,
+        time: f64,
+        cancel: &Cancel,
+    ) -> Result<Option<Arc<FlatScene>>, FlattenError> {
+        if let Some(flat) = self.update(scene, time) {
+            return Ok(Some(flat));
+        }
+        let Some((flat, has_cuts)) = flatten_with_cuts(scene, time, cancel)? else { return Ok(None) };
         let flat = Arc::new(flat);
         self.last = Some(Last {
             nodes: scene.nodes().to_vec(),
@@ -51,7 +74,7 @@ impl Flattener {
             has_cuts,
             flat: flat.clone(),
         });
-        Ok(flat)
+        Ok(Some(flat))
     }
 }
 

@@ -14,6 +14,7 @@ use super::layouts::Layouts;
 use super::passes::field::{FieldLayouts, Kernel};
 use super::warm::Warmer;
 use crate::flat::{Component, FlatScene};
+use crate::guard::guarded;
 
 /// How components are evaluated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -332,16 +333,18 @@ impl Worker {
         let work = move || {
             // A driver that computes on the processor compiles at the first dispatch, in the queue's own
             // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
-            let warmer = if shared.gpu.is_software() { Warmer::new(&shared.gpu, shared.options).ok() } else { None };
+            let new_warmer = || guarded(|| Warmer::new(&shared.gpu, shared.options)).ok()?.ok();
+            let warmer = if shared.gpu.is_software() { new_warmer() } else { None };
             for (key, evaluator) in ordered {
                 if should_end.load(Ordering::Relaxed) {
                     return;
                 }
                 if let Some(warmer) = &warmer {
                     // A kernel that fails is reported where it is built for use.
-                    let _ = warmer.warm(&evaluator);
+                    let _ = guarded(|| warmer.warm(&evaluator));
                 }
-                if finish.send((key, build(&shared, &evaluator))).is_err() {
+                let built = guarded(|| build(&shared, &evaluator)).flatten();
+                if finish.send((key, built)).is_err() {
                     return;
                 }
             }

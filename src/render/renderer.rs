@@ -30,7 +30,7 @@ use super::standpoint::Standpoints;
 use super::targets::{Target, Targets};
 use super::uniforms::UNIFORM_STRIDE;
 use crate::flat::inspect::Look;
-use crate::flat::{FlatScene, Pruner, Row};
+use crate::flat::{Cancel, FlatScene, Pruner, Row};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 use crate::scene::NodeId;
@@ -108,6 +108,7 @@ pub struct Renderer {
     numbers: RowTexture,
     lists: ListTexture,
     pruner: Pruner,
+    cancel: Cancel,
     components: Mirror,
     materials: Mirror,
     view: Mirror,
@@ -168,6 +169,7 @@ impl Renderer {
             numbers: RowTexture::new(device, "numbers", NUMBERS_FORMAT),
             lists: ListTexture::new(device),
             pruner: Pruner::default(),
+            cancel: Cancel::default(),
             components: Mirror::uniform(device, "components"),
             materials: storage("materials"),
             view: Mirror::uniform(device, "view"),
@@ -193,6 +195,16 @@ impl Renderer {
     /// Chooses how components are evaluated from now on.
     pub fn set_method(&mut self, method: Method) {
         self.method = method;
+    }
+
+    /// What prepares a picture stops where this says so, with [`RenderError::Cancelled`].
+    pub fn set_cancel(&mut self, cancel: &Cancel) {
+        self.cancel = cancel.clone();
+        self.pruner.set_cancel(cancel);
+    }
+
+    fn check_cancel(&self) -> Result<(), RenderError> {
+        if self.cancel.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
     }
 
     /// How many kernels are being built.
@@ -274,7 +286,9 @@ impl Renderer {
         }
         self.check_counts(flat.components.len(), size)?;
         let Chosen { keys, choices, evaluations, trees } = self.choose(flat, camera)?;
+        self.check_cancel()?;
         let plan = self.plan(flat, camera, size, &evaluations)?;
+        self.check_cancel()?;
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);

@@ -13,6 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use super::heights::Heights;
 use super::limits::{MAX_ATTACHMENT_BYTES, MAX_NAME};
 use crate::font::Face;
+use crate::guard::guarded;
 
 /// What a file can be read as.
 pub trait Content: Sized + Send + Sync {
@@ -67,7 +68,8 @@ impl<T: Content> Attachment<T> {
         if bytes.len() > MAX_ATTACHMENT_BYTES {
             return Err(format!("{name:?} must be {} of at most {} MiB", T::WHAT, MAX_ATTACHMENT_BYTES >> 20));
         }
-        let content = T::read(&bytes).map_err(|reason| format!("{name:?} must be {}: {reason}", T::WHAT))?;
+        let read = guarded(|| T::read(&bytes)).flatten();
+        let content = read.map_err(|reason| format!("{name:?} must be {}: {reason}", T::WHAT))?;
         Ok(Self(Some(Arc::new(Held { name, bytes, content }))))
     }
 }

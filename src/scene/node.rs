@@ -27,7 +27,8 @@ pub struct Node {
     pub parent: Option<NodeId>,
     /// Name for people; need not be unique.
     pub name: String,
-    /// Hidden nodes, and all below them, are not drawn and take no part in any operator.
+    /// Hidden nodes, and all below them, are not drawn and take no part in any operator; the first child of a group
+    /// hides what works on it, see [`Operator::needs_first`].
     pub visible: bool,
     /// Locked nodes are not selected or changed through the viewport.
     pub locked: bool,

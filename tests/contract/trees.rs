@@ -103,7 +103,8 @@ fn surroundings(component: &Component) -> (DVec3, f64) {
     }
 }
 
-/// Whether the point is inside the node, by the meaning of the tree; `None` where nothing is visible.
+/// Whether the point is inside the node, by the meaning of the tree; `None` where it is hidden. A group in which nothing
+/// is visible is the empty set.
 fn solid(scene: &Scene, node: &Node, world: &DAffine3, p: DVec3) -> Option<bool> {
     if !node.visible {
         return None;
@@ -111,7 +112,7 @@ fn solid(scene: &Scene, node: &Node, world: &DAffine3, p: DVec3) -> Option<bool>
     let world = *world * node.transform.to_affine();
     match &node.kind {
         NodeKind::Object(object) => Some(inside(&object.shape, world.inverse().transform_point3(p))),
-        NodeKind::Group(group) => fold(scene, Some(node.id), group.operator, &world, p),
+        NodeKind::Group(group) => Some(fold(scene, Some(node.id), group.operator, &world, p).unwrap_or(false)),
         _ => None,
     }
 }
@@ -119,7 +120,13 @@ fn solid(scene: &Scene, node: &Node, world: &DAffine3, p: DVec3) -> Option<bool>
 fn fold(scene: &Scene, parent: Option<NodeId>, operator: Operator, world: &DAffine3, p: DVec3) -> Option<bool> {
     let mut so_far = None;
     for child in scene.children(parent) {
-        let Some(holds) = solid(scene, child, world, p) else { continue };
+        let Some(holds) = solid(scene, child, world, p) else {
+            // The others would work on it.
+            if so_far.is_none() && !child.negative && operator.needs_first() {
+                so_far = Some(false);
+            }
+            continue;
+        };
         so_far = match (so_far, child.negative, operator) {
             // What is cut from nothing is nothing.
             (None, true, _) => None,

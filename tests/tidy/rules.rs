@@ -5,15 +5,16 @@ use super::source::{Token, closing, tokens};
 /// What each module may use, besides itself. Nothing else is allowed: not by name, not through `super`.
 pub const MODULES: &[(&str, &[&str])] = &[
     ("geometry", &[]),
+    ("guard", &[]),
     ("font", &["geometry"]),
-    ("scene", &["font", "geometry"]),
-    ("mesh", &["geometry"]),
+    ("scene", &["font", "geometry", "guard"]),
+    ("mesh", &["geometry", "guard"]),
     ("document", &["scene", "geometry"]),
     ("gallery", &["scene", "geometry"]),
-    ("flat", &["scene", "mesh", "geometry"]),
-    ("render", &["flat", "scene", "mesh", "geometry"]),
+    ("flat", &["scene", "mesh", "geometry", "guard"]),
+    ("render", &["flat", "scene", "mesh", "geometry", "guard"]),
     ("bench", &["render", "flat", "scene", "mesh", "geometry"]),
-    ("editor", &["document", "scene", "flat", "mesh", "geometry"]),
+    ("editor", &["document", "scene", "flat", "mesh", "geometry", "guard"]),
     ("app", &["editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
     ("cli", &["app", "bench", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
 ];

@@ -1,13 +1,14 @@
 //! Trees kept between frames, made anew only where an edit reached, and beside the frames where that takes long.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::kept::{Kept, alone};
 use super::worker::Worker;
 use super::{CellTree, can_be_pruned, is_pruned};
-use crate::flat::{Component, FlatScene};
+use crate::flat::{Cancel, Component, FlatScene, MAX_LISTED_ENTRIES};
+use crate::guard::guarded;
 use crate::scene::NodeId;
 
 /// Keeps the trees of the last scene, and makes those of the next one from them.
@@ -18,6 +19,10 @@ pub struct Pruner {
     away: HashMap<Key, Duration>,
     worker: Option<Worker>,
     prunes_all: bool,
+    cancel: Cancel,
+    /// Components whose lists cannot be made, and why, until somebody asks.
+    failed: HashSet<Key>,
+    failures: Vec<String>,
 }
 
 /// The node at the top of a component, and which one of those with this node it is.
@@ -35,21 +40,35 @@ impl Pruner {
         self.prunes_all = true;
     }
 
+    /// [`Pruner::trees`] stops waiting where this says so.
+    pub fn set_cancel(&mut self, cancel: &Cancel) {
+        self.cancel = cancel.clone();
+    }
+
+    /// Why lists could not be made since the last call; those components are walked without.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.failures)
+    }
+
     /// The trees of those components that are `wanted` and have lists, beside [`FlatScene::components`]. One that
-    /// has not changed keeps its tree: the same [`Arc`] as the last time. Waits until all are made.
+    /// has not changed keeps its tree: the same [`Arc`] as the last time. Waits until all are made, or until it is
+    /// cancelled; then some are missing.
     pub fn trees(&mut self, flat: &FlatScene, wanted: &[bool]) -> Vec<Option<Arc<CellTree>>> {
-        while !self.away.is_empty() && self.take_next(None) {}
+        while !self.away.is_empty() && !self.cancel.is_cancelled() && self.take_next(None) {}
         self.away.clear();
         let pruned = self.pruned(flat, wanted);
         let mut trees = vec![None; flat.components.len()];
         for (index, key) in pruned {
+            if self.cancel.is_cancelled() {
+                break;
+            }
             let component = &flat.components[index];
             let kept = match self.kept.remove(&key) {
-                Some(kept) if kept.is_current(flat, component) => kept,
-                old => Kept::new(alone(flat, component), old),
+                Some(kept) if kept.is_current(flat, component) => Ok(kept),
+                old => guarded(|| Kept::new(alone(flat, component), old)),
             };
-            trees[index] = Some(kept.tree.clone());
-            self.kept.insert(key, kept);
+            trees[index] = kept.as_ref().ok().map(|kept| kept.tree.clone());
+            self.take_back(key, kept);
         }
         trees
     }
@@ -98,16 +117,25 @@ impl Pruner {
         true
     }
 
-    fn take_back(&mut self, key: Key, kept: Kept) {
+    fn take_back(&mut self, key: Key, kept: Result<Kept, String>) {
         self.away.remove(&key);
-        self.kept.insert(key, kept);
+        match kept {
+            Ok(kept) => {
+                self.kept.insert(key, kept);
+            }
+            Err(reason) => {
+                self.failures.push(format!("the lists of {} could not be made: {reason}", key.0));
+                self.failed.insert(key);
+            }
+        }
     }
 
-    /// Which components are wanted and have lists. What is kept of others is forgotten.
+    /// Which components are wanted and have lists: the largest, as many as [`MAX_LISTED_ENTRIES`] allows. What is kept of
+    /// others is forgotten.
     fn pruned(&mut self, flat: &FlatScene, wanted: &[bool]) -> Vec<(usize, Key)> {
         let mut met: HashMap<NodeId, u32> = HashMap::new();
         let components = flat.components.iter().zip(wanted).enumerate();
-        let found: Vec<(usize, Key)> = components
+        let mut found: Vec<(usize, Key)> = components
             .filter(|(_, (component, wanted))| {
                 **wanted && (is_pruned(flat, component) || self.prunes_all && can_be_pruned(flat, component))
             })
@@ -119,10 +147,15 @@ impl Pruner {
             })
             .collect();
         self.kept.retain(|(id, nth), _| met.get(id).is_some_and(|count| nth <= count));
+        found.retain(|(_, key)| !self.failed.contains(key));
+        within_room(flat, &mut found);
         found
     }
 
     fn order_if_changed(&mut self, flat: &FlatScene, component: &Component, key: Key) {
+        if self.failed.contains(&key) {
+            return;
+        }
         if self.away.contains_key(&key) {
             // What is begun comes back as it is, and is ordered anew then.
             if let Some(worker) = &self.worker {
@@ -140,4 +173,22 @@ impl Pruner {
         self.away.insert(key, old.as_ref().map_or(FRESH_ENTRY * component.count, |old| old.took));
         self.worker.get_or_insert_with(Worker::start).order(key, alone(flat, component), old);
     }
+}
+
+/// Leaves out the smallest components where all together have too many entries: they gain least by lists.
+pub(super) fn within_room(flat: &FlatScene, found: &mut Vec<(usize, Key)>) {
+    let count = |index: usize| flat.components[index].count as usize;
+    if found.iter().map(|(index, _)| count(*index)).sum::<usize>() <= MAX_LISTED_ENTRIES {
+        return;
+    }
+    // The sort is stable: of components alike those stay that come first.
+    found.sort_by_key(|(index, _)| std::cmp::Reverse(count(*index)));
+    let mut sum = 0;
+    let is_too_much = |(index, _): &(usize, Key)| {
+        sum += count(*index);
+        sum > MAX_LISTED_ENTRIES
+    };
+    let kept = found.iter().position(is_too_much).unwrap_or(found.len());
+    found.truncate(kept);
+    found.sort_unstable_by_key(|(index, _)| *index);
 }

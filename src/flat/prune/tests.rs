@@ -362,3 +362,57 @@ fn lists_for_smaller_cells_are_caught() {
     assert_eq!(wrong_in_cubes(1.0), 0);
     assert!(wrong_in_cubes(0.25) > 20);
 }
+
+#[test]
+fn a_component_whose_lists_cannot_be_made_is_walked_without() {
+    let mut scene = crowd(3, 60, 2.0, 0.15);
+    let far = scene.nodes().iter().map(|node| Node::clone(node)).collect::<Vec<_>>();
+    let shift = 1 + far.len() as u64;
+    let moved = |id: crate::scene::NodeId| crate::scene::NodeId(id.0 + shift);
+    let second = far.iter().map(|node| Node { id: moved(node.id), parent: node.parent.map(moved), ..node.clone() });
+    scene.insert_subtree(None, usize::MAX, second.collect()).unwrap();
+    let mut flat = flatten(&scene, 0.0).unwrap();
+    assert_eq!(flat.components.len(), 2);
+    let leaf = flat.nodes.iter().position(FlatNode::is_leaf).unwrap();
+    // A shape that nobody knows.
+    flat.nodes[leaf].code |= 0x0800;
+    let mut pruner = Pruner::default();
+    let waited = trees(&mut pruner, &flat);
+    assert_eq!([waited[0].is_some(), waited[1].is_some()], [false, true]);
+    let [failure] = &pruner.take_failures()[..] else { panic!("one failure") };
+    assert!(failure.contains("internal error") && pruner.take_failures().is_empty(), "{failure}");
+    // It is not tried again, by the worker neither.
+    assert!(trees(&mut pruner, &flat)[0].is_none() && pruner.take_failures().is_empty());
+    let mut beside = Pruner::default();
+    let all = [true; 2];
+    let trees = beside.trees_so_far(&flat, &all, TOO_LONG);
+    assert_eq!([trees[0].is_some(), trees[1].is_some()], [false, true]);
+    assert_eq!((beside.take_failures().len(), beside.building()), (1, 0));
+}
+
+#[test]
+fn making_lists_is_cancelled_between_components() {
+    let flat = flatten(&crowd(3, 60, 2.0, 0.15), 0.0).unwrap();
+    let cancel = crate::flat::Cancel::default();
+    let mut pruner = Pruner::default();
+    pruner.set_cancel(&cancel);
+    cancel.cancel();
+    assert_eq!(trees(&mut pruner, &flat), [None]);
+}
+
+#[test]
+fn the_largest_components_have_lists_where_there_are_too_many() {
+    let mut flat = flatten(&crowd(3, 60, 2.0, 0.15), 0.0).unwrap();
+    let first = flat.components[0].clone();
+    let many = crate::flat::MAX_LISTED_ENTRIES / first.count as usize;
+    flat.components = vec![Component { count: first.count - 1, ..first.clone() }; 2];
+    flat.components.extend(vec![first; many]);
+    let found: Vec<(usize, super::pruner::Key)> =
+        (0..flat.components.len()).map(|i| (i, (flat.ids[0], i as u32))).collect();
+    let mut kept = found.clone();
+    super::pruner::within_room(&flat, &mut kept);
+    assert_eq!(kept, found[2..]);
+    let mut few = found[..3].to_vec();
+    super::pruner::within_room(&flat, &mut few);
+    assert_eq!(few, found[..3]);
+}

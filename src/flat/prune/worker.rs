@@ -8,12 +8,16 @@ use std::time::Instant;
 use super::kept::Kept;
 use super::pruner::Key;
 use crate::flat::FlatScene;
+use crate::guard::guarded;
+
+/// A tree that was made, or what its making panicked with.
+pub(super) type Finished = (Key, Result<Kept, String>);
 
 /// See the module.
 #[derive(Debug)]
 pub(super) struct Worker {
     orders: Arc<Orders>,
-    finished: Receiver<(Key, Kept)>,
+    finished: Receiver<Finished>,
 }
 
 #[derive(Debug, Default)]
@@ -62,12 +66,12 @@ impl Worker {
     }
 
     /// Everything that has been finished.
-    pub fn finished(&self) -> impl Iterator<Item = (Key, Kept)> + '_ {
+    pub fn finished(&self) -> impl Iterator<Item = Finished> + '_ {
         self.finished.try_iter()
     }
 
     /// The next that is finished before `end`, or at all where there is no end; `None` also where none will come.
-    pub fn wait(&self, end: Option<Instant>) -> Option<(Key, Kept)> {
+    pub fn wait(&self, end: Option<Instant>) -> Option<Finished> {
         match end {
             None => self.finished.recv().ok(),
             Some(end) => self.finished.recv_timeout(end.saturating_duration_since(Instant::now())).ok(),
@@ -104,9 +108,9 @@ impl Orders {
     }
 }
 
-fn work(orders: &Orders, finish: &Sender<(Key, Kept)>) {
+fn work(orders: &Orders, finish: &Sender<Finished>) {
     while let Some(Order { key, of, old }) = orders.next() {
-        if finish.send((key, Kept::new(of, old))).is_err() {
+        if finish.send((key, guarded(|| Kept::new(of, old)))).is_err() {
             return;
         }
     }

@@ -34,6 +34,7 @@ impl Renderer {
             Method::Auto => self.pruner.trees_so_far(flat, &wanted, LISTS_AT_ONCE),
             _ => self.pruner.trees(flat, &wanted),
         };
+        self.check_cancel()?;
         // What has no room on the device is walked without lists.
         let mut room = self.lists.most_words(&self.gpu.device);
         for tree in &mut trees {

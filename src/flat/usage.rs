@@ -1,0 +1,38 @@
+//! How much of each limit a scene uses.
+
+use super::arrays::*;
+use super::budget::Usage;
+
+impl FlatScene {
+    /// Bytes of the arrays.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.nodes)
+            + size_of_val(&*self.numbers)
+            + size_of_val(&*self.ids)
+            + size_of_val(&*self.components)
+    }
+}
+
+/// How much of each limit the arrays use, which took so many steps to make.
+pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
+    let most = |of: &dyn Fn(&Component) -> usize| {
+        let largest = flat.components.iter().max_by_key(|component| of(component));
+        let node = largest.and_then(|component| flat.ids.get(component.first as usize)).copied();
+        (largest.map_or(0, of), node)
+    };
+    let (largest, largest_node) = most(&|component| component.count as usize);
+    let (stack, stack_node) = most(&|component| component.stack as usize);
+    let (copies, copies_node) = most(&|component| component.copies as usize);
+    let (_, rows_node) = most(&|component| component.rows as usize);
+    let row = |name, used, limit, node| Usage { name, used, limit, node };
+    vec![
+        row("entries", flat.nodes.len(), MAX_FLAT_NODES, largest_node),
+        row("entries of one component", largest, MAX_COMPONENT_NODES, largest_node),
+        row("components", flat.components.len(), MAX_COMPONENTS, None),
+        row("copies evaluated for one point", copies, MAX_COPIES, copies_node),
+        row("stack", stack, MAX_STACK as usize, stack_node),
+        row("rows", flat.numbers.len(), MAX_FLAT_ROWS, rows_node),
+        row("bytes", flat.bytes(), MAX_FLAT_BYTES, rows_node),
+        row("steps", steps, MAX_FLAT_STEPS, largest_node),
+    ]
+}

@@ -1,0 +1,114 @@
+//! The empty set as an operand. Its field is infinite everywhere, and every rule here follows from that.
+//!
+//! Empty are: a visible group without children, or whose children are all hidden or empty; a text that draws no letter; a
+//! shape whose size is 0 along every axis, unless a modifier thickens it. Hidden nodes are not empty: they are left out
+//! ([`Operator::needs_first`] has the one exception), and so are groups that hold only lights, cameras and meshes.
+
+use super::{Modifier, Operator, Shape};
+use crate::geometry::Aabb;
+
+/// What `a` joined with `b` is where at least one of the two is the empty set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remainder {
+    /// The empty set.
+    Nothing,
+    /// `a`, as it is.
+    First,
+    /// `b`, as it is.
+    Second,
+}
+
+impl Operator {
+    /// What is left of `a` joined with `b` where only `a` (`is_first`) or only `b` is there, and the other is the empty set.
+    /// `share` is that of [`super::Group::share`].
+    ///
+    /// A morph is (1 − share) a + share b: infinite wherever the empty set has any share in it.
+    pub fn with_nothing(self, share: f64, is_first: bool) -> Remainder {
+        match (self, is_first) {
+            (Self::Union | Self::Xor, false) => Remainder::Second,
+            (Self::Intersection | Self::Pipe, _) => Remainder::Nothing,
+            (Self::Morph, true) if share == 0.0 => Remainder::First,
+            (Self::Morph, false) if share == 1.0 => Remainder::Second,
+            (Self::Morph, _) | (_, false) => Remainder::Nothing,
+            (_, true) => Remainder::First,
+        }
+    }
+
+    /// Whether the later children are tools that work on the first one. Where the first child is hidden, the whole group
+    /// is: as in other programs, hiding what is cut never shows the cutter in its place. The children of all other
+    /// operators play the same part, so a hidden one is left out and the others stay.
+    pub fn needs_first(self) -> bool {
+        matches!(self, Self::Difference | Self::Groove | Self::Tongue | Self::Engrave | Self::Paint)
+    }
+}
+
+impl Shape {
+    /// Whether nothing is inside of it and its surface is a point at most. `bounds` are its own.
+    pub fn is_point(bounds: &Aabb) -> bool {
+        bounds.is_empty() || bounds.min == bounds.max
+    }
+
+    /// Whether it is a text that draws no letter: blanks only, or letters that its font does not draw. It stays empty
+    /// whatever is done to it.
+    pub fn is_blank(&self, bounds: &Aabb) -> bool {
+        let is_line = bounds.min.x == bounds.max.x && bounds.min.y == bounds.max.y;
+        matches!(self, Self::Text { .. }) && (is_line || bounds.is_empty())
+    }
+}
+
+impl Modifier {
+    /// Whether it can make something with an inside of a point: by growing it, or by drawing it apart.
+    pub fn thickens(&self) -> bool {
+        matches!(
+            self,
+            Self::Elongate { .. }
+                | Self::Round { .. }
+                | Self::Onion { .. }
+                | Self::Waves { .. }
+                | Self::Noise { .. }
+                | Self::Displacement { .. }
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The formula of each operator on numbers, without a blend, with so large a field for the empty set.
+    fn join(operator: Operator, a: f64, b: f64, share: f64) -> f64 {
+        let (half, depth) = (0.05, 0.1);
+        match operator {
+            Operator::Union => a.min(b),
+            Operator::Intersection => a.max(b),
+            Operator::Difference => a.max(-b),
+            Operator::Xor => a.min(b).max(-a.max(b)),
+            Operator::Pipe => a.hypot(b) - half,
+            Operator::Groove => a.max(-(-a - depth).max(b.abs() - half)),
+            Operator::Tongue => a.min((a - depth).max(b.abs() - half)),
+            Operator::Engrave => a.max((a + depth - b.abs()) * 0.5),
+            Operator::Morph => a * (1.0 - share) + b * share,
+            Operator::Paint => a,
+        }
+    }
+
+    #[test]
+    fn what_is_left_follows_from_the_formulas() {
+        const FAR: f64 = 1e12;
+        for operator in Operator::ALL {
+            for share in [0.0, 0.3, 1.0] {
+                for there in [-0.2, 0.3] {
+                    for is_first in [true, false] {
+                        let (a, b) = if is_first { (there, FAR) } else { (FAR, there) };
+                        let value = join(operator, a, b, share);
+                        match operator.with_nothing(share, is_first) {
+                            Remainder::Nothing => assert!(value > 1e9, "{operator:?} {share} {is_first}: {value}"),
+                            Remainder::First => assert!(is_first && value == there, "{operator:?} {share}: {value}"),
+                            Remainder::Second => assert!(!is_first && value == there, "{operator:?} {share}: {value}"),
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
