@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::input::{folder, read_scene, shown};
 use super::{complain, say};
-use crate::flat::{self, FlatScene, MAX_COMPONENT_NODES, MAX_FLAT_NODES, MAX_FLAT_ROWS, MAX_STACK, flatten};
+use crate::flat::{self, Cancel, FlatScene, Usage, flatten_until};
 use crate::mesh::MeshLibrary;
 use crate::scene::Scene;
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
@@ -75,6 +75,8 @@ struct LimitUse {
     name: &'static str,
     used: usize,
     limit: usize,
+    /// The node with the greatest part in it.
+    node: Option<String>,
 }
 
 struct Warning {
@@ -90,8 +92,10 @@ impl From<flat::Warning> for Warning {
 
 fn read(path: &Path) -> Result<Report, Failure> {
     let scene = read_scene(path)?;
-    let flat = flatten(&scene, 0.0).map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
-    let mut report = Report::new(&scene, &flat);
+    let flattened = flatten_until(&scene, 0.0, &Cancel::default());
+    let flattened = flattened.map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
+    let (flat, usages) = flattened.ok_or(Failure::Cancelled)?;
+    let mut report = Report::new(&scene, &flat, &usages);
     let mut library = MeshLibrary::new(folder(path));
     let (_, missing) = flat.load_meshes(&mut library);
     report.warnings.extend(missing.into_iter().map(Warning::from));
@@ -99,23 +103,24 @@ fn read(path: &Path) -> Result<Report, Failure> {
 }
 
 impl Report {
-    fn new(scene: &Scene, flat: &FlatScene) -> Self {
-        let largest = |of: fn(&flat::Component) -> u32| flat.components.iter().map(of).max().unwrap_or(0) as usize;
+    fn new(scene: &Scene, flat: &FlatScene, usages: &[Usage]) -> Self {
         let tree_depth = scene.depths().iter().max().map_or(0, |depth| *depth as usize + 1);
         let limits = [
             ("nodes", scene.nodes().len(), MAX_NODES),
             ("depth of the tree", tree_depth, MAX_DEPTH),
             ("materials", scene.materials().len(), MAX_MATERIALS),
-            ("entries when flat", flat.nodes.len(), MAX_FLAT_NODES),
-            ("rows of numbers", flat.numbers.len(), MAX_FLAT_ROWS),
-            ("largest component", largest(|component| component.count), MAX_COMPONENT_NODES),
-            ("stack", largest(|component| component.stack), MAX_STACK as usize),
         ];
+        let named = |id| scene.node(id).map(|node| format!("{} {id}", node.name));
+        let of_scene = limits.map(|(name, used, limit)| LimitUse { name, used, limit, node: None });
+        let of_arrays = usages.iter().map(|usage| {
+            let Usage { name, used, limit, node } = *usage;
+            LimitUse { name, used, limit, node: node.and_then(named) }
+        });
         Self {
             nodes: scene.nodes().len(),
             tree_depth,
             components: flat.components.len(),
-            limits: limits.map(|(name, used, limit)| LimitUse { name, used, limit }).into(),
+            limits: of_scene.into_iter().chain(of_arrays).collect(),
             cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
             warnings: flat.warnings.iter().cloned().map(Warning::from).collect(),
         }
@@ -124,8 +129,8 @@ impl Report {
     fn to_json(&self, path: &Path, is_fine: bool) -> Value {
         let warnings: Vec<Value> =
             self.warnings.iter().map(|w| json!({ "node": w.node, "reason": w.reason })).collect();
-        let limits: Vec<Value> =
-            self.limits.iter().map(|l| json!({ "name": l.name, "used": l.used, "limit": l.limit })).collect();
+        let limit = |l: &LimitUse| json!({ "name": l.name, "used": l.used, "limit": l.limit, "node": l.node });
+        let limits: Vec<Value> = self.limits.iter().map(limit).collect();
         json!({
             "ok": is_fine,
             "file": path.display().to_string(),
@@ -140,12 +145,11 @@ impl Report {
 
     fn to_text(&self, path: &Path) -> String {
         let mut text = path.display().to_string();
-        for LimitUse { name, used, limit } in &self.limits {
-            text += &format!("\n  {name:<18} {used:>6} of {limit}");
+        for LimitUse { name, used, limit, .. } in &self.limits {
+            text += &format!("\n  {name:<30} {used:>9} of {limit}");
         }
-        text += &format!("\n  {:<18} {:>6}", "components", self.components);
-        text += &format!("\n  {:<18} {:>6}", "cameras", self.cameras.len());
-        text += &format!("\n  {:<18} {:>6}", "warnings", self.warnings.len());
+        text += &format!("\n  {:<30} {:>9}", "cameras", self.cameras.len());
+        text += &format!("\n  {:<30} {:>9}", "warnings", self.warnings.len());
         for warning in &self.warnings {
             text += &format!("\nwarning: {}: {}", one_line(&warning.node), one_line(&warning.reason));
         }

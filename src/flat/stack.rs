@@ -6,6 +6,8 @@
 //! preceded it joins it by the mirrored join, which gives the same value to the last bit (Sethi and Ullman, "The generation
 //! of optimal code for arithmetic expressions", 1970).
 
+use std::rc::Rc;
+
 use super::arrays::Join;
 use super::operands::{Operand, Value, group_of};
 
@@ -25,7 +27,7 @@ pub(super) fn shallow<'a>(fold: &[Operand<'a>]) -> Option<Vec<Operand<'a>>> {
         let Some(Operand { join, blend, detail, value: Value::Fold(inner), .. }) = fold.pop() else { break };
         let before = if fold.len() == 1 { fold.swap_remove(0) } else { group_of(fold) };
         let join = mirrored(join).unwrap_or(join);
-        fold = inner;
+        fold = Rc::unwrap_or_clone(inner);
         fold.push(Operand { join, blend, detail, ..before });
         fold.extend(rest);
     }
@@ -34,20 +36,12 @@ pub(super) fn shallow<'a>(fold: &[Operand<'a>]) -> Option<Vec<Operand<'a>>> {
 
 /// Accumulators that have to be put aside within a fold.
 fn need(fold: &[Operand<'_>]) -> u32 {
-    fold.iter().map(need_of).max().unwrap_or(0)
-}
-
-fn need_of(operand: &Operand<'_>) -> u32 {
-    match &operand.value {
-        Value::Leaf { .. } => 0,
-        Value::Fold(inner) => 1 + need(inner),
-        Value::Modified { content, .. } => 1 + need(content),
-    }
+    fold.iter().map(|operand| operand.depth).max().unwrap_or(0)
 }
 
 /// The operand that needs most, if it can come first.
 fn deepest(fold: &[Operand<'_>]) -> Option<usize> {
-    let at = (0..fold.len()).max_by_key(|i| need_of(&fold[*i]))?;
+    let at = (0..fold.len()).max_by_key(|i| fold[*i].depth)?;
     let is_movable = at > 0 && matches!(fold[at].value, Value::Fold(_)) && mirrored(fold[at].join).is_some();
     is_movable.then_some(at)
 }
