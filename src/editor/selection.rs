@@ -157,7 +157,8 @@ pub fn place(scene: &Scene, id: NodeId) -> usize {
 
 /// Cuts the selection away, or joins it again: all as the active node.
 pub fn toggle_negative(bench: &mut Workbench) {
-    if refuse_locked(bench, &bench.document.selection().to_vec(), "cut away or joined again") {
+    let ids: Vec<NodeId> = bench.document.selection().into();
+    if refuse_locked(bench, &ids, "cut away or joined again") {
         return;
     }
     let on = bench.selected().last().is_some_and(|n| !n.negative);

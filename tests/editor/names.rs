@@ -10,8 +10,7 @@ use isolith::scene::{Group, Light, Node, NodeId, NodeKind, Object, Scene, ShapeK
 use super::{open, open_in, press, scene};
 
 fn long(letter: char) -> String {
-    let name: String = std::iter::repeat_n(letter, 120).collect();
-    format!("Begin {name} end")
+    format!("Begin {} end", letter.to_string().repeat(120))
 }
 
 fn rename(scene: &mut Scene, id: NodeId, name: String, negative: bool) {
