@@ -1,5 +1,7 @@
 // Pass `overlay`, editor only: a grid on the ground and the outline of the selection, blended over the
 // finished picture. Each has a pipeline of its own: lavapipe walks through an `if` that no pixel takes.
+//
+// A coarse picture is enlarged first, and lines over it are as thin as over a fine one.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -15,7 +17,8 @@ struct Overlay {
     axis_z: f32,
     // Bits of `selected` before those of the meshes.
     leaf_count: u32,
-    padding: u32,
+    // Of what is drawn on, in pixels: the picture's or larger. The width, and the height times 65 536.
+    size: u32,
 }
 
 @group(1) @binding(0) var<uniform> overlay: Overlay;
@@ -23,6 +26,7 @@ struct Overlay {
 @group(1) @binding(1) var<storage, read> selected: array<u32>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var leaf_target: texture_2d<u32>;
+@group(3) @binding(0) var picture: texture_2d<f32>;
 
 @fragment
 fn overlay_grid_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
@@ -32,6 +36,56 @@ fn overlay_grid_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
 @fragment
 fn overlay_outline_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     return vec4f(1.0, 0.62, 0.2, f32(overlay_is_edge(vec2u(at.xy))));
+}
+
+@fragment
+fn overlay_enlarge_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    let place = overlay_place(at.xy);
+    let corner = vec2i(floor(place));
+    let share = place - floor(place);
+    let top = mix(overlay_color(corner), overlay_color(corner + vec2i(1, 0)), share.x);
+    let bottom = mix(overlay_color(corner + vec2i(0, 1)), overlay_color(corner + vec2i(1, 1)), share.x);
+    return mix(top, bottom, share.y);
+}
+
+@fragment
+fn overlay_coarse_outline_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return vec4f(1.0, 0.62, 0.2, overlay_coarse_edge(at.xy));
+}
+
+fn overlay_size() -> vec2f {
+    return vec2f(f32(overlay.size & 0xffffu), f32(overlay.size >> 16u));
+}
+
+// Where a point of what is drawn on lies in the picture; whole numbers are centres of its pixels.
+fn overlay_place(at: vec2f) -> vec2f {
+    return at * vec2f(f32(view.width), f32(view.height)) / overlay_size() - 0.5;
+}
+
+// The pixel of the picture, or the one at the border that is nearest to it.
+fn overlay_inside(pixel: vec2i) -> vec2i {
+    return clamp(pixel, vec2i(0), vec2i(i32(view.width), i32(view.height)) - 1);
+}
+
+fn overlay_color(pixel: vec2i) -> vec4f {
+    return textureLoad(picture, overlay_inside(pixel), 0);
+}
+
+// How much a point lies on the edge of the selection. The edge runs where half of the four pixels around is selected: the
+// share varies between them, so its slope says how far the edge is.
+fn overlay_coarse_edge(at: vec2f) -> f32 {
+    let place = overlay_place(at);
+    let corner = vec2i(floor(place));
+    let share = place - floor(place);
+    let a = f32(overlay_is_selected(overlay_inside(corner)));
+    let b = f32(overlay_is_selected(overlay_inside(corner + vec2i(1, 0))));
+    let c = f32(overlay_is_selected(overlay_inside(corner + vec2i(0, 1))));
+    let d = f32(overlay_is_selected(overlay_inside(corner + vec2i(1, 1))));
+    let selected = mix(mix(a, b, share.x), mix(c, d, share.x), share.y);
+    let slope = vec2f(mix(b - a, d - c, share.y), mix(c - a, d - b, share.x));
+    let per_pixel = vec2f(f32(view.width), f32(view.height)) / overlay_size();
+    let distance = abs(selected - 0.5) / max(length(slope * per_pixel), 1e-6);
+    return clamp(1.5 - distance, 0.0, 1.0);
 }
 
 // Whether the pixel lies outside the selection with a selected one within two pixels.
@@ -62,12 +116,13 @@ fn overlay_is_selected(pixel: vec2i) -> bool {
 
 // Lines of one pixel on the plane y = 0, hidden by what stands before them, fading into the distance.
 fn overlay_grid(pixel: vec2u) -> vec4f {
-    let direction = view_direction(pixel);
+    let direction = overlay_direction(pixel);
     if direction.y * overlay.eye.y >= 0.0 {
         return vec4f(0.0);
     }
     let t = -overlay.eye.y / direction.y;
-    if t > textureLoad(depth_target, pixel, 0).x * (1.0 - 1e-4) {
+    let seen = overlay_inside(vec2i(round(overlay_place(vec2f(pixel) + 0.5))));
+    if t > textureLoad(depth_target, seen, 0).x * (1.0 - 1e-4) {
         return vec4f(0.0);
     }
     let at = overlay_ground(pixel);
@@ -89,9 +144,15 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     return vec4f(color, strength * fade);
 }
 
+// Unit direction of the ray through the centre of a pixel of what is drawn on.
+fn overlay_direction(pixel: vec2u) -> vec3f {
+    let at = (vec2f(pixel) + 0.5) / overlay_size() * 2.0 - 1.0;
+    return normalize(view.right * at.x - view.up * at.y + view.forward);
+}
+
 // Where the ray of a pixel meets the plane y = 0, in the reduced grid.
 fn overlay_ground(pixel: vec2u) -> vec2f {
-    let direction = view_direction(pixel);
+    let direction = overlay_direction(pixel);
     let fall = select(direction.y, 1e-6, abs(direction.y) < 1e-6);
     return overlay.eye.xz - direction.xz * (overlay.eye.y / fall);
 }

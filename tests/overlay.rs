@@ -21,7 +21,7 @@ fn draw(subject: &Subject, outline: &[NodeId]) -> Buffers {
     let renderer = &mut shared().renderer;
     renderer.set_method(Method::Interpreted);
     let Subject { flat, meshes, camera, .. } = subject;
-    let overlay = OverlaySettings { grid: false, outline: outline.to_vec() };
+    let overlay = OverlaySettings { outline: outline.to_vec(), ..OverlaySettings::default() };
     let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], overlay).expect("a frame");
     renderer.advance(&mut frame, Duration::MAX).expect("a picture");
     renderer.read(&frame).expect("buffers")
@@ -79,4 +79,63 @@ fn what_is_not_seen_has_no_outline() {
     subject.camera.rotation = up * glam::DQuat::from_rotation_y(std::f64::consts::PI);
     let all: Vec<NodeId> = subject.flat.ids.clone();
     assert!(draw(&subject, &all).color == draw(&subject, &[]).color);
+}
+
+/// The pixels that the outline changes in a picture of this size that is shown at [`SIDE`].
+fn marked(subject: &Subject, size: u32, selected: &[NodeId]) -> Vec<bool> {
+    let renderer = &mut shared().renderer;
+    renderer.set_method(Method::Interpreted);
+    let Subject { flat, meshes, camera, .. } = subject;
+    let mut shown = |outline: &[NodeId]| {
+        let shown_at = Some([SIDE, SIDE]);
+        let grid = true;
+        let overlay = OverlaySettings { outline: outline.to_vec(), shown_at, grid };
+        let mut frame = renderer.begin(Slot::Preview, flat, meshes, camera, [size, size], overlay).expect("a frame");
+        renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+        assert_eq!(renderer.picture(Slot::Preview).expect("a picture").1, [SIDE, SIDE]);
+        renderer.read_shown(Slot::Preview).expect("colours")
+    };
+    let (plain, outlined) = (shown(&[]), shown(selected));
+    // Half a pixel of smoothing on either side does not count.
+    let differs = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 60);
+    plain.iter().zip(&outlined).map(differs).collect()
+}
+
+/// The most pixels side by side in a row that are marked, in the median of the rows that have some: the outline of an
+/// upright edge.
+fn thickness(marked: &[bool]) -> usize {
+    let mut runs: Vec<usize> = marked
+        .chunks(SIDE as usize)
+        .flat_map(|row| row.split(|is_marked| !is_marked).map(<[bool]>::len).filter(|length| *length > 0))
+        .collect();
+    runs.sort_unstable();
+    runs[runs.len() / 2]
+}
+
+#[test]
+fn the_outline_in_coarse_pictures_is_as_thin_as_in_fine_ones() {
+    let subject = scenes().find(|s| s.name == "pawn").expect("it is shipped");
+    let all: Vec<NodeId> = subject.flat.ids.clone();
+    let fine = marked(&subject, SIDE, &all);
+    let of_fine = fine.iter().filter(|is_marked| **is_marked).count();
+    assert!((1..=3).contains(&thickness(&fine)), "{}", thickness(&fine));
+    for size in [SIDE / 2, SIDE / 4, SIDE / 7] {
+        let coarse = marked(&subject, size, &all);
+        assert!((1..=3).contains(&thickness(&coarse)), "{size}: {}", thickness(&coarse));
+        let of_coarse = coarse.iter().filter(|is_marked| **is_marked).count();
+        let ratio = of_coarse as f64 / of_fine as f64;
+        assert!((0.6..1.6).contains(&ratio), "{size}: {of_coarse} pixels, {of_fine} in the fine picture");
+        // Along the same line: near each pixel of it there is one of the other.
+        let side = SIDE as i32;
+        let far = (0..side * side).filter(|at| coarse[*at as usize]).filter(|at| {
+            let reach = side / size as i32 + 3;
+            let near = |dx: i32, dy: i32| {
+                let (x, y) = (at % side + dx, at / side + dy);
+                (0..side).contains(&x) && (0..side).contains(&y) && fine[(y * side + x) as usize]
+            };
+            !(-reach..=reach).any(|dy| (-reach..=reach).any(|dx| near(dx, dy)))
+        });
+        let far = far.count();
+        assert!(far * 20 < of_coarse, "{size}: {far} of {of_coarse} pixels are elsewhere");
+    }
 }

@@ -182,7 +182,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 padding
             }
         ),
-        layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, padding }),
+        layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!("Inspect" = Inspect { look, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }),
         layout!(
             "Light" =

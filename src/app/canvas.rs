@@ -46,6 +46,8 @@ pub(super) struct Canvas {
     waiting: bool,
     /// Kernels may have become ready that no picture has used.
     unmet: bool,
+    /// Of the last coarse picture, before it is enlarged.
+    preview_size: Option<[u32; 2]>,
 }
 
 /// What draws the lit picture, and what draws the looks that count: counting costs time and memory, so the second one
@@ -73,12 +75,22 @@ impl Renderers {
 }
 
 /// Everything that the picture depends on.
-#[derive(Clone, PartialEq)]
+#[derive(Clone)]
 struct Wanted {
     view: View,
     flat: Arc<FlatScene>,
     meshes: Vec<Option<usize>>,
     outline: Vec<NodeId>,
+}
+
+impl PartialEq for Wanted {
+    /// A flat scene is another one when it has been made anew: comparing its numbers in every frame would take longer.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.flat, &other.flat)
+            && self.view == other.view
+            && self.meshes == other.meshes
+            && self.outline == other.outline
+    }
 }
 
 impl Canvas {
@@ -96,6 +108,7 @@ impl Canvas {
             navigating: false,
             waiting: false,
             unmet: false,
+            preview_size: None,
         })
     }
 
@@ -235,9 +248,10 @@ impl Canvas {
         let lists_pay = full > LISTS_WORTH_WAITING && active.pruner().building() > 0;
         self.waiting = full > AT_ONCE && (self.navigating || kernels_pay || lists_pay);
         let coarse = coarse_size(size_px, full, AT_ONCE);
-        let is_finer = self.waiting && self.textures[Slot::Preview as usize].is_some_and(|(_, shown)| coarse > shown);
+        let is_finer = self.waiting && self.preview_size.is_some_and(|shown| coarse > shown);
         if full > AT_ONCE && (is_other || is_finer) {
             let mut frame = self.begin(Slot::Preview, wanted, meshes, coarse)?;
+            self.preview_size = Some(coarse);
             self.renderers.active().advance(&mut frame, Duration::MAX)?;
             self.show(Slot::Preview);
         }
@@ -268,7 +282,8 @@ impl Canvas {
         let Wanted { view: View { camera, show_grid, look, .. }, flat, outline, .. } = wanted;
         // Lines would change the colours that a look is read by.
         let grid = *show_grid && *look == Look::Shaded;
-        let overlay = OverlaySettings { grid, outline: outline.clone() };
+        let shown_at = Some(wanted.view.size_px);
+        let overlay = OverlaySettings { grid, outline: outline.clone(), shown_at };
         let renderer = self.renderers.active();
         let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
         if *look != Look::Shaded {

@@ -15,7 +15,7 @@ pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<Buffers, GpuError> {
     let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.depth, 4)?);
     let leaf: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.leaf, 4)?);
     let normal: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.normal, 16)?);
-    let color: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.color, 4)?);
+    let color = read_color(gpu, &targets.color)?;
     Ok(Buffers {
         width,
         height,
@@ -24,6 +24,11 @@ pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<Buffers, GpuError> {
         normal: normal.iter().map(|n| [n[0], n[1], n[2]]).collect(),
         color,
     })
+}
+
+/// The colours of a target, row by row.
+pub fn read_color(gpu: &Gpu, target: &Target) -> Result<Vec<[u8; 4]>, GpuError> {
+    Ok(bytemuck::pod_collect_to_vec(&read_texture(gpu, target, 4)?))
 }
 
 /// The texels of a target, row by row without gaps.

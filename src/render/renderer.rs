@@ -26,7 +26,7 @@ use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
 use super::schedule::{Evaluation, Plan, TooLong, plan};
-use super::targets::Targets;
+use super::targets::{Target, Targets};
 use super::uniforms::UNIFORM_STRIDE;
 use crate::flat::inspect::Look;
 use crate::flat::{FlatScene, Pruner, Row};
@@ -80,6 +80,8 @@ pub enum Slot {
 #[derive(Debug)]
 struct SlotState {
     targets: Targets,
+    /// What the picture is enlarged to where marks are drawn over it that it is too coarse for.
+    enlarged: Option<Target>,
     groups: Option<Groups>,
 }
 
@@ -275,7 +277,7 @@ impl Renderer {
         self.gpu.check()?;
         if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
             let targets = Targets::new(&self.gpu.device, size);
-            self.slots[slot as usize] = Some(SlotState { targets, groups: None });
+            self.slots[slot as usize] = Some(SlotState { targets, enlarged: None, groups: None });
         }
         let (form_rows, forms) = form_windows(flat, &keys);
         let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
@@ -291,8 +293,13 @@ impl Renderer {
             }
         }
         self.mesh.prepare(&self.gpu.device, &self.gpu.queue, flat, meshes, camera.position);
+        if let Some(state) = &mut self.slots[slot as usize] {
+            let shown = overlay.enlarged(size);
+            let kept = state.enlarged.take().filter(|target| shown == Some(target.size()));
+            state.enlarged = kept.or_else(|| shown.map(|size| Target::shown(&self.gpu.device, size)));
+        }
         if !overlay.is_empty() {
-            self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, camera.position);
+            self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, size, camera.position);
         }
         Ok(Frame {
             pace: self.pace,
@@ -351,7 +358,10 @@ impl Renderer {
     /// The picture in a slot: complete once its frame is done, and another texture after a
     /// [`Renderer::begin`] of another size.
     pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
-        self.slots[slot as usize].as_ref().map(|s| (&s.targets.color.view, s.targets.size))
+        self.slots[slot as usize].as_ref().map(|s| {
+            let shown = s.enlarged.as_ref().unwrap_or(&s.targets.color);
+            (&shown.view, shown.size())
+        })
     }
 
     fn slot(&self, slot: Slot) -> &SlotState {

@@ -88,6 +88,18 @@ fn no_power_of_two(side: u32) -> u32 {
 }
 
 impl Target {
+    /// Something to show, as the color target is.
+    pub fn shown(device: &wgpu::Device, size: [u32; 2]) -> Self {
+        let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | TextureUsages::RENDER_ATTACHMENT;
+        Self::new(device, "shown", size, TextureFormat::Rgba8Unorm, usage)
+    }
+
+    /// Its size in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        let size = self.texture.size();
+        [size.width, size.height]
+    }
+
     fn new(device: &wgpu::Device, label: &str, size: [u32; 2], format: TextureFormat, usage: TextureUsages) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),

@@ -9,7 +9,7 @@ use crate::render::buffers::Mirror;
 use crate::render::kernel::{ShaderError, plain_source};
 use crate::render::layouts::*;
 use crate::render::schedule::Plan;
-use crate::render::targets::Targets;
+use crate::render::targets::{Target, Targets};
 use crate::scene::NodeId;
 
 /// What is drawn over the picture.
@@ -19,12 +19,20 @@ pub struct OverlaySettings {
     pub grid: bool,
     /// An outline around these nodes.
     pub outline: Vec<NodeId>,
+    /// The size in which a coarse picture is shown: it is enlarged to it first, so that lines are as thin as over a fine
+    /// one. `None` draws on the picture as it is.
+    pub shown_at: Option<[u32; 2]>,
 }
 
 impl OverlaySettings {
     /// Whether there is nothing to draw.
     pub fn is_empty(&self) -> bool {
         !self.grid && self.outline.is_empty()
+    }
+
+    /// The size of what is drawn on where a picture of this size is enlarged for it.
+    pub(crate) fn enlarged(&self, size: [u32; 2]) -> Option<[u32; 2]> {
+        self.shown_at.filter(|shown| *shown != size && !self.is_empty())
     }
 }
 
@@ -42,8 +50,8 @@ pub struct Overlay {
     pub axis_z: f32,
     /// Bits before those of the meshes.
     pub leaf_count: u32,
-    /// Unused.
-    pub padding: u32,
+    /// Of what is drawn on, in pixels: the width, and the height times 65 536.
+    pub size: u32,
 }
 
 /// Pixels from a selected one to the outline, at most: the ring in the shader.
@@ -54,10 +62,13 @@ const REACH: u32 = 2;
 pub struct OverlayPass {
     grid: wgpu::RenderPipeline,
     outline: wgpu::RenderPipeline,
+    coarse_outline: wgpu::RenderPipeline,
+    enlarge: wgpu::RenderPipeline,
     draws_grid: bool,
     outlined: Outlined,
     own: BindGroupLayout,
     targets: BindGroupLayout,
+    picture: BindGroupLayout,
     uniform: Mirror,
     selected: Mirror,
     own_group: Option<BindGroup>,
@@ -77,32 +88,40 @@ impl OverlayPass {
             label: Some("overlay"),
             source: wgpu::ShaderSource::Wgsl(plain_source("overlay.wgsl")?.into()),
         });
-        let layout = pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets]);
+        let picture = layout(device, "overlay picture", &[entry(0, stage, read_texture(false))]);
+        let over = pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets]);
         let blend = Some(wgpu::BlendState::ALPHA_BLENDING);
-        let [grid, outline] = ["overlay_grid_fragment", "overlay_outline_fragment"]
-            .map(|entry_point| screen_pipeline(device, &module, entry_point, &layout, blend));
+        let [grid, outline, coarse_outline] =
+            ["overlay_grid_fragment", "overlay_outline_fragment", "overlay_coarse_outline_fragment"]
+                .map(|entry_point| screen_pipeline(device, &module, entry_point, &over, blend));
+        let whole = pipeline_layout(device, "overlay enlarge", &[&layouts.view, &own, &targets, &picture]);
+        let enlarge = screen_pipeline(device, &module, "overlay_enlarge_fragment", &whole, None);
         let uniform = Mirror::uniform(device, "overlay");
         let selected = Mirror::storage(device, "selected");
         Ok(Self {
             grid,
             outline,
+            coarse_outline,
+            enlarge,
             draws_grid: false,
             outlined: Outlined::default(),
             own,
             targets,
+            picture,
             uniform,
             selected,
             own_group: None,
         })
     }
 
-    /// Uploads what is to be drawn, seen from `eye`, `distance` away from what is looked at.
+    /// Uploads what is to be drawn over a picture of `size` pixels, seen from `eye`.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         flat: &FlatScene,
         settings: &OverlaySettings,
+        size: [u32; 2],
         eye: DVec3,
     ) {
         self.draws_grid = settings.grid;
@@ -110,13 +129,14 @@ impl OverlayPass {
         let cell = 10.0_f64.powf(eye.y.abs().max(1e-3).log10().floor()) * 0.1;
         let period = cell * 100.0;
         let reduced = DVec3::new(eye.x.rem_euclid(period), eye.y, eye.z.rem_euclid(period));
+        let [width, height] = settings.enlarged(size).unwrap_or(size);
         let overlay = Overlay {
             eye: reduced.as_vec3().to_array(),
             cell: cell as f32,
             axis_x: (reduced.z - eye.z) as f32,
             axis_z: (reduced.x - eye.x) as f32,
             leaf_count: flat.nodes.len() as u32,
-            padding: 0,
+            size: width | height << 16,
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);
@@ -128,32 +148,50 @@ impl OverlayPass {
         }
     }
 
-    /// Draws over `targets.color`.
+    /// Draws over `targets.color`, or over what it is enlarged to.
     pub fn record(
         &self,
         device: &wgpu::Device,
         encoder: &mut wgpu::CommandEncoder,
         targets: &Targets,
+        enlarged: Option<&Target>,
         view: &BindGroup,
         plan: &Plan,
     ) {
         let Some(own) = &self.own_group else { return };
         let inputs = [&targets.depth, &targets.leaf].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let inputs = bind(device, "overlay targets", &self.targets, &inputs);
-        let mut pass = screen_pass(encoder, "overlay", &targets.color.view);
+        let mut pass = screen_pass(encoder, "overlay", &enlarged.unwrap_or(&targets.color).view);
         pass.set_bind_group(0, view, &[]);
         pass.set_bind_group(1, own, &[]);
         pass.set_bind_group(2, &inputs, &[]);
+        if enlarged.is_some() {
+            let color = wgpu::BindingResource::TextureView(&targets.color.view);
+            pass.set_bind_group(3, &bind(device, "overlay picture", &self.picture, &[color]), &[]);
+            pass.set_pipeline(&self.enlarge);
+            pass.draw(0..3, 0..1);
+        }
         if self.draws_grid {
             pass.set_pipeline(&self.grid);
             pass.draw(0..3, 0..1);
         }
         if let Some([low, high]) = self.outlined.around(plan, targets.size.into()) {
+            let (low, high) = match enlarged {
+                None => (low, high),
+                Some(target) => larger(low, high, targets.size.into(), target.size().into()),
+            };
             pass.set_scissor_rect(low.x, low.y, high.x - low.x, high.y - low.y);
-            pass.set_pipeline(&self.outline);
+            pass.set_pipeline(if enlarged.is_some() { &self.coarse_outline } else { &self.outline });
             pass.draw(0..3, 0..1);
         }
     }
+}
+
+/// The part of a picture `to` pixels wide and high that shows what is in this part of one `from` pixels wide and high.
+fn larger(low: UVec2, high: UVec2, from: UVec2, to: UVec2) -> (UVec2, UVec2) {
+    let scale = to.as_dvec2() / from.as_dvec2();
+    let high = (high.as_dvec2() * scale).ceil().as_uvec2();
+    ((low.as_dvec2() * scale).floor().as_uvec2().min(to - 1), high.min(to))
 }
 
 /// Where an outline can be.

@@ -1,11 +1,11 @@
 //! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
 
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::{Frame, QUAD_COUNTS, RenderError, Renderer};
+use super::{Frame, QUAD_COUNTS, RenderError, Renderer, Slot};
 use crate::flat::{Buffers, Warning};
 use crate::render::gpu::Gpu;
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::readback::{read_buffers, read_words_at};
+use crate::render::readback::{read_buffers, read_color, read_words_at};
 use crate::render::schedule::{Piece, Stage};
 use crate::render::uniforms::{Work, strided};
 
@@ -96,6 +96,12 @@ impl Renderer {
     /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
     pub fn read(&self, frame: &Frame) -> Result<Buffers, RenderError> {
         Ok(read_buffers(&self.gpu, &self.slot(frame.slot).targets)?)
+    }
+
+    /// The picture in a slot as it is shown, enlarged where [`OverlaySettings::shown_at`] says so.
+    pub fn read_shown(&self, slot: Slot) -> Result<Vec<[u8; 4]>, RenderError> {
+        let state = self.slot(slot);
+        Ok(read_color(&self.gpu, state.enlarged.as_ref().unwrap_or(&state.targets.color))?)
     }
 
     /// Which components had rays that did not come to an end within the steps allowed.

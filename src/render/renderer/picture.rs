@@ -79,7 +79,7 @@ impl Renderer {
 
     /// Colours the finished picture by the frame's look.
     pub(super) fn record_look(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
-        let SlotState { targets, groups } = self.slot(frame.slot);
+        let SlotState { targets, groups, .. } = self.slot(frame.slot);
         if let (true, Some(pass), Some(groups)) = (frame.look != Look::Shaded, &self.inspect, groups) {
             pass.record(&self.gpu.device, encoder, targets, &groups.view, self.march_counts.buffer());
         }

@@ -13,7 +13,7 @@ use crate::render::uniforms::UNIFORM_STRIDE;
 
 impl Renderer {
     pub(super) fn submit(&self, frame: &Frame, range: std::ops::Range<usize>) {
-        let SlotState { targets, groups } = self.slot(frame.slot);
+        let SlotState { targets, enlarged, groups } = self.slot(frame.slot);
         let groups = groups.as_ref().expect("begin binds");
         let descriptor = wgpu::CommandEncoderDescriptor { label: Some("frame") };
         let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
@@ -42,7 +42,8 @@ impl Renderer {
         if range.end == pieces.len() {
             self.record_look(&mut encoder, frame);
             if !frame.overlay.is_empty() {
-                self.overlay.record(&self.gpu.device, &mut encoder, targets, &groups.view, &frame.plan);
+                let (device, enlarged) = (&self.gpu.device, enlarged.as_ref());
+                self.overlay.record(device, &mut encoder, targets, enlarged, &groups.view, &frame.plan);
             }
         }
         self.gpu.queue.submit([encoder.finish()]);
