@@ -47,6 +47,9 @@ enum Ending {
     DeviceLost,
 }
 
+/// The smallest that the window can be made, in points.
+const SMALLEST: egui::Vec2 = egui::vec2(800.0, 500.0);
+
 /// Most losses of the device within a minute before the program gives up.
 const MAX_LOSSES: usize = 5;
 
@@ -101,7 +104,7 @@ fn options() -> eframe::NativeOptions {
             .with_title("Isolith")
             .with_app_id("isolith")
             .with_inner_size([1440.0, 900.0])
-            .with_min_inner_size([800.0, 500.0])
+            .with_min_inner_size(SMALLEST)
             .with_drag_and_drop(true),
         renderer: eframe::Renderer::Wgpu,
         wgpu_options: eframe::egui_wgpu::WgpuConfiguration { wgpu_setup: setup.into(), ..Default::default() },

@@ -1,5 +1,9 @@
 //! The window: shows the editor, keeps its picture up to date.
 
+use std::time::Duration;
+
+use egui::{Vec2, vec2};
+
 use super::Shared;
 use super::canvas::Canvas;
 use crate::editor::{Editor, Message};
@@ -11,7 +15,12 @@ pub(super) struct Window {
     shared: Shared,
     /// Whether the window has been painted: before its first picture, for which a driver may compile for seconds.
     is_open: bool,
+    /// How long each frame waits, to see the window as it is on a slow machine.
+    delay: Duration,
 }
+
+/// Names that time, in milliseconds.
+const FRAME_DELAY: &str = "ISOLITH_FRAME_DELAY";
 
 impl Window {
     /// Shows the editor that is in `shared`.
@@ -21,8 +30,32 @@ impl Window {
         let gpu = Gpu::watch(state.device.clone(), state.queue.clone(), state.adapter.get_info());
         *shared.gpu.borrow_mut() = Some(gpu.clone());
         crate::render::driver::loop_iterations(&gpu)?;
-        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false })
+        let delay = std::env::var(FRAME_DELAY).ok().and_then(|text| text.parse().ok()).map(Duration::from_millis);
+        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false, delay: delay.unwrap_or_default() })
     }
+}
+
+/// Room for the frame around a window and for bars at the edges of a screen, in points.
+const AROUND: Vec2 = vec2(16.0, 72.0);
+
+/// Makes the window smaller where it would not fit the screen that it is on.
+fn fit_to_screen(ctx: &egui::Context) {
+    let (inner, monitor, fills) = ctx.input(|i| {
+        let viewport = i.viewport();
+        let fills = viewport.maximized == Some(true) || viewport.fullscreen == Some(true);
+        (viewport.inner_rect.map(|rect| rect.size()), viewport.monitor_size, fills)
+    });
+    if let (Some(inner), Some(monitor), false) = (inner, monitor, fills)
+        && let Some(size) = fitting(inner, monitor)
+    {
+        ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(size));
+    }
+}
+
+/// The size that fits a monitor, where this one does not; never less than a window can be.
+fn fitting(inner: Vec2, monitor: Vec2) -> Option<Vec2> {
+    let most = (monitor - AROUND).max(super::SMALLEST);
+    (inner.x > most.x || inner.y > most.y).then(|| inner.min(most))
 }
 
 impl eframe::App for Window {
@@ -32,10 +65,14 @@ impl eframe::App for Window {
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             return;
         }
+        if !self.delay.is_zero() && ui.ctx().current_pass_index() == 0 {
+            std::thread::sleep(self.delay);
+        }
         let mut slot = self.shared.editor.borrow_mut();
         let editor = &mut *slot;
         editor.show(ui, &self.canvas.picture());
         if !std::mem::replace(&mut self.is_open, true) {
+            fit_to_screen(ui.ctx());
             ui.ctx().request_repaint();
             return;
         }
@@ -45,5 +82,20 @@ impl eframe::App for Window {
             Err(_) if self.canvas.is_lost() => ui.ctx().request_discard("the device is lost"),
             Err(error) => editor.report(Message::error(error.to_string())),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_window_fits_the_screen() {
+        let wanted = vec2(1440.0, 900.0);
+        assert_eq!(fitting(wanted, vec2(1920.0, 1080.0)), None);
+        assert_eq!(fitting(wanted, vec2(1366.0, 768.0)), Some(vec2(1350.0, 696.0)));
+        assert_eq!(fitting(wanted, vec2(1440.0, 900.0)), Some(vec2(1424.0, 828.0)));
+        assert_eq!(fitting(wanted, vec2(640.0, 480.0)), Some(super::super::SMALLEST));
+        assert_eq!(fitting(vec2(900.0, 600.0), vec2(1024.0, 768.0)), None);
     }
 }
