@@ -1,8 +1,14 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
 mod attachments;
+mod fields;
+mod locks;
 mod modifiers;
+mod names;
+mod order;
 mod picture;
+mod popups;
+mod saving;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
@@ -36,10 +42,14 @@ fn open_tall(scene: Scene) -> Harness<'static, Editor> {
 }
 
 fn open_sized(scene: Scene, height: f32) -> Harness<'static, Editor> {
-    let mut editor = Editor::new(Document::new(scene));
+    open_in(Document::new(scene), vec2(1280.0, height))
+}
+
+fn open_in(document: Document, size: egui::Vec2) -> Harness<'static, Editor> {
+    let mut editor = Editor::new(document);
     editor.ask_for_paths_in_window();
     let mut harness = Harness::builder()
-        .with_size(vec2(1280.0, height))
+        .with_size(size)
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &no_picture()), editor);
     harness.run();
@@ -61,6 +71,12 @@ fn row(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
 fn field<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::Node<'h> {
     let found = harness.get_all_by_label(name).find(|n| n.accesskit_node().role() != Role::Label);
     found.unwrap_or_else(|| panic!("no field {name}"))
+}
+
+/// The drop-down list of this name.
+fn list_box<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::Node<'h> {
+    let found = harness.get_all_by_label(name).find(|n| n.accesskit_node().role() == Role::ComboBox);
+    found.unwrap_or_else(|| panic!("no list {name}"))
 }
 
 fn pointer(harness: &mut Harness<'_, Editor>, pos: Pos2, pressed: bool) {

@@ -132,6 +132,17 @@ impl Document {
         }
     }
 
+    /// Takes back all edits of an open gesture and ends it. Without a gesture nothing happens.
+    pub fn cancel_gesture(&mut self) {
+        let Some(gesture) = self.gesture.take() else { return };
+        if gesture.label.is_some() {
+            self.revision += 1;
+            let selection = std::mem::take(&mut self.state.selection);
+            self.state = State { selection, ..gesture.start };
+            self.state.drop_unknown();
+        }
+    }
+
     /// Goes one step back, with the selection of then; false where there is none. An open gesture
     /// ends first and is the step that is undone.
     pub fn undo(&mut self) -> bool {

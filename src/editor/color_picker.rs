@@ -2,7 +2,7 @@
 //! Colours go in and out linear; what is shown is as the screen shows it.
 
 use egui::ecolor::HsvaGamma;
-use egui::{Color32, Id, Mesh, Pos2, Rect, Response, Rgba, RichText, Sense, Shape, Stroke, TextEdit, Ui, vec2};
+use egui::{Color32, Id, Key, Mesh, Pos2, Rect, Response, Rgba, RichText, Sense, Shape, Stroke, TextEdit, Ui, vec2};
 
 use super::theme;
 
@@ -126,8 +126,10 @@ fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
         let mut text = ui.data(|d| d.get_temp::<String>(text_id)).unwrap_or_else(|| actual.clone());
         let response = ui.add(TextEdit::singleline(&mut text).desired_width(90.0).char_limit(7));
         name(ui, &response, "Hex");
-        if response.lost_focus() {
-            typed = parse_hex(&text).filter(|_| text != actual);
+        if response.lost_focus() && text != actual && !ui.input(|i| i.key_pressed(Key::Escape)) {
+            typed = parse_hex(&text);
+            let reason = || format!("“{text}” is no colour: type six hex digits, such as #e5d4b6.");
+            super::numbers::refuse(ui, response.id, typed.is_none().then(reason));
         }
         let typing = response.has_focus();
         // What is half typed is kept; otherwise the field shows the colour.
@@ -150,14 +152,19 @@ fn parse_hex(text: &str) -> Option<[f32; 3]> {
     Some([color.r(), color.g(), color.b()])
 }
 
-/// A button filled with a colour; a click opens the picker. `value` is linear.
-pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3]) -> (Response, bool) {
+/// A button filled with a colour; a click opens the picker. `value` is linear. `mixed` shows a dash instead.
+pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (Response, bool) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ColorWell, ui.is_enabled(), label));
-    let fill: Color32 = Rgba::from_rgb(value[0], value[1], value[2]).into();
+    let color = Rgba::from_rgb(value[0], value[1], value[2]).into();
+    let fill: Color32 = if mixed { theme::FIELD } else { color };
     let border = if response.hovered() { theme::TEXT } else { theme::RESTING };
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, Stroke::new(1.0, border), egui::StrokeKind::Inside);
+    if mixed {
+        let font = egui::TextStyle::Button.resolve(ui.style());
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, super::fields::MIXED, font, theme::TEXT);
+    }
     let mut changed = false;
     let close = egui::PopupCloseBehavior::CloseOnClickOutside;
     egui::Popup::menu(&response).close_behavior(close).show(|ui| {

@@ -1,14 +1,14 @@
-//! Opening, saving, quitting: the question before work is lost, and the dialogs for files.
+//! Opening, saving, quitting: what is asked before work is lost, and for which files. `dialog_views` shows it.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
-use egui::{Context, Id, Key, Modal, RichText, TextEdit, ViewportCommand, vec2};
+use egui::{Context, ViewportCommand};
 
 use super::messages::Message;
 use super::workbench::WantedFile;
-use super::{Editor, insertion, theme};
+use super::{Editor, insertion, portal};
 use crate::document::Document;
 use crate::scene::{Attached, MeshNode, Node, NodeKind};
 
@@ -27,19 +27,33 @@ pub enum Intent {
     Quit,
 }
 
+/// An intent that can be carried out: its document has been read.
+pub enum Next {
+    /// A new scene.
+    New,
+    /// Ask which file to open.
+    Choose,
+    /// Show this document, which was read from this file.
+    Show(Box<Document>, Option<PathBuf>),
+    /// Close the window.
+    Quit,
+}
+
 /// What a path is wanted for.
-#[derive(Clone, Debug, PartialEq)]
-enum Purpose {
+pub enum Purpose {
+    /// To open a scene.
     Open,
-    /// Then goes on with what the saving was asked for.
-    Save(Option<Intent>),
+    /// To save; then goes on with what the saving was asked for.
+    Save(Option<Next>),
+    /// To add a mesh.
     Mesh,
-    /// A file that nodes keep.
+    /// For a file that nodes keep.
     Attach(WantedFile),
 }
 
 impl Purpose {
-    fn title(&self) -> &'static str {
+    /// What the dialog is called.
+    pub fn title(&self) -> &'static str {
         match self {
             Self::Open => "Open a scene",
             Self::Save(_) => "Save the scene",
@@ -48,28 +62,74 @@ impl Purpose {
             Self::Attach(WantedFile { instead_of: Attached::Font(_), .. }) => "Choose a font",
         }
     }
+
+    /// Why the path cannot serve this purpose, before anything is read or written.
+    pub fn refusal(&self, path: &Path) -> Option<String> {
+        let name = path.display();
+        if path.as_os_str().is_empty() {
+            return Some("Type the name of a file.".into());
+        }
+        let is_folder = |path: &Path| path.is_dir() || path.to_string_lossy().ends_with(std::path::is_separator);
+        if is_folder(path) {
+            return Some(format!("{name} is a folder, not a file."));
+        }
+        match self {
+            Self::Save(_) => {}
+            // Its reader says more.
+            Self::Attach(_) => return None,
+            Self::Open | Self::Mesh => return (!path.exists()).then(|| format!("There is no file {name}.")),
+        }
+        let path = with_ending(path);
+        if path.is_dir() {
+            return Some(format!("{} is a folder, not a file.", path.display()));
+        }
+        let folder = super::folder_of(&path).filter(|folder| !folder.is_dir())?;
+        Some(format!("There is no folder {}.", folder.display()))
+    }
 }
 
 /// The system's dialog, open on a thread of its own.
 struct SystemDialog {
     purpose: Purpose,
-    answer: Receiver<Option<PathBuf>>,
+    answer: Receiver<SystemAnswer>,
     since: Instant,
 }
 
+enum SystemAnswer {
+    /// What was chosen, if anything.
+    Chosen(Option<PathBuf>),
+    /// There is no such dialog here.
+    NoDialog,
+}
+
 /// Our own dialog, for where the system has none.
-struct PathField {
-    purpose: Purpose,
-    text: String,
-    focused: bool,
+pub struct PathField {
+    /// What for.
+    pub purpose: Purpose,
+    /// What is typed.
+    pub text: String,
+    /// It has been given the keyboard.
+    pub focused: bool,
+    /// Why what was typed does not do.
+    pub problem: Option<String>,
+}
+
+/// A question before something is lost.
+pub enum Question {
+    /// The document has changes that are not saved.
+    Unsaved(Next),
+    /// There is a file of this name already.
+    Replace(PathBuf, Option<Next>),
 }
 
 /// What is being asked.
 #[derive(Default)]
 pub struct Dialogs {
-    question: Option<Intent>,
+    /// A question that waits for its answer.
+    pub question: Option<Question>,
     system: Option<SystemDialog>,
-    path_field: Option<PathField>,
+    /// The path being typed.
+    pub path_field: Option<PathField>,
     /// Ask for paths in the window instead of by the system's dialog.
     pub in_window: bool,
     /// The artist has agreed to close the window.
@@ -87,49 +147,55 @@ impl Dialogs {
 }
 
 impl Editor {
-    /// Does it, after asking where work would be lost.
+    /// Does it, after asking where work would be lost. What cannot be read is refused before that.
     pub fn intend(&mut self, intent: Intent, ctx: &Context) {
         self.bench.finish();
-        let harmless = intent == Intent::Choose;
-        if self.bench.document.is_changed() && !harmless {
-            self.dialogs.question = Some(intent);
+        let Some(next) = self.prepare(intent) else { return };
+        if self.bench.document.is_changed() && !matches!(next, Next::Choose) {
+            self.dialogs.question = Some(Question::Unsaved(next));
         } else {
-            self.perform(intent, ctx);
+            self.perform(next, ctx);
         }
     }
 
-    fn perform(&mut self, intent: Intent, ctx: &Context) {
-        match intent {
-            Intent::New => self.replace_document(super::new_document()),
-            Intent::Choose => self.choose(Purpose::Open, ctx),
-            Intent::Open(path) => self.open(&path),
-            Intent::Example(index) => {
-                let opened = self.examples.get(index).map(|example| (example.open)());
-                match opened {
-                    Some(Ok(document)) => self.replace_document(document),
-                    Some(Err(reason)) => self.report(Message::error(reason)),
-                    None => {}
-                }
+    fn prepare(&mut self, intent: Intent) -> Option<Next> {
+        let read = match intent {
+            Intent::New => return Some(Next::New),
+            Intent::Choose => return Some(Next::Choose),
+            Intent::Quit => return Some(Next::Quit),
+            Intent::Open(path) => {
+                Document::open(&path).map(|document| (document, Some(path))).map_err(|error| error.to_string())
             }
-            Intent::Quit => {
+            Intent::Example(index) => (self.examples.get(index)?.open)().map(|document| (document, None)),
+        };
+        match read {
+            Ok((document, path)) => Some(Next::Show(Box::new(document), path)),
+            Err(reason) => {
+                self.report(Message::error(reason));
+                None
+            }
+        }
+    }
+
+    pub(super) fn perform(&mut self, next: Next, ctx: &Context) {
+        match next {
+            Next::New => self.replace_document(super::new_document()),
+            Next::Choose => self.choose(Purpose::Open, ctx),
+            Next::Show(document, path) => {
+                if let Some(path) = path {
+                    self.recent.add(&path);
+                }
+                self.replace_document(*document);
+            }
+            Next::Quit => {
                 self.dialogs.closing = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
         }
     }
 
-    fn open(&mut self, path: &Path) {
-        match Document::open(path) {
-            Ok(document) => {
-                self.recent.add(path);
-                self.replace_document(document);
-            }
-            Err(error) => self.report(Message::error(error.to_string())),
-        }
-    }
-
     /// Saves, asking for a path where there is none; then goes on with `then`.
-    pub fn save(&mut self, then: Option<Intent>, ctx: &Context) {
+    pub fn save(&mut self, then: Option<Next>, ctx: &Context) {
         self.bench.finish();
         match self.bench.document.path().map(Path::to_path_buf) {
             None => self.choose_save_path(then, ctx),
@@ -138,7 +204,7 @@ impl Editor {
     }
 
     /// Asks where to save; then goes on with `then`.
-    pub fn choose_save_path(&mut self, then: Option<Intent>, ctx: &Context) {
+    pub fn choose_save_path(&mut self, then: Option<Next>, ctx: &Context) {
         self.choose(Purpose::Save(then), ctx);
     }
 
@@ -151,14 +217,14 @@ impl Editor {
         }
     }
 
-    fn save_to(&mut self, path: &Path, then: Option<Intent>, ctx: &Context) {
+    pub(super) fn save_to(&mut self, path: &Path, then: Option<Next>, ctx: &Context) {
         match self.bench.document.save_as(path) {
             Ok(()) => {
                 self.recent.add(path);
                 self.meshes.set_folder(super::folder_of(path));
                 self.report(Message::success(format!("Saved {}", path.display())));
-                if let Some(intent) = then {
-                    self.perform(intent, ctx);
+                if let Some(next) = then {
+                    self.perform(next, ctx);
                 }
             }
             Err(error) => self.report(Message::error(error.to_string())),
@@ -166,10 +232,9 @@ impl Editor {
     }
 
     fn choose(&mut self, purpose: Purpose, ctx: &Context) {
-        if self.dialogs.system.is_some() {
-            return;
-        }
-        if self.dialogs.in_window {
+        // Who asks again while the system's dialog is open does not see it: its answer is not waited for any more.
+        let is_unanswered = self.dialogs.system.take().is_some();
+        if self.dialogs.in_window || is_unanswered {
             self.ask_in_window(purpose);
             return;
         }
@@ -177,9 +242,13 @@ impl Editor {
         let (sender, answer) = channel();
         let (ctx, saving) = (ctx.clone(), matches!(purpose, Purpose::Save(_)));
         let spawned = std::thread::Builder::new().name("file dialog".into()).spawn(move || {
-            let path = if saving { dialog.save_file() } else { dialog.pick_file() };
+            let answer = match portal::has_dialogs() {
+                false => SystemAnswer::NoDialog,
+                true if saving => SystemAnswer::Chosen(dialog.save_file()),
+                true => SystemAnswer::Chosen(dialog.pick_file()),
+            };
             // The receiver is gone when the window is: then nobody waits for the answer.
-            let _ = sender.send(path);
+            let _ = sender.send(answer);
             ctx.request_repaint();
         });
         match spawned {
@@ -216,7 +285,7 @@ impl Editor {
                 .map_or_else(String::new, |folder| format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR)),
             (_, None) => String::new(),
         };
-        self.dialogs.path_field = Some(PathField { purpose, text, focused: false });
+        self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });
     }
 
     /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
@@ -227,31 +296,56 @@ impl Editor {
         }
         let Some(dialog) = &self.dialogs.system else { return };
         let answer = match dialog.answer.try_recv() {
-            Err(std::sync::mpsc::TryRecvError::Empty) => return,
-            Err(std::sync::mpsc::TryRecvError::Disconnected) => None,
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => SystemAnswer::NoDialog,
             Ok(answer) => answer,
         };
         let Some(SystemDialog { purpose, since, .. }) = self.dialogs.system.take() else { return };
         match answer {
-            Some(path) => self.chosen(purpose, &path, ctx),
-            None if since.elapsed() < NO_DIALOG => {
+            SystemAnswer::Chosen(Some(path)) => self.chosen_in_system(purpose, &path, ctx),
+            SystemAnswer::Chosen(None) if since.elapsed() >= NO_DIALOG => {}
+            SystemAnswer::Chosen(None) | SystemAnswer::NoDialog => {
                 self.dialogs.in_window = true;
                 self.ask_in_window(purpose);
             }
-            None => {}
         }
     }
 
-    fn chosen(&mut self, purpose: Purpose, path: &Path, ctx: &Context) {
+    fn chosen_in_system(&mut self, purpose: Purpose, path: &Path, ctx: &Context) {
+        match purpose.refusal(path) {
+            Some(reason) => self.report(Message::error(reason)),
+            None => {
+                // The system's dialog has asked whether to replace the file, unless it gets another name here.
+                let was_asked = path == with_ending(path);
+                self.chosen(purpose, path, was_asked, ctx);
+            }
+        }
+    }
+
+    /// Goes on with a path that [`Purpose::refusal`] has nothing against.
+    pub(super) fn chosen(&mut self, purpose: Purpose, path: &Path, may_replace: bool, ctx: &Context) {
         match purpose {
             Purpose::Open => self.intend(Intent::Open(path.to_path_buf()), ctx),
             Purpose::Save(then) => {
-                let path = if path.extension().is_none() { path.with_extension("json") } else { path.to_path_buf() };
-                self.save_to(&path, then, ctx);
+                let path = with_ending(path);
+                if may_replace || !path.exists() || self.is_own(&path) {
+                    self.save_to(&path, then, ctx);
+                } else {
+                    self.dialogs.question = Some(Question::Replace(path, then));
+                }
             }
             Purpose::Mesh => self.add_mesh(path),
             Purpose::Attach(wanted) => self.read_file(wanted, path, ctx),
         }
+    }
+
+    /// Whether it is the document's own file, by whatever name.
+    fn is_own(&self, path: &Path) -> bool {
+        let own = self.bench.document.path();
+        own.is_some_and(|own| match (own.canonicalize(), path.canonicalize()) {
+            (Ok(own), Ok(path)) => own == path,
+            _ => own == path,
+        })
     }
 
     fn add_mesh(&mut self, path: &Path) {
@@ -268,129 +362,21 @@ impl Editor {
         insertion::node(self, Node::new(name, NodeKind::Mesh(mesh)));
     }
 
-    /// Shows what is being asked.
-    pub(super) fn show_dialogs(&mut self, ctx: &Context) {
-        self.show_question(ctx);
-        self.show_path_field(ctx);
-    }
-
-    fn show_question(&mut self, ctx: &Context) {
-        let Some(intent) = self.dialogs.question.clone() else { return };
-        let name = self.bench.document.title();
-        let name = name.trim_end_matches(" *").to_owned();
-        let mut answer = None;
-        let response = Modal::new(Id::unique("unsaved changes")).frame(frame(ctx)).show(ctx, |ui| {
-            ui.set_width(380.0);
-            ui.add_space(4.0);
-            ui.label(RichText::new(format!("Save the changes to “{name}”?")).heading().color(egui::Color32::WHITE));
-            ui.add_space(2.0);
-            ui.label(RichText::new("They are lost otherwise.").color(theme::WEAK));
-            ui.add_space(14.0);
-            ui.horizontal(|ui| {
-                let size = vec2(96.0, 28.0);
-                if ui.add(egui::Button::new("Discard").min_size(size)).clicked() {
-                    answer = Some(Answer::Discard);
-                }
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    let text = RichText::new("Save").color(egui::Color32::BLACK);
-                    if ui.add(egui::Button::new(text).fill(theme::ACCENT).min_size(size)).clicked() {
-                        answer = Some(Answer::Save);
-                    }
-                    if ui.add(egui::Button::new("Cancel").min_size(size)).clicked() {
-                        answer = Some(Answer::Cancel);
-                    }
-                });
-            });
-        });
-        if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Enter)) {
-            answer = answer.or(Some(Answer::Save));
-        }
-        if response.should_close() {
-            answer = answer.or(Some(Answer::Cancel));
-        }
-        let Some(answer) = answer else { return };
-        self.dialogs.question = None;
-        match answer {
-            Answer::Save => self.save(Some(intent), ctx),
-            Answer::Discard => self.perform(intent, ctx),
-            Answer::Cancel => {}
-        }
-    }
-
-    fn show_path_field(&mut self, ctx: &Context) {
-        let Some(field) = &mut self.dialogs.path_field else { return };
-        let mut done = None;
-        let response = Modal::new(Id::unique("path")).frame(frame(ctx)).show(ctx, |ui| {
-            ui.set_width(460.0);
-            ui.label(RichText::new(field.purpose.title()).heading().color(egui::Color32::WHITE));
-            ui.add_space(6.0);
-            let edit = TextEdit::singleline(&mut field.text)
-                .hint_text("/path/to/file")
-                .desired_width(f32::INFINITY)
-                .margin(egui::Margin::symmetric(8, 6));
-            let response = ui.add(edit);
-            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
-            if !field.focused {
-                field.focused = true;
-                response.request_focus();
-                select_name(ctx, response.id, &field.text);
-            }
-            if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter)) {
-                done = Some(true);
-            }
-            ui.add_space(10.0);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let size = vec2(96.0, 28.0);
-                let ok = if matches!(field.purpose, Purpose::Save(_)) { "Save" } else { "Open" };
-                let text = RichText::new(ok).color(egui::Color32::BLACK);
-                if ui.add(egui::Button::new(text).fill(theme::ACCENT).min_size(size)).clicked() {
-                    done = Some(true);
-                }
-                if ui.add(egui::Button::new("Cancel").min_size(size)).clicked() {
-                    done = Some(false);
-                }
-            });
-        });
-        if response.should_close() {
-            done = done.or(Some(false));
-        }
-        let Some(agreed) = done else { return };
-        let Some(field) = self.dialogs.path_field.take() else { return };
-        let text = field.text.trim();
-        if agreed && !text.is_empty() {
-            self.chosen(field.purpose, Path::new(text), ctx);
-        }
-    }
-
     /// Refuses to close the window while work would be lost, and asks.
     pub(super) fn guard_closing(&mut self, ctx: &Context) {
         let requested = ctx.input(|i| i.viewport().close_requested());
         if requested && !self.dialogs.closing && self.bench.document.is_changed() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.intend(Intent::Quit, ctx);
+            if !self.has_dialog() {
+                self.intend(Intent::Quit, ctx);
+            }
         }
     }
 }
 
-/// Selects the file's name, without folder and ending, so that typing replaces it.
-fn select_name(ctx: &Context, field: Id, path: &str) {
-    let end = path.chars().count();
-    let start = path.rfind('/').map_or(0, |i| path[..=i].chars().count());
-    let stem = path.rfind('.').map_or(end, |i| path[..i].chars().count());
-    let mut state = egui::text_edit::TextEditState::default();
-    let [start, end] = [start, if stem > start { stem } else { end }].map(egui::text::CCursor::new);
-    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
-    state.store(ctx, field);
-}
-
-fn frame(ctx: &Context) -> egui::Frame {
-    egui::Frame::window(&ctx.global_style()).inner_margin(18.0)
-}
-
-enum Answer {
-    Save,
-    Discard,
-    Cancel,
+/// The path that a scene is saved to where this one was chosen.
+fn with_ending(path: &Path) -> PathBuf {
+    if path.extension().is_none() { path.with_extension("json") } else { path.to_path_buf() }
 }
 
 fn suggested_name(path: Option<&Path>) -> String {

@@ -29,7 +29,7 @@ const SHORTEST: f32 = 14.0;
 pub fn pivot(bench: &Workbench) -> Option<DVec3> {
     let scene = bench.document.scene();
     let ids: Vec<_> =
-        selection::roots(bench).into_iter().filter(|id| scene.node(*id).is_some_and(|n| !n.locked)).collect();
+        selection::roots(bench).into_iter().filter(|id| selection::holder_of_lock(scene, *id).is_none()).collect();
     if ids.is_empty() {
         return None;
     }
@@ -111,7 +111,8 @@ impl Drag {
     pub fn begin(bench: &Workbench, handle: Handle, ray: &Ray, forward: DVec3) -> Option<Self> {
         let pivot = pivot(bench)?;
         let scene = bench.document.scene();
-        let nodes = selection::roots(bench).into_iter().filter_map(|id| scene.node(id)).filter(|n| !n.locked);
+        let is_free = |id: &NodeId| selection::holder_of_lock(scene, *id).is_none();
+        let nodes = selection::roots(bench).into_iter().filter(is_free).filter_map(|id| scene.node(id));
         let nodes = nodes
             .map(|n| Start {
                 id: n.id,

@@ -9,7 +9,7 @@ use super::sheet::Sheet;
 use super::workbench::Workbench;
 use super::{
     fields, glyphs, inspector_joints, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
-    inspector_transform, theme,
+    inspector_transform, selection, theme,
 };
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
@@ -29,10 +29,32 @@ impl Inspector {
             let selected = bench.selected();
             match selected.last() {
                 None => inspector_scene::show(ui, bench),
-                Some(active) => self.show_selection(ui, bench, active.clone(), selected),
+                // What is typed for one node is not for another one.
+                Some(active) => {
+                    ui.push_id(active.id, |ui| self.show_selection(ui, bench, active.clone(), selected.clone()));
+                }
             }
             ui.add_space(12.0);
         });
+    }
+
+    /// The places of those that are not locked.
+    fn transform(&mut self, ui: &mut Ui, bench: &mut Workbench, all: &[Arc<Node>]) {
+        let scene = bench.document.snapshot();
+        let (locked, free): (Vec<_>, Vec<_>) =
+            all.iter().cloned().partition(|node| selection::holder_of_lock(&scene, node.id).is_some());
+        let is_free = !free.is_empty();
+        let Some(mut sheet) = Sheet::new(bench, if is_free { free } else { locked.clone() }) else { return };
+        ui.add_enabled_ui(is_free, |ui| self.transform.show(ui, &mut sheet));
+        if !locked.is_empty() {
+            let which = match (locked.len(), all.len()) {
+                (1, 1) => "It is".to_owned(),
+                (1, _) => "One is".to_owned(),
+                (count, _) => format!("{count} are"),
+            };
+            let text = RichText::new(format!("{which} locked and not moved")).small().color(theme::WARNING);
+            ui.label(text);
+        }
     }
 
     fn show_selection(&mut self, ui: &mut Ui, bench: &mut Workbench, active: Arc<Node>, all: Vec<Arc<Node>>) {
@@ -42,21 +64,19 @@ impl Inspector {
         {
             inspector_joints::role(ui, &mut sheet);
         }
-        if let Some(mut sheet) = Sheet::new(bench, all.clone()) {
-            self.transform.show(ui, &mut sheet);
-        }
+        self.transform(ui, bench, &all);
         let with_fields = all.iter().all(|n| n.has_field()).then(|| all.clone());
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
         let Some(mut sheet) = Sheet::new(bench, alike) else { return };
         match &active.kind {
             NodeKind::Group(_) => inspector_joints::group(ui, &mut sheet),
-            NodeKind::Object(object) => {
+            NodeKind::Object(_) => {
                 inspector_kinds::shape(ui, &mut sheet);
-                inspector_material::show(ui, &mut sheet, Some(object.material));
+                inspector_material::show(ui, &mut sheet);
             }
             NodeKind::Mesh(mesh) => {
                 inspector_kinds::mesh(ui, &mut sheet, mesh);
-                inspector_material::show(ui, &mut sheet, mesh.material);
+                inspector_material::show(ui, &mut sheet);
             }
             NodeKind::Light(_) => inspector_kinds::light(ui, &mut sheet),
             NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut sheet),

@@ -59,17 +59,14 @@ fn apart(ui: &mut Ui, sheet: &mut Sheet<'_>) {
                 continue;
             }
             let help = "A joint without a blend between these two";
-            sheet.toggle(
-                ui,
-                ("", name.as_str(), help),
-                |n| n.apart.contains(&id),
-                |n, on| {
-                    n.apart.retain(|other| *other != id);
-                    if on {
-                        n.apart.push(id);
-                    }
-                },
-            );
+            let is_apart = |n: &Node| n.apart.contains(&id);
+            let set = |n: &mut Node, on| {
+                n.apart.retain(|other| *other != id);
+                if on {
+                    n.apart.push(id);
+                }
+            };
+            ui.push_id(id, |ui| sheet.toggle(ui, ("", name.as_str(), help), is_apart, set));
         }
     });
 }

@@ -3,7 +3,8 @@
 use egui::{RichText, TextEdit, Ui, vec2};
 use glam::DVec3;
 
-use super::fields::{self, Field};
+use super::fields::{self, MIXED};
+use super::numbers::Field;
 use super::sheet::Sheet;
 use super::workbench::{Keeper, WantedFile};
 use super::{inspector_points, shape_change, theme};
@@ -14,7 +15,7 @@ use crate::scene::{
 };
 
 pub(super) const fn field<'a>(label: &'a str, help: &'a str, limits: Limits, default: Option<f64>) -> Field<'a> {
-    Field { label, help, limits, default }
+    Field { label, help, limits, default, taken_as: None }
 }
 
 pub(super) fn no_help<T>(_: T) -> &'static str {
@@ -85,11 +86,14 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
             sheet.toggle(ui, (&label, "", param.help), get, |n, v| set(n, ParamValue::Flag(v)));
         }
         ParamValue::Text(_) => {
-            let Some(ParamValue::Text(mut text)) = value(sheet.active()) else { return };
+            let Some(ParamValue::Text(text)) = value(sheet.active()) else { return };
+            let is_mixed = sheet.common(value).is_none();
+            let mut text = if is_mixed { String::new() } else { text };
             let response = fields::row(ui, &label, param.help, |ui| {
                 ui.add(
                     TextEdit::multiline(&mut text)
                         .desired_rows(1)
+                        .hint_text(if is_mixed { MIXED } else { "" })
                         .desired_width(ui.available_width())
                         .char_limit(MAX_TEXT),
                 )
@@ -102,7 +106,8 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, de
         ParamValue::File(default) => {
             let Some(ParamValue::File(file)) = value(sheet.active()) else { return };
             let keeper = Keeper::OfShape(index);
-            attachment(ui, sheet, (&label, param.help), (keeper, &file, file.label()), &default);
+            let shown = if sheet.common(value).is_some() { file.label() } else { MIXED };
+            attachment(ui, sheet, (&label, param.help), (keeper, &file, shown), &default);
         }
         ParamValue::List(_) => {
             let get = |n: &Node| if let Some(ParamValue::List(v)) = value(n) { Some(v) } else { None };
@@ -155,13 +160,13 @@ pub fn sentence_case(name: &str) -> String {
 pub fn mesh(ui: &mut Ui, sheet: &mut Sheet<'_>, mesh: &MeshNode) {
     fields::card(ui, "Mesh", |ui| {
         let help = "A .gltf or .glb file, relative to the scene's folder";
-        let mut path = mesh.path.clone();
-        let response = fields::row(ui, "File", help, |ui| {
-            ui.add(TextEdit::singleline(&mut path).desired_width(ui.available_width()).hint_text("models/thing.glb"))
-        });
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("File"));
-        if response.changed() {
-            sheet.change(response.id, |n| {
+        let path = |n: &Node| if let NodeKind::Mesh(m) = &n.kind { Some(m.path.clone()) } else { None };
+        let (current, hint) =
+            if sheet.common(path).is_some() { (&*mesh.path, "models/thing.glb") } else { ("", MIXED) };
+        // Half a path names no file, so it is not looked for before it is typed to its end.
+        let (widget, typed) = fields::row(ui, "File", help, |ui| fields::line(ui, "File", current, hint));
+        if let Some(path) = typed {
+            sheet.change(widget, |n| {
                 if let NodeKind::Mesh(m) = &mut n.kind {
                     m.path.clone_from(&path);
                 }

@@ -3,25 +3,51 @@
 use egui::{Color32, Rgba, RichText, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
 
-use super::fields::{self, Field};
+use super::fields::{self, MIXED};
+use super::numbers::{self, Field};
 use super::sheet::Sheet;
 use super::theme;
 use crate::document::Edit;
 use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS, UNIT};
 use crate::scene::{Limits, Material, MaterialId, Node, NodeKind};
 
-/// The card; `worn` is the active node's material, `None` for a mesh that keeps its own.
-pub fn show(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Option<MaterialId>) {
+/// What the nodes of a sheet wear.
+#[derive(Clone, Copy, PartialEq)]
+enum Worn {
+    /// All the same; `None` for meshes that keep their own.
+    Same(Option<MaterialId>),
+    /// Not all the same.
+    Mixed,
+}
+
+/// The card.
+pub fn show(ui: &mut Ui, sheet: &mut Sheet<'_>) {
     fields::card(ui, "Material", |ui| {
+        let worn = sheet.common(material_of).map_or(Worn::Mixed, Worn::Same);
         picker(ui, sheet, worn);
+        let Worn::Same(worn) = worn else {
+            ui.label(RichText::new("Different materials: choose one to give it to all.").color(theme::WEAK));
+            return;
+        };
         let material = worn.and_then(|id| sheet.bench().document.scene().material(id).cloned());
         match material {
-            Some(material) => editor(ui, sheet, &material),
+            Some(material) => {
+                // What is typed for one material is not for another one.
+                ui.push_id(material.id, |ui| editor(ui, sheet, &material));
+            }
             None => {
                 ui.label(RichText::new("The file's own materials are used.").color(theme::WEAK));
             }
         }
     });
+}
+
+fn material_of(node: &Node) -> Option<MaterialId> {
+    match &node.kind {
+        NodeKind::Object(object) => Some(object.material),
+        NodeKind::Mesh(mesh) => mesh.material,
+        _ => None,
+    }
 }
 
 fn wear(node: &mut Node, id: Option<MaterialId>) {
@@ -32,21 +58,26 @@ fn wear(node: &mut Node, id: Option<MaterialId>) {
     }
 }
 
-fn picker(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Option<MaterialId>) {
+fn picker(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Worn) {
     let materials = sheet.bench().document.scene().materials().to_vec();
     let of_mesh = matches!(sheet.active().kind, NodeKind::Mesh(_));
-    let current = materials.iter().find(|m| Some(m.id) == worn);
+    let current = materials.iter().find(|m| worn == Worn::Same(Some(m.id)));
     let mut chosen = None;
     let mut new = false;
     let widget = fields::row(ui, "Wears", "Materials are shared: a change shows on everything that wears it", |ui| {
-        let shown = current.map_or("From the file", |m| m.name.as_str());
+        let shown = match (worn, current) {
+            (_, Some(material)) => material.name.as_str(),
+            (Worn::Mixed, None) => MIXED,
+            (Worn::Same(_), None) => "From the file",
+        };
         let combo = egui::ComboBox::from_id_salt("material").selected_text(shown).width(ui.available_width() - 28.0);
+        let combo = combo.height(fields::list_room(ui.ctx()));
         let response = combo.truncate().show_ui(ui, |ui| {
-            if of_mesh && ui.selectable_label(worn.is_none(), "From the file").clicked() {
+            if of_mesh && ui.selectable_label(worn == Worn::Same(None), "From the file").clicked() {
                 chosen = Some(None);
             }
             for material in &materials {
-                if swatch_label(ui, material, Some(material.id) == worn).clicked() {
+                if swatch_label(ui, material, worn == Worn::Same(Some(material.id))).clicked() {
                     chosen = Some(Some(material.id));
                 }
             }
@@ -73,12 +104,18 @@ fn picker(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Option<MaterialId>) {
     }
 }
 
+/// Most letters of a material's name in the list.
+const MOST_LETTERS: usize = 32;
+
 /// An entry of the list with the material's colour in front.
 fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Response {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
         ui.painter().rect_filled(rect, 3.0, display_color(material.albedo));
-        ui.selectable_label(selected, &material.name)
+        let short = fields::elided(&material.name, MOST_LETTERS);
+        let label = ui.selectable_label(selected, &short);
+        ui.ctx().accesskit_node_builder(label.id, |node| node.set_label(material.name.clone()));
+        if short == material.name { label } else { label.on_hover_text(&material.name) }
     })
     .inner
 }
@@ -116,7 +153,7 @@ type Part<T> = fn(&mut Material) -> &mut T;
 fn color(ui: &mut Ui, sheet: &mut Sheet<'_>, text: (&str, &str), material: &Material, part: Part<[f64; 3]>) {
     let mut edited = material.clone();
     let value = *part(&mut edited);
-    let (widget, changed) = fields::row(ui, text.0, text.1, |ui| fields::color(ui, text.0, value));
+    let (widget, changed) = fields::row(ui, text.0, text.1, |ui| fields::color(ui, text.0, value, false));
     if let Some(value) = changed {
         *part(&mut edited) = value;
         sheet.bench().change_material(widget, edited);
@@ -133,10 +170,10 @@ fn number(
 ) {
     let mut edited = material.clone();
     let value = *part(&mut edited);
-    let field = Field { label, help, limits, default: Some(default) };
+    let field = Field { label, help, limits, default: Some(default), taken_as: None };
     let answer = fields::row(ui, label, help, |ui| {
         let width = ui.available_width();
-        fields::number(ui, &field, label, value, false, width)
+        numbers::number(ui, &field, label, value, false, width)
     });
     if let Some(value) = answer.value {
         *part(&mut edited) = value;
@@ -146,10 +183,11 @@ fn number(
 
 /// Emission beyond 1 cannot be picked as a colour: its brightest channel is a number of its own.
 fn glow_strength(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material, strength: f64) {
-    let field = Field { label: "Glow strength", help: "Its brightest channel", limits: INTENSITY, default: None };
+    let (label, help) = ("Glow strength", "Its brightest channel");
+    let field = Field { label, help, limits: INTENSITY, default: None, taken_as: None };
     let answer = fields::row(ui, field.label, field.help, |ui| {
         let width = ui.available_width();
-        fields::number(ui, &field, field.label, strength, false, width)
+        numbers::number(ui, &field, field.label, strength, false, width)
     });
     if let Some(new) = answer.value {
         let emission = material.emission.map(|v| v * new / strength);

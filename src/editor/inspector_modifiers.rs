@@ -5,7 +5,8 @@ use egui::{Align, Layout, RichText, Ui};
 use egui_material_icons::icons::{ICON_ADD, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_DELETE};
 use glam::DVec3;
 
-use super::fields::{self, Field};
+use super::fields::{self, MIXED};
+use super::numbers::Field;
 use super::sheet::Sheet;
 use super::workbench::Keeper;
 use super::{inspector_kinds, theme};
@@ -84,7 +85,8 @@ fn whole(v: f64) -> u32 {
 
 fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], param: &ModifierParam, default: ModifierValue) {
     let label = inspector_kinds::sentence_case(param.name);
-    let field = |default| Field { label: &label, help: param.help, limits: param.limits, default };
+    let field = |default| Field { label: &label, help: param.help, limits: param.limits, default, taken_as: None };
+    let whole_field = |default| Field { taken_as: Some(f64::round), ..field(default) };
     match default {
         ModifierValue::Scalar(default) => {
             let get = |n: &Node| if let Some(ModifierValue::Scalar(v)) = value(n, at) { Some(v) } else { None };
@@ -92,7 +94,8 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], param: &Modifie
         }
         ModifierValue::Count(default) => {
             let get = |n: &Node| if let Some(ModifierValue::Count(v)) = value(n, at) { Some(v.into()) } else { None };
-            sheet.number(ui, &field(Some(default.into())), get, |n, v| set(n, at, ModifierValue::Count(whole(v))));
+            sheet
+                .number(ui, &whole_field(Some(default.into())), get, |n, v| set(n, at, ModifierValue::Count(whole(v))));
         }
         ModifierValue::Vector(default) => {
             let get = |n: &Node| if let Some(ModifierValue::Vector(v)) = value(n, at) { Some(v) } else { None };
@@ -105,7 +108,8 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], param: &Modifie
                 let Some(ModifierValue::Counts(v)) = value(n, at) else { return None };
                 Some(DVec3::from(v.map(f64::from)))
             };
-            sheet.vector(ui, &field(None), get, |n, v| set(n, at, ModifierValue::Counts(v.to_array().map(whole))));
+            sheet
+                .vector(ui, &whole_field(None), get, |n, v| set(n, at, ModifierValue::Counts(v.to_array().map(whole))));
         }
         ModifierValue::Flag(_) => {
             let get = |n: &Node| value(n, at) == Some(ModifierValue::Flag(true));
@@ -119,7 +123,9 @@ fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, at: [usize; 2], param: &Modifie
         }
         ModifierValue::File(default) => {
             let Some(ModifierValue::File(file)) = value(sheet.active(), at) else { return };
-            let kept = (Keeper::OfModifier(at), &file, file.name().unwrap_or("No file"));
+            let is_mixed = sheet.common(|n| value(n, at)).is_none();
+            let shown = if is_mixed { MIXED } else { file.name().unwrap_or("No file") };
+            let kept = (Keeper::OfModifier(at), &file, shown);
             inspector_kinds::attachment(ui, sheet, (&label, param.help), kept, &default);
         }
     }
@@ -158,12 +164,14 @@ fn add(ui: &mut Ui, sheet: &mut Sheet<'_>) {
     }
     let label = format!("{} Add modifier", ICON_ADD.codepoint);
     ui.menu_button(label, |ui| {
-        for kind in ModifierKind::ALL {
-            let button = ui.button(kind.label()).on_hover_text(kind.help());
-            if button.clicked() {
-                sheet.change(button.id, |n| n.modifiers.push(kind.default_modifier().into()));
-                ui.close();
+        fields::scrolling(ui, fields::list_room(&ui.ctx().clone()), |ui| {
+            for kind in ModifierKind::ALL {
+                let button = ui.button(kind.label()).on_hover_text(kind.help());
+                if button.clicked() {
+                    sheet.change(button.id, |n| n.modifiers.push(kind.default_modifier().into()));
+                    ui.close();
+                }
             }
-        }
+        });
     });
 }

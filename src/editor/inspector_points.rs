@@ -2,7 +2,7 @@
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
-use super::fields::{self, Field};
+use super::numbers::{self, Field};
 use super::sheet::Sheet;
 use super::theme;
 use crate::scene::{List, Node, Param};
@@ -31,6 +31,12 @@ pub fn list(
     set: impl Fn(&mut Node, List),
 ) {
     let Some(shown) = get(sheet.active()) else { return };
+    if sheet.common(&get).is_none() {
+        super::fields::row(ui, label, param.help, |ui| {
+            ui.label(super::fields::MIXED).on_hover_text("Different points: choose one node to edit its own");
+        });
+        return;
+    }
     ui.horizontal(|ui| {
         ui.label(RichText::new(label).color(theme::WEAK)).on_hover_text(param.help);
         ui.label(RichText::new(format!("{}, {}", shown.rows.len(), shown.columns.join(" "))).color(theme::FAINT));
@@ -83,8 +89,8 @@ fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::I
             let label = format!("{name} {title}");
             // The unit would take the room of the number.
             let limits = crate::scene::Limits { unit: "", ..list.limits(column, &param.limits) };
-            let field = Field { label: &label, help: title, limits, default: None };
-            let answer = fields::number(ui, &field, &label, list.rows[index][column], false, width);
+            let field = Field { label: &label, help: title, limits, default: None, taken_as: None };
+            let answer = numbers::number(ui, &field, &label, list.rows[index][column], false, width);
             if let Some(value) = answer.value {
                 done = Some((answer.widget, Change::Set(column, value)));
             }

@@ -21,7 +21,7 @@ pub fn show(ui: &mut Ui, bench: &mut Workbench) {
         for (label, help, part) in rows {
             let mut environment = bench.document.scene().environment;
             let value = *part(&mut environment);
-            let (widget, changed) = fields::row(ui, label, help, |ui| fields::color(ui, label, value));
+            let (widget, changed) = fields::row(ui, label, help, |ui| fields::color(ui, label, value, false));
             if let Some(value) = changed {
                 *part(&mut environment) = value;
                 bench.apply_by(widget, Edit::SetEnvironment(environment));

@@ -4,7 +4,8 @@
 use egui::{Id, Ui};
 use glam::{DQuat, DVec3, EulerRot};
 
-use super::fields::{self, Answer, Field};
+use super::fields;
+use super::numbers::{self, Answer, Field};
 use super::sheet::Sheet;
 use crate::scene::limits::{POSITION, SCALE};
 use crate::scene::{Limits, Node, NodeKind};
@@ -14,18 +15,21 @@ const POSITION_FIELD: Field<'_> = Field {
     help: "Where the node stands in its group, in metres",
     limits: POSITION,
     default: Some(0.0),
+    taken_as: None,
 };
 const ROTATION_FIELD: Field<'_> = Field {
     label: "Rotation",
     help: "Degrees: Y turns like a compass, then X tilts, then Z rolls",
     limits: Limits { soft: [-180.0, 180.0], hard: [-36_000.0, 36_000.0], unit: "°" },
     default: Some(0.0),
+    taken_as: None,
 };
 const SCALE_FIELD: Field<'_> = Field {
     label: "Scale",
     help: "Factor along each local axis; negative mirrors, zero is refused",
     limits: Limits { soft: SCALE.soft, hard: [-SCALE.hard[1], SCALE.hard[1]], unit: "" },
     default: Some(1.0),
+    taken_as: Some(away_from_zero),
 };
 
 /// The angles last typed, with the quaternion they gave: while that stands, they are shown as typed.
@@ -42,20 +46,15 @@ impl EulerMemory {
             sheet.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
             self.rotation_row(ui, sheet);
             let scalable = |n: &Node| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_));
-            sheet.vector(
-                ui,
-                &SCALE_FIELD,
-                |n| scalable(n).then_some(n.transform.scale),
-                |n, v| n.transform.scale = v.map(away_from_zero),
-            );
+            sheet.vector(ui, &SCALE_FIELD, |n| scalable(n).then_some(n.transform.scale), |n, v| n.transform.scale = v);
         });
     }
 
     fn rotation_row(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
         let shown = self.degrees(sheet.active().transform.rotation);
-        let mixed = [sheet.common(|n| n.transform.rotation).is_none(); 3];
+        let mixed = [0, 1, 2].map(|axis| sheet.common(|n| self.degrees(n.transform.rotation)[axis]).is_none());
         let changed = fields::row(ui, ROTATION_FIELD.label, ROTATION_FIELD.help, |ui| {
-            fields::vector(ui, &ROTATION_FIELD, shown.to_array(), mixed)
+            numbers::vector(ui, &ROTATION_FIELD, shown.to_array(), mixed)
         });
         let Some((axis, Answer { widget, value: Some(value) })) = changed else { return };
         self.turn(sheet, widget, axis, value);

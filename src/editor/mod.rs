@@ -6,20 +6,23 @@
 //! | `workbench` | the document with gestures (one drag, one undo step) and messages |
 //! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, palette |
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
-//! | `sheet`, `fields`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
+//! | `sheet`, `fields`, `numbers`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `legend` | what the colours of a picture mean that is not lit |
-//! | `dialogs`, `palette`, `messages` | what comes up in front |
+//! | `dialogs`, `dialog_views`, `portal`, `palette`, `messages` | what comes up in front |
+//! | `input_order` | events in the order in which they came, however slow the frames are |
 //! | `reading` | files that nodes keep, read beside the frames |
 
 mod bounds;
 mod color_picker;
 mod commands;
+mod dialog_views;
 mod dialogs;
 mod expression;
 mod fields;
 mod gizmo;
 mod glyphs;
+mod input_order;
 mod insertion;
 mod inspector;
 mod inspector_joints;
@@ -32,10 +35,12 @@ mod inspector_transform;
 mod legend;
 mod messages;
 mod navigation;
+mod numbers;
 mod outliner;
 mod overlay;
 mod palette;
 mod picking;
+mod portal;
 mod reading;
 mod selection;
 mod shape_change;
@@ -51,7 +56,7 @@ mod workbench;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use egui::{CentralPanel, Context, Frame, Margin, Panel, TextureId, Ui, ViewportCommand};
+use egui::{CentralPanel, Context, Frame, Key, Margin, Panel, SurrenderFocusOn, TextureId, Ui, ViewportCommand};
 
 pub use commands::{Command, CommandId, Menu};
 pub use messages::{Message, Severity};
@@ -64,6 +69,9 @@ use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::scene::{Light, Node, NodeId, NodeKind, Scene};
 use workbench::Workbench;
+
+/// Most characters of a file's name in the window's title.
+const MOST_TITLE: usize = 80;
 
 /// What the renderer has made.
 #[derive(Clone, Debug, Default)]
@@ -124,6 +132,8 @@ pub struct Editor {
     shown_title: String,
     /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
     typing: bool,
+    /// A command that waits until fields have taken what was typed into them.
+    pending: Option<CommandId>,
 }
 
 /// The flat scene of a revision of the document.
@@ -158,6 +168,7 @@ impl Editor {
             look: Look::Shaded,
             shown_title: String::new(),
             typing: false,
+            pending: None,
         };
         editor.replace_document(document);
         editor
@@ -166,6 +177,9 @@ impl Editor {
     /// Installs fonts and the look. Once, before the first frame.
     pub fn setup(ctx: &Context) {
         theme::install(ctx);
+        ctx.add_plugin(input_order::InputOrder::default());
+        // A field takes what was typed when the pointer is pressed elsewhere: the click may already select another node.
+        ctx.options_mut(|options| options.input_options.surrender_focus_on = SurrenderFocusOn::Presses);
     }
 
     /// Remembers files between runs in this list.
@@ -190,9 +204,12 @@ impl Editor {
         self.poll_dialogs(&ctx);
         self.guard_closing(&ctx);
         self.open_dropped(&ctx);
+        if self.bench.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
+            self.bench.cancel();
+        }
         commands::run_shortcuts(self, &ctx);
         self.show_panels(ui, picture);
-        if let Some(reason) = fields::take_refusal(&ctx) {
+        if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
         }
         self.poll_readings(&ctx);
@@ -202,6 +219,9 @@ impl Editor {
         self.bench.messages.show_toasts(&ctx, corner);
         if self.bench.messages.show_log {
             self.bench.messages.show_log(&ctx);
+        }
+        if let Some(command) = self.pending.take() {
+            command.run(self, &ctx);
         }
         self.bench.settle(&ctx);
         self.refresh_flat();
@@ -216,13 +236,13 @@ impl Editor {
         let narrow = Frame::new().fill(theme::BAR).inner_margin(Margin::symmetric(10, 3));
         Panel::bottom("status").frame(narrow).show(ui, |ui| status::show(self, ui, picture));
         Panel::left("outliner").frame(side).default_size(240.0).size_range(160.0..=520.0).show(ui, |ui| {
-            let chosen = self.outliner.show(ui, &mut self.bench);
+            let chosen = fields::fixed(ui, |ui| self.outliner.show(ui, &mut self.bench));
             for command in chosen {
                 command.run(self, &ui.ctx().clone());
             }
         });
         Panel::right("inspector").frame(side).default_size(300.0).size_range(240.0..=520.0).show(ui, |ui| {
-            self.inspector.show(ui, &mut self.bench);
+            fields::fixed(ui, |ui| self.inspector.show(ui, &mut self.bench));
         });
         CentralPanel::default().frame(Frame::new().fill(theme::LINE)).show(ui, |ui| viewport::show(self, ui, picture));
     }
@@ -276,7 +296,7 @@ impl Editor {
 
     /// The window's title.
     pub fn title(&self) -> String {
-        format!("{} – Isolith", self.bench.document.title())
+        format!("{} – Isolith", fields::elided(&self.bench.document.title(), MOST_TITLE))
     }
 
     /// Whether the artist has agreed to close the window: nothing is left to save.
@@ -319,7 +339,7 @@ impl Editor {
 
     fn open_dropped(&mut self, ctx: &Context) {
         let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped {
+        if let Some(path) = dropped.filter(|_| !self.has_dialog()) {
             self.intend(dialogs::Intent::Open(path), ctx);
         }
     }

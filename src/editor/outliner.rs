@@ -11,8 +11,9 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
 use super::commands::{self, CommandId};
+use super::messages::Message;
 use super::workbench::Workbench;
-use super::{fields, glyphs, theme};
+use super::{fields, glyphs, selection, theme};
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
 use crate::scene::{Node, NodeId, NodeKind, Scene};
@@ -21,13 +22,26 @@ use crate::scene::{Node, NodeId, NodeKind, Scene};
 type RowId = Option<NodeId>;
 
 /// What the outliner remembers between frames.
-#[derive(Default)]
 pub struct Outliner {
     tree: TreeViewState<RowId>,
     rename: Option<Rename>,
     search: String,
     /// The selection last seen: a new one is scrolled to and its parents are opened.
     seen: Vec<NodeId>,
+    /// Below the last row.
+    empty_room: Rect,
+}
+
+impl Default for Outliner {
+    fn default() -> Self {
+        Self {
+            tree: TreeViewState::default(),
+            rename: None,
+            search: String::new(),
+            seen: Vec::new(),
+            empty_room: Rect::NOTHING,
+        }
+    }
 }
 
 struct Rename {
@@ -61,6 +75,7 @@ impl Outliner {
         let reveal = self.follow_selection(bench, &scene);
         let requests = RefCell::new(Vec::new());
         let mut actions = Vec::new();
+        let whole = ui.available_rect_before_wrap();
         ScrollArea::both().auto_shrink(false).show(ui, |ui| {
             if scene.nodes().is_empty() {
                 empty(ui);
@@ -75,10 +90,20 @@ impl Outliner {
                 .indent_hint_style(IndentHintStyle::Line)
                 .row_layout(RowLayout::AlignedIcons)
                 .fallback_context_menu(|ui, ids| context_menu(ui, ids, bench.document.selection(), &requests))
+                .max_width(tree_width(whole.width(), &scene))
                 .default_node_height(Some(theme::ROW_HEIGHT));
             let top = ui.cursor().min;
-            let rows = Rows { scene: &scene, shown: shown.as_ref(), reveal, requests: &requests, at: Cell::new(None) };
+            let rows = Rows {
+                scene: &scene,
+                shown: shown.as_ref(),
+                reveal,
+                requests: &requests,
+                at: Cell::new(None),
+                count: Cell::new(0),
+            };
             actions = view.show_state(ui, tree, |builder| rows.build(builder, rename)).1;
+            let end = top.y + rows.count.get() as f32 * theme::ROW_HEIGHT;
+            self.empty_room = whole.with_min_y(end.max(whole.top()));
             if let Some(row) = rows.at.get() {
                 let place = top + vec2(0.0, row as f32 * theme::ROW_HEIGHT);
                 ui.scroll_to_rect(Rect::from_min_size(place, vec2(1.0, theme::ROW_HEIGHT)), None);
@@ -99,6 +124,9 @@ impl Outliner {
                 .margin(egui::Margin::symmetric(8, 4));
             let response = ui.add(field);
             ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Search"));
+            if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
+                self.search.clear();
+            }
             if clear > 0.0 && fields::icon_button(ui, ICON_CLOSE, "Clear the search", theme::WEAK).clicked() {
                 self.search.clear();
             }
@@ -160,7 +188,17 @@ impl Outliner {
             Action::Drag(drag) if destination(scene, &drag).is_none() => drag.remove_drop_marker(ui),
             Action::Move(drag) => {
                 let Some((ids, parent, position)) = destination(scene, &drag) else { return };
-                bench.apply(Edit::Move { ids, parent, position });
+                move_rows(bench, ids, parent, position);
+            }
+            // Beside the rows: to the end of the top level.
+            Action::DragExternal(drag) if self.empty_room.contains(drag.position) => {
+                let line = self.empty_room.with_max_y(self.empty_room.top() + 2.0);
+                ui.painter().rect_filled(line, 0.0, theme::ACCENT);
+            }
+            Action::MoveExternal(drag) if self.empty_room.contains(drag.position) => {
+                let ids: Vec<NodeId> = drag.source.into_iter().flatten().collect();
+                let position = scene.children(None).filter(|n| !ids.contains(&n.id)).count();
+                move_rows(bench, ids, None, position);
             }
             _ => {}
         }
@@ -173,7 +211,11 @@ impl Outliner {
                 Request::Rename(id, name) => {
                     self.rename = None;
                     let node = bench.document.scene().node(id).map(|n| Node::clone(n));
-                    if let Some(node) = node.filter(|n| n.name != name && !name.trim().is_empty()) {
+                    let Some(node) = node.filter(|n| n.name != name) else { continue };
+                    if name.trim().is_empty() {
+                        let text = format!("A name needs a letter, so it stays “{}”.", node.name);
+                        bench.messages.push(Message::warning(text));
+                    } else {
                         bench.apply(Edit::Replace(Node { name, ..node }));
                     }
                 }
@@ -188,6 +230,13 @@ impl Outliner {
     }
 }
 
+/// Moves nodes, unless one of them is locked.
+fn move_rows(bench: &mut Workbench, ids: Vec<NodeId>, parent: RowId, position: usize) {
+    if !ids.is_empty() && !selection::refuse_locked(bench, &ids, "moved") {
+        bench.apply(Edit::Move { ids, parent, position });
+    }
+}
+
 fn empty(ui: &mut Ui) {
     ui.add_space(24.0);
     ui.vertical_centered(|ui| {
@@ -196,6 +245,16 @@ fn empty(ui: &mut Ui) {
             RichText::new("Add a shape with the buttons above,\nor open a scene: File, Examples.").color(theme::WEAK),
         );
     });
+}
+
+/// The width of all rows: that of the panel, or more where groups are nested so deeply that no room for names is left.
+fn tree_width(panel: f32, scene: &Scene) -> f32 {
+    /// What stands in a row besides its name and the indent, and the least room for the name.
+    const BESIDE_NAME: f32 = 92.0;
+    const NAME: f32 = 72.0;
+    const INDENT: f32 = 16.0;
+    let deepest = scene.depths().iter().copied().max().unwrap_or(0);
+    panel.max(deepest as f32 * INDENT + BESIDE_NAME + NAME)
 }
 
 /// Where a drag would put its nodes: `None` where that is not allowed.
@@ -224,7 +283,8 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
         requests.borrow_mut().push(Request::Select(ids));
     }
     ui.set_min_width(210.0);
-    if let Some(chosen) = commands::context_entries(ui) {
+    let room = fields::room_beside(ui.ctx());
+    if let Some(chosen) = fields::scrolling(ui, room, commands::context_entries) {
         requests.borrow_mut().push(Request::Run(chosen));
         ui.close();
     }
@@ -239,6 +299,8 @@ struct Rows<'a> {
     requests: &'a RefCell<Vec<Request>>,
     /// The row of that node: the tree draws only the rows in view, so that a row itself cannot ask to be seen.
     at: Cell<Option<usize>>,
+    /// How many rows there are.
+    count: Cell<usize>,
 }
 
 impl Rows<'_> {
@@ -278,6 +340,7 @@ impl Rows<'_> {
             }
             index += 1;
         }
+        self.count.set(rows);
         for _ in 0..=open_groups {
             builder.close_dir();
         }
@@ -317,10 +380,17 @@ impl Rows<'_> {
             () => theme::TEXT,
         };
         let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
-        ui.add(egui::Label::new(text.color(color)).selectable(false));
-        if node.negative {
-            ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
-        }
+        ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            // The sign stands behind the name, and is not what is cut off.
+            let room = if node.negative { 16.0 } else { 0.0 };
+            ui.scope(|ui| {
+                ui.set_max_width((ui.available_width() - room).max(8.0));
+                ui.add(egui::Label::new(text.color(color)).selectable(false).truncate());
+            });
+            if node.negative {
+                ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
+            }
+        });
     }
 
     fn name_field(&self, ui: &mut Ui, rename: &mut Rename) {

@@ -1,6 +1,6 @@
 //! The palette: every command by its name.
 
-use egui::{Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, RichText, ScrollArea, TextEdit, vec2};
+use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, RichText, ScrollArea, TextEdit, vec2};
 
 use super::commands::{CommandId, ICON_ROOM};
 use super::{Editor, theme};
@@ -41,18 +41,20 @@ pub fn show(editor: &mut Editor, ctx: &Context) {
     palette.chosen = (palette.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
     let mut run = found.get(palette.chosen).copied().filter(|_| enter);
     let moved = up || down;
-    let response = Area::new(Id::unique("palette"))
-        .order(Order::Foreground)
-        .anchor(Align2::CENTER_TOP, vec2(0.0, 120.0))
+    // A click beside it closes it and reaches nothing else.
+    let id = Id::unique("palette");
+    let top = (ctx.content_rect().height() * 0.15).min(120.0);
+    let response = Modal::new(id)
+        .area(Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, top)))
+        .backdrop_color(Color32::TRANSPARENT)
+        .frame(Frame::popup(&ctx.global_style()).inner_margin(10.0))
         .show(ctx, |ui| {
-            Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
-                ui.set_width(420.0);
-                if let Some(command) = list(editor, ui, &found, moved) {
-                    run = Some(command);
-                }
-            });
+            ui.set_width(420.0);
+            if let Some(command) = list(editor, ui, &found, moved) {
+                run = Some(command);
+            }
         });
-    let outside = response.response.clicked_elsewhere() && !editor.palette.focus;
+    let outside = response.backdrop_response.clicked() && !editor.palette.focus;
     editor.palette.focus = false;
     if escape || outside || enter || run.is_some() {
         editor.palette.open = false;
@@ -79,7 +81,8 @@ fn list(editor: &mut Editor, ui: &mut egui::Ui, found: &[CommandId], moved: bool
     }
     ui.add_space(4.0);
     let mut run = None;
-    ScrollArea::vertical().max_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
+    let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 24.0).clamp(80.0, 320.0);
+    ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 1.0;
         if found.is_empty() {
             ui.label(RichText::new("No command has this name.").color(theme::WEAK));

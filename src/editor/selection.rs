@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use super::messages::Message;
 use super::workbench::Workbench;
 use crate::document::Edit;
 use crate::scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
@@ -20,6 +21,33 @@ pub fn roots(bench: &Workbench) -> Vec<NodeId> {
     roots
 }
 
+/// What keeps the node where it is: itself or a node above it, where that is locked.
+pub fn holder_of_lock(scene: &Scene, id: NodeId) -> Option<&Node> {
+    let mut at = scene.node(id);
+    while let Some(node) = at {
+        if node.locked {
+            return Some(node);
+        }
+        at = node.parent.and_then(|parent| scene.node(parent));
+    }
+    None
+}
+
+/// What would be lost with the node though it is locked: as [`holder_of_lock`], or a node below it.
+fn lock_in_the_way(scene: &Scene, id: NodeId) -> Option<&Node> {
+    let below = scene.index_of(id).map_or(0..0, |index| scene.subtree(index));
+    holder_of_lock(scene, id).or_else(|| scene.nodes()[below].iter().map(|node| &**node).find(|node| node.locked))
+}
+
+/// Says that a locked node is in the way of what was wanted of some nodes; false, and nothing said, where none is.
+pub fn refuse_locked(bench: &mut Workbench, ids: &[NodeId], wanted: &str) -> bool {
+    let scene = bench.document.scene();
+    let Some(locked) = ids.iter().find_map(|id| holder_of_lock(scene, *id)) else { return false };
+    let text = format!("“{}” is locked and cannot be {wanted}. Unlock it first.", locked.name);
+    bench.messages.push(Message::warning(text));
+    true
+}
+
 /// Copies the selection and selects the copies.
 pub fn duplicate(bench: &mut Workbench) {
     let added = bench.apply(Edit::Duplicate(roots(bench)));
@@ -28,22 +56,29 @@ pub fn duplicate(bench: &mut Workbench) {
     }
 }
 
-/// Removes the selection and selects what stands beside it.
+/// Removes the selection, but for what is locked or holds something that is; nothing is selected afterwards.
 pub fn delete(bench: &mut Workbench) {
-    let ids = roots(bench);
-    let scene = bench.document.scene();
-    let parent = ids.first().and_then(|id| scene.node(*id)).and_then(|n| n.parent);
-    let siblings: Vec<NodeId> = scene.children(parent).map(|n| n.id).collect();
-    let at = siblings.iter().position(|id| ids.contains(id)).unwrap_or(0);
-    let beside = siblings[at..].iter().chain(siblings[..at].iter().rev()).find(|id| !ids.contains(id)).copied();
-    bench.apply(Edit::Remove(ids));
-    bench.document.select(beside.or(parent).into_iter().collect());
+    let scene = bench.document.snapshot();
+    let (locked, free): (Vec<_>, Vec<_>) =
+        roots(bench).into_iter().partition(|id| lock_in_the_way(&scene, *id).is_some());
+    if let Some(lock) = locked.first().and_then(|id| lock_in_the_way(&scene, *id)) {
+        let others = if locked.len() > 1 { format!(" So are {} more.", locked.len() - 1) } else { String::new() };
+        let text = format!("“{}” is locked and cannot be deleted. Unlock it first.{others}", lock.name);
+        bench.messages.push(Message::warning(text));
+    }
+    if !free.is_empty() {
+        bench.apply(Edit::Remove(free));
+        bench.document.select(Vec::new());
+    }
 }
 
 /// Makes the selection the operands of `operator`. One selected group only changes its operator,
 /// unless a `new` group is wanted.
 pub fn join(bench: &mut Workbench, operator: Operator, new: bool) {
     let ids = roots(bench);
+    if refuse_locked(bench, &ids, "joined with others") {
+        return;
+    }
     let single = ids.first().filter(|_| ids.len() == 1).and_then(|id| bench.document.scene().node(*id).cloned());
     if let (false, Some(NodeKind::Group(group))) = (new, single.as_ref().map(|n| &n.kind)) {
         let node = Node {
@@ -69,7 +104,9 @@ pub fn ungroup(bench: &mut Workbench) {
         .filter(|n| matches!(n.kind, NodeKind::Group(_)))
         .cloned()
         .collect();
-    if groups.is_empty() {
+    let children = groups.iter().flat_map(|group| scene.children(Some(group.id)).map(|child| child.id));
+    let touched: Vec<NodeId> = groups.iter().map(|group| group.id).chain(children).collect();
+    if groups.is_empty() || refuse_locked(bench, &touched, "taken out of its group") {
         return;
     }
     let freed = bench.together(|bench| {
@@ -89,6 +126,9 @@ pub fn ungroup(bench: &mut Workbench) {
 /// Moves each of the selection one place up (−1) or down (+1) among its siblings.
 pub fn shift(bench: &mut Workbench, by: isize) {
     let mut ids = roots(bench);
+    if refuse_locked(bench, &ids, "moved") {
+        return;
+    }
     if by > 0 {
         ids.reverse();
     }
@@ -117,6 +157,10 @@ pub fn place(scene: &Scene, id: NodeId) -> usize {
 
 /// Cuts the selection away, or joins it again: all as the active node.
 pub fn toggle_negative(bench: &mut Workbench) {
+    let ids: Vec<NodeId> = bench.document.selection().into();
+    if refuse_locked(bench, &ids, "cut away or joined again") {
+        return;
+    }
     let on = bench.selected().last().is_some_and(|n| !n.negative);
     change_each(bench, |n| n.negative = on && n.has_field());
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use egui::Ui;
 use glam::DVec3;
 
-use super::fields::{self, Field};
+use super::fields;
+use super::numbers::{self, Answer, Field};
 use super::workbench::Workbench;
 use crate::scene::{Node, NodeId};
 
@@ -61,7 +62,7 @@ impl<'a> Sheet<'a> {
         let mixed = self.common(get).is_none();
         let answer = fields::row(ui, field.label, field.help, |ui| {
             let width = ui.available_width();
-            fields::number(ui, field, field.label, value, mixed, width)
+            numbers::number(ui, field, field.label, value, mixed, width)
         });
         if let Some(value) = answer.value {
             self.change(answer.widget, |node| set(node, value));
@@ -78,8 +79,9 @@ impl<'a> Sheet<'a> {
     ) {
         let Some(value) = get(self.active()) else { return };
         let mixed = std::array::from_fn(|axis| self.common(|n| get(n).map(|v| v[axis])).is_none());
-        let changed = fields::row(ui, field.label, field.help, |ui| fields::vector(ui, field, value.to_array(), mixed));
-        if let Some((axis, fields::Answer { widget, value: Some(new) })) = changed {
+        let changed =
+            fields::row(ui, field.label, field.help, |ui| numbers::vector(ui, field, value.to_array(), mixed));
+        if let Some((axis, Answer { widget, value: Some(new) })) = changed {
             self.change(widget, |node| {
                 if let Some(mut value) = get(node) {
                     value[axis] = new;
@@ -135,7 +137,8 @@ impl<'a> Sheet<'a> {
         set: impl Fn(&mut Node, [f64; 3]),
     ) {
         let Some(value) = get(self.active()) else { return };
-        let (widget, changed) = fields::row(ui, label, help, |ui| fields::color(ui, label, value));
+        let mixed = self.common(get).is_none();
+        let (widget, changed) = fields::row(ui, label, help, |ui| fields::color(ui, label, value, mixed));
         if let Some(value) = changed {
             self.change(widget, |node| set(node, value));
         }

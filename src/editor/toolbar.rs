@@ -5,7 +5,7 @@ use egui_material_icons::icons::ICON_VISIBILITY;
 
 use super::commands::{self, CommandId, Icon, Menu};
 use super::dialogs::Intent;
-use super::{Editor, glyphs, legend, theme};
+use super::{Editor, fields, glyphs, legend, theme};
 use crate::flat::inspect::Look;
 use crate::scene::ShapeKind;
 
@@ -18,16 +18,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         for (name, menu) in [("File", Menu::File), ("Edit", Menu::Edit), ("Add", Menu::Add), ("View", Menu::View)] {
             ui.menu_button(name, |ui| {
                 ui.set_min_width(230.0);
-                if menu == Menu::File {
-                    file_lists(editor, ui);
-                }
-                if let Some(command) = commands::menu_entries(ui, editor, menu) {
-                    chosen = Some(command);
-                }
-                if menu == Menu::View {
-                    ui.separator();
-                    ui.menu_button("Picture shows", |ui| looks(editor, ui, &mut chosen));
-                }
+                let room = fields::room_below(ui);
+                fields::scrolling(ui, room, |ui| menu_content(editor, ui, menu, &mut chosen));
             });
         }
     });
@@ -63,10 +55,24 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
     }
 }
 
+fn menu_content(editor: &mut Editor, ui: &mut Ui, menu: Menu, chosen: &mut Option<CommandId>) {
+    if menu == Menu::File {
+        file_lists(editor, ui);
+    }
+    if let Some(command) = commands::menu_entries(ui, editor, menu) {
+        *chosen = Some(command);
+    }
+    if menu == Menu::View {
+        ui.separator();
+        ui.menu_button("Picture shows", |ui| looks(editor, ui, chosen));
+    }
+}
+
 /// The choice of what the picture shows.
 fn looks(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
     ui.set_min_width(190.0);
-    *chosen = commands::menu_entries(ui, editor, Menu::Look).or(*chosen);
+    let room = fields::room_below(ui);
+    *chosen = fields::scrolling(ui, room, |ui| commands::menu_entries(ui, editor, Menu::Look)).or(*chosen);
 }
 
 fn divider(ui: &mut Ui) {
@@ -114,26 +120,34 @@ fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
     response.on_hover_text(format!("Add: {}\n{}", kind.label(), kind.help()))
 }
 
+/// Most characters of a file's name in a menu.
+const MOST_NAME: usize = 40;
+
 /// Recent files and examples, at the top of the File menu.
 fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     let mut intent = None;
     ui.add_enabled_ui(!editor.recent.paths().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
-            for path in editor.recent.paths() {
-                let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
-                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
-                    intent = Some(Intent::Open(path.clone()));
+            fields::scrolling(ui, fields::room_beside(&ui.ctx().clone()), |ui| {
+                for path in editor.recent.paths() {
+                    let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
+                    let name = fields::elided(&name, MOST_NAME);
+                    if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                        intent = Some(Intent::Open(path.clone()));
+                    }
                 }
-            }
+            });
         });
     });
     ui.add_enabled_ui(!editor.examples.is_empty(), |ui| {
         ui.menu_button("Examples", |ui| {
-            for (index, example) in editor.examples.iter().enumerate() {
-                if ui.button(&example.name).clicked() {
-                    intent = Some(Intent::Example(index));
+            fields::scrolling(ui, fields::room_beside(&ui.ctx().clone()), |ui| {
+                for (index, example) in editor.examples.iter().enumerate() {
+                    if ui.button(&example.name).clicked() {
+                        intent = Some(Intent::Example(index));
+                    }
                 }
-            }
+            });
         });
     });
     ui.separator();

@@ -5,10 +5,11 @@ use glam::{DVec2, DVec3};
 
 use super::gizmo::{self, Arrows, Drag};
 use super::navigation::Navigation;
+use super::numbers::number_text;
 use super::overlay::{self, Compass, Marker};
 use super::picking::pick_node;
 use super::workbench::Workbench;
-use super::{Editor, Picture, legend, theme};
+use super::{Editor, Picture, legend, selection, theme};
 use crate::flat::inspect::Look;
 use crate::geometry::Camera;
 
@@ -101,8 +102,8 @@ impl Viewport {
             Some(Dragging::Pan) => "Panning".into(),
             Some(Dragging::Zoom) => "Zooming · up is nearer".into(),
             Some(Dragging::Move(drag)) => {
-                let [x, y, z] = drag.offset.to_array();
-                format!("Moving by {x:.3}, {y:.3}, {z:.3} m · Ctrl: steps · Shift: precise · Esc: back")
+                let [x, y, z] = drag.offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
+                format!("Moving by {x}, {y}, {z} m · Ctrl: steps · Shift: precise · Esc: back")
             }
             None if bench.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
             None if self.hovered => {
@@ -243,7 +244,8 @@ fn click(editor: &mut Editor, ui: &Ui, response: &Response, projection: &Project
     let markers = overlay::markers(editor, projection);
     let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
     let hit = marker.or_else(|| pick_node(editor, &projection.ray(pointer)));
-    let hit = hit.filter(|id| !is_locked(editor, *id));
+    let scene = editor.bench.document.scene();
+    let hit = hit.filter(|id| selection::holder_of_lock(scene, *id).is_none());
     let mut selection = editor.bench.document.selection().to_vec();
     let adding = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     match hit {
@@ -255,19 +257,6 @@ fn click(editor: &mut Editor, ui: &Ui, response: &Response, projection: &Project
     }
     editor.bench.finish();
     editor.bench.document.select(selection);
-}
-
-/// Whether the node or one above it is locked.
-fn is_locked(editor: &Editor, id: crate::scene::NodeId) -> bool {
-    let scene = editor.bench.document.scene();
-    let mut at = scene.node(id);
-    while let Some(node) = at {
-        if node.locked {
-            return true;
-        }
-        at = node.parent.and_then(|p| scene.node(p));
-    }
-    false
 }
 
 fn paint(editor: &mut Editor, ui: &Ui, response: &Response, picture: &Picture) {

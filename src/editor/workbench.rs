@@ -149,6 +149,13 @@ impl Workbench {
         }
     }
 
+    /// Takes the gesture back, whatever the pointer does.
+    pub fn cancel(&mut self) {
+        if self.gesture.take().is_some() {
+            self.document.cancel_gesture();
+        }
+    }
+
     /// Starts the widget's gesture unless it is the one in progress.
     pub fn begin(&mut self, widget: Id) {
         if self.gesture == Some(widget) {

@@ -16,6 +16,11 @@ impl Limits {
     pub fn accept(&self, value: f64) -> bool {
         value.is_finite() && value >= self.hard[0] && value <= self.hard[1]
     }
+
+    /// Whether only whole numbers mean something.
+    pub fn is_whole(&self) -> bool {
+        [SIDES, ITERATIONS, POWER, SQUARES, OCTAVES, SEED, STEPS, COPIES].contains(self)
+    }
 }
 
 /// Most nodes in a scene.

@@ -24,6 +24,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("eframe", &["editor", "app"]),
     ("egui", &["editor", "app"]),
     ("rfd", &["editor", "app"]),
+    ("zbus", &["editor"]),
     ("gltf", &["mesh"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),

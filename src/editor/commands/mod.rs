@@ -8,9 +8,10 @@ mod view;
 
 use std::sync::LazyLock;
 
-use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Response, RichText, Ui};
+use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Popup, Response, RichText, Ui};
 use egui_material_icons::MaterialIcon;
 
+use super::palette::Palette;
 use super::{Editor, glyphs, theme};
 use crate::scene::ShapeKind;
 
@@ -161,19 +162,36 @@ impl CommandId {
 }
 
 /// Runs the commands whose keys were pressed. Not while text is being typed, something is being
-/// dragged, or a menu is open: there the keys mean other things.
+/// dragged, or a menu is open: there the keys mean other things. Only documents are saved, opened and closed at any time:
+/// after what is being typed has been taken, so at the end of the frame.
 pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
-    let dragging = ctx.input(|i| i.pointer.any_down());
-    if editor.typing || ctx.text_edit_focused() || editor.has_dialog() || dragging || ctx.any_popup_open() {
+    if editor.dialogs.is_open() {
         return;
     }
-    while let Some(command) = ctx.input_mut(take_shortcut) {
+    let is_of_document = |command: &Command| command.menu == Menu::File;
+    if let Some(command) = ctx.input_mut(|i| take_shortcut(i, is_of_document)) {
+        ctx.memory_mut(|memory| memory.stop_text_input());
+        Popup::close_all(ctx);
+        editor.palette = Palette::default();
+        editor.pending = Some(command);
+        return;
+    }
+    let dragging = ctx.input(|i| i.pointer.any_down());
+    // Not what `Context::any_popup_open` says: that knows only of popups shown in this pass already.
+    if editor.has_dialog() || editor.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
+        return;
+    }
+    let log = &mut editor.bench.messages.show_log;
+    if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+        *log = false;
+    }
+    while let Some(command) = ctx.input_mut(|i| take_shortcut(i, |_| true)) {
         command.run(editor, ctx);
     }
 }
 
-/// Takes the first key press out of the input that belongs to a command.
-fn take_shortcut(input: &mut egui::InputState) -> Option<CommandId> {
+/// Takes the first key press out of the input that belongs to one of these commands.
+fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(&Command) -> bool) -> Option<CommandId> {
     let mut found = None;
     input.events.retain(|event| {
         let egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
@@ -182,7 +200,7 @@ fn take_shortcut(input: &mut egui::InputState) -> Option<CommandId> {
         }
         // Exactly these modifiers: Ctrl Z is not Shift Ctrl Z.
         let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
-        found = CommandId::all().find(|c| c.get().keys.iter().any(fits));
+        found = CommandId::all().find(|c| is_wanted(c.get()) && c.get().keys.iter().any(fits));
         found.is_none()
     });
     found

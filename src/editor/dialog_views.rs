@@ -1,0 +1,186 @@
+//! The dialogs in the window: the questions before something is lost, and the field for a path.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Button, Color32, Context, Id, Key, Label, Modal, Modifiers, RichText, TextEdit, Ui, vec2};
+
+use super::dialogs::{Next, PathField, Purpose, Question};
+use super::{Editor, fields, theme};
+
+/// What is answered to a question.
+#[derive(Clone, Copy, PartialEq)]
+enum Answer {
+    /// Do what the accented button says.
+    Agree,
+    Discard,
+    Cancel,
+}
+
+const BUTTON: egui::Vec2 = vec2(96.0, 28.0);
+/// Most characters of a name in a heading.
+const NAME: usize = 36;
+
+impl Editor {
+    /// Shows what is being asked.
+    pub(super) fn show_dialogs(&mut self, ctx: &Context) {
+        match self.dialogs.question.take() {
+            Some(Question::Unsaved(next)) => self.ask_to_save(next, ctx),
+            Some(Question::Replace(path, then)) => self.ask_to_replace(path, then, ctx),
+            None => {}
+        }
+        self.show_path_field(ctx);
+    }
+
+    fn ask_to_save(&mut self, next: Next, ctx: &Context) {
+        let title = self.bench.document.title();
+        let name = title.trim_end_matches(" *").to_owned();
+        let shown = question(ctx, ("Save the changes to", &name, "They are lost otherwise."), Some("Discard"), "Save");
+        let enter = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter)) || wants_save(ctx);
+        match shown.or(enter.then_some(Answer::Agree)) {
+            None => self.dialogs.question = Some(Question::Unsaved(next)),
+            Some(Answer::Agree) => self.save(Some(next), ctx),
+            Some(Answer::Discard) => self.perform(next, ctx),
+            Some(Answer::Cancel) => {}
+        }
+    }
+
+    /// No key agrees to this by itself: the Enter that ended the path may come twice.
+    fn ask_to_replace(&mut self, path: PathBuf, then: Option<Next>, ctx: &Context) {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let folder = path.parent().unwrap_or(Path::new("")).display();
+        let text = format!("There is a file of this name in {folder} already. What it holds is lost then.");
+        match question(ctx, ("Replace", &name, &text), None, "Replace") {
+            None => self.dialogs.question = Some(Question::Replace(path, then)),
+            Some(Answer::Agree) => self.save_to(&path, then, ctx),
+            Some(_) => {
+                let (purpose, text) = (Purpose::Save(then), path.display().to_string());
+                self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });
+            }
+        }
+    }
+
+    fn show_path_field(&mut self, ctx: &Context) {
+        let Some(field) = &mut self.dialogs.path_field else { return };
+        let mut done = None;
+        let response = Modal::new(Id::unique("path")).frame(frame(ctx)).show(ctx, |ui| {
+            ui.set_width(460.0);
+            ui.label(RichText::new(field.purpose.title()).heading().color(Color32::WHITE));
+            ui.add_space(6.0);
+            done = path_field(ui, field);
+        });
+        if response.should_close() {
+            done = done.or(Some(false));
+        }
+        let Some(agreed) = done else { return };
+        let path = PathBuf::from(field.text.trim());
+        if agreed {
+            field.problem = field.purpose.refusal(&path);
+            if field.problem.is_some() {
+                field.focused = false;
+                return;
+            }
+        }
+        if let Some(PathField { purpose, .. }) = self.dialogs.path_field.take().filter(|_| agreed) {
+            self.chosen(purpose, &path, false, ctx);
+        }
+    }
+}
+
+/// The field and its buttons; whether it is agreed or cancelled.
+fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
+    let mut done = None;
+    let edit = TextEdit::singleline(&mut field.text)
+        .hint_text("/path/to/file")
+        .desired_width(f32::INFINITY)
+        .margin(egui::Margin::symmetric(8, 6));
+    let response = ui.add(edit);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Path"));
+    if !field.focused {
+        field.focused = true;
+        response.request_focus();
+        select_name(ui.ctx(), response.id, &field.text);
+    }
+    if response.changed() {
+        field.problem = None;
+    }
+    let saves = matches!(field.purpose, Purpose::Save(_)) && wants_save(ui.ctx());
+    if saves || (response.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter))) {
+        done = Some(true);
+    }
+    if let Some(problem) = &field.problem {
+        ui.add(Label::new(RichText::new(problem).color(theme::ERROR)).wrap());
+    }
+    ui.add_space(10.0);
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let ok = if matches!(field.purpose, Purpose::Save(_)) { "Save" } else { "Open" };
+        if accented(ui, ok) {
+            done = Some(true);
+        }
+        if ui.add(Button::new("Cancel").min_size(BUTTON)).clicked() {
+            done = Some(false);
+        }
+    });
+    done
+}
+
+/// A question about something of this name; what was answered to it.
+fn question(
+    ctx: &Context,
+    (verb, name, text): (&str, &str, &str),
+    discard: Option<&str>,
+    agree: &str,
+) -> Option<Answer> {
+    let mut answer = None;
+    let response = Modal::new(Id::unique("question").with(verb)).frame(frame(ctx)).show(ctx, |ui| {
+        ui.set_width(380.0);
+        ui.add_space(4.0);
+        let short = fields::elided(name, NAME);
+        let title = RichText::new(format!("{verb} “{short}”?")).heading().color(Color32::WHITE);
+        let title = ui.add(Label::new(title).wrap());
+        if short != name {
+            title.on_hover_text(name);
+        }
+        ui.add_space(2.0);
+        ui.add(Label::new(RichText::new(text).color(theme::WEAK)).wrap());
+        ui.add_space(14.0);
+        ui.horizontal(|ui| {
+            if discard.is_some_and(|text| ui.add(Button::new(text).min_size(BUTTON)).clicked()) {
+                answer = Some(Answer::Discard);
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if accented(ui, agree) {
+                    answer = Some(Answer::Agree);
+                }
+                if ui.add(Button::new("Cancel").min_size(BUTTON)).clicked() {
+                    answer = Some(Answer::Cancel);
+                }
+            });
+        });
+    });
+    answer.or(response.should_close().then_some(Answer::Cancel))
+}
+
+/// Ctrl S agrees where saving is what is asked about.
+fn wants_save(ctx: &Context) -> bool {
+    ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::S))
+}
+
+fn accented(ui: &mut Ui, text: &str) -> bool {
+    let text = RichText::new(text).color(Color32::BLACK);
+    ui.add(Button::new(text).fill(theme::ACCENT).min_size(BUTTON)).clicked()
+}
+
+/// Selects the file's name, without folder and ending, so that typing replaces it.
+fn select_name(ctx: &Context, field: Id, path: &str) {
+    let end = path.chars().count();
+    let start = path.rfind('/').map_or(0, |i| path[..=i].chars().count());
+    let stem = path.rfind('.').map_or(end, |i| path[..i].chars().count());
+    let mut state = egui::text_edit::TextEditState::default();
+    let [start, end] = [start, if stem > start { stem } else { end }].map(egui::text::CCursor::new);
+    state.cursor.set_char_range(Some(egui::text::CCursorRange::two(start, end)));
+    state.store(ctx, field);
+}
+
+fn frame(ctx: &Context) -> egui::Frame {
+    egui::Frame::window(&ctx.global_style()).inner_margin(18.0)
+}

@@ -1,0 +1,283 @@
+//! Fields for numbers: dragged, typed, reset. What is typed counts when it has been typed to its end, not by Escape.
+
+use std::cell::RefCell;
+
+use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
+
+use super::fields::MIXED;
+use super::{expression, theme};
+use crate::scene::Limits;
+
+/// What stands around a number.
+#[derive(Clone, Copy)]
+pub struct Field<'a> {
+    /// On its left.
+    pub label: &'a str,
+    /// One sentence, as a tooltip.
+    pub help: &'a str,
+    /// Soft for dragging, hard for typing.
+    pub limits: Limits,
+    /// What a reset gives; `None` where there is no natural one.
+    pub default: Option<f64>,
+    /// What becomes of a number within the limits that cannot be taken as it is.
+    pub taken_as: Option<fn(f64) -> f64>,
+}
+
+impl Field<'_> {
+    /// What becomes of a number.
+    fn taken(&self, value: f64) -> f64 {
+        let value = if self.limits.is_whole() { value.round() } else { value };
+        let [least, most] = self.limits.hard;
+        let value = value.clamp(least, most);
+        self.taken_as.map_or(value, |taken| taken(value))
+    }
+}
+
+/// What a number field answers.
+pub struct Answer {
+    /// Names the gesture.
+    pub widget: Id,
+    /// The new value, where the artist changed it.
+    pub value: Option<f64>,
+}
+
+/// A number in a field of the given width. `mixed` shows a dash until it is changed.
+pub fn number(ui: &mut Ui, field: &Field<'_>, name: &str, value: f64, mixed: bool, width: f32) -> Answer {
+    prefixed_number(ui, field, name, value, mixed, width, None)
+}
+
+fn prefixed_number(
+    ui: &mut Ui,
+    field: &Field<'_>,
+    name: &str,
+    value: f64,
+    mixed: bool,
+    width: f32,
+    axis: Option<usize>,
+) -> Answer {
+    let Limits { soft, hard, unit } = field.limits;
+    let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
+    // A value beyond the soft range, typed before, is not thrown back by a drag.
+    let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
+    let mut edited = value;
+    let typed = RefCell::new(None);
+    let shown = if mixed { MIXED.to_owned() } else { number_text(value) };
+    let was_cancelled = cancelled(ui, ui.next_auto_id());
+    let parse = |text: &str| {
+        if was_cancelled {
+            return None;
+        }
+        typed.replace(Some(text.to_owned()));
+        // What is left as it was shown keeps the digits that were not shown.
+        if text == shown { (!mixed).then_some(value) } else { expression::evaluate(text) }
+    };
+    let mut drag = DragValue::new(&mut edited)
+        .range(range)
+        .clamp_existing_to_range(false)
+        .update_while_editing(false)
+        .speed(drag_speed(soft, value))
+        .max_decimals(4)
+        .min_size(vec2(width, theme::ROW_HEIGHT))
+        .clip_text(true)
+        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value) })
+        .custom_parser(parse);
+    if !unit.is_empty() && axis.is_none() {
+        drag = drag.suffix(RichText::new(format!(" {unit}")).color(theme::WEAK));
+    }
+    let response = ui.add(drag);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
+    if let Some(axis) = axis {
+        paint_axis_mark(ui, &response, axis);
+    }
+    let escaped = ui.input(|i| i.key_pressed(Key::Escape));
+    if response.lost_focus() && escaped {
+        cancel(ui, response.id);
+    }
+    let is_done = response.lost_focus() && !escaped;
+    let finished = typed.take().filter(|text| is_done && *text != shown);
+    let mut answer = Answer { widget: response.id, value: (response.changed() && edited != value).then_some(edited) };
+    if let Some(text) = finished {
+        if mixed {
+            // The number may be that of the node that is shown; the others get it all the same.
+            answer.value = expression::evaluate(&text);
+        }
+        refuse(ui, response.id, refusal(name, &text, field));
+    }
+    answer.value = answer.value.map(|value| field.taken(value));
+    if let Some(default) = field.default
+        && wants_reset(ui, &response, default, field.limits.unit)
+    {
+        answer.value = Some(default);
+    }
+    if !field.help.is_empty() && !dragged {
+        response.on_hover_text(field.help);
+    }
+    answer
+}
+
+/// Passes in which egui still takes the text of a field that has lost the keyboard, though it was by Escape.
+const PASSES_OF_LOSS: u64 = 2;
+
+fn cancel(ui: &Ui, widget: Id) {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|d| d.insert_temp(widget.with("cancelled"), pass));
+}
+
+fn cancelled(ui: &Ui, widget: Id) -> bool {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data(|d| d.get_temp::<u64>(widget.with("cancelled"))).is_some_and(|before| pass <= before + PASSES_OF_LOSS)
+}
+
+/// As many digits as say the number: none behind the point for whole ones, four for most, more for small ones.
+pub fn number_text(value: f64) -> String {
+    const DECIMALS: i32 = 4;
+    // Beyond these places only a power of ten can be read.
+    const MOST_DECIMALS: i32 = 9;
+    let size = value.abs();
+    if size == 0.0 || !size.is_finite() {
+        return "0".into();
+    }
+    let decimals = if size < 1e-3 { DECIMALS - 1 - size.log10().floor() as i32 } else { DECIMALS };
+    if decimals > MOST_DECIMALS {
+        // Angles that come out of a rotation are off by this much.
+        return if size < 1e-9 { "0".into() } else { format!("{value:.3e}") };
+    }
+    let text = format!("{value:.0$}", decimals as usize);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Why a field does not show what was typed into it, if it does not.
+fn refusal(name: &str, typed: &str, field: &Field<'_>) -> Option<String> {
+    let Limits { hard: [least, most], unit, .. } = field.limits;
+    let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
+    match expression::evaluate(typed) {
+        None => Some(format!("{name}: “{typed}” is not a number, so it stays as it was.")),
+        Some(value) if value < least => {
+            Some(format!("{name}: {typed} is less than {}, the least there can be.", with_unit(least)))
+        }
+        Some(value) if value > most => {
+            Some(format!("{name}: {typed} is more than {}, the most there can be.", with_unit(most)))
+        }
+        Some(value) if field.taken(value) != value => {
+            let taken = with_unit(field.taken(value));
+            let rounded = field.taken(value) == value.round() && value != value.round();
+            let reason = if rounded { "is no whole number" } else { "is not possible" };
+            Some(format!("{name}: {typed} {reason}; it is {taken} now."))
+        }
+        Some(_) => None,
+    }
+}
+
+/// Where a refusal waits for the editor.
+fn refused() -> Id {
+    Id::unique("what was typed and refused")
+}
+
+/// Leaves a reason to be told. A field ends its edit in two passes: it is told once.
+pub fn refuse(ui: &Ui, widget: Id, reason: Option<String>) {
+    let pass = ui.ctx().cumulative_pass_nr();
+    ui.data_mut(|d| {
+        let told = widget.with("refused");
+        if reason.is_none() || d.get_temp::<u64>(told).is_some_and(|before| pass <= before + PASSES_OF_LOSS) {
+            return;
+        }
+        d.insert_temp(told, pass);
+        d.insert_temp(refused(), reason.unwrap_or_default());
+    });
+}
+
+/// Why what was just typed is not taken as it is, to be told.
+pub fn take_refusal(ctx: &Context) -> Option<String> {
+    ctx.data_mut(|d| d.remove_temp(refused()))
+}
+
+/// Three numbers side by side, marked in the axes' colours. Answers with the axis changed.
+pub fn vector(ui: &mut Ui, field: &Field<'_>, values: [f64; 3], mixed: [bool; 3]) -> Option<(usize, Answer)> {
+    let gap = 4.0;
+    let width = ((ui.available_width() - 2.0 * gap) / 3.0).floor();
+    let mut changed = None;
+    ui.spacing_mut().item_spacing.x = gap;
+    ui.spacing_mut().button_padding.x = 4.0;
+    for axis in 0..3 {
+        let name = format!("{} {}", field.label, ["X", "Y", "Z"][axis]);
+        let answer = prefixed_number(ui, field, &name, values[axis], mixed[axis], width, Some(axis));
+        if answer.value.is_some() {
+            changed = Some((axis, answer));
+        }
+    }
+    changed
+}
+
+/// Points of drag that cross the soft range; a large value moves faster.
+fn drag_speed(soft: [f64; 2], value: f64) -> f64 {
+    let crossing = 700.0;
+    let span = (soft[1] - soft[0]).min(20.0);
+    (span / crossing).max(value.abs() * 0.004)
+}
+
+fn paint_axis_mark(ui: &Ui, response: &Response, axis: usize) {
+    let rect = response.rect;
+    let bar = egui::Rect::from_min_max(rect.left_top() + vec2(0.0, 5.0), rect.left_bottom() + vec2(2.5, -5.0));
+    ui.painter().rect_filled(bar, 1.0, theme::AXES[axis]);
+}
+
+/// Backspace over the field, or the entry of its context menu.
+fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
+    let mut reset = false;
+    response.context_menu(|ui| {
+        let text = format!("Reset to {} {unit}", number_text(default));
+        if ui.button(text.trim_end()).clicked() {
+            reset = true;
+            ui.close();
+        }
+    });
+    let typing = ui.ctx().text_edit_focused();
+    reset || (!typing && response.hovered() && ui.input(|i| i.key_pressed(Key::Backspace)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::limits::{SIDES, SIZE};
+
+    #[test]
+    fn whole_numbers_have_no_decimals_and_zero_has_no_sign() {
+        for (value, text) in [
+            (2.0, "2"),
+            (-3.0, "-3"),
+            (2.5, "2.5"),
+            (100.0, "100"),
+            (1.0 / 3.0, "0.3333"),
+            (0.0, "0"),
+            (-0.0, "0"),
+            (-1e-12, "0"),
+            (29.999_999_999, "30"),
+            (-0.000_04, "-0.00004"),
+            (0.000_012_34, "0.00001234"),
+            (2.5e-8, "2.500e-8"),
+            (1e6, "1000000"),
+        ] {
+            assert_eq!(number_text(value), text, "{value}");
+        }
+    }
+
+    #[test]
+    fn what_is_shown_can_be_typed() {
+        for value in [0.1, -7.25, 1e-4, 3e-8, 123_456.789, 1e9] {
+            let typed = expression::evaluate(&number_text(value)).unwrap();
+            assert!((typed - value).abs() <= 1e-4_f64.min(value.abs() * 1e-3), "{value}: {typed}");
+        }
+    }
+
+    #[test]
+    fn what_becomes_of_a_number_is_said() {
+        let field = |limits, taken_as| Field { label: "", help: "", limits, default: None, taken_as };
+        let said = |typed, field: &Field<'_>| refusal("N", typed, field);
+        assert_eq!(said("5", &field(SIDES, None)), None);
+        assert_eq!(said("5.4", &field(SIDES, None)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
+        assert!(said("2", &field(SIDES, None)).unwrap().contains("is less than 3"));
+        assert!(said("1/0", &field(SIZE, None)).unwrap().contains("is not a number"));
+        let off_zero: fn(f64) -> f64 = |v| if v == 0.0 { 0.01 } else { v };
+        assert_eq!(said("0", &field(SIZE, Some(off_zero))).unwrap(), "N: 0 is not possible; it is 0.01 m now.");
+    }
+}
