@@ -1,7 +1,7 @@
 # Isolith. `make run` and `make test` are all that a fresh Debian or Ubuntu machine with Rust needs.
 
 SHELL := /bin/bash
-.PHONY: help run test nightly lint bench golden scenes setup
+.PHONY: help run test nightly window lint bench golden scenes setup
 .DEFAULT_GOAL := help
 
 # Vulkan drivers want a private folder and complain where there is none.
@@ -25,6 +25,12 @@ test: lint ## Check formatting and lints, then run every test
 # 200 times the points of `make test`: a million for each repetition against its copies. Numerical stress by all methods.
 nightly: setup ## Test the contract of fields at very many points
 	ISOLITH_TIMES=200 cargo test --test tests -- contract:: stress::
+
+# What only a window shows, slow on purpose. Pictures of what went wrong, and of some steps, are in target/window.
+window: setup ## Drive the program in a window of its own at one frame a second, and look at what it saves
+	@bash -euo pipefail -c "$$WINDOW_TOOLS"
+	cargo build
+	tests/window.sh target/debug/isolith target/window
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy
@@ -103,3 +109,21 @@ echo "Installing what is missing: ${missing[*]}"
 "${as_root[@]}" apt-get install -y --no-install-recommends "${missing[@]}" </dev/null
 endef
 export SETUP := $(value SETUP)
+
+# A screen without a monitor, and what presses keys and takes pictures there.
+define WINDOW_TOOLS
+missing=()
+command -v Xvfb >/dev/null || missing+=(xvfb)
+command -v xdotool >/dev/null || missing+=(xdotool)
+command -v import >/dev/null || missing+=(imagemagick)
+[ "${#missing[@]}" != 0 ] || exit 0
+if ! command -v apt-get >/dev/null; then
+    echo "This needs what Debian calls: ${missing[*]}" >&2
+    exit 1
+fi
+as_root=(env DEBIAN_FRONTEND=noninteractive)
+[ "$(id -u)" = 0 ] || as_root=(sudo "${as_root[@]}")
+"${as_root[@]}" apt-get update -qq || true
+"${as_root[@]}" apt-get install -y --no-install-recommends "${missing[@]}" </dev/null
+endef
+export WINDOW_TOOLS := $(value WINDOW_TOOLS)
