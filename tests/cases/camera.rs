@@ -141,7 +141,7 @@ fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
                 (drawn - meant).abs() / (footprint * meant)
             };
             // Rays that pass an edge by less than a hundredth of a footprint.
-            !(off <= 1.0) && right.margin[*i] > 0.01
+            (off > 1.0 || off.is_nan()) && right.margin[*i] > 0.01
         };
         let wrong: Vec<_> = (0..picture.depth.len()).filter(is_wrong).collect();
         let shown = picture.depth.iter().filter(|d| d.is_finite()).count();
