@@ -46,7 +46,10 @@ fn a_file_that_changes_is_read_again() {
     let mut library = MeshLibrary::new(Some(folder.path().into()));
     assert_eq!(library.get("model.gltf").unwrap().bounds.max.x, 1.0);
     let (woken, wakes) = channel();
-    let watcher = Watcher::start(move || drop(woken.send(()))).unwrap();
+    let watcher = Watcher::start(move || {
+        let _ = woken.send(());
+    })
+    .unwrap();
     watcher.watch(library.sources());
     // Its buffer alone has changed.
     let mut bytes = fs::read(folder.path().join("model.bin")).unwrap();
