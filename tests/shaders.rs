@@ -155,7 +155,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 grid_low,
                 grid_side,
                 grid_counts,
-                lists
+                lists,
+                flush
             }
         ),
         layout!(

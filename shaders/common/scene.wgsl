@@ -34,6 +34,9 @@ struct Component {
     grid_side: f32,
     grid_counts: vec3u,
     lists: u32,
+    // Where the field is not below the negative of this, two faces in one place may have been rounded apart: no material is
+    // between them.
+    flush: f32,
 }
 
 const GROUP: u32 = 0xffffu;

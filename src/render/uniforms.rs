@@ -86,7 +86,15 @@ pub struct GpuComponent {
     pub grid_counts: [u32; 3],
     /// Where its top cells stand in the buffer of lists; the headers of its contents stand before.
     pub lists: u32,
+    /// Where the field is not below the negative of this, two faces in one place may have been rounded apart.
+    pub flush: f32,
+    /// Fills the last twelve bytes.
+    pub _padding: [u32; 3],
 }
+
+/// What two faces in one place may be rounded apart, relative to the coordinates they are computed from: each by a few
+/// roundings of 2^-24.
+const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
 /// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
 pub const UNIFORM_STRIDE: usize = 256;
@@ -123,6 +131,8 @@ impl GpuComponent {
             grid_side: 0.0,
             grid_counts: [0; 3],
             lists: 0,
+            flush: (FLUSH_ROUNDING * component.flush_extent) as f32,
+            _padding: [0; 3],
         }
     }
 }
