@@ -30,8 +30,7 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         return;
     }
     let ray = ray_through(component, pixel);
-    let t = textureLoad(depth_target, pixel, 0).x;
-    let surface = surface(ray_at(ray, t));
+    let surface = surface_entered(ray, textureLoad(depth_target, pixel, 0).x, seen);
     let size = length(surface.gradient);
     let normal = select(-ray.direction, surface.gradient / max(size, 1e-30), size > 0.0);
     if seen {
@@ -40,4 +39,44 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         textureStore(emission_target, pixel, surface.emission);
         textureStore(leaf_target, pixel, vec4u(surface.leaf));
     }
+}
+
+// How far before a hit whose normal points away it is looked for the place where the ray has entered, in footprints at first:
+// more than twice what is accepted. A thing of this thickness may have been hit at its far side.
+const ENTRY: f32 = select(2.5e-3, 1e-2, LEAPS_FAR) * FINENESS;
+// Where that is still inside it is looked farther off, by this factor, so often: beyond the longest leap.
+const ENTRY_GROWTH: f32 = 8.0;
+const ENTRY_LOOKS: u32 = 4u;
+// From outside the surface is found by so many of Newton's steps.
+const ENTRY_STEPS: u32 = 2u;
+
+// The surface at `t`, or, where the ray leaves it there, where it has entered. `seen`: whether anybody asks.
+fn surface_entered(ray: Ray, t: f32, seen: bool) -> Surface {
+    var found: Surface;
+    var at = t;
+    var back = ENTRY * view.footprint * t;
+    var looks = 0u;
+    var steps = 0u;
+    loop {
+        let here = surface(ray_at(ray, at));
+        let fall = -dot(here.gradient, ray.direction);
+        let is_first = looks == 0u;
+        if is_first || fall > 0.0 {
+            found = here;
+        }
+        if !seen || steps == ENTRY_STEPS || (is_first && fall >= 0.0) {
+            break;
+        }
+        if fall > 0.0 {
+            at = min(at + here.distance / fall, t);
+            steps += 1u;
+        } else if looks == ENTRY_LOOKS || steps > 0u || (!is_first && here.distance >= 0.0) {
+            break;
+        } else {
+            at = t - back;
+            back *= ENTRY_GROWTH;
+            looks += 1u;
+        }
+    }
+    return found;
 }

@@ -56,13 +56,16 @@ fn trace(
     let interval = bounds_interval(component, ray, 0.0);
     let exit = min(min(interval.y, view.far), depth);
     let passed = select(quad.start, quad_start(quad, lane), LEAPS_FAR);
-    var start = max(max(interval.x, view.near), max(passed, bounds_half_space_entry(component, ray)));
+    let entry = bounds_half_space_entry(component, ray);
+    var start = max(max(interval.x, view.near), max(passed, entry));
     if work.round > 0u {
         start = textureLoad(march_target, pixel).x;
         start = select(start, NEVER, start == MARCH_ENDED);
     }
     let steps = select(0u, work.max_steps, exists && start <= exit);
-    let fall = select(0.0, quad.fall, LEAPS_FAR && work.round == 0u);
+    // Of a half space it is known how steeply it is entered, of others what the cone has seen.
+    let known_fall = select(select(0.0, quad.fall, LEAPS_FAR), -dot(component.half_space.xyz, ray.direction), start == entry);
+    let fall = select(0.0, known_fall, work.round == 0u);
     let marched = march_along(component, ray, start, exit, fall, steps);
     if exists {
         // The last step may have ended behind the far limit.

@@ -65,7 +65,7 @@ fn per_pixel(counts: &Counts, side: u32) -> f64 {
 /// A wrong hit is as cheap as a right one: that the pictures are right is for the tests of agreement.
 #[test]
 fn kernels_take_few_evaluations_up_to_145_nodes() {
-    for (name, most) in [("random-37", 1.7), ("random-145", 2.2)] {
+    for (name, most) in [("random-37", 1.7), ("random-145", 2.25)] {
         let subject = scenes().find(|subject| subject.name == name).expect("the scene is there");
         let counts = count_by(Method::Specialised, 512, &subject, |options| options);
         let reached = per_pixel(&counts, 512);
@@ -91,5 +91,6 @@ fn without_cones_more_is_evaluated() {
 }
 
 /// Evaluations per pixel that are allowed: those of 2026-11, with a twentieth of room for drivers that round otherwise.
+/// Of the first one 4.35 were allowed when nearness was a hit: to look behind costs 2 to 4 %.
 /// The second one was 5.95 when groups of eight shapes had no lists: cells end steps, but for each less is read.
-const MOST: [f64; 4] = [4.35, 7.9, 5.3, 9.3];
+const MOST: [f64; 4] = [4.5, 7.9, 5.3, 9.3];

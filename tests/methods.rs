@@ -29,7 +29,7 @@ const MAX_SHARE: f64 = 2e-3;
 const TREES: u64 = 200;
 const TREES_OF_A_KIND: u64 = 20;
 
-/// A ray that comes straight to within this is taken for a hit, in pixel footprints; one that looks ahead may know better.
+/// The shortest step of a ray that creeps, in pixel footprints: a chord that is shorter may be missed, by one method or another.
 /// So pixels whose ray passes so near may differ.
 const CLOSE: f32 = 1e-3;
 

@@ -156,7 +156,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 grid_side,
                 grid_counts,
                 lists,
-                ahead
+                ahead,
+                flush
             }
         ),
         layout!(

@@ -9,7 +9,8 @@
 // All lengths below are in footprints of a pixel at the place in question.
 // Where the field between a point outside and one inside is no more than this, the line between them is followed to the end.
 const HIT: f32 = select(1e-3, 4e-3, LEAPS_FAR) * FINENESS;
-// The same from outside only, at an angle that is not grazing.
+// From outside only, at an angle that is not grazing: where the field is no more than this, it is looked whether it is negative
+// just behind the place where it should end.
 const CLOSE: f32 = 1e-3 * FINENESS;
 // The least fall of the field per distance that is not grazing.
 const STEEP: f32 = 0.2;
@@ -58,6 +59,8 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_fall
     var doubt = vec3f(NEVER, 0.0, 0.0);
     // Where the field was last evaluated, and what it was.
     var last = vec2f(NEVER, 0.0);
+    // Where the surface is expected, if the field is negative at the next point, just behind; NEVER for none.
+    var end = NEVER;
     for (var step = 0u; step < steps; step += 1u) {
         let rounding = 2.0 * SPACING * (t + reach);
         let looks_back = LEAPS_FAR && doubt.x < NEVER;
@@ -67,6 +70,12 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_fall
             ahead_begin(t - last.x, AHEAD_WINDOW * (t - safe.x), rounding);
         }
         var f = field(ray_at(ray, t));
+        // What is no more than a rounding is no material.
+        f = select(f, 0.0, f < 0.0 && f >= -component.flush);
+        if f < 0.0 && end < NEVER {
+            return March(end, true, true, step + 1u);
+        }
+        end = NEVER;
         // The way behind a leap is free where the field is no less there than where the leap ended.
         let is_seen = ahead_least > min(select(f, last.y, t > last.x), 0.0);
         var proven = select(ahead_free(f), 0.0, looks_back);
@@ -128,8 +137,18 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_fall
             t = root;
             continue;
         }
-        if CLOSE_IS_HIT && fall > STEEP && f < CLOSE * footprint {
-            return March(t + f / fall, true, true, step + 1u);
+        let expected = select(fall, first_fall, advance == 0.0);
+        if CLOSE_IS_HIT && expected > STEEP && f < CLOSE * footprint {
+            // It may end in nothing: in a face that a cut has taken away.
+            if !LEAPS_FAR {
+                doubt = march_doubt(safe, safe.y, leaping && safe.y + f < advance);
+            }
+            leaping = false;
+            safe = vec2f(t, f);
+            free = f;
+            end = t + f / expected;
+            t = end + (0.5 * rounding + component.flush) / expected;
+            continue;
         }
         if is_lost {
             // Go on from the sphere that was left too early.
@@ -145,9 +164,11 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_fall
         let near = max(CREEP * footprint, SPACING * (t + reach));
         let longest = max(near, CREEP_LONGEST * footprint);
         // Where the field falls, not farther than to a little behind its expected end.
-        let due = select(longest, f / fall + 0.25 * HIT * footprint, fall > 0.0);
-        creep = select(0.0, clamp(min(creep * 2.0, due), near, longest), f < near);
-        let expected = select(fall, first_fall, advance == 0.0);
+        let due = select(longest, f / expected + 0.25 * HIT * footprint, expected > 0.0);
+        // A step of which nothing is known must not pass a sheet.
+        let shortest = select(near, SPACING * (t + reach), expected == 0.0);
+        let wanted = select(creep * 2.0, longest, advance == 0.0 && expected > 0.0);
+        creep = select(0.0, clamp(min(wanted, due), shortest, longest), f < near);
         // What a leap would leave unseen, at most.
         let unseen = select(f, f / expected - max(f, proven), LEAPS_FAR);
         leaping = RELAXED && may_leap && expected > STEEP && unseen < LEAP * footprint && f > near;

@@ -36,6 +36,9 @@ struct Component {
     lists: u32,
     // See `common/ray.wgsl`; mostly 0.
     ahead: f32,
+    // Where the field is not below the negative of this, two faces in one place may have been rounded apart: no material is
+    // between them.
+    flush: f32,
 }
 
 const GROUP: u32 = 0xffffu;

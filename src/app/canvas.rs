@@ -160,7 +160,9 @@ impl Canvas {
         }
         if let Some((frame, started)) = &mut self.under_way {
             let time = self.painting.mul_f32(PER_PAINTING).clamp(PER_FRAME[0], PER_FRAME[1]);
-            self.renderers.active().advance(frame, time)?;
+            if !frame.is_done() {
+                self.renderers.active().advance(frame, time)?;
+            }
             if frame.is_done() {
                 self.took = started.elapsed();
                 for mut warning in self.renderers.active().unfinished_rays(frame)? {
@@ -262,7 +264,10 @@ impl Canvas {
         }
         let mut frame = self.begin(Slot::Full, wanted, meshes, size_px)?;
         if full <= AT_ONCE {
-            self.renderers.active().advance(&mut frame, Duration::MAX)?;
+            // Rays that have not ended go on for longer than anybody could expect.
+            self.renderers.active().advance(&mut frame, 4 * AT_ONCE)?;
+        }
+        if frame.is_done() && self.renderers.active().unfinished_rays(&frame)?.is_empty() {
             self.took = started.elapsed();
             self.under_way = None;
             self.show(Slot::Full);

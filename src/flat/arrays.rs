@@ -309,6 +309,9 @@ pub struct Component {
     /// `[n.x, n.y, n.z, d]`, n of unit length. Known where a plane is cut into shape: a floor is then
     /// met at once instead of being approached in ever shorter steps.
     pub half_space: Option<[f64; 4]>,
+    /// The largest coordinate, relative to `origin`, of the leaves as far as they end; 0 where no two of their faces can
+    /// cancel each other. Where a cut ends flush with a face, what the two leave is the rounding of numbers of this size.
+    pub flush_extent: f64,
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
     /// What its modifiers hold, in the order of their entries.

@@ -43,6 +43,7 @@ pub(super) fn emit(
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
+        flush_extent: if can_cancel(operands) { extent(operands, origin) } else { 0.0 },
         stack,
         contents,
         copies: operands.iter().map(copies).max().unwrap_or(1),
@@ -106,6 +107,34 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let length = row.length();
     let normal = row / length;
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
+}
+
+/// Whether the field of one operand can end where that of another begins: everywhere but in unions.
+fn can_cancel(operands: &[Operand<'_>]) -> bool {
+    operands.iter().any(|operand| {
+        let below = match &operand.value {
+            Value::Leaf { .. } => false,
+            Value::Fold(inner) | Value::Modified { content: inner, .. } => can_cancel(inner),
+        };
+        below || !matches!(operand.join, Join::First | Join::Union)
+    })
+}
+
+/// The largest coordinate of the leaves' bounds, relative to `origin` or to the local space that they are in; of what has no
+/// end, how far off it stands.
+fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
+    let of = |operand: &Operand<'_>| match &operand.value {
+        Value::Leaf { .. } if operand.bounds.is_finite() => {
+            let bounds = operand.bounds.translated(-origin);
+            bounds.min.abs().max(bounds.max.abs()).max_element()
+        }
+        Value::Leaf { local_from_world, distance_scale, .. } => {
+            local_from_world.transform_point3(origin).length() * distance_scale
+        }
+        Value::Fold(inner) => extent(inner, origin),
+        Value::Modified { content, .. } => extent(content, DVec3::ZERO),
+    };
+    operands.iter().map(of).fold(0.0, f64::max)
 }
 
 /// Appends the data of all leaves and modifiers; `entries` are those from here on, in the order in which they were written.

@@ -6,6 +6,7 @@ mod measure;
 mod picture;
 mod pixel_counts;
 mod record;
+mod unfinished;
 mod upload;
 
 use std::sync::Arc;
@@ -39,6 +40,7 @@ use choice::Chosen;
 pub use frame::Frame;
 pub use measure::Counts;
 pub use pixel_counts::{PixelCounts, Spread, Took};
+use unfinished::GoingOn;
 use upload::{Groups, form_windows};
 
 /// Why there is no picture.
@@ -262,12 +264,17 @@ impl Renderer {
         size: [u32; 2],
         evaluations: &[Evaluation],
     ) -> Result<Plan, RenderError> {
-        // Buffers grow by powers of two.
-        let bytes = self.gpu.device.limits().max_buffer_size.checked_ilog2().map_or(0, |bits| 1_usize << bits);
         let refused = |TooLong { component }| {
             RenderError::Work(size[0], size[1], flat.ids[flat.components[component].first as usize])
         };
-        plan(flat, camera, size, evaluations, &self.pace, bytes / UNIFORM_STRIDE).map_err(refused)
+        plan(flat, camera, size, evaluations, &self.pace, self.most_pieces()).map_err(refused)
+    }
+
+    /// How many pieces of work the device can be told of.
+    fn most_pieces(&self) -> usize {
+        // Buffers grow by powers of two.
+        let bytes = self.gpu.device.limits().max_buffer_size.checked_ilog2().map_or(0, |bits| 1_usize << bits);
+        bytes / UNIFORM_STRIDE
     }
 
     /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
@@ -317,7 +324,7 @@ impl Renderer {
         if !overlay.is_empty() {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, size, camera.position);
         }
-        Ok(Frame {
+        let mut frame = Frame {
             pace: self.pace,
             seconds: self.pace.seconds(plan.effort()),
             plan,
@@ -330,10 +337,16 @@ impl Renderer {
             slot,
             overlay,
             look: Look::Shaded,
+            going_on: GoingOn::default(),
             form_rows,
             rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
-        })
+        };
+        if slot == Slot::Preview {
+            // It is to be there at once, and the full one comes after it.
+            frame.end_as_planned();
+        }
+        Ok(frame)
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
@@ -362,6 +375,9 @@ impl Renderer {
             frame.measured = frame.measured.filter(|_| is_typical).map(|before| before + took);
             frame.learn_rounds(rounds, took);
             frame.next = pieces.end;
+            if frame.is_done() {
+                self.go_on(frame)?;
+            }
             if let (true, Some(took)) = (frame.is_done(), frame.measured) {
                 self.pace.learn_frame(frame.plan.effort(), took);
             }

@@ -27,9 +27,12 @@ pub const MAX_STEPS: u32 = 4_096;
 /// Most steps of a ray through a component without bounds, towards the horizon.
 pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 
+/// Where rays have not ended by then, they are traced again with so many times as many steps, and again, before they are given
+/// up. Along the face of a box 1 km long a ray creeps in 80 000 steps.
+pub const LONGER: [u32; 2] = [8, 64];
+
 /// Most pixels of one piece of a component: as many rays may be left.
 const MOST_PIXELS: f64 = 1048576.0;
-
 /// Steps of a ray in one dispatch over a component without bounds: towards the horizon thousands may be
 /// needed, which in one dispatch took two seconds.
 pub const STEPS_UNBOUNDED: u32 = 512;
@@ -248,6 +251,29 @@ impl Plan {
         rects.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
+    /// The pieces that trace the components that are meant once more, by `times` as many steps of each ray, and what comes
+    /// after that.
+    pub fn again(&self, is_meant: impl Fn(u32) -> bool, times: u32) -> Vec<Piece> {
+        let is_meant = |piece: &&Piece| is_meant(piece.work.component);
+        let marches = self.pieces.iter().filter(|piece| matches!(piece.stage, Stage::Cone | Stage::Trace));
+        let marches: Vec<Piece> = marches.filter(is_meant).copied().collect();
+        let mut pieces = Vec::new();
+        for of_list in marches.chunk_by(|a, b| a.work.list == b.work.list) {
+            let first = of_list.iter().find(|piece| piece.stage == Stage::Trace).expect("cones are followed by rays");
+            let rounds = (of_list.len() as u32 - 1) * times;
+            pieces.push(of_list[0]);
+            pieces.extend((0..rounds).map(|round| {
+                let (last_round, packed) = (u32::from(round + 1 == rounds), u32::from(round > 0));
+                let work = Work { round, last_round, packed, ..first.work };
+                Piece { work, effort: if round == 0 { first.effort } else { Effort::default() }, ..*first }
+            }));
+        }
+        let surfaces = self.pieces.iter().filter(|piece| piece.stage == Stage::Surface).filter(is_meant);
+        let shading = self.pieces.iter().filter(|piece| piece.stage == Stage::Shade);
+        pieces.extend(surfaces.chain(shading).copied());
+        pieces
+    }
+
     fn push(&mut self, stage: Stage, work: Work, effort: Effort) {
         self.pieces.push(Piece { stage, work, effort });
     }
@@ -434,6 +460,28 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_is_traced_again_has_more_rounds_of_the_components_that_are_meant() {
+        let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+        let camera = flat.default_camera(&[], 1.0);
+        let slow = Evaluation { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
+        let evaluations = vec![slow; flat.components.len()];
+        let plan = plan(&flat, &camera, [64, 64], &evaluations, &Pace::new(true), usize::MAX).expect("room for all");
+        let of = |pieces: &[Piece], stage: Stage| pieces.iter().filter(|piece| piece.stage == stage).count();
+        let again = plan.again(|component| component == 2, 8);
+        let meant: Vec<Piece> = plan.pieces.iter().filter(|piece| piece.work.component == 2).copied().collect();
+        assert!(again.iter().all(|piece| piece.work.component == 2 || piece.stage == Stage::Shade));
+        assert_eq!(of(&again, Stage::Shade), of(&plan.pieces, Stage::Shade));
+        assert_eq!(of(&again, Stage::Surface), of(&meant, Stage::Surface));
+        assert_eq!(of(&again, Stage::Cone), of(&meant, Stage::Cone));
+        assert_eq!(of(&again, Stage::Trace), 8 * of(&meant, Stage::Trace));
+        let mut last = again.iter().filter(|piece| piece.stage == Stage::Trace && piece.work.last_round == 1);
+        let rounds = meant.iter().map(|piece| piece.work.round + 1).max().expect("it is seen");
+        assert!(rounds > 1_000 && last.all(|piece| piece.work.round + 1 == 8 * rounds));
+        assert!(again.iter().all(|piece| (piece.work.packed == 1) == (piece.work.round > 0)));
+        assert!(plan.again(|_| false, 8).iter().all(|piece| piece.stage == Stage::Shade));
     }
 
     #[test]

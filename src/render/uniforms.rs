@@ -90,9 +90,15 @@ pub struct GpuComponent {
     pub lists: u32,
     /// See [`Standpoint::ahead`].
     pub ahead: f32,
-    /// Fills the last twelve bytes.
-    pub _padding: [u32; 3],
+    /// Where the field is not below the negative of this, two faces in one place may have been rounded apart.
+    pub flush: f32,
+    /// Fills the last eight bytes.
+    pub _padding: [u32; 2],
 }
+
+/// What two faces in one place may be rounded apart, relative to the coordinates they are computed from: each by a few
+/// roundings of 2^-24.
+const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
 /// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
 pub const UNIFORM_STRIDE: usize = 256;
@@ -132,7 +138,8 @@ impl GpuComponent {
             grid_counts: [0; 3],
             lists: 0,
             ahead: at.ahead as f32,
-            _padding: [0; 3],
+            flush: (FLUSH_ROUNDING * component.flush_extent) as f32,
+            _padding: [0; 2],
         }
     }
 }

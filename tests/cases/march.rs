@@ -1,1 +1,339 @@
 //! Rays: flush cuts, thin things, rays that take many steps.
+
+use std::path::Path;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
+
+use glam::{DQuat, DVec3};
+use isolith::flat::compare::GRAZING_ANGLE;
+use isolith::flat::truth::{Truth, truth};
+use isolith::flat::{Buffers, Warning};
+use isolith::geometry::Camera;
+use isolith::render::kernel::{Options, Skipping};
+use isolith::render::{Method, Renderer};
+use isolith::scene::{
+    Attachment, Blend, BlendKernel, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene,
+    Shape, file,
+};
+
+use crate::gpu::{Subject, shared};
+
+/// By lists, by specialised kernels, by what the window picks of them.
+const METHODS: [Method; 4] = [Method::Interpreted, Method::Pruned, Method::Specialised, Method::Auto];
+
+/// Renderers with the kernels of this device, and with those that skip by branches, as graphics cards get them. Lists are
+/// made for components of any size.
+fn renderers() -> MutexGuard<'static, [Renderer; 2]> {
+    static RENDERERS: LazyLock<Mutex<[Renderer; 2]>> = LazyLock::new(|| {
+        let gpu = shared().gpu.clone();
+        let branches = Options { skipping: Skipping::Branches, ..Options::default() };
+        Mutex::new([Renderer::options(&gpu), branches].map(|options| {
+            let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
+            renderer.pruner().prune_all();
+            renderer
+        }))
+    });
+    RENDERERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// How a picture differs from the reference, in pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Found {
+    /// Nothing was hit where something should be, or something where nothing should be.
+    hit_or_miss: usize,
+    /// Those of them whose ray passes so near that f32 cannot tell.
+    grazing: usize,
+    /// Those of them whose ray passes within a thousandth of a footprint.
+    near: usize,
+    /// The depth is off by more than a footprint.
+    other_surface: usize,
+    /// The normal is off by more than a right angle.
+    turned: usize,
+}
+
+const NOTHING: Found = Found { hit_or_miss: 0, grazing: 0, near: 0, other_surface: 0, turned: 0 };
+
+/// See [`Found::near`].
+const NEAR: f64 = 1e-3;
+
+fn found(picture: &Buffers, truth: &Truth, footprint: f64) -> Found {
+    let mut found = NOTHING;
+    for (i, right) in truth.buffers.depth.iter().enumerate() {
+        let (depth, right) = (f64::from(picture.depth[i]), f64::from(*right));
+        if depth.is_finite() != right.is_finite() {
+            found.hit_or_miss += 1;
+            let margin = f64::from(truth.margin[i]);
+            found.grazing += usize::from(margin <= GRAZING_ANGLE / footprint);
+            found.near += usize::from(margin <= NEAR);
+        } else if right.is_finite() {
+            found.other_surface += usize::from((depth - right).abs() > footprint * right);
+            let [a, b] = [picture, &truth.buffers].map(|buffers| glam::Vec3::from(buffers.normal[i]));
+            found.turned += usize::from(a.dot(b) < 0.0);
+        }
+    }
+    found
+}
+
+fn case(folder: &str, name: &str) -> Subject {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(folder);
+    let scene = file::load(&folder.join(format!("{name}.json"))).unwrap_or_else(|error| panic!("{error}"));
+    Subject::new(name, &scene, Some(folder))
+}
+
+fn reference(subject: &Subject, size: [u32; 2]) -> Truth {
+    truth(&subject.flat, &subject.meshes, &subject.camera, size, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn draw(renderer: &mut Renderer, subject: &Subject, size: [u32; 2], method: Method) -> (Buffers, Vec<Warning>) {
+    renderer.set_method(method);
+    let picture = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
+    picture.unwrap_or_else(|error| panic!("{}: {error}", subject.name))
+}
+
+/// Draws the subject by every method, and by branching kernels too where `branching` says so; what is found against `right`
+/// must be `allowed` by each.
+fn compare(subject: &Subject, right: &Truth, branching: bool, is_allowed: impl Fn(&Found) -> bool) {
+    let size = [right.buffers.width, right.buffers.height];
+    let footprint = subject.camera.footprint(f64::from(size[1]));
+    let mut faults = Vec::new();
+    for renderer in renderers().iter_mut().take(if branching { 2 } else { 1 }) {
+        for method in METHODS {
+            let (picture, unfinished) = draw(renderer, subject, size, method);
+            let found = found(&picture, right, footprint);
+            if !is_allowed(&found) || !unfinished.is_empty() {
+                faults.push(format!("{}, {method:?}: {found:?}, {unfinished:?}", subject.name));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// Every pixel as in the reference, by all methods and kernels.
+fn is_right(subject: &Subject, side: u32) {
+    compare(subject, &reference(subject, [side; 2]), true, |found| *found == NOTHING);
+}
+
+fn object(shape: Shape) -> Node {
+    Node::new("Part", NodeKind::Object(Object { shape, material: MaterialId(1) }))
+}
+
+fn cuboid(size: [f64; 3]) -> Node {
+    object(Shape::Box { size, rounding: 0.0 })
+}
+
+fn group(operator: Operator, radius: f64) -> Node {
+    Node::new("Group", NodeKind::Group(Group::new(operator, Blend::new(BlendKernel::Quadratic, radius))))
+}
+
+/// Turned by no simple angle.
+fn turn() -> DQuat {
+    DQuat::from_axis_angle(DVec3::new(0.2, 1.0, 0.4).normalize(), 0.7)
+}
+
+/// These parts below `top`.
+fn scene(top: Node, parts: impl IntoIterator<Item = Node>) -> Scene {
+    let mut scene = Scene::new();
+    let parent: NodeId = scene.insert(None, usize::MAX, top).expect("there is room");
+    for part in parts {
+        scene.insert(Some(parent), usize::MAX, part).expect("there is room");
+    }
+    scene
+}
+
+/// Seen from above and from the side.
+fn seen(name: &str, scene: &Scene, target: DVec3) -> Subject {
+    let mut subject = Subject::new(name, scene, None);
+    subject.camera = Camera::looking_at(target + turn() * DVec3::new(0.9, 3.1, 1.7), target, 0.75);
+    subject
+}
+
+#[test]
+fn holes_that_end_flush_with_a_face_are_open() {
+    for name in ["flush_hole_through", "flush_hole_rotated", "difference_identical_box", "gate_blind_pockets"] {
+        is_right(&case("numerics", name), 128);
+    }
+}
+
+/// The reference would tell the two faces apart by how f32 has rounded them in the arrays; what is right is the same with a
+/// cutter that sticks out.
+fn is_open(name: &str, target: DVec3, made: impl Fn(f64) -> Scene) {
+    const OUT: f64 = 1e-3;
+    let (flush, open) = (seen(name, &made(0.0), target), seen(name, &made(OUT), target));
+    let right = reference(&open, [96; 2]);
+    let hits = right.buffers.depth.iter().filter(|depth| depth.is_finite()).count();
+    assert!(hits > 500, "{name}: {hits} pixels show anything");
+    // Edges are as sharp as numbers of the size of the largest leaf can tell: by something of 60 m to 0.0005 footprints.
+    let is_allowed =
+        |found: &Found| found.hit_or_miss == found.near && found.near <= 1 && found.other_surface + found.turned == 0;
+    compare(&flush, &right, true, is_allowed);
+    // Closed by a skin of a millimetre it is told.
+    let closed = seen(name, &made(-OUT), target);
+    let (picture, _) = draw(&mut renderers()[0], &closed, [96; 2], Method::Interpreted);
+    let found = found(&picture, &right, flush.camera.footprint(96.0));
+    assert!(found.other_surface > 50, "{name}: {found:?}");
+}
+
+/// A pocket in a plate, `out` beyond its upper face, 0.6 deep.
+fn pocket(out: f64, cutter: impl Fn([f64; 3]) -> Node, radius: f64, top: impl Fn(Node) -> Node) -> Scene {
+    let height = 0.6 + out;
+    let cutter = cutter([0.8, height, 0.7]).at(DVec3::new(0.1, 0.5 - 0.6 + 0.5 * height, 0.0));
+    scene(top(group(Operator::Difference, radius).rotated(turn())), [cuboid([2.0, 1.0, 1.9]), cutter])
+}
+
+#[test]
+fn pockets_are_open_wherever_they_are_and_however_they_are_cut() {
+    let cylinder = |[x, y, _]: [f64; 3]| object(Shape::Cylinder { radius: 0.5 * x, height: y, rounding: 0.0 });
+    let as_it_is = |top: Node| top;
+    is_open("a box", DVec3::ZERO, |out| pocket(out, cuboid, 0.0, as_it_is));
+    is_open("a cylinder", DVec3::ZERO, |out| pocket(out, cylinder, 0.0, as_it_is));
+    let far = DVec3::new(1e6, -3e5, 7e5);
+    is_open("far off", far, |out| pocket(out, cuboid, 0.0, |top| top.at(far)));
+    is_open("stretched", DVec3::ZERO, |out| pocket(out, cylinder, 0.0, |top| top.scaled(DVec3::new(1.0, 0.8, 1.2))));
+    is_open("twisted", DVec3::ZERO, |out| pocket(out, cuboid, 0.0, |top| top.modified(Modifier::Twist { angle: 0.3 })));
+    // A hundred times as large as what it cuts: nothing is left above its upper face.
+    is_open("by something large", DVec3::ZERO, |out| {
+        let cutter = cuboid([60.0, 60.0 + out, 0.7]).at(DVec3::new(29.7, 0.5 - 30.0 + 0.5 * out, 0.0));
+        scene(group(Operator::Difference, 0.0).rotated(turn()), [cuboid([2.0, 1.0, 1.9]), cutter])
+    });
+    // A child that is cut away, and the common part with what is not cut.
+    is_open("negative", DVec3::ZERO, |out| {
+        let cutter = cuboid([0.8, 0.6 + out, 0.7]).at(DVec3::new(0.1, 0.2 + 0.5 * out, 0.0)).negative();
+        scene(group(Operator::Union, 0.0).rotated(turn()), [cuboid([2.0, 1.0, 1.9]), cutter])
+    });
+}
+
+#[test]
+fn what_is_taken_from_itself_is_nothing() {
+    let ball = || object(Shape::Sphere { radius: 0.7 });
+    let tube = || object(Shape::Torus { major_radius: 0.6, minor_radius: 0.2 }).rotated(turn());
+    for part in [ball as fn() -> Node, tube as fn() -> Node, || cuboid([1.0, 0.9, 0.8]).rotated(turn())] {
+        for operator in [Operator::Difference, Operator::Xor] {
+            is_right(&seen("nothing", &scene(group(operator, 0.0), [part(), part()]), DVec3::ZERO), 64);
+        }
+    }
+    // Two boxes that only touch have nothing in common.
+    let [left, right] = [-0.5, 0.5].map(|x| cuboid([1.0; 3]).at(DVec3::X * x));
+    let touching = scene(group(Operator::Intersection, 0.0).rotated(turn()), [left, right]);
+    is_right(&seen("touching", &touching, DVec3::ZERO), 64);
+}
+
+#[test]
+fn what_has_no_thickness_is_nothing() {
+    let mut subject = case("numerics", "zero_sizes");
+    is_right(&subject, 128);
+    let shell = object(Shape::Sphere { radius: 0.7 });
+    let shell = |thickness| {
+        let onion = Modifier::Onion { thickness, walls: 1, spacing: 0.2 };
+        seen("shell", &scene(group(Operator::Union, 0.0), [shell.clone().modified(onion)]), DVec3::ZERO)
+    };
+    subject = shell(0.0);
+    is_right(&subject, 64);
+    // A thin one is there.
+    is_right(&shell(1e-4), 64);
+}
+
+/// Whether a thing is seen must not depend on how large the picture is.
+#[test]
+fn thin_sheets_are_seen_in_small_pictures_too() {
+    let subject = case("thin-sheet", "sheet");
+    for (size, hits) in [([64, 48], Some(676)), ([320, 240], None), ([9, 7], None)] {
+        let right = reference(&subject, size);
+        let seen = right.buffers.depth.iter().filter(|depth| depth.is_finite()).count();
+        assert!(hits.is_none_or(|hits| seen == hits) && seen > 0, "{seen} hits");
+        compare(&subject, &right, true, |found| *found == NOTHING);
+    }
+}
+
+/// A thing of one shape, turned by so many degrees, seen from so far.
+fn alone(shape: Shape, degrees: f64, distance: f64) -> Subject {
+    let axis = DVec3::new(0.9, 0.1, 0.3).normalize();
+    let node = object(shape).rotated(DQuat::from_axis_angle(axis, degrees.to_radians()));
+    let mut subject = Subject::new("alone", &scene(group(Operator::Union, 0.0), [node]), None);
+    subject.camera = Camera::looking_at(DVec3::Z * distance, DVec3::ZERO, 0.7);
+    subject
+}
+
+#[test]
+fn thin_things_are_seen_from_the_side_that_is_entered() {
+    is_right(&case("numerics", "sheet_02mm_auto"), 256);
+    for degrees in [0.0, 30.0, 60.0, 80.0, 87.0] {
+        // Of 20 um seen from 10 m at 3 degrees f32 loses some.
+        for thickness in [1e-3, 1e-4, 2e-5].into_iter().take(if degrees < 80.0 { 3 } else { 2 }) {
+            is_right(&alone(Shape::Box { size: [4.0, 4.0, thickness], rounding: 0.0 }, degrees, 10.0), 48);
+        }
+    }
+    is_right(&alone(Shape::Box { size: [100.0, 100.0, 1e-3], rounding: 0.0 }, 20.0, 400.0), 96);
+    is_right(&alone(Shape::Cylinder { radius: 60.0, height: 1e-3, rounding: 0.0 }, 60.0, 400.0), 96);
+    for radius in [0.001, 0.01, 0.1] {
+        is_right(&alone(Shape::Cylinder { radius, height: 8.0, rounding: 0.0 }, 20.0, 10.0), 192);
+    }
+}
+
+#[test]
+fn what_is_pressed_flat_keeps_its_pixels() {
+    let subject = case("numerics", "scale_torus_y_1e_4");
+    // It ends in edges as sharp as f32 can tell.
+    let is_allowed = |found: &Found| {
+        found.hit_or_miss == found.grazing && found.grazing <= 4 && found.other_surface + found.turned == 0
+    };
+    compare(&subject, &reference(&subject, [256; 2]), true, is_allowed);
+}
+
+/// A turn is 1.5 cm high, a pixel 1 cm wide: where a ray meets it hangs on the rounding of its angle, but it enters there.
+#[test]
+fn what_is_twisted_a_hundred_times_faces_the_eye() {
+    let subject = case("numerics", "twist_100_turns");
+    let is_allowed = |found: &Found| found.hit_or_miss <= 1 && found.other_surface <= 8 && found.turned == 0;
+    compare(&subject, &reference(&subject, [256; 2]), false, is_allowed);
+}
+
+/// A wall faces the eye; one that is entered from inside, at the near plane, has the normal that its field has there.
+#[test]
+fn an_eye_in_a_solid_sees_what_the_reference_sees() {
+    let mut subject = alone(Shape::Sphere { radius: 1.0 }, 0.0, 0.4);
+    is_right(&subject, 32);
+    subject.camera.near = 0.3;
+    is_right(&subject, 32);
+}
+
+/// The row in the middle of an odd number of rows looks along the upper face: the field is 0 there and never negative, so
+/// what is behind is seen. Each of these rays takes some 80 000 steps.
+#[test]
+fn rays_along_a_face_pass_it() {
+    is_right(&case("numerics", "along_face_1000m_odd"), 255);
+    is_right(&case("numerics", "along_face_1000m_odd"), 64);
+}
+
+/// A heightmap with one white pixel: as steep as that is, all of it is stepped.
+fn one_white_pixel() -> Subject {
+    let image = Attachment::drawn("white.png", [256, 256], |x, y| if (x, y) == (160, 104) { 255 } else { 0 });
+    let land = object(Shape::Heightmap { image, size: [20.0, 0.5, 20.0], height: 15.0 });
+    let mut subject = Subject::new("one white pixel", &scene(group(Operator::Union, 0.0), [land]), None);
+    subject.camera = Camera::looking_at(DVec3::new(0.0, 1.5, 14.0), DVec3::ZERO, 0.7);
+    subject
+}
+
+#[test]
+fn rays_that_take_many_steps_go_on_until_they_end() {
+    // Its bumps are far smaller than a pixel: chords shorter than the longest creeping step may be missed. Where rays were
+    // not continued, 123 pixels showed what is behind.
+    let terrain = case("numerics", "steps_terrain_soft_auto");
+    let is_allowed = |found: &Found| found.hit_or_miss <= 16 && found.other_surface <= 80;
+    compare(&terrain, &reference(&terrain, [48; 2]), false, is_allowed);
+    let land = one_white_pixel();
+    compare(&land, &reference(&land, [48; 2]), false, |found| found.hit_or_miss + found.other_surface == 0);
+}
+
+/// In a picture this high a ray along the face of a box 100 km long creeps too slowly: that it has not ended is told, with
+/// the node.
+#[test]
+fn rays_that_are_given_up_are_counted_and_reported() {
+    let long = cuboid([1.0, 1.0, 1e5]).at(DVec3::new(0.0, -0.5, -5e4 - 1.0));
+    let ball = object(Shape::Sphere { radius: 30.0 }).at(DVec3::Z * -2e5);
+    let made = scene(group(Operator::Union, 0.0), [long, ball]);
+    let mut subject = Subject::new("long", &made, None);
+    subject.camera = Camera { fov_y: 0.02, ..Camera::looking_at(DVec3::Z, DVec3::ZERO, 0.02) };
+    let (_, warnings) = draw(&mut renderers()[0], &subject, [3, 2047], Method::Specialised);
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert_eq!(warning.node, made.nodes()[1].id);
+    assert!(warning.reason.starts_with("3 rays did not come to an end"), "{}", warning.reason);
+}

@@ -34,8 +34,8 @@ impl Allowed {
     /// Of cells 1e4 away in each direction: numbers of 32 bits are 2 mm apart there, a tenth of a footprint, and many
     /// times that along grazing rays. Methods round otherwise.
     pub const FAR_CELL: Self = Self { wrong: 0.02, depth: 4.0, differ: 2 };
-    /// Of what is drawn apart to 1e6 m: a sliver 3e-5 footprints wide. That a straight approach within a thousandth of a
-    /// footprint counts as a hit may show it in a pixel or not, by where the steps of a method end.
+    /// Of what is drawn apart to 1e6 m: a sliver 3e-5 footprints wide. It may be shown in a pixel or not, by where
+    /// the steps of a method end.
     pub const SLIVER: Self = Self { differ: 1, ..Self::USUAL };
     /// Of the Kleinian set: its dust is finer than rounding, and methods round otherwise.
     pub const DUST: Self = Self { differ: 3, ..Self::USUAL };

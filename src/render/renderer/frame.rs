@@ -3,12 +3,13 @@
 use std::time::Duration;
 
 use super::Slot;
+use super::unfinished::GoingOn;
 use crate::flat::inspect::Look;
 use crate::render::kernels::{Choice, Walk};
 use crate::render::keys::Key;
 use crate::render::pace::{Effort, Pace};
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::schedule::{DISPATCH_TARGET, Piece, Plan, Stage};
+use crate::render::schedule::{DISPATCH_TARGET, LONGER, Piece, Plan, Stage};
 
 /// A frame under way.
 #[derive(Clone, Debug)]
@@ -28,6 +29,8 @@ pub struct Frame {
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
     pub(super) look: Look,
+    /// How its rays go on.
+    pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
     /// Where kernels for forms find theirs; beside components with such a key.
     pub(super) form_rows: Vec<Option<u32>>,
@@ -94,6 +97,11 @@ impl Frame {
     pub fn skip_shading(&mut self) {
         self.plan.pieces.retain(|piece| piece.stage != Stage::Shade);
         self.overlay = OverlaySettings::default();
+    }
+
+    /// Leaves the rays that have not ended as they are, unasked.
+    pub(super) fn end_as_planned(&mut self) {
+        self.going_on.times = LONGER.len();
     }
 
     /// Whether the picture is complete.

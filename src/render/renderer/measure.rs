@@ -1,8 +1,8 @@
-//! What is asked of a finished frame: counts, rays without an end, buffers, and the limit for measuring.
+//! What is asked of a finished frame: counts, buffers, and the limit for measuring.
 
 use super::pixel_counts::COMPONENT_COUNTS;
 use super::{Frame, QUAD_COUNTS, RenderError, Renderer, Slot};
-use crate::flat::{Buffers, Warning};
+use crate::flat::Buffers;
 use crate::render::gpu::Gpu;
 use crate::render::passes::overlay::OverlaySettings;
 use crate::render::readback::{read_buffers, read_color, read_words_at};
@@ -41,7 +41,7 @@ impl Renderer {
             }
         };
         let mut plan = frame.plan.clone();
-        plan.pieces = plan.pieces.iter().filter_map(confirm).collect();
+        plan.pieces = frame.planned().iter().filter_map(confirm).collect();
         let Gpu { device, queue, .. } = &self.gpu;
         self.work.set(device, queue, &strided(plan.pieces.iter().map(|piece| piece.work)));
         let targets = &self.slot(frame.slot).targets;
@@ -52,7 +52,9 @@ impl Renderer {
         queue.submit([encoder.finish()]);
         let seconds = frame.pace.seconds(plan.effort());
         let overlay = OverlaySettings::default();
-        Frame { plan, next: 0, seconds_done: 0.0, seconds, measured: None, overlay, ..frame.clone() }
+        let mut limit = Frame { plan, next: 0, seconds_done: 0.0, seconds, measured: None, overlay, ..frame.clone() };
+        limit.end_as_planned();
+        limit
     }
 
     /// Sets what a frame has counted to nothing.
@@ -71,7 +73,7 @@ impl Renderer {
         let sum = |i: usize| lists.chunks_exact(QUAD_COUNTS).map(|c| u64::from(c[i])).sum();
         let of_each = |i: usize| words.iter().map(|c| u64::from(c[i])).collect::<Vec<_>>();
         let mut of_components = of_each(1);
-        for piece in frame.plan.pieces.iter().filter(|piece| piece.stage == Stage::Cone) {
+        for piece in frame.planned().iter().filter(|piece| piece.stage == Stage::Cone) {
             of_components[piece.work.component as usize] +=
                 u64::from(lists[piece.work.list as usize * QUAD_COUNTS + 3]);
         }
@@ -87,7 +89,7 @@ impl Renderer {
     }
 
     /// What was counted for each component.
-    fn component_counts(&self, frame: &Frame) -> Result<Vec<[u32; COMPONENT_COUNTS]>, RenderError> {
+    pub(super) fn component_counts(&self, frame: &Frame) -> Result<Vec<[u32; COMPONENT_COUNTS]>, RenderError> {
         let count = frame.origins.len() * COMPONENT_COUNTS;
         let words = read_words_at(&self.gpu, self.march_counts.buffer(), 0, count)?;
         Ok(words.as_chunks().0.to_vec())
@@ -102,16 +104,5 @@ impl Renderer {
     pub fn read_shown(&self, slot: Slot) -> Result<Vec<[u8; 4]>, RenderError> {
         let state = self.slot(slot);
         Ok(read_color(&self.gpu, state.enlarged.as_ref().unwrap_or(&state.targets.color))?)
-    }
-
-    /// Which components had rays that did not come to an end within the steps allowed.
-    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
-        let counts: Vec<u32> = self.component_counts(frame)?.iter().map(|c| c[0]).collect();
-        let warnings = counts.iter().zip(&frame.origins).filter(|(count, _)| **count > 0).map(|(count, id)| Warning {
-            node: *id,
-            name: String::new(),
-            reason: format!("{count} rays did not come to an end within the steps allowed; they show what lies behind"),
-        });
-        Ok(warnings.collect())
     }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use wgpu::BindGroup;
 
+use super::unfinished::{NO_QUADS, NO_RAYS};
 use super::{KERNEL_WINDOW, QUAD_BYTES, Renderer};
 use crate::flat::{CellTree, Component, FlatScene, ROW_ALIGNMENT, Row, gpu_lights};
 use crate::geometry::Camera;
@@ -60,8 +61,8 @@ impl Renderer {
     ) -> bool {
         let Gpu { device, queue, .. } = &self.gpu;
         // See `shaders/common/quads.wgsl`.
-        let no_quads = vec![[0_u32, 1, 1, 0, 0]; plan.lists as usize];
-        let no_rays = vec![[0_u32, 1, 1, 0, 1, 1, 0]; plan.lists as usize];
+        let no_quads = vec![NO_QUADS; plan.lists as usize];
+        let no_rays = vec![NO_RAYS; plan.lists as usize];
         let mut is_new = self.lists.hold(device, queue, trees);
         let placed = |((component, at), tree): ((&Component, &Standpoint), &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, at);
