@@ -17,7 +17,7 @@ use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
 use crate::render::{Gpu, Method, Renderer};
-use crate::scene::file;
+use crate::scene::{Scene, file};
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -113,7 +113,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     arguments.warn(flat.warnings.iter().chain(&missing));
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.truth {
-        truth_picture(arguments, &flat, &meshes, &camera)?
+        truth_picture(arguments, &scene, &flat, &meshes, &camera)?
     } else {
         gpu_picture(arguments, &flat, &meshes, &camera)?
     };
@@ -172,6 +172,7 @@ fn gpu_picture(
 
 fn truth_picture(
     arguments: &RenderArguments,
+    scene: &Scene,
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
@@ -185,7 +186,7 @@ fn truth_picture(
     if let Ok(progress) = progress.into_inner() {
         progress.finish();
     }
-    truth.map(|truth| truth.buffers).map_err(|error| Failure::Other(error.to_string()))
+    truth.map(|truth| truth.buffers).map_err(|error| Failure::given_up(&arguments.scene, scene, &error))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
