@@ -9,6 +9,7 @@
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
+//! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
 //! | `shade` | light on surfaces, twin of `shaders/light` |
 //! | `truth` | the whole picture by `twin`, `trace` and `shade` |
@@ -42,6 +43,7 @@ pub mod shade;
 pub mod trace;
 pub mod truth;
 pub mod twin;
+pub mod unflattened;
 pub mod view;
 
 pub use arrays::*;
