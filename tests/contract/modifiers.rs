@@ -362,3 +362,23 @@ fn noise_has_a_field_however_far_away() {
         }
     }
 }
+
+/// So many cells reach into each other that they cannot even be counted along three axes.
+#[test]
+fn large_content_in_tiny_cells_is_refused_by_its_node() {
+    let mut scene = Scene::new();
+    let repeat = Modifier::Repeat {
+        counts: [0; 3],
+        spacing: [1e-6; 3],
+        offset: [0.0; 3],
+        turn: 0.0,
+        mirrored: [false; 3],
+        carve_from: [0; 3],
+        carve_to: [0; 3],
+    };
+    let ball = Object { shape: Shape::Sphere { radius: 1e6 }, material: MaterialId(1) };
+    let node = Node::new("Ball", NodeKind::Object(ball)).modified(repeat);
+    let id = scene.insert(None, 0, node).unwrap();
+    let error = flatten(&scene, 0.0).unwrap_err();
+    assert_eq!(error.node, id);
+}
