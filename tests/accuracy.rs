@@ -31,9 +31,6 @@ fn every_scene_is_as_exact_as_promised() {
     let mut faults = Vec::new();
     for scene in scenes() {
         let all = measure(&scene, &scene, SIDE);
-        for (method, found) in METHODS.iter().zip(&all) {
-            println!("{}, {method:?}: {found:?}", scene.name);
-        }
         let wrong = all.map(|found| found.wrong);
         match KNOWN.iter().find(|(name, _)| *name == scene.name) {
             Some((_, known)) if *known != wrong => {

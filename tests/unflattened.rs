@@ -16,7 +16,6 @@ use isolith::scene::{
 use crate::contract::modifiers::{modified, samples};
 use crate::contract::samples::Random;
 use crate::contract::trees::{Recipe, tree};
-use crate::random_scene::random_scene;
 
 /// Rays through each component, and points at random in it.
 const RAYS: usize = 60;
@@ -129,22 +128,6 @@ fn both(scene: &Scene) -> Option<(FlatScene, SceneField)> {
     let flat = flatten(scene, 0.0).ok()?;
     let is_whole = !flat.warnings.iter().any(|w| LESSENED.iter().any(|lessened| w.reason.contains(lessened)));
     if is_whole { Some((flat, SceneField::new(scene).ok()?)) } else { None }
-}
-
-#[test]
-fn the_arrays_of_wild_scenes_are_the_scene() {
-    let (mut faults, mut told, mut compared) = (Vec::new(), 0, 0);
-    for seed in 0..200 {
-        let scene = plain(&random_scene(seed, 6));
-        let Some((flat, tree)) = both(&scene) else { continue };
-        compared += 1;
-        match compare(&flat, &tree, &mut Random::new(seed)) {
-            Ok(points) => told += points,
-            Err(fault) => faults.push(format!("scene {seed}: {fault}")),
-        }
-    }
-    assert!(faults.is_empty(), "{} of {compared}:\n{}", faults.len(), faults.join("\n"));
-    assert!(compared > 40 && told > 2_000, "{compared} {told}");
 }
 
 /// One ball under each modifier, with a box that is blended with it where the modifier keeps values.

@@ -73,10 +73,10 @@ impl Truth {
         let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
         let depth = f64::from(depth);
         if node.is_some() {
-            return depth >= least / room && depth <= most * room;
+            return (least / room..=most * room).contains(&depth);
         }
         // Whose depths these are is not known: only what is seen counts, not what is between.
-        finite().any(|seen| depth >= seen / room && depth <= seen * room)
+        finite().any(|seen| (seen / room..=seen * room).contains(&depth))
     }
 }
 

@@ -197,6 +197,21 @@ fn sheets_and_wires_of_a_micrometre_are_hit() {
     }
 }
 
+#[test]
+fn a_sheet_of_a_tenth_of_a_millimetre_is_seen_in_pictures_of_any_size() {
+    let (flat, camera) = case("thin-sheet/sheet.json");
+    for side in [7, 16, 48, 97] {
+        let (mut found, mut right) = (0, 0);
+        for ray in rays(&camera, side) {
+            found += usize::from(hit(&flat, &ray).is_some());
+            let front = ray.at((5e-5 - ray.origin.z) / ray.direction.z);
+            right += usize::from(front.x.abs().max(front.y.abs()) <= 2.0);
+        }
+        assert_eq!(found, right, "{side} pixels a side");
+        assert!(right * 4 > side as usize * side as usize / 2, "{right}");
+    }
+}
+
 /// Where a ray meets the upper face of a slab one metre thick, or the wall of a hole through it: nothing, where it leaves
 /// through the hole.
 fn pierced_slab(ray: &Ray, hole: DVec3, radius: f64) -> Option<f64> {
