@@ -165,8 +165,8 @@ fn join(group: &Group, a: Part, link: Link, b: Part) -> Part {
         (Part::Nothing, b) if is(Join::Union) || is(Join::Xor) || (is(Join::Morph) && group.share == 1.0) => b,
         (Part::Nothing, _) => Part::Nothing,
         (a, Part::Nothing) => {
-            let keeps = !is(Join::Intersection) && !is(Join::Pipe) && !(is(Join::Morph) && group.share > 0.0);
-            if keeps { a } else { Part::Nothing }
+            let loses = is(Join::Intersection) || is(Join::Pipe) || (is(Join::Morph) && group.share > 0.0);
+            if loses { Part::Nothing } else { a }
         }
         (Part::Fold { first, mut rest }, b) => {
             rest.push((link, b));
