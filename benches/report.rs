@@ -53,31 +53,31 @@ fn replaced(text: &str, mark: &str, table: &str) -> String {
 fn accuracy() -> String {
     let info = gpu::shared().gpu.info.clone();
     let mut out = format!("On {} ({}), {SIDE}x{SIDE} pixels.\n\n", info.name, info.driver_info);
-    out += "| scene | components | hit/miss differs | grazing | depth p50 | p99 | max | normal p50 | p99 | |\n";
-    out += "|---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
+    out += "| scene | method | wrong | of them hit or miss | node | depth | grazing % | depth p50 | p99 | max | normal p50 | p99 | |\n";
+    out += "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
     for scene in gpu::scenes() {
         let truth = truth(&scene.flat, &scene.meshes, &scene.camera, [SIDE, SIDE], &|_| ());
         let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-        let a = Accuracy::against(
-            &scene.render(SIDE, Method::Specialised),
-            &truth,
-            scene.camera.footprint(f64::from(SIDE)),
-        );
-        let verdict = if a.faults().is_empty() { "" } else { "beyond the limit" };
-        writeln!(
-            out,
-            "| {} | {} | {} | {} | {:.5} | {:.5} | {:.4} | {:.4} | {:.3} | {verdict} |",
-            scene.name,
-            scene.flat.components.len(),
-            a.hit_miss_differs,
-            a.grazing,
-            a.depth_p50,
-            a.depth_p99,
-            a.depth_max,
-            a.normal_p50,
-            a.normal_p99,
-        )
-        .expect("strings take all");
+        for method in [Method::Interpreted, Method::Pruned, Method::Specialised] {
+            let a = Accuracy::against(&scene.render(SIDE, method), &scene.flat, &truth);
+            let verdict = if a.faults().is_empty() { "" } else { "beyond the limit" };
+            writeln!(
+                out,
+                "| {} | {method:?} | {} | {} | {} | {} | {:.4} | {:.5} | {:.5} | {:.4} | {:.4} | {:.3} | {verdict} |",
+                scene.name,
+                a.wrong,
+                a.hit_miss_differs,
+                a.node_differs,
+                a.depth_differs,
+                100.0 * a.grazing_share(),
+                a.depth_p50,
+                a.depth_p99,
+                a.depth_max,
+                a.normal_p50,
+                a.normal_p99,
+            )
+            .expect("strings take all");
+        }
     }
     out
 }
@@ -113,8 +113,7 @@ fn peer() -> String {
             let pictures =
                 tiles.iter().flat_map(|tiles| (0..PEER_REPEATS).map(|_| peer.render(PEER_SIDE, depth, *tiles)));
             let best = pictures.min_by_key(|picture| picture.cpu).expect("it draws more than once");
-            let footprint = subject.camera.footprint(f64::from(PEER_SIDE));
-            let error = Accuracy::against(&best.buffers(PEER_SIDE), &truth, footprint);
+            let error = Accuracy::of_depths(&best.buffers(PEER_SIDE), &truth);
             let (ms, build) = (best.cpu.as_secs_f64() * 1e3, peer.build.as_secs_f64() * 1e3);
             writeln!(
                 out,

@@ -1,7 +1,7 @@
 //! Every scene's picture against the truth, on the same rays.
 
 use isolith::flat::Accuracy;
-use isolith::flat::compare::{GRAZING_ANGLE, MAX_DEPTH_P99, MAX_HIT_MISS_SHARE};
+use isolith::flat::compare::{MAX_WRONG_SHARE, verdicts};
 use isolith::flat::truth::truth;
 use isolith::render::kernel::{Options, Quality};
 use isolith::render::{Method, OverlaySettings, Renderer, Slot};
@@ -12,24 +12,37 @@ use crate::gpu::{Subject, scenes, shared};
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 256;
 
-/// Both ways to evaluate a component.
-const METHODS: [Method; 2] = [Method::Interpreted, Method::Specialised];
+/// Every way to evaluate a component: the command line draws by the interpreter and by lists, the window by kernels too.
+const METHODS: [Method; 3] = [Method::Interpreted, Method::Pruned, Method::Specialised];
+
+/// Scenes that are known to be drawn wrong, with how many pixels at most by each of [`METHODS`]. The list only shrinks: an
+/// entry that is no longer needed, or that allows more than is there, fails the test.
+const KNOWN: [(&str, [usize; 3]); 0] = [];
 
 /// The errors of what the renderer draws of `drawn`, by each method, measured against the truth of `meant`.
-fn measure(drawn: &Subject, meant: &Subject, side: u32) -> [Accuracy; 2] {
+fn measure(drawn: &Subject, meant: &Subject, side: u32) -> [Accuracy; 3] {
     let truth = truth(&meant.flat, &meant.meshes, &meant.camera, [side, side], &|_| ());
     let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
-    let footprint = meant.camera.footprint(f64::from(side));
-    METHODS.map(|method| Accuracy::against(&drawn.render(side, method), &truth, footprint))
+    METHODS.map(|method| Accuracy::against(&drawn.render(side, method), &drawn.flat, &truth))
 }
 
 #[test]
 fn every_scene_is_as_exact_as_promised() {
     let mut faults = Vec::new();
     for scene in scenes() {
-        for (method, found) in METHODS.iter().zip(measure(&scene, &scene, SIDE)) {
-            let of_scene = |fault: &String| format!("{}, {method:?}: {fault} ({found:?})", scene.name);
-            faults.extend(found.faults().iter().map(of_scene));
+        let all = measure(&scene, &scene, SIDE);
+        let wrong = all.map(|found| found.wrong);
+        match KNOWN.iter().find(|(name, _)| *name == scene.name) {
+            Some((_, known)) if *known != wrong => {
+                faults.push(format!("{}: {wrong:?} pixels are wrong, known are {known:?}", scene.name));
+            }
+            Some(_) => {}
+            None => {
+                for (method, found) in METHODS.iter().zip(all) {
+                    let of_scene = |fault: &String| format!("{}, {method:?}: {fault} ({found:?})", scene.name);
+                    faults.extend(found.faults().iter().map(of_scene));
+                }
+            }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
@@ -94,17 +107,12 @@ fn outlines_of_ellipsoids_are_right_by_few_and_by_many_steps() {
             assert_eq!(renderer.unfinished_rays(&frame).expect("counts"), []);
             let picture = renderer.read(&frame).expect("a picture");
             let steps = renderer.pixel_counts(&frame).expect("counts").steps();
-            let footprint = subject.camera.footprint(f64::from(SIDE));
-            // Where two surfaces meet, either may be in front by a rounding.
-            let touches = |i: usize| {
-                let (found, true_depth) = (f64::from(picture.depth[i]), f64::from(truth.buffers.depth[i]));
-                (found - true_depth).abs() <= MAX_DEPTH_P99 * footprint * true_depth
-            };
-            let other = (0..picture.leaf.len()).filter(|i| picture.leaf[*i] != truth.buffers.leaf[*i] && !touches(*i));
+            let verdicts = verdicts(&picture, &subject.flat, &truth);
+            let other = (0..verdicts.len()).filter(|i| verdicts[*i].is_wrong());
             // Coarse pictures may have outlines a tenth of a pixel off, which is what they promise.
-            let allowed = if quality == Quality::Draft { 0.1 } else { GRAZING_ANGLE / footprint };
-            let (near, wrong): (Vec<_>, Vec<_>) = other.partition(|i| f64::from(truth.margin[*i]) <= allowed);
-            let fits = wrong.len() as f64 <= MAX_HIT_MISS_SHARE * truth.margin.len() as f64 && near.len() < 40;
+            let is_near = |i: &usize| quality == Quality::Draft && truth.margin[*i] <= 0.1;
+            let (near, wrong): (Vec<_>, Vec<_>) = other.partition(is_near);
+            let fits = wrong.len() as f64 <= MAX_WRONG_SHARE * truth.margin.len() as f64 && near.len() < 40;
             assert!(fits, "{}, {quality:?}: {wrong:?} are wrong, {near:?} near", subject.name);
             assert!(steps.mean < most, "{}, {quality:?}: {steps:?}", subject.name);
             steps.mean

@@ -378,17 +378,27 @@ fn bench_measures_every_method_and_writes_tables_and_charts() {
     let measured: Vec<_> = rows.iter().filter_map(|row| of(row, "method")).collect();
     assert_eq!(measured.join(","), methods);
     for row in &rows {
-        for key in ["cpu_ms", "wall_ms", "steps_per_px", "evals_per_px", "hit_miss_share", "depth_p99", "normal_p99"]
+        for key in ["cpu_ms", "wall_ms", "steps_per_px", "evals_per_px", "wrong_share", "depth_p99", "normal_p99"]
             .into_iter()
-            .chain(["steps_p99", "steps_max", "cells_per_px", "entries_per_px"])
+            .chain([
+                "steps_p99",
+                "steps_max",
+                "cells_per_px",
+                "entries_per_px",
+                "grazing_share",
+                "surface_evals_per_px",
+            ])
         {
             assert!(row[key].as_f64().is_some_and(|v| v >= 0.0), "{key} of {row}");
         }
-        assert_eq!(row["hit_miss_share"].as_f64(), Some(0.0), "{row}");
+        assert_eq!(row["wrong_share"].as_f64(), Some(0.0), "{row}");
+        // What finds normals counts too: the floor and the ball fill more than half of the picture.
+        let [all, surfaces] = ["evals_per_px", "surface_evals_per_px"].map(|key| row[key].as_f64().unwrap_or(0.0));
+        assert!(all > surfaces && surfaces > 0.5, "{row}");
     }
     for name in ["bench.md", "bench.csv"] {
         let text = std::fs::read_to_string(place.path("report").join(name)).expect("a table");
-        assert!(text.contains("interpreted") && text.contains("auto"), "{name}");
+        assert!(["interpreted", "auto", "grazing"].iter().all(|word| text.contains(word)), "{name}");
     }
     assert!(open(&place.path("report").join("scene.png")).dimensions().0 > 800);
 }

@@ -23,4 +23,5 @@ mod saving;
 mod shaders;
 mod stress;
 mod tidy;
+mod unflattened;
 mod versions;

@@ -9,7 +9,8 @@ use super::frontier::frontier;
 use super::labels::{Obstacles, Place, Wish, along, around};
 use super::legend::{DASH, FRONTIER, FRONTIER_WIDTH, Group, Sign, TITLE_EM, TITLE_WIDTH, legend, title};
 use super::marks::{RADIUS, color, cross, faint, mark, methods, qualities, ring};
-use super::row::{DEFAULT, LIMIT, MAX_HIT_MISS_SHARE, Row};
+use super::row::{DEFAULT, LIMIT, Row};
+use crate::flat::compare::MAX_WRONG_SHARE;
 
 /// Width and height of a chart, in pixels.
 pub(super) const SIZE: (u32, u32) = (1100, 760);
@@ -31,9 +32,9 @@ struct Dot<'a> {
 }
 
 impl Dot<'_> {
-    /// Whether too many pixels are wrong about hit or miss, or nobody knows.
+    /// Whether too many pixels are wrong, or nobody knows.
     fn is_wrong(&self) -> bool {
-        self.row.hit_miss_share.is_nan() || self.row.hit_miss_share > MAX_HIT_MISS_SHARE
+        self.row.wrong_share.is_nan() || self.row.wrong_share > MAX_WRONG_SHARE
     }
 
     /// The words at the mark. The default quality is not named, so that most labels are short.
@@ -53,8 +54,8 @@ impl Dot<'_> {
 /// rows are those of one scene at one size; rows whose time or error is not finite are left out.
 ///
 /// The frontier joins what no other point beats. It leaves out the method `limit`, which nobody can choose, and
-/// whatever is wrong about hit or miss in too many pixels: depth errors are only taken where both pictures show
-/// a surface, so they say little there.
+/// whatever is wrong in too many pixels: depth errors are only taken where both pictures show a surface, so they say
+/// little there.
 pub fn time_against_error(rows_of_one_scene: &[Row]) -> RgbImage {
     let dots: Vec<Dot<'_>> = rows_of_one_scene
         .iter()
@@ -91,7 +92,9 @@ fn draw(sheet: &Sheet<'_>, rows: &[Row], dots: &[Dot<'_>]) -> Result<(), Failed>
 
 fn words(rows: &[Row], drawn: usize) -> (String, String) {
     let Some(first) = rows.first() else { return ("Run time against error".into(), String::new()) };
-    let below = "Run time against error: further down is faster, further left is more exact.".to_string();
+    let grazing = rows.iter().map(|row| row.grazing_share).fold(0.0, f64::max) * 100.0;
+    let below =
+        format!("Further down is faster, further left is more exact. At most {grazing:.4} % of the pixels graze.");
     let left_out = match rows.len() - drawn {
         0 => String::new(),
         1 => " One row without finite numbers is left out.".into(),
@@ -216,7 +219,7 @@ fn groups<'a>(dots: &[Dot<'a>]) -> [Group<'a>; 3] {
         other.push((Sign::Dashed(color(LIMIT)), format!("limit ({})", limit.row.quality)));
     }
     if dots.iter().any(Dot::is_wrong) {
-        other.push((Sign::Cross, "hit/miss beyond 0.01 %".into()));
+        other.push((Sign::Cross, "wrong beyond 0.01 %".into()));
     }
     [
         Group {

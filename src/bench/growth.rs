@@ -86,7 +86,11 @@ fn with_room_for_names(axis: LogAxis) -> LogAxis {
 fn below(rows: &[&Row], quality: &str) -> String {
     let sizes = || rows.iter().map(|row| row.size);
     match (sizes().min(), sizes().max()) {
-        (Some(least), Some(most)) if least == most => format!("{least} × {least} pixels, {quality} quality."),
+        (Some(least), Some(most)) if least == most => {
+            let [wrong, grazing] = [|row: &Row| row.wrong_share, |row: &Row| row.grazing_share]
+                .map(|share| rows.iter().map(|row| share(row)).fold(0.0, f64::max) * 100.0);
+            format!("{least} × {least} pixels, {quality} quality; at most {wrong:.4} % wrong, {grazing:.4} % grazing.")
+        }
         (Some(least), Some(most)) => {
             format!("{least} × {least} to {most} × {most} pixels, {quality} quality: not all points compare.")
         }

@@ -9,8 +9,6 @@ pub(super) const AUTO: &str = "auto";
 pub(super) const LIMIT: &str = "limit";
 /// The quality that the program takes when nobody chooses one.
 pub(super) const DEFAULT: &str = "default";
-/// The largest share of pixels that may differ in hit or miss before a picture counts as wrong.
-pub(super) const MAX_HIT_MISS_SHARE: f64 = 1e-4;
 
 /// One measurement. The fields stand in the order in which they are written, as JSON and as CSV.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,10 +27,15 @@ pub struct Row {
     pub wall_ms: f64,
     /// Steps of the march per pixel.
     pub steps_per_px: f64,
-    /// Evaluations of nodes per pixel.
+    /// Evaluations of a component's field per pixel, of all passes together: by rays, by cones around tiles, and for normal
+    /// and material.
     pub evals_per_px: f64,
-    /// Share of the pixels, 0 to 1, where the picture and the truth differ in hit or miss.
-    pub hit_miss_share: f64,
+    /// Those of them for normal and material: one for each pixel that shows a field.
+    pub surface_evals_per_px: f64,
+    /// Share of the pixels, 0 to 1, that are wrong: in hit or miss, in the node, or by more than a footprint in depth.
+    pub wrong_share: f64,
+    /// Share of the pixels, 0 to 1, that differ like that because their rays graze.
+    pub grazing_share: f64,
     /// Median of the depth errors, in pixel footprints.
     pub depth_p50: f64,
     /// 99th percentile of the depth errors, in pixel footprints.
@@ -100,13 +103,15 @@ impl Row {
         row
     }
 
-    fn numbers(&mut self) -> [(&'static str, &mut f64); 15] {
+    fn numbers(&mut self) -> [(&'static str, &mut f64); 17] {
         [
             ("cpu_ms", &mut self.cpu_ms),
             ("wall_ms", &mut self.wall_ms),
             ("steps_per_px", &mut self.steps_per_px),
             ("evals_per_px", &mut self.evals_per_px),
-            ("hit_miss_share", &mut self.hit_miss_share),
+            ("surface_evals_per_px", &mut self.surface_evals_per_px),
+            ("wrong_share", &mut self.wrong_share),
+            ("grazing_share", &mut self.grazing_share),
             ("depth_p50", &mut self.depth_p50),
             ("depth_p99", &mut self.depth_p99),
             ("depth_max", &mut self.depth_max),
@@ -147,7 +152,9 @@ mod tests {
             "wall_ms",
             "steps_per_px",
             "evals_per_px",
-            "hit_miss_share",
+            "surface_evals_per_px",
+            "wrong_share",
+            "grazing_share",
             "depth_p50",
             "depth_p99",
             "depth_max",

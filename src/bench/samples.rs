@@ -15,7 +15,9 @@ pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, 
         cpu_ms_spread: cpu_ms * 0.04,
         steps_per_px: 20.0 + cpu_ms.sqrt(),
         evals_per_px: cpu_ms * 40.0,
-        hit_miss_share: 0.0,
+        surface_evals_per_px: 0.4,
+        wrong_share: 0.0,
+        grazing_share: 0.000_03,
         depth_p50: depth_p99 / 5.0,
         depth_p99,
         depth_max: depth_p99 * 900.0,
@@ -46,7 +48,7 @@ pub fn scene(name: &str, nodes: usize) -> Vec<Row> {
         for (quality, longer, error) in qualities {
             let longer: f64 = longer;
             let mut row = row(name, nodes, method, quality, cpu_ms * longer.powf(slope), error * worse);
-            row.hit_miss_share = if method == "thesis" && quality != "fine" { 0.0011 } else { 0.000_015 };
+            row.wrong_share = if method == "thesis" && quality != "fine" { 0.0011 } else { 0.000_015 };
             rows.push(row);
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::row::Row;
 
 /// The heads of the columns of the Markdown tables. The first two hold words, the others numbers.
-const HEADS: [&str; 18] = [
+const HEADS: [&str; 20] = [
     "method",
     "quality",
     "CPU ms",
@@ -16,9 +16,11 @@ const HEADS: [&str; 18] = [
     "p99",
     "max",
     "evals/px",
+    "of surfaces",
     "cells/px",
     "entries/px",
-    "hit/miss %",
+    "wrong %",
+    "grazing %",
     "depth p50",
     "depth p99",
     "depth max",
@@ -30,6 +32,7 @@ const WORDS: usize = 2;
 /// One table for each scene and size, in the order in which they first come. "±" is half the spread of the
 /// runs, "× auto" the CPU time over that of `auto` at the default quality in the same table. Depths are in
 /// pixel footprints, normals in degrees. "p99" and "max" are steps, too: of 99 of 100 pixels, and of the worst one.
+/// "evals/px" are evaluations of all passes, "of surfaces" those of them that find normal and material.
 pub fn markdown(rows: &[Row]) -> String {
     let tables: Vec<String> = scenes(rows).iter().map(|rows| scene_table(rows)).collect();
     tables.join("\n")
@@ -92,9 +95,11 @@ fn cells(row: &Row, auto: Option<f64>) -> Vec<String> {
         significant(row.steps_p99),
         significant(row.steps_max),
         significant(row.evals_per_px),
+        significant(row.surface_evals_per_px),
         significant(row.cells_per_px),
         significant(row.entries_per_px),
-        format!("{:.4}", row.hit_miss_share * 100.0),
+        format!("{:.4}", row.wrong_share * 100.0),
+        format!("{:.4}", row.grazing_share * 100.0),
         format!("{:.5}", row.depth_p50),
         format!("{:.5}", row.depth_p99),
         format!("{:.4}", row.depth_max),
@@ -121,8 +126,9 @@ fn in_text(value: f64) -> String {
 /// All rows with all their digits, below a line of names: the same as in JSON, in the same order.
 pub fn csv(rows: &[Row]) -> String {
     let mut text = String::from(
-        "scene,nodes,method,size,cpu_ms,wall_ms,steps_per_px,evals_per_px,hit_miss_share,depth_p50,depth_p99,\
-         depth_max,normal_p50,normal_p99,quality,cpu_ms_spread,steps_p99,steps_max,cells_per_px,entries_per_px\n",
+        "scene,nodes,method,size,cpu_ms,wall_ms,steps_per_px,evals_per_px,surface_evals_per_px,wrong_share,grazing_share,\
+         depth_p50,depth_p99,depth_max,normal_p50,normal_p99,quality,cpu_ms_spread,steps_p99,steps_max,cells_per_px,\
+         entries_per_px\n",
     );
     for row in rows.iter().map(Row::clamped) {
         let numbers = [
@@ -130,7 +136,9 @@ pub fn csv(rows: &[Row]) -> String {
             row.wall_ms,
             row.steps_per_px,
             row.evals_per_px,
-            row.hit_miss_share,
+            row.surface_evals_per_px,
+            row.wrong_share,
+            row.grazing_share,
             row.depth_p50,
             row.depth_p99,
             row.depth_max,
@@ -230,7 +238,7 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         let json = sample.to_json_line();
         let places: Vec<usize> = lines[0].split(',').map(|n| json.find(&format!("\"{n}\":")).unwrap()).collect();
-        assert!(places.is_sorted() && places.len() == 20);
+        assert!(places.is_sorted() && places.len() == 22);
         assert!(lines[1].starts_with("\"a, \"\"b\"\"\",3,auto,256,1.5,"), "{}", lines[1]);
         assert!(!text.contains("inf"));
         assert_eq!(csv(&[]).lines().count(), 1);

@@ -19,7 +19,9 @@ pub enum Way {
     Pruned,
     /// Components by kernels of their own.
     Specialised,
-    /// What no way can beat: each ray starts at its true depth, and the field is evaluated once to confirm it.
+    /// No way to draw, but what one could come to that found each surface by a single evaluation: each ray starts at its
+    /// true depth, the field is evaluated once to confirm it, and once for normal and material; by whichever of
+    /// interpreter, pruned lists and kernels takes the least time. What evaluates fields by other means may take less.
     Limit,
     /// What the editor does once its kernels are ready.
     Auto,
@@ -48,14 +50,15 @@ impl Way {
         matches!(self, Self::Thesis | Self::Generated)
     }
 
-    /// How its components are evaluated.
-    pub(super) fn method(self) -> Method {
+    /// How its components are evaluated; of several the quickest counts.
+    pub(super) fn methods(self) -> &'static [Method] {
         match self {
-            Self::Thesis | Self::Interpreted => Method::Interpreted,
-            Self::Generated => Method::Generated,
-            Self::Pruned => Method::Pruned,
-            Self::Specialised => Method::Specialised,
-            Self::Limit | Self::Auto => Method::Auto,
+            Self::Thesis | Self::Interpreted => &[Method::Interpreted],
+            Self::Generated => &[Method::Generated],
+            Self::Pruned => &[Method::Pruned],
+            Self::Specialised => &[Method::Specialised],
+            Self::Limit => &[Method::Interpreted, Method::Pruned, Method::Specialised],
+            Self::Auto => &[Method::Auto],
         }
     }
 
@@ -72,5 +75,19 @@ impl FromStr for Way {
     fn from_str(name: &str) -> Result<Self, String> {
         let names = || Self::ALL.map(Self::name).join(", ");
         Self::ALL.into_iter().find(|way| way.name() == name).ok_or_else(|| format!("{name} is none of {}", names()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limit_is_that_of_whichever_kernels_are_quickest() {
+        // Auto chooses among these, and a bad choice must show.
+        for way in [Way::Interpreted, Way::Pruned, Way::Specialised] {
+            assert!(way.methods().iter().all(|method| Way::Limit.methods().contains(method)), "{way:?}");
+        }
+        assert!(Way::ALL.into_iter().all(|way| !way.methods().is_empty()));
     }
 }

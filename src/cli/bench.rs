@@ -137,10 +137,10 @@ fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
             return Err(Failure::Cancelled);
         }
         let name = || format!("{}, {}", case.name(), case.circumstance);
-        match case.measure(&mut renderer, &[Method::Specialised, Method::Pruned]) {
+        match case.measure(&mut renderer, &[Method::Interpreted, Method::Pruned, Method::Specialised]) {
             Ok(Some(found)) => figures.push(found),
             Ok(None) => unseen += 1,
-            Err(error @ (BenchError::Scene(_) | BenchError::Truth(_))) => {
+            Err(error @ (BenchError::Scene(_) | BenchError::View(_) | BenchError::Truth { .. })) => {
                 complain(&format!("left out: {}: {error}", name()));
                 left_out += 1;
             }

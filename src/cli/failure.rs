@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::flat::FlattenError;
+use crate::flat::trace::TraceError;
 use crate::render::{GpuError, RenderError};
+use crate::scene::Scene;
 use crate::scene::file::FileError;
 
 /// Why a command failed.
@@ -71,6 +73,17 @@ impl Failure {
             other => (file.display().to_string(), None, None, other.to_string()),
         };
         serde_json::json!({ "ok": false, "file": file, "node": node, "field": field, "reason": reason })
+    }
+
+    /// What a scene whose truth cannot be found is reported as: a limit that a node of its file is beyond.
+    pub fn given_up(path: &Path, scene: &Scene, error: &TraceError) -> Self {
+        let name = scene.node(error.node).map_or("", |node| node.name.as_str());
+        Self::Scene(FileError {
+            file: path.display().to_string(),
+            node: Some(format!("{name} {}", error.node)),
+            field: None,
+            reason: error.to_string(),
+        })
     }
 
     /// The program's exit code; `--help` and the README list them.

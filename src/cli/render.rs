@@ -21,6 +21,7 @@ use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
 use crate::render::{Gpu, Method, Renderer};
+use crate::scene::Scene;
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -165,7 +166,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     }
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.truth {
-        truth_picture(arguments, &flat, &meshes, &camera)?
+        truth_picture(arguments, &scene, &flat, &meshes, &camera)?
     } else {
         let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera, &cancel)?;
         arguments.warn(&unfinished)?;
@@ -236,6 +237,7 @@ fn gpu_picture(
 
 fn truth_picture(
     arguments: &RenderArguments,
+    scene: &Scene,
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
@@ -249,7 +251,7 @@ fn truth_picture(
     if let Ok(progress) = progress.into_inner() {
         progress.finish();
     }
-    truth.map(|truth| truth.buffers).map_err(|error| Failure::Other(error.to_string()))
+    truth.map(|truth| truth.buffers).map_err(|error| Failure::given_up(&arguments.scene, scene, &error))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -1,29 +1,73 @@
 //! How wrong a picture is, measured against the truth on the same rays.
+//!
+//! A pixel is wrong where it shows something and the truth nothing, or the other way round; where it shows another node than
+//! the truth; or the same one at a depth that is off by more than a footprint. There are two exceptions, and no others:
+//!
+//! - *Where two nodes meet*, rounding decides which one is shown: the depth is right within [`MEETING`] footprints, and either
+//!   the truth shows that node in one of the eight pixels around, or both weigh the same in a blend, within
+//!   [`TIE`](super::twin::TIE).
+//! - *Where the ray grazes*, rounding decides what it meets: a ray that is turned by [`GRAZING_ANGLE`], which is what 32-bit
+//!   numbers can tell apart, truly shows what the picture shows. Such pixels are counted apart.
+//!
+//! What the ray passes face on shows the same from every side: a sheet of no thickness that is drawn is wrong.
 
-use super::Buffers;
 use super::truth::Truth;
+use super::{Buffers, FlatScene, Hitee};
+use crate::scene::NodeId;
 
-/// Most pixels that may differ in hit or miss, as a share of all.
-pub const MAX_HIT_MISS_SHARE: f64 = 1e-4;
+/// Most pixels that may be wrong, as a share of all.
+pub const MAX_WRONG_SHARE: f64 = 1e-4;
 /// Largest error of the depth at the 99th percentile, in pixel footprints.
 pub const MAX_DEPTH_P99: f64 = 0.05;
 /// Largest median error of the normal, in degrees.
 pub const MAX_NORMAL_P50: f64 = 0.1;
 
-/// Rays that pass a surface's edge at a smaller angle, in radians, are grazing: the eye, the direction, their
-/// product and their sum are each rounded to 24 bits.
+/// An error of the depth, in pixel footprints, from which on a pixel is wrong.
+pub const WRONG_DEPTH: f64 = 1.0;
+/// Two nodes meet in a pixel where both are seen at the same depth, within so many footprints.
+pub const MEETING: f64 = 0.05;
+/// By how much rounding turns a ray, in radians: the eye, the direction, their product and their sum are each rounded to 24
+/// bits.
 pub const GRAZING_ANGLE: f64 = 4.0 * f32::EPSILON as f64;
+
+/// What is to be said of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// It shows what the truth shows.
+    Right,
+    /// It does not, but a ray turned within rounding would.
+    Grazing,
+    /// It shows something and the truth nothing, or the other way round.
+    HitOrMiss,
+    /// It shows another node.
+    OtherNode,
+    /// Its depth is off by more than a footprint.
+    OffDepth,
+    /// Its depth is NaN.
+    NotANumber,
+}
+
+impl Verdict {
+    /// Whether it is wrong.
+    pub fn is_wrong(self) -> bool {
+        !matches!(self, Self::Right | Self::Grazing)
+    }
+}
 
 /// The errors of a picture. Depth and normal are compared where both pictures hit something.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
     /// Pixels in the picture.
     pub pixels: usize,
-    /// Pixels where one picture hits something and the other does not, or where the measured depth is
-    /// no number; those in `grazing` are not among them.
+    /// Pixels that are wrong, of any kind; those in `grazing` are not among them.
+    pub wrong: usize,
+    /// Those of them where one picture hits something and the other does not, or where the depth is NaN.
     pub hit_miss_differs: usize,
-    /// Pixels that differ like that, but whose ray passes the surface's edge so closely that 32-bit
-    /// numbers cannot tell the sides apart.
+    /// Those of them that show another node.
+    pub node_differs: usize,
+    /// Those of them that show the right node at a wrong depth.
+    pub depth_differs: usize,
+    /// Pixels that differ like that, but whose ray grazes.
     pub grazing: usize,
     /// Median error of the depth, in footprints of the pixel at the true depth.
     pub depth_p50: f64,
@@ -37,36 +81,49 @@ pub struct Accuracy {
     pub normal_p99: f64,
 }
 
+/// The node that a number in [`Buffers::leaf`] stands for; nothing for the background.
+pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
+    match Hitee::from_code(code) {
+        Hitee::Background => None,
+        Hitee::Leaf(leaf) => flat.ids.get(leaf).copied(),
+        Hitee::Mesh(mesh) => flat.meshes.get(mesh).map(|mesh| mesh.id),
+    }
+}
+
+/// Which node a number in [`Buffers::leaf`] stands for.
+type Nodes<'a> = Option<&'a dyn Fn(u32) -> Option<NodeId>>;
+
 impl Accuracy {
-    /// The errors against the truth. `footprint` is the width of a pixel at distance 1, see
-    /// [`crate::geometry::Camera::footprint`].
-    pub fn against(measured: &Buffers, truth: &Truth, footprint: f64) -> Self {
-        let grazing = GRAZING_ANGLE / footprint;
-        Self::of(measured, &truth.buffers, footprint, |i| f64::from(truth.margin[i]) <= grazing)
+    /// The errors of a picture of the arrays `shown` against the truth.
+    pub fn against(measured: &Buffers, shown: &FlatScene, truth: &Truth) -> Self {
+        Self::of(measured, truth, &verdicts(measured, shown, truth))
     }
 
-    /// Compares pixel by pixel. `is_grazing` is asked about pixels that differ in hit or miss. Pictures of
-    /// different sizes differ in every pixel.
-    pub fn of(measured: &Buffers, truth: &Buffers, footprint: f64, mut is_grazing: impl FnMut(usize) -> bool) -> Self {
-        let pixels = truth.depth.len();
-        if (measured.width, measured.height) != (truth.width, truth.height) {
-            return Self { pixels, hit_miss_differs: pixels, ..Self::default() };
+    /// The errors of a picture that does not know of nodes.
+    pub fn of_depths(measured: &Buffers, truth: &Truth) -> Self {
+        Self::of(measured, truth, &judge_all(measured, truth, None))
+    }
+
+    /// Sums up what was found pixel by pixel.
+    pub fn of(measured: &Buffers, truth: &Truth, verdicts: &[Verdict]) -> Self {
+        let count = |verdict: Verdict| verdicts.iter().filter(|found| **found == verdict).count();
+        let mut found = Self {
+            pixels: truth.buffers.depth.len(),
+            wrong: verdicts.iter().filter(|verdict| verdict.is_wrong()).count(),
+            hit_miss_differs: count(Verdict::HitOrMiss) + count(Verdict::NotANumber),
+            node_differs: count(Verdict::OtherNode),
+            depth_differs: count(Verdict::OffDepth),
+            grazing: count(Verdict::Grazing),
+            ..Self::default()
+        };
+        if !same_size(measured, truth) {
+            return found;
         }
-        let mut found = Self { pixels, ..Self::default() };
         let (mut depths, mut normals) = (Vec::new(), Vec::new());
-        for (i, (m, t)) in measured.depth.iter().zip(&truth.depth).enumerate() {
-            let (m, t) = (f64::from(*m), f64::from(*t));
-            if m.is_nan() {
-                found.hit_miss_differs += 1;
-            } else if m.is_finite() != t.is_finite() {
-                if is_grazing(i) {
-                    found.grazing += 1;
-                } else {
-                    found.hit_miss_differs += 1;
-                }
-            } else if t.is_finite() {
-                depths.push((m - t).abs() / (footprint * t));
-                normals.push(angle(measured.normal[i], truth.normal[i]).to_degrees());
+        for i in 0..found.pixels {
+            if measured.depth[i].is_finite() && truth.buffers.depth[i].is_finite() {
+                depths.push(depth_error(measured, truth, i));
+                normals.push(angle(measured.normal[i], truth.buffers.normal[i]).to_degrees());
             }
         }
         depths.sort_by(f64::total_cmp);
@@ -76,22 +133,75 @@ impl Accuracy {
         found
     }
 
-    /// Share of the pixels that differ in hit or miss.
-    pub fn hit_miss_share(&self) -> f64 {
-        self.hit_miss_differs as f64 / self.pixels.max(1) as f64
+    /// Share of the pixels that are wrong.
+    pub fn wrong_share(&self) -> f64 {
+        self.wrong as f64 / self.pixels.max(1) as f64
+    }
+
+    /// Share of the pixels whose ray grazes and that show another thing than the truth.
+    pub fn grazing_share(&self) -> f64 {
+        self.grazing as f64 / self.pixels.max(1) as f64
     }
 
     /// What is beyond the limits above, in words; nothing where all is well.
     pub fn faults(&self) -> Vec<String> {
         let checks = [
-            ("share of pixels that differ in hit or miss", self.hit_miss_share(), MAX_HIT_MISS_SHARE),
+            ("share of pixels that are wrong", self.wrong_share(), MAX_WRONG_SHARE),
             ("depth error, 99th percentile, in footprints", self.depth_p99, MAX_DEPTH_P99),
             ("normal error, median, in degrees", self.normal_p50, MAX_NORMAL_P50),
         ];
-        // An error that is no number is a fault too.
+        // An error that is NaN is a fault too.
         let beyond = checks.into_iter().filter(|(_, value, limit)| value.is_nan() || value > limit);
         beyond.map(|(what, value, limit)| format!("{what}: {value}, allowed {limit}")).collect()
     }
+}
+
+/// What is to be said of each pixel of a picture of the arrays `shown`.
+pub fn verdicts(measured: &Buffers, shown: &FlatScene, truth: &Truth) -> Vec<Verdict> {
+    judge_all(measured, truth, Some(&|code| node_of(shown, code)))
+}
+
+fn same_size(measured: &Buffers, truth: &Truth) -> bool {
+    (measured.width, measured.height) == (truth.buffers.width, truth.buffers.height)
+}
+
+/// Pictures of different sizes differ in every pixel.
+fn judge_all(measured: &Buffers, truth: &Truth, nodes: Nodes<'_>) -> Vec<Verdict> {
+    let pixels = truth.buffers.depth.len();
+    if !same_size(measured, truth) {
+        return vec![Verdict::HitOrMiss; pixels];
+    }
+    (0..pixels).map(|i| judge(measured, truth, nodes, i)).collect()
+}
+
+/// In footprints of the pixel at the true depth.
+fn depth_error(measured: &Buffers, truth: &Truth, i: usize) -> f64 {
+    let (m, t) = (f64::from(measured.depth[i]), f64::from(truth.buffers.depth[i]));
+    (m - t).abs() / (truth.footprint * t)
+}
+
+fn judge(measured: &Buffers, truth: &Truth, nodes: Nodes<'_>, i: usize) -> Verdict {
+    let (m, t) = (measured.depth[i], truth.buffers.depth[i]);
+    let node = nodes.map(|nodes| nodes(measured.leaf[i]));
+    let found = match () {
+        () if m.is_nan() => return Verdict::NotANumber,
+        () if m.is_finite() != t.is_finite() => Verdict::HitOrMiss,
+        () if !t.is_finite() => Verdict::Right,
+        () if node.is_some_and(|node| node != truth.nodes[i] && !meets(measured, truth, node, i)) => Verdict::OtherNode,
+        () if depth_error(measured, truth, i) > WRONG_DEPTH => Verdict::OffDepth,
+        () => Verdict::Right,
+    };
+    if found.is_wrong() && truth.may_show(i, m, node) { Verdict::Grazing } else { found }
+}
+
+/// Whether the node that is shown meets the true one in the pixel, see above.
+fn meets(measured: &Buffers, truth: &Truth, node: Option<NodeId>, i: usize) -> bool {
+    let [width, height] = [measured.width, measured.height].map(i64::from);
+    let [x, y] = [i as i64 % width, i as i64 / width];
+    let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy)));
+    let mut inside = around.filter(|(x, y)| (0..width).contains(x) && (0..height).contains(y));
+    let mut is_beside = || inside.any(|(x, y)| truth.nodes[(y * width + x) as usize] == node);
+    depth_error(measured, truth, i) <= MEETING && (truth.tied[i] || is_beside())
 }
 
 /// The angle between two directions in radians, accurate for small ones, where the arc cosine is not.
@@ -110,28 +220,61 @@ fn quantile(sorted: &[f64], q: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
+
     use super::*;
     use crate::flat::NO_LEAF;
+    use crate::flat::truth::Glimpse;
 
     const FOOTPRINT: f64 = 0.01;
+    const BLOCK: u32 = 0;
+    const FLOOR: u32 = 1;
+    const WALL: u32 = 2;
+    const WIRE: u32 = 3;
 
-    /// A 10 by 20 picture: its upper half shows a wall that faces the eye at distance 4.
-    fn wall() -> Buffers {
+    /// A number in the buffers, as the node of an imagined scene.
+    fn node(code: u32) -> Option<NodeId> {
+        (code != NO_LEAF).then_some(NodeId(u64::from(code)))
+    }
+
+    fn truth_of(buffers: Buffers) -> Truth {
+        let nodes = buffers.leaf.iter().map(|code| node(*code)).collect();
+        let (margin, tied) = (vec![1.0; buffers.depth.len()], vec![false; buffers.depth.len()]);
+        Truth { buffers, margin, footprint: FOOTPRINT, nodes, tied, turned: HashMap::new() }
+    }
+
+    /// A 10 by 20 picture: its upper half shows a block that faces the eye at distance 4.
+    fn block() -> Buffers {
         let hit = |i: usize| i < 100;
         Buffers {
             width: 10,
             height: 20,
             depth: (0..200).map(|i| if hit(i) { 4.0 } else { f32::INFINITY }).collect(),
-            leaf: (0..200).map(|i| if hit(i) { 0 } else { NO_LEAF }).collect(),
+            leaf: (0..200).map(|i| if hit(i) { BLOCK } else { NO_LEAF }).collect(),
             normal: vec![[0.0, 0.0, 1.0]; 200],
             color: vec![[0; 4]; 200],
         }
     }
 
+    /// The same before a wall at distance 9, with a pocket in the block, 0.6 deep, and a wire at distance 3 that crosses
+    /// the lower half.
+    fn scene_before_a_wall() -> Buffers {
+        let mut all = block();
+        let mut put = |i: usize, depth: f32, leaf: u32| (all.depth[i], all.leaf[i]) = (depth, leaf);
+        (100..200).for_each(|i| put(i, 9.0, WALL));
+        [33, 34, 43, 44].into_iter().for_each(|i| put(i, 4.6, FLOOR));
+        (150..160).for_each(|i| put(i, 3.0, WIRE));
+        all
+    }
+
+    fn measure(measured: &Buffers, truth: &Truth) -> Accuracy {
+        Accuracy::of(measured, truth, &judge_all(measured, truth, Some(&node)))
+    }
+
     fn compare(change: impl Fn(&mut Buffers)) -> Accuracy {
-        let mut measured = wall();
+        let mut measured = block();
         change(&mut measured);
-        Accuracy::of(&measured, &wall(), FOOTPRINT, |_| false)
+        measure(&measured, &truth_of(block()))
     }
 
     #[test]
@@ -139,33 +282,97 @@ mod tests {
         let same = compare(|_| {});
         assert_eq!(same, Accuracy { pixels: 200, ..Accuracy::default() });
         assert!(same.faults().is_empty());
+        let before_a_wall = truth_of(scene_before_a_wall());
+        assert_eq!(measure(&scene_before_a_wall(), &before_a_wall).wrong, 0);
     }
 
     #[test]
     fn one_pixel_of_hit_or_miss_is_seen_and_refused() {
         for i in [0, 150] {
-            let flipped = compare(|b| b.depth[i] = if b.depth[i].is_finite() { f32::INFINITY } else { 4.0 });
-            assert_eq!(flipped.hit_miss_differs, 1);
+            let flipped = compare(|b| {
+                (b.depth[i], b.leaf[i]) = if b.depth[i].is_finite() { (f32::INFINITY, NO_LEAF) } else { (4.0, BLOCK) };
+            });
+            assert_eq!((flipped.wrong, flipped.hit_miss_differs), (1, 1));
             assert_eq!(flipped.faults().len(), 1);
         }
     }
 
     #[test]
-    fn grazing_pixels_are_counted_apart() {
-        let mut measured = wall();
-        measured.depth[7] = f32::INFINITY;
-        measured.depth[8] = f32::INFINITY;
-        let found = Accuracy::of(&measured, &wall(), FOOTPRINT, |i| i == 7);
-        assert_eq!((found.hit_miss_differs, found.grazing), (1, 1));
+    fn a_pocket_drawn_closed_and_a_missing_wire_before_a_wall_are_refused() {
+        let truth = truth_of(scene_before_a_wall());
+        for is_known in [false, true] {
+            // By its node, and where a face has the pocket's own node by its depth alone.
+            let mut closed = scene_before_a_wall();
+            for i in [33, 34, 43, 44] {
+                (closed.depth[i], closed.leaf[i]) = (4.0, if is_known { FLOOR } else { BLOCK });
+            }
+            let found = measure(&closed, &truth);
+            let kinds = if is_known { (4, 0, 4) } else { (4, 4, 0) };
+            assert_eq!((found.wrong, found.node_differs, found.depth_differs), kinds);
+            assert_eq!(found.hit_miss_differs, 0);
+            assert!(!found.faults().is_empty());
+        }
+        let mut cut = scene_before_a_wall();
+        (150..160).for_each(|i| (cut.depth[i], cut.leaf[i]) = (9.0, WALL));
+        let found = measure(&cut, &truth);
+        assert_eq!((found.wrong, found.node_differs), (10, 10));
+        assert!(!found.faults().is_empty());
+        // Whoever knows of no nodes sees it by the depth.
+        assert_eq!(Accuracy::of(&cut, &truth, &judge_all(&cut, &truth, None)).depth_differs, 10);
+    }
+
+    #[test]
+    fn another_node_is_right_only_where_both_meet() {
+        let truth = truth_of(scene_before_a_wall());
+        let shown = |i: usize, leaf: u32, away: f32| {
+            let mut measured = scene_before_a_wall();
+            measured.leaf[i] = leaf;
+            measured.depth[i] += away;
+            measure(&measured, &truth).node_differs
+        };
+        // Beside the pocket, and beside the wall.
+        assert_eq!((shown(32, FLOOR, 0.0), shown(95, WALL, 0.001)), (0, 0));
+        // At another depth, away from it, and what is nowhere near.
+        assert_eq!((shown(32, FLOOR, 0.01), shown(30, FLOOR, 0.0), shown(32, WIRE, 0.0)), (1, 1, 1));
+        // Where both weigh the same, at the same depth.
+        let mut blended = truth_of(block());
+        blended.tied[55] = true;
+        let other = |i: usize, away: f32| {
+            let mut measured = block();
+            (measured.leaf[i], measured.depth[i]) = (WALL, 4.0 + away);
+            measure(&measured, &blended).node_differs
+        };
+        assert_eq!((other(55, 0.0), other(55, 0.01), other(56, 0.0)), (0, 1, 1));
+    }
+
+    #[test]
+    fn grazing_pixels_are_those_that_a_turned_ray_explains() {
+        let miss = Glimpse { depth: f32::INFINITY, node: None };
+        let hit = |depth: f32| Glimpse { depth, node: node(BLOCK) };
+        let mut truth = truth_of(block());
+        // Edges: what is behind them is seen from beside. The third shows the same from all sides, as a sheet does.
+        truth.turned = HashMap::from([(7, vec![miss, hit(4.0)]), (9, vec![hit(4.0), hit(4.5)]), (11, vec![hit(4.0)])]);
+        let judged = |i: usize, depth: f32| {
+            let mut measured = block();
+            (measured.depth[i], measured.leaf[i]) = (depth, if depth.is_finite() { BLOCK } else { NO_LEAF });
+            judge(&measured, &truth, Some(&node), i)
+        };
+        assert_eq!([judged(7, f32::INFINITY), judged(9, 4.3)], [Verdict::Grazing; 2]);
+        assert_eq!([judged(8, f32::INFINITY), judged(11, f32::INFINITY)], [Verdict::HitOrMiss; 2]);
+        assert_eq!([judged(9, 4.7), judged(7, 4.3), judged(11, 4.3)], [Verdict::OffDepth; 3]);
+        let mut measured = block();
+        [7, 8].into_iter().for_each(|i| (measured.depth[i], measured.leaf[i]) = (f32::INFINITY, NO_LEAF));
+        let found = measure(&measured, &truth);
+        assert_eq!((found.wrong, found.grazing, found.grazing_share()), (1, 1, 0.005));
     }
 
     #[test]
     fn depth_is_measured_in_footprints() {
         let shifted = compare(|b| b.depth.iter_mut().for_each(|d| *d += 0.1 * 4.0 * 0.01));
         assert!((shifted.depth_p50 - 0.1).abs() < 1e-4 && (shifted.depth_max - 0.1).abs() < 1e-4, "{shifted:?}");
-        assert_eq!(shifted.faults().len(), 1);
+        assert_eq!((shifted.wrong, shifted.faults().len()), (0, 1));
         let one = compare(|b| b.depth[3] = 5.0);
-        assert_eq!((one.depth_p50, one.depth_p99), (0.0, 0.0));
+        assert_eq!((one.depth_p50, one.depth_p99, one.wrong), (0.0, 0.0, 1));
         assert!((one.depth_max - 25.0).abs() < 1e-9);
     }
 
@@ -186,7 +393,7 @@ mod tests {
         assert_eq!(compare(|b| b.depth[0] = f32::NAN).hit_miss_differs, 1);
         assert_eq!(compare(|b| b.depth[199] = f32::NAN).hit_miss_differs, 1);
         assert!(!compare(|b| b.normal.iter_mut().for_each(|n| *n = [f32::NAN; 3])).faults().is_empty());
-        let small = Buffers { width: 20, height: 10, ..wall() };
-        assert_eq!(Accuracy::of(&small, &wall(), FOOTPRINT, |_| true).hit_miss_differs, 200);
+        let small = Buffers { width: 20, height: 10, ..block() };
+        assert_eq!(measure(&small, &truth_of(block())).wrong, 200);
     }
 }

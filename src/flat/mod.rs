@@ -12,6 +12,7 @@
 //! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
 //! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
+//! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
 //! | `trace` | rays against the twin, with certainty instead of a step limit |
 //! | `shade` | light on surfaces, twin of `shaders/light` |
 //! | `truth` | the whole picture by `twin`, `trace` and `shade` |
@@ -52,6 +53,7 @@ mod survey;
 pub mod trace;
 pub mod truth;
 pub mod twin;
+pub mod unflattened;
 mod usage;
 pub mod view;
 

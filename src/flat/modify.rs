@@ -51,6 +51,8 @@ pub(super) type Splines = HashMap<*const Modifier, (Rc<[[f64; 4]]>, f64)>;
 pub const REPEAT_REACH: f64 = 1e6;
 /// Most copies that are evaluated for one point.
 pub const MAX_NEIGHBOURS: u32 = 64;
+/// More cells to one side are not counted, so that those of three axes can be multiplied; far more than [`MAX_NEIGHBOURS`].
+const MOST_SIDEWAYS: u32 = 1 << 16;
 /// Margin around an enclosure relative to its size.
 const MARGIN: f64 = 0.1;
 /// The least margin, in metres.
@@ -343,7 +345,7 @@ struct Cells {
 /// on. What is left out is farther away than an eighth of a cell.
 fn candidates(half: f64, spacing: f64) -> u32 {
     let reach = half / spacing;
-    if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).max(1) }
+    if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).clamp(1, MOST_SIDEWAYS) }
 }
 
 fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Modified, Refusal> {

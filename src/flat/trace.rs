@@ -1,18 +1,22 @@
 //! Rays against the twin, with certainty instead of a step limit.
 //!
 //! A ray advances by the field, which is a safe step, until the field's sign changes; secants and
-//! bisection then close in on the surface. Close to the surface it creeps by steps far below any pixel, so that a ray
-//! that only comes near goes on and is never taken for a hit.
+//! bisection then close in on the surface. Close to the surface it steps to where the field's slope along the ray says that
+//! it is 0, and a rounding beyond: so a sheet is entered however thin it is, and a ray that only comes near goes on and is
+//! never taken for a hit.
 //!
 //! Conventions that the renderer shares: what a ray hits is the first point where the field is
-//! negative, so a shape without volume is invisible; a ray that starts inside a solid hits at `near`.
+//! negative, so a shape without volume is invisible; a ray that starts inside a solid hits at `near`. The arrays are
+//! rounded to f32. Where a cut ends flush with a face, or two faces coincide, that rounding may leave a skin: between
+//! parallel faces of two shapes what is thinner than the rounding is nothing.
 
 use glam::DVec3;
 use thiserror::Error;
 
-use super::twin::{field, surface};
+use super::twin::{field, gradient, surface};
 use super::{Component, FlatScene};
 use crate::geometry::{Aabb, Ray};
+use crate::scene::NodeId;
 
 /// Where a ray meets the first component.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,10 +43,10 @@ pub struct March {
 
 /// A ray that could not be followed to its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("a ray was not at its end after {MAX_EVALUATIONS} evaluations of component {component}")]
+#[error("a ray was not at its end after {MAX_EVALUATIONS} evaluations of what node {node} is part of")]
 pub struct TraceError {
-    /// Index into [`FlatScene::components`].
-    pub component: u32,
+    /// The first node of the component.
+    pub node: NodeId,
 }
 
 /// A ray gives up after so many evaluations of one component, rather than never end.
@@ -50,13 +54,19 @@ pub const MAX_EVALUATIONS: u32 = 10_000_000;
 /// Margins beyond this angle are not measured further; a hundredth of a pixel and more.
 pub const CLEAR: f64 = 1e-4;
 
-/// Below this share of the distance the field counts as touching, and the ray creeps, at first by steps
-/// of this share.
+/// Below this share of the distance from the eye the field counts as touching.
 const TOUCHING: f64 = 1e-7;
-/// Longest creeping step, as a share of the distance: a shorter chord may be missed.
+/// Longest step where the field touches, as a share of the distance from the eye: a shorter chord may be missed, where the
+/// field's slope does not tell of it.
 const LONGEST_CREEP: f64 = 1e-5;
-/// A hit is known within this share of the distance.
-const PRECISION: f64 = 1e-14;
+/// What evaluating a field may round, relative to the numbers that it is evaluated with: some steps of f64.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// The depth of a skin that rounding to f32 may leave between two faces that should coincide, relative to the distance from
+/// the component's origin. Placing a face rounds three coefficients, a shift and a size, each by half a step, and a skin is
+/// twice as thick as it is deep.
+const SKIN: f64 = 2.0 * f32::EPSILON as f64;
+/// How far from opposite the normals of such faces may be: 1 + cos of the angle, a thousandth of a radian.
+const PARALLEL: f64 = 5e-7;
 
 /// The first surface on the ray between `near` and `far`. One ray at a time; [`Tracer`] is quicker for
 /// many.
@@ -121,7 +131,6 @@ impl<'a> Tracer<'a> {
 struct Line<'a> {
     flat: &'a FlatScene,
     component: &'a Component,
-    index: u32,
     origin: DVec3,
     direction: DVec3,
     evaluations: u32,
@@ -132,7 +141,7 @@ impl<'a> Line<'a> {
     fn new(flat: &'a FlatScene, index: u32, ray: &Ray) -> Self {
         let component = &flat.components[index as usize];
         let origin = ray.origin - component.origin;
-        Self { flat, component, index, origin, direction: ray.direction, evaluations: 0, margin: f64::INFINITY }
+        Self { flat, component, origin, direction: ray.direction, evaluations: 0, margin: f64::INFINITY }
     }
 
     fn at(&self, t: f64) -> DVec3 {
@@ -143,9 +152,14 @@ impl<'a> Line<'a> {
         field(self.flat, self.component, self.at(t))
     }
 
-    /// The size of the numbers at `t`: what rounding is relative to.
-    fn reach(&self, t: f64) -> f64 {
-        self.origin.length() + t
+    /// The field's slope along the ray.
+    fn slope(&self, t: f64) -> f64 {
+        gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
+    }
+
+    /// What the field's value at `t` may be off by rounding.
+    fn rounding(&self, t: f64) -> f64 {
+        ROUNDING * (self.origin.length() + t)
     }
 
     fn first_hit(&mut self, entry: f64, exit: f64) -> Result<Option<f64>, TraceError> {
@@ -157,13 +171,15 @@ impl<'a> Line<'a> {
         while t < exit {
             self.evaluations += 1;
             if self.evaluations > MAX_EVALUATIONS {
-                return Err(TraceError { component: self.index });
+                return Err(TraceError { node: self.flat.ids[self.component.first as usize] });
             }
-            creep = next_creep(creep, f, self.reach(t));
-            let next = (t + f.max(creep)).min(exit);
+            let next = (t + self.step(t, f, &mut creep)).min(exit);
             let g = self.field(next);
             if g < 0.0 {
-                return Ok(Some(self.close_in([t, f], [next, g])));
+                let hit = self.close_in([t, f], [next, g]);
+                let Some(behind) = self.skin_end(hit) else { return Ok(Some(hit)) };
+                (t, f, creep) = (behind, self.field(behind).max(0.0), 0.0);
+                continue;
             }
             // Where the field, seen from the eye, begins to widen again, the ray has passed something.
             if g * t > f * next {
@@ -175,6 +191,46 @@ impl<'a> Line<'a> {
         Ok(None)
     }
 
+    /// The next step from `t`, where the field is `f`: the field itself, or where that touches to a rounding beyond the
+    /// place where it should be 0. Steps at least double as long as it touches, so that a ray along a surface gets on.
+    fn step(&self, t: f64, f: f64, creep: &mut f64) -> f64 {
+        let rounding = self.rounding(t);
+        if f >= (TOUCHING * t).max(rounding) {
+            *creep = 0.0;
+            return f;
+        }
+        let longest = (LONGEST_CREEP * t).max(rounding);
+        *creep = (2.0 * *creep).clamp(rounding, longest);
+        let fall = -self.slope(t);
+        let straight = if fall > 0.0 { f / fall + rounding } else { 0.0 };
+        f.max(straight.min(longest)).max(*creep)
+    }
+
+    /// Where what the ray enters at `t` ends, if it is a skin that rounding left, see [`SKIN`].
+    fn skin_end(&self, t: f64) -> Option<f64> {
+        let thin = SKIN * self.at(t).length();
+        let is_deep = |f: f64| f < -thin;
+        if is_deep(self.field(t + 4.0 * thin)) {
+            return None;
+        }
+        let (mut end, mut least) = (t, self.rounding(t));
+        let farthest = t + (LONGEST_CREEP * t).max(8.0 * thin);
+        loop {
+            let f = self.field(end);
+            if end > t && f >= 0.0 {
+                break;
+            }
+            if is_deep(f) || end > farthest {
+                return None;
+            }
+            end += least.max(-f);
+            least *= 2.0;
+        }
+        let [front, back] = [t, end].map(|t| surface(self.flat, self.component, self.at(t)));
+        let normals = [front.gradient, back.gradient].map(|gradient| gradient.normalize_or_zero());
+        (front.leaf != back.leaf && normals[0].dot(normals[1]) < PARALLEL - 1.0).then_some(end)
+    }
+
     fn pass(&mut self, f: f64, t: f64) {
         self.margin = self.margin.min(f / t.max(f64::MIN_POSITIVE));
     }
@@ -182,7 +238,7 @@ impl<'a> Line<'a> {
     /// The sign change between a point outside and one inside, each with its field: secants, and the
     /// middle wherever a secant has not halved what is left.
     fn close_in(&self, mut outside: [f64; 2], mut inside: [f64; 2]) -> f64 {
-        let precision = PRECISION * self.reach(inside[0]);
+        let precision = 0.25 * self.rounding(inside[0]);
         let mut use_secant = true;
         loop {
             let width = inside[0] - outside[0];
@@ -206,13 +262,13 @@ impl<'a> Line<'a> {
     /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. Probes at growing
     /// distances: one of them is close to the middle of the chord, however short that is.
     fn depth(&self, t: f64) -> f64 {
-        let reach = self.reach(t);
         let mut deepest = 0.0;
-        let mut ahead = 1e-10 * reach;
-        while ahead < reach && deepest < CLEAR {
+        let first = (1e-10 * t).max(self.rounding(t));
+        let mut ahead = first;
+        while ahead < t && deepest < CLEAR {
             let depth = -self.field(t + ahead) / (t + ahead);
             // The first probes are no farther from the surface than rounding.
-            if depth < 0.0 && ahead > 1e-8 * reach {
+            if depth < 0.0 && ahead > 100.0 * first {
                 break;
             }
             deepest = f64::max(deepest, depth);
@@ -220,9 +276,4 @@ impl<'a> Line<'a> {
         }
         deepest
     }
-}
-
-/// The least step for a field of `f`, after one of `creep`: none where the field is not close to 0.
-fn next_creep(creep: f64, f: f64, reach: f64) -> f64 {
-    if f < TOUCHING * reach { (2.0 * creep).clamp(TOUCHING * reach, LONGEST_CREEP * reach) } else { 0.0 }
 }

@@ -1,17 +1,21 @@
 //! The whole picture as it should be: every pixel traced by the twin.
 
+use std::collections::HashMap;
+use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
+use super::compare::{GRAZING_ANGLE, WRONG_DEPTH, node_of};
 use super::mesh_rays::{Meshes, trace_meshes};
 use super::shade::{GpuLight, gpu_lights, shade_background, shade_decode, shade_encode, shade_surface};
-use super::trace::{TraceError, Tracer};
+use super::trace::{March, TraceError, Tracer};
 use super::twin::{SurfaceMaterial, surface};
 use super::{BACKGROUND_DEPTH, Buffers, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::{Camera, Ray};
 use crate::mesh::{MeshHit, TriangleMesh};
+use crate::scene::NodeId;
 
 /// A picture, and how sure each pixel of it is.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,8 +23,61 @@ pub struct Truth {
     /// The picture.
     pub buffers: Buffers,
     /// Per pixel, in pixel footprints: how far its ray is from hitting something else, see
-    /// [`super::trace::March::margin`]. A renderer in f32 may differ where this is about 0.
+    /// [`super::trace::March::margin`].
     pub margin: Vec<f32>,
+    /// The width of a pixel at distance 1, see [`Camera::footprint`].
+    pub footprint: f64,
+    /// Per pixel the node that is seen.
+    pub nodes: Vec<Option<NodeId>>,
+    /// Per pixel whether another node weighs as much in a blend, see [`super::twin::SurfacePoint::tied`].
+    pub tied: Vec<bool>,
+    /// Of pixels whose ray passes an edge, or runs along a surface, so closely that rounding may matter: what is seen by rays
+    /// turned to all sides by [`GRAZING_ANGLE`].
+    pub turned: HashMap<usize, Vec<Glimpse>>,
+}
+
+/// What a ray sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glimpse {
+    /// Distance along the ray; infinite where nothing is hit.
+    pub depth: f32,
+    /// The node.
+    pub node: Option<NodeId>,
+}
+
+/// Rays that are turned, evenly around the one of the pixel.
+const TURNS: u32 = 8;
+/// Pixels whose margin is less than so many times [`GRAZING_ANGLE`] are looked at by turned rays: margins are known within a
+/// factor of two.
+const NEAR_AN_EDGE: f64 = 2.0;
+
+impl Truth {
+    /// Whether rays turned within rounding see both something and nothing.
+    pub fn is_undecided(&self, pixel: usize) -> bool {
+        let own = self.buffers.depth[pixel].is_finite();
+        self.turned.get(&pixel).is_some_and(|seen| seen.iter().any(|seen| seen.depth.is_finite() != own))
+    }
+
+    /// Whether a ray turned within rounding sees this depth, and this node if that is known: depths between those that are
+    /// seen of the node are seen too, and a footprint more.
+    pub fn may_show(&self, pixel: usize, depth: f32, node: Option<Option<NodeId>>) -> bool {
+        let Some(seen) = self.turned.get(&pixel) else { return false };
+        let own = Glimpse { depth: self.buffers.depth[pixel], node: self.nodes[pixel] };
+        let all = seen.iter().chain([&own]).filter(|seen| node.is_none_or(|node| node == seen.node));
+        let depths: Vec<f64> = all.map(|seen| f64::from(seen.depth)).collect();
+        if !depth.is_finite() {
+            return depths.iter().any(|depth| !depth.is_finite());
+        }
+        let finite = || depths.iter().copied().filter(|depth| depth.is_finite());
+        let room = 1.0 + WRONG_DEPTH * self.footprint;
+        let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
+        let depth = f64::from(depth);
+        if node.is_some() {
+            return (least / room..=most * room).contains(&depth);
+        }
+        // Whose depths these are is not known: only what is seen counts, not what is between.
+        finite().any(|seen| (seen / room..=seen * room).contains(&depth))
+    }
 }
 
 /// Renders the scene through the centres of the pixels. `progress` hears the share that is done, from
@@ -45,6 +102,8 @@ pub fn truth(
         .collect::<Result<_, _>>()?;
     let mut buffers = Buffers::empty(width, height);
     let mut margin = Vec::with_capacity(buffers.depth.len());
+    let mut tied = Vec::with_capacity(buffers.depth.len());
+    let mut turned = HashMap::new();
     for (i, pixel) in rows.into_iter().flatten().enumerate() {
         buffers.depth[i] = pixel.depth;
         buffers.leaf[i] = pixel.leaf;
@@ -52,8 +111,13 @@ pub fn truth(
         let [r, g, b] = (shade_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
         buffers.color[i] = [r, g, b, 255];
         margin.push(pixel.margin);
+        tied.push(pixel.tied);
+        if !pixel.turned.is_empty() {
+            turned.insert(i, pixel.turned);
+        }
     }
-    Ok(Truth { buffers, margin })
+    let nodes = buffers.leaf.iter().map(|code| node_of(flat, *code)).collect();
+    Ok(Truth { buffers, margin, footprint: camera.footprint(f64::from(height)), nodes, tied, turned })
 }
 
 struct View<'a> {
@@ -70,19 +134,26 @@ struct Pixel {
     normal: DVec3,
     color: DVec3,
     margin: f32,
+    tied: bool,
+    turned: Vec<Glimpse>,
 }
+
+/// What a ray met: a field, if any, and a mesh that is not behind it, if any.
+type Met = (March, Option<(usize, MeshHit)>);
 
 impl View<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
         let size = DVec2::new(self.size[0].into(), self.size[1].into());
         let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
-        let mesh = trace_meshes(self.flat, self.meshes, &ray, self.camera.near, self.camera.far);
-        let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
-        let march = tracer.march(&ray, self.camera.near, limit)?;
-        let margin = (march.margin / self.camera.footprint(size.y)) as f32;
+        let (march, mesh) = self.meet(tracer, &ray)?;
+        let footprint = self.camera.footprint(size.y);
+        let margin = (march.margin / footprint) as f32;
+        let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
+        let mut tied = false;
         let (t, leaf, normal, material) = if let Some(hit) = march.hit {
             let component = &self.flat.components[hit.component as usize];
             let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
+            tied = point.tied;
             (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material)
         } else if let Some((index, hit)) = mesh {
             let (normal, material) = self.mesh_surface(index, &hit, ray.direction);
@@ -90,10 +161,37 @@ impl View<'_> {
         } else {
             let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
             let color = shade_background(ray.direction.y, sky, horizon);
-            return Ok(Pixel { depth: BACKGROUND_DEPTH, leaf: NO_LEAF, normal: DVec3::ZERO, color, margin });
+            let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+            let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
+            return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
         };
+        // Turned by the angle, the depth along a surface at this angle moves by more than a footprint.
+        is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
+        let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
         let color = self.shade(&ray, t, normal, &material);
-        Ok(Pixel { depth: t as f32, leaf, normal, color, margin })
+        Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
+    }
+
+    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Met, TraceError> {
+        let mesh = trace_meshes(self.flat, self.meshes, ray, self.camera.near, self.camera.far);
+        let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
+        Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
+    }
+
+    /// What rays turned by [`GRAZING_ANGLE`] to all sides see.
+    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Vec<Glimpse>, TraceError> {
+        let (right, up) = ray.direction.any_orthonormal_pair();
+        let glimpse = |i: u32| {
+            let (sine, cosine) = (TAU * f64::from(i) / f64::from(TURNS)).sin_cos();
+            let direction = ray.direction + (right * cosine + up * sine) * GRAZING_ANGLE;
+            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray })?;
+            Ok(match (march.hit, mesh) {
+                (Some(hit), _) => Glimpse { depth: hit.t as f32, node: node_of(self.flat, hit.leaf) },
+                (None, Some((index, hit))) => Glimpse { depth: hit.t as f32, node: Some(self.flat.meshes[index].id) },
+                (None, None) => Glimpse { depth: BACKGROUND_DEPTH, node: None },
+            })
+        };
+        (0..TURNS).map(glimpse).collect()
     }
 
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {

@@ -350,3 +350,35 @@ fn without_an_image_a_displacement_is_nothing() {
     let flat = modified(&[Modifier::Displacement { image, height: 0.0, tile, axis }]);
     assert_eq!(flatten(&flat, 0.0), flatten(&none, 0.0));
 }
+
+/// Cells of noise are counted by whole numbers of 32 bits, which end.
+#[test]
+fn noise_has_a_field_however_far_away() {
+    let noise = Modifier::Noise { amplitude: 0.1, size: 1e-3, octaves: 3, seed: 4 };
+    let flat = flatten(&modified(&[noise]), 0.0).unwrap();
+    for far in [1e6, 1e9, 1e15] {
+        for direction in [DVec3::ONE, DVec3::NEG_ONE, DVec3::X] {
+            assert!(field(&flat, &flat.components[0], direction * far) > 0.0, "{far}");
+        }
+    }
+}
+
+/// So many cells reach into each other that they cannot even be counted along three axes.
+#[test]
+fn large_content_in_tiny_cells_is_refused_by_its_node() {
+    let mut scene = Scene::new();
+    let repeat = Modifier::Repeat {
+        counts: [0; 3],
+        spacing: [1e-6; 3],
+        offset: [0.0; 3],
+        turn: 0.0,
+        mirrored: [false; 3],
+        carve_from: [0; 3],
+        carve_to: [0; 3],
+    };
+    let ball = Object { shape: Shape::Sphere { radius: 1e6 }, material: MaterialId(1) };
+    let node = Node::new("Ball", NodeKind::Object(ball)).modified(repeat);
+    let id = scene.insert(None, 0, node).unwrap();
+    let error = flatten(&scene, 0.0).unwrap_err();
+    assert_eq!(error.node, id);
+}

@@ -8,9 +8,9 @@ use image::RgbImage;
 use super::cases::Case;
 use super::sheet::strip;
 use crate::bench::BenchError;
-use crate::flat::compare::{Accuracy, GRAZING_ANGLE};
+use crate::flat::compare::{Accuracy, verdicts};
 use crate::flat::truth::{Truth, truth};
-use crate::flat::{Buffers, flatten};
+use crate::flat::{Buffers, FlatScene, flatten};
 use crate::render::{Method, Renderer};
 
 /// Width and height of the pictures, in pixels.
@@ -52,15 +52,18 @@ pub struct Figures {
     pub pixels: usize,
     /// Pixels where truth hits something.
     pub hits: usize,
-    /// Pixels that are wrong: one of picture and truth hits and the other does not, or their depths are more than a
-    /// footprint apart; not where the ray passes an edge so closely that 32-bit numbers cannot tell the sides apart.
+    /// By which of the methods it is drawn worst; the figures that follow are of that picture.
+    pub method: Method,
+    /// Pixels that are wrong, see [`crate::flat::compare`].
     pub wrong: usize,
+    /// Pixels that differ from the truth because their rays graze.
+    pub grazing: usize,
     /// Pixels whose depth or normal is no number.
     pub nan: usize,
     /// Components whose rays had not all ended.
     pub unfinished: usize,
     /// Pixels of pictures by other methods that hit something where the interpreter's picture does not, or the other way
-    /// round; not where the ray passes an edge as closely as for `wrong`.
+    /// round; not where the ray passes an edge so closely that rounding decides.
     pub differ: usize,
     /// Error of the depth in pixel footprints: 99th percentile.
     pub depth_p99: f64,
@@ -72,74 +75,70 @@ pub struct Figures {
     pub(super) strip: RgbImage,
 }
 
-/// See [`Figures::wrong`].
-fn is_wrong(measured: &Buffers, truth: &Truth, footprint: f64, i: usize) -> bool {
-    let (m, t) = (f64::from(measured.depth[i]), f64::from(truth.buffers.depth[i]));
-    let differs = if t.is_finite() && m.is_finite() { (m - t).abs() > footprint * t } else { m != t };
-    differs && (m.is_nan() || !is_grazing(truth, footprint, i))
-}
-
-/// Whether 32-bit numbers cannot tell on which side of an edge the ray passes.
-fn is_grazing(truth: &Truth, footprint: f64, i: usize) -> bool {
-    f64::from(truth.margin[i]) <= GRAZING_ANGLE / footprint
-}
-
 /// Whether a number of the pixel is none.
 fn is_nan(buffers: &Buffers, i: usize) -> bool {
     buffers.depth[i].is_nan() || buffers.normal[i].iter().any(|v| v.is_nan())
 }
 
 impl Case {
-    /// Draws it by the interpreter and compares it with the truth, then by the `others` and compares these with the first;
-    /// none where the view needs a surface that is not there.
+    /// Draws it by each of these methods and compares with the truth, and all with the first; none where the view needs a
+    /// surface that is not there.
     ///
     /// # Errors
     /// The scene is beyond a limit, the ray that finds the view has no end, or the device fails.
-    pub fn measure(&self, renderer: &mut Renderer, others: &[Method]) -> Result<Option<Figures>, BenchError> {
+    ///
+    /// # Panics
+    /// There is no method.
+    pub fn measure(&self, renderer: &mut Renderer, methods: &[Method]) -> Result<Option<Figures>, BenchError> {
         let flat = flatten(&self.subject.scene(self.place), 0.0)?;
         let aspect = f64::from(PICTURE[0]) / f64::from(PICTURE[1]);
         let Some(camera) = self.view.camera(&flat, self.place, aspect)? else { return Ok(None) };
-        let mut draw = |method| {
-            renderer.set_method(method);
-            renderer.render(&flat, &[], &camera, PICTURE, &mut |_| true)
-        };
-        let (measured, unfinished) = draw(Method::Interpreted)?;
-        let truth = truth(&flat, &[], &camera, PICTURE, &|_| ())?;
-        let footprint = camera.footprint(f64::from(PICTURE[1]));
-        let mut figures = Figures::of(&measured, &truth, footprint);
-        for method in others {
-            let (other, _) = draw(*method)?;
-            let hits = |buffers: &Buffers, i: usize| buffers.depth[i].is_finite();
-            let differs = |i: &usize| hits(&measured, *i) != hits(&other, *i) && !is_grazing(&truth, footprint, *i);
-            figures.differ += (0..figures.pixels).filter(differs).count();
+        let truth = truth(&flat, &[], &camera, PICTURE, &|_| ())
+            .map_err(|error| BenchError::Truth { scene: self.name(), error })?;
+        let mut all: Vec<(Figures, Buffers)> = Vec::new();
+        for method in methods {
+            renderer.set_method(*method);
+            let (measured, unfinished) = renderer.render(&flat, &[], &camera, PICTURE, &mut |_| true)?;
+            let figures = Figures { method: *method, ..Figures::of(&measured, &flat, &truth) };
+            all.push((Figures { unfinished: unfinished.len(), ..figures }, measured));
         }
-        figures.subject = self.name();
-        figures.circumstance.clone_from(&self.circumstance);
-        figures.unfinished = unfinished.len();
-        figures.allowed = self.allowed();
-        Ok(Some(figures))
+        let first = &all.first().expect("at least one method").1;
+        let hits = |buffers: &Buffers, i: usize| buffers.depth[i].is_finite();
+        let differs = |other: &Buffers, i: usize| hits(first, i) != hits(other, i) && !truth.is_undecided(i);
+        let differ = all.iter().map(|(of, other)| (0..of.pixels).filter(|i| differs(other, *i)).count()).sum();
+        let mut figures: Vec<Figures> = all.into_iter().map(|(figures, _)| figures).collect();
+        worst_first(&mut figures);
+        let unfinished = figures.iter().map(|of| of.unfinished).max().unwrap_or(0);
+        let nan = figures.iter().map(|of| of.nan).max().unwrap_or(0);
+        let depth_p99 = figures.iter().map(|of| of.depth_p99).fold(0.0, f64::max);
+        let (subject, circumstance, allowed) = (self.name(), self.circumstance.clone(), self.allowed());
+        let worst = figures.swap_remove(0);
+        Ok(Some(Figures { subject, circumstance, allowed, differ, unfinished, nan, depth_p99, ..worst }))
     }
 }
 
 impl Figures {
-    /// Compares a picture with the truth; `footprint` is the width of a pixel at distance 1.
-    pub fn of(measured: &Buffers, truth: &Truth, footprint: f64) -> Self {
-        let accuracy = Accuracy::against(measured, truth, footprint);
+    /// Compares a picture of these arrays with the truth.
+    pub fn of(measured: &Buffers, flat: &FlatScene, truth: &Truth) -> Self {
+        let verdicts = verdicts(measured, flat, truth);
+        let accuracy = Accuracy::of(measured, truth, &verdicts);
         let pixels = measured.depth.len();
-        let wrong: Vec<bool> = (0..pixels).map(|i| is_wrong(measured, truth, footprint, i)).collect();
+        let wrong: Vec<bool> = verdicts.iter().map(|verdict| verdict.is_wrong()).collect();
         Self {
             subject: String::new(),
             circumstance: String::new(),
             pixels,
             hits: truth.buffers.depth.iter().filter(|depth| depth.is_finite()).count(),
-            wrong: wrong.iter().filter(|wrong| **wrong).count(),
+            method: Method::Interpreted,
+            wrong: accuracy.wrong,
+            grazing: accuracy.grazing,
             nan: (0..pixels).filter(|&i| is_nan(measured, i)).count(),
             unfinished: 0,
             differ: 0,
             depth_p99: accuracy.depth_p99,
             depth_max: accuracy.depth_max,
             allowed: Allowed::USUAL,
-            strip: strip(measured, &truth.buffers, footprint, &wrong),
+            strip: strip(measured, &truth.buffers, truth.footprint, &wrong),
         }
     }
 
@@ -177,24 +176,26 @@ pub fn stress_table(figures: &[Figures], lines: usize) -> String {
     let sum = |of: fn(&Figures) -> usize| figures.iter().map(of).sum::<usize>();
     let beyond = figures.iter().filter(|one| !one.faults().is_empty()).count();
     let mut out = format!(
-        "{} cases, {} pixels, {} of them hits: {} wrong, {} no number, {} otherwise by kernels or lists; {} cases beyond \
-         what is allowed.\n\n",
+        "{} cases, {} pixels, {} of them hits: {} wrong by the worst method, {} graze, {} NaN, {} otherwise by kernels or \
+         lists; {} cases beyond what is allowed.\n\n",
         figures.len(),
         sum(|one| one.pixels),
         sum(|one| one.hits),
         sum(|one| one.wrong),
+        sum(|one| one.grazing),
         sum(|one| one.nan),
         sum(|one| one.differ),
         beyond,
     );
-    out += "| subject | circumstance | hits | wrong | NaN | unfinished | depth p99 | max | otherwise |\n";
-    out += "|---|---|--:|--:|--:|--:|--:|--:|--:|\n";
+    out += "| subject | circumstance | worst by | hits | wrong | grazing | NaN | unfinished | depth p99 | max | otherwise |\n";
+    out += "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|\n";
     for one in figures.iter().take(lines) {
-        let Figures { subject, circumstance, hits, wrong, nan, unfinished, depth_p99, depth_max, differ, .. } = one;
+        let Figures { subject, circumstance, method, hits, wrong, grazing, nan, unfinished, .. } = one;
+        let Figures { depth_p99, depth_max, differ, .. } = one;
         writeln!(
             out,
-            "| {subject} | {circumstance} | {hits} | {wrong} | {nan} | {unfinished} | {depth_p99:.5} | {depth_max:.4} | \
-             {differ} |"
+            "| {subject} | {circumstance} | {method:?} | {hits} | {wrong} | {grazing} | {nan} | {unfinished} | \
+             {depth_p99:.5} | {depth_max:.4} | {differ} |"
         )
         .expect("strings take all");
     }

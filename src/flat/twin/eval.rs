@@ -26,6 +26,9 @@ pub fn entry_field(flat: &FlatScene, component: &Component, index: usize, p: DVe
     operand(flat, component, index, at(p))
 }
 
+/// What 32-bit numbers may make of the weight of an operand: by how much it may be off one half where both weigh the same.
+pub const TIE: f64 = 16.0 * f32::EPSILON as f64;
+
 /// What the surface near a point is like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
@@ -35,14 +38,16 @@ pub struct SurfacePoint {
     pub gradient: DVec3,
     /// The leaf that outweighs the others at each joint: index into [`FlatScene::nodes`].
     pub leaf: u32,
+    /// Whether at a joint another one weighs as much, within [`TIE`].
+    pub tied: bool,
     /// The materials, mixed by the weights of the joints.
     pub material: SurfaceMaterial,
 }
 
 /// The field at `p` with everything that the surface there needs.
 pub fn surface(flat: &FlatScene, component: &Component, p: DVec3) -> SurfacePoint {
-    let Surface { distance, leaf, material } = fold(flat, component, entries(component), at(p));
-    SurfacePoint { distance: distance.v, gradient: distance.d, leaf, material }
+    let Surface { distance, leaf, tied, material } = fold(flat, component, entries(component), at(p));
+    SurfacePoint { distance: distance.v, gradient: distance.d, leaf, tied, material }
 }
 
 /// A mixture of materials; see [`FlatMaterial`].
@@ -122,6 +127,7 @@ impl<T: Real> Operand for T {
 struct Surface {
     distance: Dual,
     leaf: u32,
+    tied: bool,
     material: SurfaceMaterial,
 }
 
@@ -129,7 +135,7 @@ impl Operand for Surface {
     type Number = Dual;
     fn leaf(flat: &FlatScene, index: usize, distance: Dual) -> Self {
         let material = &flat.materials[flat.nodes[index].material as usize];
-        Self { distance, leaf: index as u32, material: material.into() }
+        Self { distance, leaf: index as u32, tied: false, material: material.into() }
     }
     fn distance(&self) -> Dual {
         self.distance
@@ -138,9 +144,11 @@ impl Operand for Surface {
         Self { distance, ..self }
     }
     fn joined(self, operand: Self, result: Joined<Dual>) -> Self {
+        let heavier = if result.weight > 0.5 { operand } else { self };
         Self {
             distance: result.value,
-            leaf: if result.weight > 0.5 { operand.leaf } else { self.leaf },
+            leaf: heavier.leaf,
+            tied: heavier.tied || (result.weight - 0.5).abs() <= TIE,
             material: self.material.mix(operand.material, result.weight),
         }
     }

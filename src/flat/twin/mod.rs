@@ -20,13 +20,13 @@ mod sdf;
 mod tube;
 
 pub use ellipsoid::sdf_ellipsoid;
-pub use eval::{SurfaceMaterial, SurfacePoint, entry_field, field, gradient, modified_field, surface};
+pub use eval::{SurfaceMaterial, SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
 pub use modifier::*;
 pub use op::{
     Joined, Joint, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe, op_union, op_xor,
 };
 pub use outline::{sdf_extrusion, sdf_outline, sdf_revolution, sdf_text};
 pub use real::{Dual, Real};
-pub use relief::{heightmap_height, ocean_height, sdf_heightmap, sdf_ocean, sdf_terrain, terrain_height};
+pub use relief::{heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height};
 pub use sdf::*;
 pub use tube::sdf_tube;

@@ -284,14 +284,15 @@ fn noise_corner(at: [i32; 3], seed: u32) -> f64 {
 }
 
 /// Value noise between −1 and 1.
-fn noise_value<T: Real>(p: Point<T>, seed: u32) -> T {
+pub fn noise_value<T: Real>(p: Point<T>, seed: u32) -> T {
     let cell = p.map(|x| x.value().floor());
     let w: Point<T> = std::array::from_fn(|i| {
         let u = p[i] - cell[i];
         u * u * (u * -2.0 + 3.0)
     });
     let corner = |i: usize| {
-        let at = std::array::from_fn(|axis| cell[axis] as i32 + (i >> axis & 1) as i32);
+        // Far away all cells are the last one.
+        let at = std::array::from_fn(|axis| (cell[axis] as i32).wrapping_add((i >> axis & 1) as i32));
         T::constant(noise_corner(at, seed))
     };
     let mix = |a: T, b: T, w: T| a + (b - a) * w;

@@ -35,6 +35,8 @@ pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let beside = trapezoid([z, along - 0.5 * slope], half, 0.0, slope);
     let to_face = if beside.value() > 0.0 { length2([over, beside]) } else { over.abs() };
     let beyond = [from_edge.positive(), (z - half).positive()];
-    let to_base = if beyond[0].value() > 0.0 { length3([beyond[0], beyond[1], y]) } else { y.abs() };
+    // At the base itself the field rises downwards.
+    let below = if y.value() <= 0.0 { -y } else { y };
+    let to_base = if beyond[0].value() > 0.0 { length3([beyond[0], beyond[1], y]) } else { below };
     to_face.min(to_base)
 }

@@ -10,10 +10,28 @@ pub fn extruded<T: Real>(d: [T; 2]) -> T {
 
 /// From the nearest point of a segment to a point given from the segment's start.
 pub fn from_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> [T; N] {
+    let t = along_segment(from_start, axis);
+    std::array::from_fn(|i| from_start[i] - t * axis[i])
+}
+
+/// Where the nearest point of a segment is, as a share of its length, 0 and 1 at the ends.
+fn along_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> T {
     let square: f64 = axis.iter().map(|a| a * a).sum();
     let dot = from_start.iter().zip(axis).fold(T::constant(0.0), |sum, (p, a)| sum + *p * a);
-    let t = clamp(dot * square.max(1e-30).recip(), 0.0, 1.0);
-    std::array::from_fn(|i| from_start[i] - t * axis[i])
+    clamp(dot * square.max(1e-30).recip(), 0.0, 1.0)
+}
+
+/// How a point of the plane, given from a segment's start, lies to the segment: the vector from the nearest point, how far
+/// to the right of the segment's line it is, and whether the nearest point lies between the ends.
+///
+/// Between the ends that vector is along the line's normal. Close to the segment only rounding is left of it, so that
+/// neither its direction nor its side mean anything there: both follow from the line.
+fn beside_segment<T: Real>(from_start: [T; 2], axis: [f64; 2]) -> ([T; 2], T, bool) {
+    let t = along_segment(from_start, axis);
+    let side = [0, 1].map(|i| from_start[i] - t * axis[i]);
+    let length = axis[0].hypot(axis[1]).max(1e-300);
+    let over = from_start[0] * (axis[1] / length) - from_start[1] * (axis[0] / length);
+    (side, over, t.value() > 0.0 && t.value() < 1.0)
 }
 
 /// The value within limits, constant beyond them.
@@ -44,13 +62,13 @@ pub fn trapezoid<T: Real>(at: [T; 2], bottom: f64, top: f64, height: f64) -> T {
     let half_height = 0.5 * height;
     let cap_radius = if at[1].value() < 0.0 { bottom } else { top };
     let cap = [(at[0] - cap_radius).positive(), at[1].abs() - half_height];
-    let slope = [bottom - top, -height];
-    let from_top = [at[0] - top, at[1] - half_height];
-    let side = from_segment(from_top, slope);
-    let inside = side[0].value() < 0.0 && cap[1].value() < 0.0;
+    // The way from top to bottom has the inside on its right.
+    let (side, over, between) = beside_segment([at[0] - top, at[1] - half_height], [bottom - top, -height]);
+    let over = -over;
+    let inside = (if between { over } else { side[0] }).value() < 0.0 && cap[1].value() < 0.0;
     // Within the cap's radius the way to it is straight: its length keeps a derivative at 0.
     let to_cap = if cap[0].value() > 0.0 { length2(cap) } else { cap[1].abs() };
-    let to_side = length2(side);
+    let to_side = if between { over.abs() } else { length2(side) };
     let least = if to_cap.value() <= to_side.value() { to_cap } else { to_side };
     if inside { -least } else { least }
 }
@@ -58,10 +76,9 @@ pub fn trapezoid<T: Real>(at: [T; 2], bottom: f64, top: f64, height: f64) -> T {
 /// Distance to a segment, negative on its left.
 pub fn edge<T: Real>(at: [T; 2], start: [f64; 2], end: [f64; 2]) -> T {
     let axis = [end[0] - start[0], end[1] - start[1]];
-    let side = from_segment([at[0] - start[0], at[1] - start[1]], axis);
-    let is_left = (side[0] * axis[1] - side[1] * axis[0]).value() < 0.0;
-    let distance = length2(side);
-    if is_left { -distance } else { distance }
+    let (side, over, between) = beside_segment([at[0] - start[0], at[1] - start[1]], axis);
+    let distance = if between { over.abs() } else { length2(side) };
+    if over.value() < 0.0 { -distance } else { distance }
 }
 
 /// A number of sides with cosine and sine of half the angle that each takes, see [`crate::scene::Sides`].

@@ -1,0 +1,243 @@
+//! The arrays have the field of the scene that they were made of: what flattening makes is compared with an evaluator that
+//! walks the scene's tree in f64.
+
+use glam::{DQuat, DVec3};
+use isolith::flat::trace::Tracer;
+use isolith::flat::twin::field;
+use isolith::flat::unflattened::SceneField;
+use isolith::flat::{FlatScene, flatten};
+use isolith::gallery;
+use isolith::geometry::Ray;
+use isolith::scene::{
+    Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator,
+    RadiusUnit, Scene, Shape, ShapeKind,
+};
+
+use crate::contract::modifiers::{modified, samples};
+use crate::contract::samples::Random;
+use crate::contract::trees::{Recipe, tree};
+
+/// Rays through each component, and points at random in it.
+const RAYS: usize = 60;
+const POINTS: usize = 120;
+/// What rounding the arrays to f32 may move a surface by, relative to the size of the component: some steps of each number
+/// that places it.
+const ROUNDED: f64 = 4e-6;
+/// The values are the same so near to the surface, relative to the component's size. Farther away what is cut from several
+/// components is cut only from those that it can reach.
+const NEAR: f64 = 0.02;
+/// Warnings of a modifier that does less than the scene says.
+const LESSENED: [&str; 3] = ["is bent by", "is tapered by", "has no end"];
+
+/// The least of the fields of all components.
+fn of_arrays(flat: &FlatScene, p: DVec3) -> f64 {
+    flat.components.iter().map(|c| field(flat, c, p - c.origin)).fold(f64::INFINITY, f64::min)
+}
+
+/// Compares both near the surface of each component and elsewhere; how many points told the sides apart, or the first
+/// disagreement.
+fn compare(flat: &FlatScene, tree: &SceneField, random: &mut Random) -> Result<usize, String> {
+    let mut tracer = Tracer::new(flat);
+    let mut told = 0;
+    for component in &flat.components {
+        let is_finite = component.bounds.is_finite();
+        let (center, reach) =
+            if is_finite { (component.bounds.center(), component.bounds.half().length()) } else { (DVec3::ZERO, 3.0) };
+        let center = center + component.origin;
+        let room = ROUNDED * (reach + component.bounds.center().length().min(1e12));
+        let mut points: Vec<DVec3> = (0..POINTS).map(|_| center + random.point(1.1 * reach)).collect();
+        for _ in 0..RAYS {
+            let origin = center + random.direction() * (1.5 * reach);
+            let direction = (center + random.point(0.7 * reach) - origin).normalize_or(DVec3::X);
+            let Ok(march) = tracer.march(&Ray { origin, direction }, 1e-9 * reach, 4.0 * reach) else { continue };
+            let Some(hit) = march.hit else { continue };
+            let steps = [0.0, 1e-4, -1e-4, 3e-3, -3e-3, 0.03];
+            points.extend(steps.map(|step| origin + direction * (hit.t + step * reach)));
+        }
+        for p in points {
+            let (arrays, scene) = (of_arrays(flat, p), tree.value(p));
+            if scene.abs() > room {
+                if (arrays < 0.0) != (scene < 0.0) {
+                    return Err(format!("at {p} the arrays say {arrays:e}, the scene {scene:e}, rounding is {room:e}"));
+                }
+                told += 1;
+            }
+            let is_near = scene.abs() < NEAR * reach;
+            if tree.is_exact() && is_near && (arrays - scene).abs() > room + 1e-5 * scene.abs() {
+                return Err(format!(
+                    "at {p} the arrays say {arrays:e}, the scene {scene:e}: off by more than {room:e}"
+                ));
+            }
+        }
+    }
+    Ok(told)
+}
+
+/// The gallery; of the largest scenes the smaller ones of their kind are enough.
+fn scenes() -> impl Iterator<Item = (&'static str, Scene)> {
+    gallery::all().into_iter().filter(|(name, _)| *name != "random-577")
+}
+
+#[test]
+fn the_arrays_of_every_example_are_the_scene() {
+    let (mut faults, mut told) = (Vec::new(), 0);
+    for (name, scene) in scenes() {
+        let flat = flatten(&scene, 0.0).unwrap();
+        let tree = SceneField::new(&scene).unwrap_or_else(|error| panic!("{name}: {error}"));
+        match compare(&flat, &tree, &mut Random::new(1)) {
+            Ok(points) => told += points,
+            Err(fault) => faults.push(format!("{name}: {fault}")),
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(told > 50_000, "{told}");
+}
+
+/// The scene with all that is hidden shown, and blends measured in metres.
+fn plain(scene: &Scene) -> Scene {
+    let mut plain = scene.clone();
+    for node in scene.nodes() {
+        let mut node = Node { visible: true, ..Node::clone(node) };
+        if let NodeKind::Group(group) = &mut node.kind {
+            group.blend.unit = RadiusUnit::Metres;
+        }
+        plain.replace(node).unwrap();
+    }
+    plain
+}
+
+#[test]
+fn the_arrays_of_random_trees_are_the_scene() {
+    let (mut faults, mut told) = (Vec::new(), 0);
+    for seed in 0..60 {
+        let recipe = Recipe { blends: seed % 3 != 0, stretching: seed % 2 == 1, kinds: ShapeKind::ALL };
+        let scene = plain(&tree(seed, recipe));
+        let flat = flatten(&scene, 0.0).unwrap();
+        let tree = SceneField::new(&scene).unwrap_or_else(|error| panic!("tree {seed}: {error}"));
+        match compare(&flat, &tree, &mut Random::new(seed)) {
+            Ok(points) => told += points,
+            Err(fault) => faults.push(format!("tree {seed}: {fault}")),
+        }
+    }
+    assert!(faults.is_empty(), "{} of 60:\n{}", faults.len(), faults.join("\n"));
+    assert!(told > 10_000, "{told}");
+}
+
+/// Whether flattening does what the scene says, and this evaluator can say what that is.
+fn both(scene: &Scene) -> Option<(FlatScene, SceneField)> {
+    let flat = flatten(scene, 0.0).ok()?;
+    let is_whole = !flat.warnings.iter().any(|w| LESSENED.iter().any(|lessened| w.reason.contains(lessened)));
+    if is_whole { Some((flat, SceneField::new(scene).ok()?)) } else { None }
+}
+
+/// One ball under each modifier, with a box that is blended with it where the modifier keeps values.
+#[test]
+fn the_arrays_of_every_modifier_are_the_scene() {
+    let mut told = 0;
+    for (seed, &kind) in ModifierKind::ALL.iter().enumerate() {
+        for modifier in samples(kind, 4) {
+            let scene = plain(&modified(std::slice::from_ref(&modifier)));
+            let Some((flat, tree)) = both(&scene) else { continue };
+            match compare(&flat, &tree, &mut Random::new(seed as u64)) {
+                Ok(points) => told += points,
+                Err(fault) => panic!("{modifier:?}: {fault}"),
+            }
+        }
+    }
+    assert!(told > 5_000, "{told}");
+}
+
+#[test]
+fn a_scene_that_differs_by_a_millimetre_is_told() {
+    for (name, scene) in scenes() {
+        let Some(changed) = moved(&scene) else { continue };
+        let flat = flatten(&scene, 0.0).unwrap();
+        let tree = SceneField::new(&changed).unwrap();
+        let found = (0..8).find_map(|seed| compare(&flat, &tree, &mut Random::new(seed)).err());
+        assert!(found.is_some(), "{name}: a millimetre is not seen");
+    }
+}
+
+/// The scene with its largest shape moved by a millimetre.
+fn moved(scene: &Scene) -> Option<Scene> {
+    let size = |node: &Node| match &node.kind {
+        NodeKind::Object(Object { shape, .. }) if node.visible && shape.bounds().is_finite() => {
+            Some(shape.bounds().half().length())
+        }
+        _ => None,
+    };
+    let of_each = scene.nodes().iter().filter_map(|node| Some((size(node)?, node)));
+    let (_, largest) = of_each.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mut node = Node::clone(largest);
+    node.transform.translation += DVec3::splat(1e-3 / 3.0_f64.sqrt());
+    let mut changed = scene.clone();
+    changed.replace(node).unwrap();
+    Some(changed)
+}
+
+/// Two balls in a blend and a box cut from them, the whole turned.
+fn blended() -> Scene {
+    let mut scene = Scene::new();
+    let group = Group::new(Operator::Union, Blend::new(BlendKernel::Circular, 0.2));
+    let turn = DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7);
+    let parent = scene.insert(None, 0, Node::new("Group", NodeKind::Group(group)).rotated(turn)).unwrap();
+    let object = |shape| Node::new("Object", NodeKind::Object(Object { shape, material: MaterialId(1) }));
+    let ball = |x: f64| object(Shape::Sphere { radius: 0.5 }).at(DVec3::X * x);
+    let cut = object(Shape::Box { size: [0.4, 2.0, 0.4], rounding: 0.0 }).at(DVec3::X * 0.4).negative();
+    for node in [ball(-0.4), ball(0.4), cut] {
+        scene.insert(Some(parent), usize::MAX, node).unwrap();
+    }
+    scene
+}
+
+#[test]
+fn whatever_flattening_could_forget_is_told() {
+    type Change = fn(&mut Node);
+    let changes: [(&str, Change); 6] = [
+        ("the radius of a blend", |node| {
+            if let NodeKind::Group(group) = &mut node.kind {
+                group.blend.radius = 0.21;
+            }
+        }),
+        ("the kernel of a blend", |node| {
+            if let NodeKind::Group(group) = &mut node.kind {
+                group.blend.kernel = BlendKernel::Quadratic;
+            }
+        }),
+        ("what is cut away", |node| node.negative = false),
+        ("who keeps apart", |node| node.apart = if node.id.0 == 3 { vec![NodeId(2)] } else { vec![] }),
+        ("a modifier", |node| {
+            if node.id.0 == 2 {
+                node.modifiers.push(Modifier::Round { radius: 1e-3 }.into());
+            }
+        }),
+        ("what is hidden", |node| node.visible = node.id.0 != 3),
+    ];
+    let flat = flatten(&blended(), 0.0).unwrap();
+    let differs = |scene: &Scene| compare(&flat, &SceneField::new(scene).unwrap(), &mut Random::new(1)).is_err();
+    assert!(!differs(&blended()));
+    for (what, change) in changes {
+        let mut changed = blended();
+        for node in blended().nodes() {
+            let mut node = Node::clone(node);
+            change(&mut node);
+            changed.replace(node).unwrap();
+        }
+        assert!(differs(&changed), "{what}");
+    }
+}
+
+#[test]
+fn what_only_flattening_decides_is_refused() {
+    let mut scene = blended();
+    let mut group = Node::clone(&scene.nodes()[0]);
+    if let NodeKind::Group(group) = &mut group.kind {
+        group.blend.unit = RadiusUnit::Size;
+    }
+    scene.replace(group).unwrap();
+    assert_eq!(SceneField::new(&scene).err().map(|error| error.node), Some(NodeId(3)));
+    let mut scene = blended();
+    let twisted = Node::clone(&scene.nodes()[1]).modified(Modifier::Twist { angle: 30.0 });
+    scene.replace(twisted).unwrap();
+    assert!(SceneField::new(&scene).err().is_some_and(|error| error.to_string().contains("only the surface")));
+}
