@@ -146,7 +146,7 @@ fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
         let wrong: Vec<_> = (0..picture.depth.len()).filter(is_wrong).collect();
         let shown = picture.depth.iter().filter(|d| d.is_finite()).count();
         assert!(shown > picture.depth.len() / 200, "{name}: {shown} pixels show something");
-        let accuracy = isolith::flat::Accuracy::against(&picture, &right, footprint);
+        let accuracy = isolith::flat::Accuracy::against(&picture, &subject.flat, &right);
         if !wrong.is_empty() || !accuracy.faults().is_empty() {
             let first: Vec<_> = wrong.iter().take(3).map(|i| (i, picture.depth[*i], right.buffers.depth[*i])).collect();
             all.push(format!("{name}, {method:?}: {} wrong, {first:?}, {accuracy:?}", wrong.len()));
