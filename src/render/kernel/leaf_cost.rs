@@ -218,12 +218,9 @@ mod tests {
         let sphere = Shape::Sphere { radius: 0.3 };
         let ellipsoid = Shape::Ellipsoid { radii: [0.3, 0.2, 0.15] };
         let torus = Shape::Torus { major_radius: 0.3, minor_radius: 0.1 };
-        for (shapes, few, many) in [
-            (&[sphere.clone()][..], 24, 60),
-            (&[torus.clone()], 24, 60),
-            (&[ellipsoid], 6, 20),
-            (&[sphere, torus], 15, 40),
-        ] {
+        let both = [sphere, torus];
+        let [spheres, tori] = [&both[..1], &both[1..]];
+        for (shapes, few, many) in [(spheres, 24, 60), (tori, 24, 60), (&[ellipsoid], 6, 20), (&both[..], 15, 40)] {
             assert!(!cheaper(shapes, few), "{few} of {shapes:?}");
             assert!(cheaper(shapes, many), "{many} of {shapes:?}");
         }
