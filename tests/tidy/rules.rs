@@ -27,7 +27,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("gltf", &["mesh"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),
-    ("ab_glyph", &["font", "bench"]),
+    ("ab_glyph", &["bench"]),
+    ("harfrust", &["font"]),
+    ("unicode_bidi", &["font"]),
+    ("skrifa", &["font"]),
+    ("exr", &["scene"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];
