@@ -9,6 +9,7 @@ mod drawn;
 mod error;
 pub mod file;
 mod heights;
+mod image_budget;
 mod light;
 pub mod limits;
 mod material;
@@ -17,6 +18,7 @@ mod node;
 mod operator;
 mod shape;
 mod table;
+mod whole;
 
 pub use attachment::{Attached, Attachment, Content};
 pub use axis::Axis;
