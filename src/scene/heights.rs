@@ -129,7 +129,8 @@ impl Heights {
         S: Primitive + 'static,
         Luma<S>: image::Pixel<Subpixel = S>,
     {
-        let heights = if square_side(image) > 1 { grid(&means(image, white), 1.0) } else { grid(image, white) };
+        let heights =
+            if square_side(image) > 1 { grid::<f32>(&means(image, white), 1.0) } else { grid::<S>(image, white) };
         turned(Self { pixels, ..heights }, orientation)
     }
 }

@@ -101,7 +101,7 @@ mod tests {
         let list = |count: usize| format!("[{}]", vec!["0"; count].join(","));
         let scene = |nodes: &str| format!(r#"{{"isolith": 1, "nodes": [{nodes}]}}"#);
         let small = format!(r#"{{"id": 1, "x": {}}}"#, list(MAX_ENTRY_VALUES / 2));
-        assert!(weigh(&scene(&vec![small.as_str(); 9].join(","))).is_ok());
+        assert!(weigh(&scene(&[small.as_str(); 9].join(","))).is_ok());
         let large = format!(r#"{{"id": 2, "name": "a, \"b\" [", "x": {}}}"#, list(MAX_ENTRY_VALUES));
         let found = weigh(&scene(&[&*small, &*large].join(","))).unwrap_err();
         assert_eq!((&*found.field, &*found.name, found.id), ("nodes[1]", "a, \"b\" [", Some(2)));
