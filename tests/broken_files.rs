@@ -416,7 +416,8 @@ fn bombs_are_refused_before_they_grow() {
     let deep = "[".repeat(1_000_000);
     for text in [deep.clone(), GOOD.replacen("0.5}", &format!("{deep}}}"), 1), format!("{{\"isolith\": {deep}")] {
         let reason = refused(text.as_bytes()).reason;
-        assert!(reason.contains("recursion limit") || reason.contains("invalid type"), "{reason}");
+        let reasons = ["recursion limit", "invalid type", "holds more than 65536 values"];
+        assert!(reasons.iter().any(|part| reason.contains(part)), "{reason}");
     }
     // More entries than allowed.
     let camera = r#"{"id": 1, "camera": {"fov_y": 40, "near": 1, "far": 2}}"#;

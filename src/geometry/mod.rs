@@ -5,12 +5,14 @@
 
 mod aabb;
 mod arc;
+mod arc_union;
 mod camera;
 mod ray;
 mod transform;
 
 pub use aabb::Aabb;
 pub use arc::{ArcPiece, biarc, smooth_curve, straight_curve};
+pub use arc_union::{TooDense, arc_union};
 pub use camera::Camera;
 pub use ray::Ray;
 pub use transform::{Transform, singular_values};

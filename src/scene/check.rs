@@ -3,6 +3,7 @@
 
 use glam::DQuat;
 
+use super::drawn::text_fault;
 use super::limits::{
     ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, MAX_TEXT, POSITION,
     RANGE, SCALE, SHININESS, STEPS, THICKNESS, UNIT,
@@ -173,6 +174,11 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
             ParamValue::Text(text) => letters(param.name, &text)?,
             ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
         }
+    }
+    if let Shape::Text { text, font, .. } = shape
+        && let Some(reason) = text_fault(text, font)
+    {
+        return Err(Fault::new(if font.name().is_some() { "font" } else { "text" }, reason));
     }
     Ok(())
 }

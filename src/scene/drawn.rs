@@ -107,15 +107,24 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
     })
 }
 
-/// The outlines of a text whose font is `size` metres high.
+/// The outlines of a text whose font is `size` metres high; nothing where [`text_fault`] finds something.
 pub fn text_outline(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
     // Without a size, or without ink, a point is left.
     if size < LEAST_TEXT {
         return Vec::new();
     }
     let sized =
-        |arc: ArcPiece| ArcPiece { middle: arc.middle * size, bend: arc.bend / size, reach: arc.reach * size, ..arc };
-    text_curve(text, font.content()).into_iter().map(sized).collect()
+        |arc: &ArcPiece| ArcPiece { middle: arc.middle * size, bend: arc.bend / size, reach: arc.reach * size, ..*arc };
+    text_curve(text, font.content()).map(|arcs| arcs.iter().map(sized).collect()).unwrap_or_default()
+}
+
+/// Why a text cannot be drawn with its font: that would take too much.
+pub(super) fn text_fault(text: &str, font: &Attachment<Face>) -> Option<String> {
+    let reason = text_curve(text, font.content()).err()?;
+    Some(match font.name() {
+        Some(name) => format!("{name:?} cannot draw this text: {reason}"),
+        None => reason,
+    })
 }
 
 /// A box around a text; flat along Z.

@@ -37,6 +37,9 @@ pub const MAX_PATH: usize = 1_024;
 pub const MAX_NAME: usize = 256;
 /// Largest scene file in bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
+/// Most values in one node, material or other entry of a file: numbers, texts, and lists and braces around them. The largest
+/// node that passes all other limits has some 10 000.
+pub const MAX_ENTRY_VALUES: usize = 65_536;
 
 /// Fewest and most points of a curve.
 pub const POINTS: [usize; 2] = [2, 256];
@@ -47,6 +50,10 @@ pub const CORNERS: [usize; 2] = [3, 256];
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
 /// Widest and highest image that is read, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 8_192;
+/// Most bytes that the pixels of an image take while it is read.
+pub const MAX_IMAGE_BYTES: u64 = 512 << 20;
+/// Most pixels of all images of a scene together, each file counted once: so many are read within seconds.
+pub const MAX_SCENE_PIXELS: u64 = 1 << 27;
 /// Most heights along a side that an image gives; larger images are made smaller.
 pub const MAX_HEIGHTS: usize = 256;
 

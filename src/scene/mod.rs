@@ -10,6 +10,7 @@ mod empty_set;
 mod error;
 pub mod file;
 mod heights;
+mod image_budget;
 mod light;
 pub mod limits;
 mod material;
@@ -18,6 +19,7 @@ mod node;
 mod operator;
 mod shape;
 mod table;
+mod whole;
 
 pub use attachment::{Attached, Attachment, Content};
 pub use axis::Axis;

@@ -7,14 +7,14 @@
 
 use glam::DVec3;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::attachment::{Attached, Attachment};
 use super::heights::Heights;
 use super::limits::{
     AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, COUNT, CURVATURE, POSITION, RELIEF, SIZE, SPACING, TAPER, THICKNESS, TILE,
 };
-use super::{Axis, Limits};
+use super::{Axis, Limits, whole};
 
 /// Most modifiers of one node.
 pub const MAX_MODIFIERS: usize = 32;
@@ -41,13 +41,17 @@ pub enum ModifierValue {
 }
 
 /// A Rust type that a parameter can have.
-trait Field: Sized {
+trait Field: for<'de> Deserialize<'de> {
     fn to_value(&self) -> ModifierValue;
     fn from_value(value: ModifierValue) -> Option<Self>;
+    /// From a file.
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::deserialize(deserializer)
+    }
 }
 
 macro_rules! fields {
-    ($($ty:ty = $variant:ident;)+) => { $(
+    ($($ty:ty = $variant:ident $(by $read:path)?;)+) => { $(
         impl Field for $ty {
             fn to_value(&self) -> ModifierValue {
                 ModifierValue::$variant(*self)
@@ -55,14 +59,17 @@ macro_rules! fields {
             fn from_value(value: ModifierValue) -> Option<Self> {
                 if let ModifierValue::$variant(v) = value { Some(v) } else { None }
             }
+            $( fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                $read(deserializer)
+            } )?
         }
     )+ };
 }
 
 fields! {
     f64 = Scalar;
-    u32 = Count;
-    [u32; 3] = Counts;
+    u32 = Count by whole::read;
+    [u32; 3] = Counts by whole::read_three;
     bool = Flag;
     [bool; 3] = Flags;
     Axis = Axis;
@@ -105,7 +112,7 @@ macro_rules! modifiers {
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Modifier {
-            $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ $param: $type, )* }, )+
+            $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ #[serde(deserialize_with = "Field::read")] $param: $type, )* }, )+
         }
 
         /// Which modifier, without its parameters. The number is the code that the GPU reads.

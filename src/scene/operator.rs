@@ -231,7 +231,7 @@ pub struct Blend {
     #[serde(default, skip_serializing_if = "is_default")]
     pub unit: RadiusUnit,
     /// How many steps or columns; only those kernels have them.
-    #[serde(default = "few_steps", skip_serializing_if = "is_few_steps")]
+    #[serde(default = "few_steps", skip_serializing_if = "is_few_steps", deserialize_with = "super::whole::read")]
     pub steps: u32,
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
+use super::image_budget;
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
 use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
@@ -181,6 +182,7 @@ impl Scene {
             Some(id) => self.depths[self.group_index(id)?] as usize + 1,
         };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
+        image_budget::check(&self.nodes, None, &subtree)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
@@ -252,6 +254,7 @@ impl Scene {
         if has_children && !matches!(node.kind, NodeKind::Group(_)) {
             return Err(SceneError::NotAGroup(node.id));
         }
+        image_budget::check(&self.nodes, Some(&self.nodes[index]), std::slice::from_ref(&node))?;
         let parent = self.nodes[index].parent;
         self.nodes[index] = Arc::new(Node { parent, ..node });
         Ok(())

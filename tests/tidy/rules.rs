@@ -28,7 +28,11 @@ const CRATES: &[(&str, &[&str])] = &[
     ("zbus", &["editor"]),
     ("clap", &["cli"]),
     ("plotters", &["bench"]),
-    ("ab_glyph", &["font", "bench"]),
+    ("ab_glyph", &["bench"]),
+    ("harfrust", &["font"]),
+    ("unicode_bidi", &["font"]),
+    ("skrifa", &["font"]),
+    ("exr", &["scene"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];

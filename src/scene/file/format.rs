@@ -15,7 +15,7 @@ use crate::geometry::Transform;
 use crate::scene::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{
     CameraNode, Environment, Group, Joining, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node,
-    NodeId, NodeKind, Object,
+    NodeId, NodeKind, Object, whole,
 };
 
 /// The version that is written; every version up to it is read.
@@ -25,7 +25,12 @@ pub const VERSION: u64 = 1;
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a scene in braces")]
 pub(super) struct SceneV1 {
+    /// Where this schema is kept, for text editors; nothing to the program.
+    #[serde(rename = "$schema", default, skip_serializing)]
+    #[expect(dead_code, reason = "read, so that it is no unknown field, and described in the schema")]
+    pub schema: Option<String>,
     /// Version of the format.
+    #[serde(deserialize_with = "whole::read")]
     pub isolith: u64,
     /// What surrounds the scene.
     #[serde(default)]
@@ -34,7 +39,7 @@ pub(super) struct SceneV1 {
     #[serde(default, deserialize_with = "at_most::<_, _, MAX_MATERIALS>")]
     pub materials: Vec<Material>,
     /// The id that the next new node gets; ids are not used twice.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "whole::read")]
     pub next_id: u64,
     /// All nodes: each group is followed by its children, in the artist's order.
     #[serde(deserialize_with = "at_most::<_, _, MAX_NODES>")]

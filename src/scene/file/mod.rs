@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `format` | the types of version 1, as serde and the schema see them |
 //! | `read` | bytes → checked scene; every message names file, node and field |
+//! | `weight` | how much a text holds, before anything is made of it |
 //! | `place` | finds name and id of the node at which reading failed |
 //! | `write` | scene → bytes, always the same, one value per line |
 //! | `atomic` | bytes → file, so that a crash leaves the old file or the new one |
@@ -16,6 +17,7 @@ mod error;
 mod format;
 mod place;
 mod read;
+mod weight;
 mod write;
 
 pub use atomic::{

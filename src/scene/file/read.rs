@@ -12,8 +12,9 @@ use serde_json::Value;
 use super::error::{FileError, clipped};
 use super::format::{NodeV1, SceneV1, VERSION};
 use super::place;
-use crate::scene::limits::{MAX_DEPTH, MAX_FILE_BYTES, MAX_ID};
-use crate::scene::{Material, Node, NodeId, Scene, check};
+use super::weight::weigh;
+use crate::scene::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
+use crate::scene::{Material, Node, NodeId, Scene, check, image_budget, whole};
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
@@ -26,8 +27,14 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
         let (line, column) = place::line_and_column(&bytes[..e.valid_up_to()]);
         FileError::new(file, format!("line {line}, column {column}: is not text in UTF-8"))
     })?;
+    weigh(text).map_err(|found| {
+        let (line, column) = place::line_and_column(&bytes[..found.at]);
+        let reason = format!("line {line}, column {column}: holds more than {MAX_ENTRY_VALUES} values");
+        let error = FileError::new(file, reason).at(found.field);
+        if let Some(id) = found.id { error.of_node(&found.name, NodeId(id)) } else { error }
+    })?;
     match version(text, file)? {
-        1 => scene_from_v1(typed(text, file)?, file),
+        1 => scene_from_v1(image_budget::within(|| typed(text, file))?, file),
         0 => Err(FileError::new(file, "there is no version 0 of the format").at("isolith")),
         newer => {
             let reason = format!("version {newer} is newer than this program, which reads up to {VERSION}");
@@ -50,9 +57,9 @@ fn version(text: &str, file: &Path) -> Result<u64, FileError> {
         return Err(FileError::new(file, "is missing: this is not a scene of Isolith").at("isolith"));
     };
     let shown = || clipped(&version.to_string(), 40);
-    version
-        .as_u64()
-        .ok_or_else(|| FileError::new(file, format!("must be the number of a version, not {}", shown())).at("isolith"))
+    whole::read(&version).map_err(|_: serde_json::Error| {
+        FileError::new(file, format!("must be the number of a version, not {}", shown())).at("isolith")
+    })
 }
 
 /// The text as one version's types.

@@ -25,6 +25,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
             .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
     }
     let table = SceneV1 {
+        schema: None,
         isolith: VERSION,
         environment: scene.environment,
         materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),

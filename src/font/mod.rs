@@ -1,0 +1,137 @@
+//! Letters as outlines made of arcs, from the fonts that come with the program (those of the editor) or from a file.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `face` | a font: which glyphs it has, and their outlines |
+//! | `work` | counts what a glyph costs before it is drawn |
+//! | `shaping` | from letters to glyphs at places: direction, joining, kerning, other fonts for what one lacks |
+//! | `bend` | curves of fonts as arcs |
+
+mod bend;
+mod face;
+mod shaping;
+mod work;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, LazyLock};
+
+use glam::DVec3;
+
+use crate::geometry::{ArcPiece, arc_union};
+
+pub use face::Face;
+
+/// How far arcs may leave the curves of the font, in heights of the font (em).
+pub const TOLERANCE: f64 = 5e-4;
+/// Most glyphs that a text may become: fonts can make many of one letter.
+pub const MAX_GLYPHS: usize = 1_024;
+/// Most arcs that the outlines of a text may take.
+pub const MAX_TEXT_ARCS: usize = 32_768;
+/// From line to line, in heights of the font.
+const LINE: f64 = 1.2;
+/// Half the height of a capital letter: what lies half-way between base line and top, in heights of the font.
+const MIDDLE: f64 = 0.347;
+/// Ends of outlines that are nearer to each other than this are one, in heights of the font: less than a hundredth of
+/// the finest grid that fonts are drawn on.
+const SNAP: f64 = 1e-6;
+
+/// Outlines of a text; or why it is not drawn.
+pub type Outlines = Result<Arc<[ArcPiece]>, String>;
+
+/// The fonts that come with the program. The second one knows more letters.
+static FONTS: LazyLock<[Face; 2]> = LazyLock::new(|| {
+    [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR]
+        .map(|bytes| Face::built_in(bytes).expect("a font that comes with a library is whole"))
+});
+
+/// The outlines of a text in the XY plane, for a font of height 1, its middle at the origin; lines are centred. Closed
+/// curves around what is solid that do not cross each other; empty for a text without ink. Letters that the font does not
+/// have are those of the fonts that come with the program. Made once for each text.
+pub fn text_curve(text: &str, face: Option<&Face>) -> Outlines {
+    let make = || {
+        // Readers of foreign files have bugs; one in them is a broken font to us.
+        let made = catch_unwind(AssertUnwindSafe(|| outlines(text, face)));
+        made.unwrap_or_else(|_| Err("drawing it failed".to_owned()))
+    };
+    face.unwrap_or(&FONTS[0]).remember(text, make)
+}
+
+fn outlines(text: &str, face: Option<&Face>) -> Outlines {
+    let faces: Vec<&Face> = face.into_iter().chain(&*FONTS).collect();
+    // The separators of lines and paragraphs are no control characters and may stand in a text.
+    let lines: Vec<&str> = text.split(['\n', '\u{2028}', '\u{2029}']).collect();
+    let top = 0.5 * LINE * (lines.len() - 1) as f64 - MIDDLE;
+    let mut count = 0;
+    let mut arcs: Vec<ArcPiece> = Vec::new();
+    for (i, line) in lines.iter().enumerate() {
+        let shaped = shaping::line(line, &faces);
+        count += shaped.glyphs.len();
+        if count > MAX_GLYPHS {
+            return Err(format!("makes more than {MAX_GLYPHS} glyphs of {} letters", text.chars().count()));
+        }
+        for placed in &shaped.glyphs {
+            let glyph = faces[placed.face].glyph(placed.glyph).map_err(|reason| {
+                let letter = line[placed.letter..].chars().next().unwrap_or_default();
+                format!("{reason}, to draw {letter:?}")
+            })?;
+            if arcs.len() + glyph.len() > MAX_TEXT_ARCS {
+                return Err(format!("takes more than {MAX_TEXT_ARCS} arcs"));
+            }
+            let by = DVec3::new(placed.at[0] - 0.5 * shaped.width, top - LINE * i as f64 + placed.at[1], 0.0);
+            arcs.extend(glyph.iter().map(|arc| ArcPiece { middle: arc.middle + by, ..*arc }));
+        }
+    }
+    let united = arc_union(&arcs, SNAP).map_err(|_| "has outlines that cross each other too often".to_owned())?;
+    Ok(united.unwrap_or(arcs).into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn curve(text: &str, face: Option<&Face>) -> Arc<[ArcPiece]> {
+        text_curve(text, face).unwrap()
+    }
+
+    #[test]
+    fn outlines_are_closed_and_stand_around_the_origin() {
+        let arcs = curve("Isolith\n&ä", None);
+        assert!(arcs.len() > 100);
+        let mut first = arcs[0].start();
+        for (i, arc) in arcs.iter().enumerate() {
+            let next = arcs.get(i + 1).map_or(first, ArcPiece::start);
+            if arc.end().distance(next) > 1e-9 {
+                assert!(arc.end().distance(first) < 1e-9, "an outline is open behind arc {i}");
+                first = next;
+            }
+            assert!(arc.middle.x.abs() < 2.0 && arc.middle.y.abs() < 1.5 && arc.middle.z == 0.0);
+        }
+        assert!(curve(" \n", None).is_empty() && curve("", None).is_empty());
+        // Once made they are kept.
+        assert!(Arc::ptr_eq(&arcs, &curve("Isolith\n&ä", None)));
+    }
+
+    #[test]
+    fn a_font_of_ones_own_draws_its_letters_and_leaves_others_to_the_programs_fonts() {
+        let face = Face::new(epaint_default_fonts::HACK_REGULAR.to_vec()).unwrap();
+        assert!(Face::new(vec![0; 100]).is_err());
+        // Hack's letters are all as wide, those of the first font are not.
+        let width = |text: &str, face: Option<&Face>| {
+            let arcs = curve(text, face);
+            arcs.iter().map(|arc| arc.middle.x).fold(f64::MIN, f64::max)
+        };
+        assert!((width("lil", Some(&face)) - width("lil", None)).abs() > 0.1);
+        // No font has this letter, so all draw the same box for it.
+        assert!(width("\u{e000}", None) > 0.1);
+        assert_eq!(width("\u{e000}", Some(&face)), width("\u{e000}", None));
+    }
+
+    #[test]
+    fn letters_that_mean_nothing_by_themselves_take_no_room() {
+        for unseen in ['\u{200d}', '\u{fe0f}', '\u{200b}', '\u{200e}', '\u{ad}', '\u{2060}', '\u{feff}', '\u{e0041}'] {
+            assert_eq!(curve(&format!("A{unseen}B"), None), curve("AB", None), "U+{:04X}", u32::from(unseen));
+        }
+        // A line separator is one.
+        assert_eq!(curve("A\u{2028}B", None), curve("A\nB", None));
+    }
+}

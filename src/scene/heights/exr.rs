@@ -1,0 +1,99 @@
+//! OpenEXR images, with the channels that stand for a height.
+
+use std::io::Cursor;
+
+use exr::image::{AnyChannel, AnyChannels, FlatSamples, Layer};
+use exr::meta::MetaData;
+use exr::prelude::{ReadChannels, ReadLayers};
+use image::{ImageBuffer, Luma};
+
+use super::{check_size, spend};
+
+/// The weights of red, green and blue in the brightness, as those of Rec. 709, which is what EXR has where it says nothing.
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// An image of brightness.
+type Grey = ImageBuffer<Luma<f32>, Vec<f32>>;
+
+/// Brightness from 0 to 1 within the display window; black where there is no data. And how many pixels were read.
+pub fn read(bytes: &[u8]) -> Result<(Grey, u64), String> {
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
+    let (mut pixels, mut size) = (0_u64, 0_u64);
+    for header in &meta.headers {
+        if header.deep {
+            return Err("it has deep data, many samples in a pixel".to_owned());
+        }
+        let area = header.layer_size.0 as u64 * header.layer_size.1 as u64;
+        size = size.saturating_add(area.saturating_mul(header.channels.bytes_per_pixel as u64));
+        pixels += check_size([header.layer_size.0 as u64, header.layer_size.1 as u64], size)?;
+    }
+    let window = meta.headers.first().ok_or("it is empty")?.shared_attributes.display_window;
+    let shown = check_size([window.size.0 as u64, window.size.1 as u64], size)?;
+    spend(pixels.max(shown))?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(|e| e.to_string())?;
+    let (layer, sources) =
+        image.layer_data.iter().find_map(|layer| Some((layer, sources(layer)?))).ok_or_else(|| {
+            let channels = image.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
+            let names: Vec<String> =
+                channels.map(|channel| format!("{:?}", channel.name.to_string())).take(8).collect();
+            format!(
+                "of its channels {} none is Y, none are R, G and B, and more than one could be meant",
+                names.join(", ")
+            )
+        })?;
+    let offset = [0, 1].map(|axis| {
+        let [data, shown] =
+            [layer.attributes.layer_position, window.position].map(|p| if axis == 0 { p.0 } else { p.1 });
+        i64::from(shown) - i64::from(data)
+    });
+    let value = |x: u32, y: u32| {
+        let [x, y] = [i64::from(x) + offset[0], i64::from(y) + offset[1]];
+        if x < 0 || y < 0 || x >= layer.size.0 as i64 || y >= layer.size.1 as i64 {
+            return 0.0;
+        }
+        let i = y as usize * layer.size.0 + x as usize;
+        let sum: f64 = sources.iter().map(|(samples, weight)| sample(samples, i) * weight).sum();
+        // What is no number is 0.
+        if sum > 0.0 { sum.min(1.0) as f32 } else { 0.0 }
+    };
+    let image = ImageBuffer::from_fn(window.size.0 as u32, window.size.1 as u32, |x, y| Luma([value(x, y)]));
+    Ok((image, pixels.max(shown)))
+}
+
+fn sample(samples: &FlatSamples, i: usize) -> f64 {
+    match samples {
+        FlatSamples::F16(values) => values.get(i).map_or(0.0, |v| v.to_f32().into()),
+        FlatSamples::F32(values) => values.get(i).copied().map_or(0.0, f64::from),
+        FlatSamples::U32(values) => values.get(i).copied().map_or(0.0, f64::from),
+    }
+}
+
+/// The channels of a layer that make the brightness, with their weights: Y, or R, G and B, or the only one besides alpha.
+/// What stands before the last dot is the name of a layer inside of the file.
+fn sources(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<Vec<(&FlatSamples, f64)>> {
+    let name = |channel: &AnyChannel<FlatSamples>| {
+        let whole = channel.name.to_string();
+        whole.rsplit('.').next().unwrap_or_default().to_owned()
+    };
+    let full = |channel: &&AnyChannel<FlatSamples>| channel.sampling.0 == 1 && channel.sampling.1 == 1;
+    let all: Vec<_> = layer.channel_data.list.iter().filter(full).collect();
+    let find = |wanted: &str| all.iter().find(|channel| name(channel) == wanted).map(|channel| &channel.sample_data);
+    if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
+        return Some([r, g, b].into_iter().zip(LUMINANCE).collect());
+    }
+    if let Some(y) = find("Y") {
+        return Some(vec![(y, 1.0)]);
+    }
+    let others: Vec<_> = all.iter().filter(|channel| name(channel) != "A").collect();
+    match others[..] {
+        [only] => Some(vec![(&only.sample_data, 1.0)]),
+        _ => None,
+    }
+}
