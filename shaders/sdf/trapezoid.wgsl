@@ -10,11 +10,12 @@ fn sdf_trapezoid(q: vec2f, bottom: f32, top: f32, height: f32) -> f32 {
     let slope = vec2f(bottom - top, -height);
     let from_top = q - vec2f(top, half_height);
     // The nearest point: where it moves along the slanted side, the distance does not follow it.
-    let t = held_f32(clamp(dot(from_top, slope) / max(dot(slope, slope), 1e-30), 0.0, 1.0));
+    let square = dot(slope, slope);
+    let t = held_f32(clamp(dot(from_top, slope) / max(square, 1e-30), 0.0, 1.0));
     let side = from_top - slope * t;
     // Between the ends `side` is along the normal. At the surface only rounding is left of it, so its own
     // direction is worth nothing there.
-    let between = t > 0.0 && t < 1.0;
+    let between = t > 0.0 && t < 1.0 && square > 1e-30;
     let over = dot(side, vec2f(height, slope.x) / max(length(slope), 1e-30));
     let distance = min(length(cap), select(length(side), abs(over), between));
     return select(distance, -distance, select(side.x, over, between) < 0.0 && cap.y < 0.0);

@@ -65,6 +65,8 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// the component's origin. Placing a face rounds three coefficients, a shift and a size, each by half a step, and a skin is
 /// twice as thick as it is deep.
 const SKIN: f64 = 2.0 * f32::EPSILON as f64;
+/// A ray that comes nearer to a face by less than this, per distance, follows it.
+const FOLLOWING: f64 = 1e-3;
 /// How far from opposite the normals of such faces may be: 1 + cos of the angle, a thousandth of a radian.
 const PARALLEL: f64 = 5e-7;
 
@@ -195,13 +197,16 @@ impl<'a> Line<'a> {
     /// place where it should be 0. Steps at least double as long as it touches, so that a ray along a surface gets on.
     fn step(&self, t: f64, f: f64, creep: &mut f64) -> f64 {
         let rounding = self.rounding(t);
-        if f >= (TOUCHING * t).max(rounding) {
+        let touches = f < (TOUCHING * t).max(rounding);
+        // Along a face, the field is what the face was rounded by, all the way.
+        let may_follow = f < SKIN * self.at(t).length();
+        let fall = if touches || may_follow { -self.slope(t) } else { 1.0 };
+        if !touches && fall > FOLLOWING {
             *creep = 0.0;
             return f;
         }
         let longest = (LONGEST_CREEP * t).max(rounding);
         *creep = (2.0 * *creep).clamp(rounding, longest);
-        let fall = -self.slope(t);
         let straight = if fall > 0.0 { f / fall + rounding } else { 0.0 };
         f.max(straight.min(longest)).max(*creep)
     }

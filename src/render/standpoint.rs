@@ -17,6 +17,8 @@ pub struct Standpoint {
     pub shift: DVec3,
     /// The point that `ahead` puts before the eye, from there.
     pub eye: DVec3,
+    /// What rounding may move where `shift` is not 0, in meters; 0 elsewhere.
+    pub most_moved: f64,
 }
 
 /// By no more than this share of itself f32 rounds a number.
@@ -43,8 +45,9 @@ impl Standpoint {
         let rounding = ROUNDING * eye.length();
         let allowed = |distance: f64| MOST_MOVED * footprint * distance;
         let least = camera.near.max(ahead);
+        let unmoved = Self { ahead, eye, ..Self::default() };
         if rounding <= allowed(least) {
-            return Self { ahead, shift: DVec3::ZERO, eye };
+            return unmoved;
         }
         let way = component.bounds.distance(from);
         // Within the bounds the field says how far the surface is at least.
@@ -52,12 +55,12 @@ impl Standpoint {
         let way = if way > 0.0 || !is_cheap { way } else { field(flat, component, from) };
         let allowed = allowed(way.max(least));
         if rounding <= allowed {
-            return Self { ahead, shift: DVec3::ZERO, eye };
+            return unmoved;
         }
         // Only so near that nothing has to be uploaded as long as the eye moves little.
         let grid = (allowed / ROUNDING).log2().floor().exp2();
         let shift = (eye / grid).round() * grid;
-        Self { ahead, shift, eye: eye - shift }
+        Self { ahead, shift, eye: eye - shift, most_moved: allowed }
     }
 
     /// For an eye at the component's origin.

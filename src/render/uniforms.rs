@@ -100,6 +100,12 @@ pub struct GpuComponent {
 /// roundings of 2^-24.
 const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
+/// See [`GpuComponent::flush`]. Relative to a point near the eye, rounding moves what is seen by no more than is allowed.
+fn flush(component: &Component, at: &Standpoint) -> f64 {
+    let rounding = FLUSH_ROUNDING * component.flush_extent;
+    if at.shift == DVec3::ZERO { rounding } else { rounding.min(at.most_moved) }
+}
+
 /// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
 pub const UNIFORM_STRIDE: usize = 256;
 
@@ -138,7 +144,7 @@ impl GpuComponent {
             grid_counts: [0; 3],
             lists: 0,
             ahead: at.ahead as f32,
-            flush: (FLUSH_ROUNDING * component.flush_extent) as f32,
+            flush: flush(component, at) as f32,
             _padding: [0; 2],
         }
     }

@@ -231,5 +231,7 @@ fn the_shader_numbers_joins_and_kernels_alike() {
         assert!(shader.contains(&format!("const JOIN_{name}: u32 = {number}u;")), "{name}");
     }
     let joins: Vec<Join> = Operator::ALL.into_iter().map(Join::of).collect();
-    assert_eq!(joins, Join::ALL[1..]);
+    assert_eq!(joins, Join::ALL[1..=joins.len()]);
+    // No artist's operator: a difference with its operands exchanged.
+    assert_eq!(Join::ALL[joins.len() + 1..], [Join::Remainder]);
 }

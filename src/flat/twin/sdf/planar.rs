@@ -18,8 +18,11 @@ pub fn from_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N])
 fn along_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> T {
     let square: f64 = axis.iter().map(|a| a * a).sum();
     let dot = from_start.iter().zip(axis).fold(T::constant(0.0), |sum, (p, a)| sum + *p * a);
-    clamp(dot * square.max(1e-30).recip(), 0.0, 1.0)
+    clamp(dot * square.max(LEAST_SQUARE).recip(), 0.0, 1.0)
 }
+
+/// Segments whose squared length is less are points.
+const LEAST_SQUARE: f64 = 1e-30;
 
 /// How a point of the plane, given from a segment's start, lies to the segment: the vector from the nearest point, how far
 /// to the right of the segment's line it is, and whether the nearest point lies between the ends.
@@ -31,7 +34,9 @@ fn beside_segment<T: Real>(from_start: [T; 2], axis: [f64; 2]) -> ([T; 2], T, bo
     let side = [0, 1].map(|i| from_start[i] - t * axis[i]);
     let length = axis[0].hypot(axis[1]).max(1e-300);
     let over = from_start[0] * (axis[1] / length) - from_start[1] * (axis[0] / length);
-    (side, over, t.value() > 0.0 && t.value() < 1.0)
+    // Of what is shorter than the least square the nearest point is not known that well.
+    let is_line = axis[0] * axis[0] + axis[1] * axis[1] > LEAST_SQUARE;
+    (side, over, is_line && t.value() > 0.0 && t.value() < 1.0)
 }
 
 /// The value within limits, constant beyond them.
