@@ -128,8 +128,11 @@ fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
             let bounds = operand.bounds.translated(-origin);
             bounds.min.abs().max(bounds.max.abs()).max_element()
         }
-        Value::Leaf { local_from_world, distance_scale, .. } => {
-            local_from_world.transform_point3(origin).length() * distance_scale
+        Value::Leaf { local_from_world, distance_scale, body, .. } => {
+            let local = local_from_world.transform_point3(origin);
+            // Where along a plane it is does not count.
+            let far = if body.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
+            far * distance_scale
         }
         Value::Fold(inner) => extent(inner, origin),
         Value::Modified { content, .. } => extent(content, DVec3::ZERO),

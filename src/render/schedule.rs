@@ -321,8 +321,7 @@ struct Projection {
     down: DVec3,
     /// The middle of the picture.
     center: DVec2,
-    /// What is nearer along the view axis has no place in the picture: the near limit is a distance along the ray, and in a
-    /// corner the depth along the axis is that times the cosine of the angle between the two.
+    /// What is nearer along the view axis has no place in the picture; in a corner the near limit is less along the axis.
     near: f64,
 }
 

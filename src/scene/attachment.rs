@@ -47,6 +47,12 @@ struct Written {
     base64: String,
 }
 
+impl<T> Default for Attachment<T> {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
 impl<T> Attachment<T> {
     /// No file.
     pub const NONE: Self = Self(None);

@@ -106,13 +106,13 @@ pub struct ModifierParam {
 
 macro_rules! modifiers {
     ($( $(#[doc = $doc:literal])+ $name:ident = $label:literal {
-        $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
+        $( $(#[doc = $help:literal])+ $(#[serde($missing:ident)])? $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
         /// A modifier with its parameters, in the node's own space.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Modifier {
-            $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ #[serde(deserialize_with = "Field::read")] $param: $type, )* }, )+
+            $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ #[serde(deserialize_with = "Field::read" $(, $missing)?)] $param: $type, )* }, )+
         }
 
         /// Which modifier, without its parameters. The number is the code that the GPU reads.
@@ -284,6 +284,7 @@ modifiers! {
     /// The surface is moved in and out by an image, which is repeated without end, every other time mirrored.
     Displacement = "Image displacement" {
         /// Its pixels are heights; an image larger than 256 pixels is made smaller. Nothing happens without one.
+        #[serde(default)]
         image: Attachment<Heights> = Attachment::NONE, COUNT;
         /// How far what is white moves outwards, or inwards where it is negative; what is black stays.
         height: f64 = 0.1, RELIEF;

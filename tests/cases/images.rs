@@ -217,7 +217,7 @@ impl Content for Buggy {
 #[test]
 fn a_panic_of_a_reader_is_an_error() {
     let error = Attachment::<Buggy>::new("x.bug", vec![1]).expect_err("the reader panics");
-    assert_eq!(error, "\"x.bug\" must be a file of the other program: reading it failed");
+    assert_eq!(error, "\"x.bug\" must be a file of the other program: an internal error: the bug");
     assert!(Attachment::<Buggy>::new("x.bug", vec![1; 20]).is_ok());
 }
 

@@ -32,7 +32,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("harfrust", &["font"]),
     ("unicode_bidi", &["font"]),
     ("skrifa", &["font"]),
-    ("exr", &["scene"]),
+    ("exr", &["scene", "cli"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];

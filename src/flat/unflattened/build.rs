@@ -39,7 +39,24 @@ impl Builder<'_> {
         // What changes nothing has no space of its own either, in which radii of blends would count.
         let is_active = |slot: &&ModifierSlot| slot.enabled && !is_idle(&slot.modifier);
         let modifiers: Vec<&Modifier> = node.modifiers.iter().filter(is_active).map(|slot| &slot.modifier).collect();
-        self.modified(node, &modifiers, &(*parent * node.transform.to_affine()))
+        let found = self.modified(node, &modifiers, &(*parent * node.transform.to_affine()))?;
+        // A group of nothing is the empty set; one of lights, cameras and meshes takes no part.
+        Ok(found.or_else(|| (!self.is_folder(node)).then_some(Part::Nothing)))
+    }
+
+    /// Whether a group holds lights, cameras or meshes, and no object.
+    fn is_folder(&self, node: &Node) -> bool {
+        let [has_object, has_other] = self.holds(node);
+        has_other && !has_object
+    }
+
+    /// Whether the node is or holds an object, and whether it is or holds what has no field.
+    fn holds(&self, node: &Node) -> [bool; 2] {
+        let own = [matches!(node.kind, NodeKind::Object(_)), !node.has_field()];
+        self.scene.children(Some(node.id)).fold(own, |[object, other], child| {
+            let [o, n] = self.holds(child);
+            [object || o, other || n]
+        })
     }
 
     /// The node with these modifiers, the last one outermost; `outer` maps its own space.
