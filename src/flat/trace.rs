@@ -170,23 +170,26 @@ impl<'a> Line<'a> {
             return Ok(Some(t));
         }
         let mut creep = 0.0;
+        // How the field fell in the last step, per distance.
+        let mut fell = 1.0;
         while t < exit {
             self.evaluations += 1;
             if self.evaluations > MAX_EVALUATIONS {
                 return Err(TraceError { node: self.flat.ids[self.component.first as usize] });
             }
-            let next = (t + self.step(t, f, &mut creep)).min(exit);
+            let next = (t + self.step(t, f, fell, &mut creep)).min(exit);
             let g = self.field(next);
             if g < 0.0 {
                 let hit = self.close_in([t, f], [next, g]);
                 let Some(behind) = self.skin_end(hit) else { return Ok(Some(hit)) };
-                (t, f, creep) = (behind, self.field(behind).max(0.0), 0.0);
+                (t, f, creep, fell) = (behind, self.field(behind).max(0.0), 0.0, 1.0);
                 continue;
             }
             // Where the field, seen from the eye, begins to widen again, the ray has passed something.
             if g * t > f * next {
                 self.pass(f, t);
             }
+            fell = (f - g) / (next - t);
             (t, f) = (next, g);
         }
         self.pass(f, t);
@@ -195,18 +198,18 @@ impl<'a> Line<'a> {
 
     /// The next step from `t`, where the field is `f`: the field itself, or where that touches to a rounding beyond the
     /// place where it should be 0. Steps at least double as long as it touches, so that a ray along a surface gets on.
-    fn step(&self, t: f64, f: f64, creep: &mut f64) -> f64 {
+    fn step(&self, t: f64, f: f64, fell: f64, creep: &mut f64) -> f64 {
         let rounding = self.rounding(t);
         let touches = f < (TOUCHING * t).max(rounding);
         // Along a face, the field is what the face was rounded by, all the way.
-        let may_follow = f < SKIN * self.at(t).length();
-        let fall = if touches || may_follow { -self.slope(t) } else { 1.0 };
-        if !touches && fall > FOLLOWING {
+        let follows = fell < FOLLOWING && f < SKIN * self.at(t).length();
+        if !touches && !follows {
             *creep = 0.0;
             return f;
         }
         let longest = (LONGEST_CREEP * t).max(rounding);
         *creep = (2.0 * *creep).clamp(rounding, longest);
+        let fall = if touches { -self.slope(t) } else { 0.0 };
         let straight = if fall > 0.0 { f / fall + rounding } else { 0.0 };
         f.max(straight.min(longest)).max(*creep)
     }
