@@ -119,3 +119,18 @@ impl From<RenderError> for Failure {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Group, Node, NodeKind};
+
+    #[test]
+    fn a_truth_that_is_given_up_names_file_and_node() {
+        let mut scene = Scene::new();
+        let node = scene.insert(None, 0, Node::new("n0", NodeKind::Group(Group::UNION))).expect("room");
+        let failure = Failure::given_up(Path::new("slow.json"), &scene, &TraceError { node });
+        assert!(failure.to_string().starts_with("slow.json: n0 #1: a ray was not at its end"), "{failure}");
+        assert_eq!(failure.exit_code(), 3);
+    }
+}
