@@ -353,9 +353,11 @@ fn preparing_a_picture_obeys_ctrl_c() {
     let (from, to) = (folder.path().join("scene.json"), folder.path().join("picture.png"));
     std::fs::write(&from, file::to_json(&scene).expect("a sound scene")).expect("it can be written");
     let mut command = Command::new(env!("CARGO_BIN_EXE_isolith"));
-    command.arg("render").arg(&from).arg("-o").arg(&to).env("XDG_RUNTIME_DIR", folder.path());
+    // As small as it is, preparing takes seconds; a large picture of so many is refused at once.
+    command.arg("render").arg(&from).args(["--size", "64x48", "-o"]).arg(&to);
+    command.env("XDG_RUNTIME_DIR", folder.path());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
-    std::thread::sleep(Duration::from_millis(1500));
+    std::thread::sleep(Duration::from_millis(800));
     let interrupted = Instant::now();
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("a signal");
     assert!(kill.success());
