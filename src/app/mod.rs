@@ -140,6 +140,10 @@ fn examples() -> Vec<Example> {
     };
     gallery::all()
         .into_iter()
-        .map(|(name, scene)| Example { name: name.replace('-', " "), open: Box::new(move || open(name, &scene)) })
+        .map(|(name, scene)| Example {
+            name: name.replace('-', " "),
+            is_test: gallery::is_test_scene(name),
+            open: Box::new(move || open(name, &scene)),
+        })
         .collect()
 }

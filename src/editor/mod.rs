@@ -114,6 +114,8 @@ pub struct View {
 pub struct Example {
     /// Its entry in the menu.
     pub name: String,
+    /// It stands in the submenu of test scenes: made to check the program, not to show what it can do.
+    pub is_test: bool,
     /// Makes its document, or says why it cannot.
     pub open: Box<dyn Fn() -> Result<Document, String>>,
 }

@@ -123,6 +123,17 @@ fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
 /// Most characters of a file's name in a menu.
 const MOST_NAME: usize = 40;
 
+/// The examples that are test scenes, or those that are not; returns the one chosen.
+fn example_entries(editor: &Editor, ui: &mut Ui, are_tests: bool) -> Option<Intent> {
+    let mut chosen = None;
+    for (index, example) in editor.examples.iter().enumerate().filter(|(_, example)| example.is_test == are_tests) {
+        if ui.button(&example.name).clicked() {
+            chosen = Some(Intent::Example(index));
+        }
+    }
+    chosen
+}
+
 /// Recent files and examples, at the top of the File menu.
 fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     let mut intent = None;
@@ -142,10 +153,12 @@ fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     ui.add_enabled_ui(!editor.examples.is_empty(), |ui| {
         ui.menu_button("Examples", |ui| {
             fields::scrolling(ui, fields::room_beside(&ui.ctx().clone()), |ui| {
-                for (index, example) in editor.examples.iter().enumerate() {
-                    if ui.button(&example.name).clicked() {
-                        intent = Some(Intent::Example(index));
-                    }
+                intent = example_entries(editor, ui, false).or(intent.take());
+                if editor.examples.iter().any(|example| example.is_test) {
+                    ui.separator();
+                    ui.menu_button("Test scenes", |ui| {
+                        intent = example_entries(editor, ui, true).or(intent.take());
+                    });
                 }
             });
         });

@@ -32,6 +32,15 @@ pub const SHOWCASE: &str = "showcase";
 /// The seed of the shipped random scenes.
 pub const RANDOM_SEED: u64 = 2;
 
+/// Shipped scenes that check the program and show nothing that an artist would make.
+const TEST_SCENES: [&str; 6] =
+    ["blend-kernels", "deep-tree", "ellipsoid-and-plane", "random-37", "random-145", "random-577"];
+
+/// Whether the shipped scene of this name only checks the program.
+pub fn is_test_scene(name: &str) -> bool {
+    TEST_SCENES.contains(&name)
+}
+
 /// Every shipped scene with its file's name, without `.json`.
 pub fn all() -> Vec<(&'static str, Scene)> {
     vec![
@@ -66,4 +75,18 @@ pub fn write_all(folder: &Path) -> Result<Vec<PathBuf>, file::FileError> {
             file::save(&scene, &path).map(|()| path)
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn test_scenes_are_shipped_and_the_first_scene_is_none_of_them() {
+        let names: Vec<_> = all().into_iter().map(|(name, _)| name).collect();
+        for name in TEST_SCENES {
+            assert!(names.contains(&name), "{name}");
+        }
+        assert!(!is_test_scene(SHOWCASE));
+    }
 }

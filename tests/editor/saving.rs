@@ -191,7 +191,7 @@ fn a_broken_example_is_refused_before_the_question() {
     let (scene, _) = scene();
     let mut editor = Editor::new(Document::new(scene));
     let open = || Err("example.json: nodes: must be a list".to_owned());
-    editor.set_examples(vec![isolith::editor::Example { name: "Broken".into(), open: Box::new(open) }]);
+    editor.set_examples(vec![isolith::editor::Example { name: "Broken".into(), is_test: false, open: Box::new(open) }]);
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1280.0, 800.0))
         .with_context_setup(Editor::setup)
