@@ -72,7 +72,14 @@ fn menu_content(editor: &mut Editor, ui: &mut Ui, menu: Menu, chosen: &mut Optio
 fn looks(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
     ui.set_min_width(190.0);
     let room = fields::room_below(ui);
-    *chosen = fields::scrolling(ui, room, |ui| commands::menu_entries(ui, editor, Menu::Look)).or(*chosen);
+    fields::scrolling(ui, room, |ui| {
+        *chosen = commands::menu_entries(ui, editor, Menu::Look).or(*chosen);
+        ui.separator();
+        ui.menu_button("Debug", |ui| {
+            ui.set_min_width(190.0);
+            *chosen = commands::menu_entries(ui, editor, Menu::Debug).or(*chosen);
+        });
+    });
 }
 
 fn divider(ui: &mut Ui) {

@@ -1,7 +1,8 @@
 //! Looking, picking and moving in the picture; and what holds for the editor as a whole.
 
+use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::flat::inspect::Look;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
@@ -120,10 +121,19 @@ fn the_look_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
     for (name, look) in [("Show steps", Look::Steps), ("Show normals", Look::Normals), ("Show shaded", Look::Shaded)] {
         harness.get_by_label("Picture shows").click();
         harness.run();
+        if look.counts() {
+            harness.get_by_label("Debug").click();
+            harness.run();
+        }
         harness.get_by_label(name).click();
         harness.run();
         assert_eq!(harness.state().view().look, look);
     }
+    harness.get_by_label("View").click();
+    harness.run();
+    let is_on = |name| harness.get_by_label(name).accesskit_node().toggled() == Some(Toggled::True);
+    assert!(is_on("Grid"), "a check mark shows what is on");
+    press(&mut harness, Modifiers::NONE, Key::Escape);
     press(&mut harness, Modifiers::NONE, Key::F3);
     harness.event(Event::Text("show slope".into()));
     harness.run();

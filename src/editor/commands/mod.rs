@@ -10,6 +10,9 @@ use std::sync::LazyLock;
 
 use egui::{Button, Context, Key, KeyboardShortcut, Modifiers, Popup, Response, RichText, Ui};
 use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_CHECK_BOX, ICON_CHECK_BOX_OUTLINE_BLANK, ICON_RADIO_BUTTON_CHECKED, ICON_RADIO_BUTTON_UNCHECKED,
+};
 
 use super::palette::Palette;
 use super::{Editor, glyphs, theme};
@@ -28,6 +31,8 @@ pub enum Menu {
     View,
     /// What the picture shows; a part of the menu View.
     Look,
+    /// What the picture shows to whoever looks for a fault; a part of the menu of [`Menu::Look`].
+    Debug,
 }
 
 /// A picture of a command.
@@ -63,8 +68,8 @@ pub struct Command {
     /// Its keys; the first is shown.
     pub keys: Vec<KeyboardShortcut>,
     enabled: fn(&Editor) -> bool,
-    /// Whether what it switches is on.
-    on: IsOn,
+    /// Whether what it switches is on; none where it switches nothing.
+    on: Option<IsOn>,
     run: Run,
 }
 
@@ -93,7 +98,7 @@ impl Command {
             help: help.into(),
             keys: Vec::new(),
             enabled: |_| true,
-            on: Box::new(|_| false),
+            on: None,
             run: Box::new(run),
         }
     }
@@ -109,7 +114,7 @@ impl Command {
     }
 
     fn switch(mut self, on: impl Fn(&Editor) -> bool + Send + Sync + 'static) -> Self {
-        self.on = Box::new(on);
+        self.on = Some(Box::new(on));
         self
     }
 
@@ -147,9 +152,9 @@ impl CommandId {
         (self.get().enabled)(editor)
     }
 
-    /// Whether what it switches is on.
-    fn is_on(self, editor: &Editor) -> bool {
-        (self.get().on)(editor)
+    /// Whether what it switches is on; none where it switches nothing.
+    fn is_on(self, editor: &Editor) -> Option<bool> {
+        self.get().on.as_ref().map(|on| on(editor))
     }
 
     /// Runs it, where it can be run.
@@ -235,7 +240,7 @@ pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
         }
         for name in *names {
             let command = CommandId::named(name);
-            if entry(ui, command, true, false).clicked() {
+            if entry(ui, command, true, None).clicked() {
                 chosen = Some(command);
             }
         }
@@ -243,15 +248,24 @@ pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
     chosen
 }
 
-fn entry(ui: &mut Ui, id: CommandId, enabled: bool, on: bool) -> Response {
+/// An entry of a menu; one that switches something has a mark of whether it is on instead of its icon.
+fn entry(ui: &mut Ui, id: CommandId, enabled: bool, on: Option<bool>) -> Response {
     let command = id.get();
     let mut button = Button::new((RichText::new(ICON_ROOM), command.name.as_str())).min_size(egui::vec2(190.0, 0.0));
     if let Some(key) = command.keys.first() {
         button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
     }
-    let response = ui.add_enabled(enabled, button.selected(on));
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(command.name.clone()));
-    command.paint_icon(ui, response.rect, enabled);
+    let response = ui.add_enabled(enabled, button);
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_label(command.name.clone());
+        if let Some(on) = on {
+            node.set_toggled(on.into());
+        }
+    });
+    match on {
+        Some(on) => paint(ui, response.rect, Icon::Material(command.mark(on)), enabled),
+        None => command.paint_icon(ui, response.rect, enabled),
+    }
     if response.hovered() {
         // Not as a tooltip: it would hide the next entries. The status bar shows it.
         ui.ctx().data_mut(|d| d.insert_temp(hovered_help(), command.help.clone()));
@@ -268,22 +282,38 @@ pub fn hovered_help() -> egui::Id {
 }
 
 impl Command {
+    /// A check box, or a radio button for one of several choices.
+    fn mark(&self, on: bool) -> MaterialIcon {
+        match (self.menu, on) {
+            (Menu::Look | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::Look | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (_, true) => ICON_CHECK_BOX,
+            (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
+        }
+    }
+
     /// Paints the icon at the left end of a menu entry.
     pub fn paint_icon(&self, ui: &Ui, entry: egui::Rect, enabled: bool) {
-        let square = egui::Rect::from_center_size(
-            entry.left_center() + egui::vec2(ui.spacing().button_padding.x + 10.0, 0.0),
-            egui::Vec2::splat(16.0),
-        );
-        let square = glyphs::centered(square, 16.0);
-        let dim = if enabled { 1.0 } else { 0.45 };
-        match self.icon {
-            Some(Icon::Material(icon)) => {
-                glyphs::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
-            }
-            Some(Icon::Shape(kind)) => {
-                glyphs::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
-            }
-            None => {}
+        if let Some(icon) = self.icon {
+            paint(ui, entry, icon, enabled);
+        }
+    }
+}
+
+/// Paints an icon at the left end of a menu entry.
+fn paint(ui: &Ui, entry: egui::Rect, icon: Icon, enabled: bool) {
+    let square = egui::Rect::from_center_size(
+        entry.left_center() + egui::vec2(ui.spacing().button_padding.x + 10.0, 0.0),
+        egui::Vec2::splat(16.0),
+    );
+    let square = glyphs::centered(square, 16.0);
+    let dim = if enabled { 1.0 } else { 0.45 };
+    match icon {
+        Icon::Material(icon) => {
+            glyphs::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
+        }
+        Icon::Shape(kind) => {
+            glyphs::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
         }
     }
 }

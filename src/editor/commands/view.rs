@@ -65,11 +65,17 @@ pub(super) fn commands() -> Vec<Command> {
         new(ICON_LIST, "Messages", "Everything that was said", |e, _| e.bench.messages.show_log ^= true),
     ]);
     all.extend(Look::ALL.into_iter().map(|look| {
-        let command = Command::new(Menu::Look, None, look_command(look), look.help(), move |e, _| e.look = look);
+        let menu = if is_diagnostic(look) { Menu::Debug } else { Menu::Look };
+        let command = Command::new(menu, None, look_command(look), look.help(), move |e, _| e.look = look);
         let command = command.switch(move |e| e.look == look);
-        if matches!(look, Look::Steps | Look::Distance | Look::Nodes) { command.group() } else { command }
+        if matches!(look, Look::Slope | Look::Nodes) { command.group() } else { command }
     }));
     all
+}
+
+/// Whether it shows how the renderer works rather than the scene.
+fn is_diagnostic(look: Look) -> bool {
+    look.counts() || look == Look::Slope
 }
 
 /// The name of the command that has the picture show `look`.
