@@ -332,7 +332,7 @@ fn with_descendants(editor: &Editor) -> Vec<NodeId> {
 fn status_text(adapter: &str, took: Duration, building: usize, failed: usize) -> String {
     let mut text = format!("{adapter} · {:.0} ms", took.as_secs_f64() * 1e3);
     if building > 0 {
-        text += &format!(" · compiling {building}");
+        text += " · Preparing shaders…";
     }
     if failed > 0 {
         text += &format!(" · {failed} kernel{} failed, interpreter in use", if failed == 1 { "" } else { "s" });
@@ -353,8 +353,8 @@ mod tests {
     fn failed_kernels_stay_in_the_status() {
         let text = |building, failed| status_text("card", Duration::from_millis(12), building, failed);
         assert_eq!(text(0, 0), "card · 12 ms");
-        assert_eq!(text(2, 0), "card · 12 ms · compiling 2");
+        assert_eq!(text(2, 0), "card · 12 ms · Preparing shaders…");
         assert_eq!(text(0, 1), "card · 12 ms · 1 kernel failed, interpreter in use");
-        assert_eq!(text(1, 3), "card · 12 ms · compiling 1 · 3 kernels failed, interpreter in use");
+        assert_eq!(text(1, 3), "card · 12 ms · Preparing shaders… · 3 kernels failed, interpreter in use");
     }
 }

@@ -26,16 +26,10 @@ pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
 
 fn counts(editor: &Editor, ui: &mut Ui) {
     let nodes = editor.bench.document.scene().nodes().len();
-    let components = editor.flat().components.len();
     let selected = editor.bench.document.selection().len();
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
-    let text = format!("{chosen}{} · {}", plural(nodes, "node"), plural(components, "component"));
-    let help = "A component is a part that meets the others only by hard union, and is drawn on its own";
-    ui.label(RichText::new(text).color(theme::WEAK)).on_hover_text(help);
-}
-
-fn plural(count: usize, word: &str) -> String {
-    if count == 1 { format!("1 {word}") } else { format!("{count} {word}s") }
+    let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
+    ui.label(RichText::new(text).color(theme::WEAK));
 }
 
 /// What is being read, a problem of the scene, or what the mouse does.
