@@ -10,8 +10,15 @@ use crate::scene::{BlendKernel, Group, Joining, Node, NodeKind, Operator, Radius
 
 /// Whether the node is joined or cut away, and how it blends; objects and groups.
 pub fn role(ui: &mut Ui, sheet: &mut Sheet<'_>) {
-    let help = "Cut away from what stands before it in its group, instead of joined";
-    sheet.toggle(ui, ("Role", "Negative (cut away)", help), |n| n.negative, |n, on| n.negative = on);
+    let describe = |cuts| if cuts { "Cut away from what stands before it" } else { "Joined by its group's operator" };
+    sheet.choice(
+        ui,
+        ("Operation", "What the node does to those before it in its group"),
+        &[false, true],
+        (|cuts| if cuts { "Subtract" } else { "Add" }, describe),
+        |n| Some(n.negative),
+        |n, cuts| n.negative = cuts,
+    );
     if sheet.common(|n| n.parent.is_none()) == Some(true) {
         return;
     }

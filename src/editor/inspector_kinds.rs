@@ -60,7 +60,7 @@ pub fn shape(ui: &mut Ui, sheet: &mut Sheet<'_>) {
 }
 
 fn parameter(ui: &mut Ui, sheet: &mut Sheet<'_>, index: usize, param: &Param, default: ParamValue) {
-    let label = sentence_case(param.name);
+    let label = param_label(param.name);
     let value = |n: &Node| object(n).and_then(|o| o.shape.values().get(index).cloned());
     let set = |n: &mut Node, v: ParamValue| {
         if let Some(o) = object_mut(n) {
@@ -154,6 +154,11 @@ pub fn sentence_case(name: &str) -> String {
     let spaced = name.replace('_', " ");
     let mut chars = spaced.chars();
     chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
+}
+
+/// The label of a shape's parameter: files call a bevel `rounding`.
+fn param_label(name: &str) -> String {
+    if name == "rounding" { "Bevel".to_owned() } else { sentence_case(name) }
 }
 
 /// The file of a mesh.
@@ -259,9 +264,17 @@ fn spot(ui: &mut Ui, sheet: &mut Sheet<'_>) {
 
 fn reach(ui: &mut Ui, sheet: &mut Sheet<'_>) {
     type Part = fn(&mut Attenuation) -> &mut f64;
+    fn row(ui: &mut Ui, sheet: &mut Sheet<'_>, field: &Field<'_>, part: Part) {
+        let get = |n: &Node| attenuation(n).map(|mut a| *part(&mut a));
+        sheet.number(ui, field, get, |n, v| set_attenuation(n, |a| *part(a) = v));
+    }
+    if attenuation(sheet.active()).is_none() {
+        return;
+    }
     let default = Attenuation::default();
-    let rows: [(Field<'_>, Part); 4] = [
-        (field("Range", "Nothing is lit beyond this distance", RANGE, Some(default.range)), |a| &mut a.range),
+    let range = field("Range", "Nothing is lit beyond this distance", RANGE, Some(default.range));
+    row(ui, sheet, &range, |a| &mut a.range);
+    let rows: [(Field<'_>, Part); 3] = [
         (
             field(
                 "Constant",
@@ -274,10 +287,12 @@ fn reach(ui: &mut Ui, sheet: &mut Sheet<'_>) {
         (field("Linear", "Weakening per metre", ATTENUATION, Some(default.linear)), |a| &mut a.linear),
         (field("Quadratic", "Weakening per square metre", ATTENUATION, Some(default.quadratic)), |a| &mut a.quadratic),
     ];
-    for (field, part) in rows {
-        let get = |n: &Node| attenuation(n).map(|mut a| *part(&mut a));
-        sheet.number(ui, &field, get, |n, v| set_attenuation(n, |a| *part(a) = v));
-    }
+    let title = RichText::new("Falloff (advanced)").color(theme::WEAK);
+    egui::CollapsingHeader::new(title).id_salt("falloff").show_unindented(ui, |ui| {
+        for (field, part) in rows {
+            row(ui, sheet, &field, part);
+        }
+    });
 }
 
 /// Angle of view and clipping.
@@ -306,5 +321,7 @@ mod tests {
     fn parameter_names_become_labels() {
         assert_eq!(super::sentence_case("bottom_radius"), "Bottom radius");
         assert_eq!(super::sentence_case(""), "");
+        assert_eq!(super::param_label("rounding"), "Bevel");
+        assert_eq!(super::param_label("top_radius"), "Top radius");
     }
 }

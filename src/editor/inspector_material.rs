@@ -139,8 +139,7 @@ fn editor(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
     number(ui, sheet, ("Highlight", "Strength of the highlight; 0 is matt"), (UNIT, 0.25), material, |m| {
         &mut m.specular
     });
-    let help = "Larger is a smaller, sharper highlight";
-    number(ui, sheet, ("Sharpness", help), (SHININESS, 48.0), material, |m| &mut m.shininess);
+    roughness(ui, sheet, material);
     color(ui, sheet, ("Glow", "Light that it emits"), material, |m| &mut m.emission);
     let strength = material.emission.iter().copied().fold(0.0, f64::max);
     if strength > 0.0 {
@@ -181,6 +180,32 @@ fn number(
     }
 }
 
+/// The roughness, 0 to 1, whose GGX lobe is as wide as the Blinn-Phong lobe of this exponent: exponent = 2 / r⁴ − 2
+/// (Walter et al., "Microfacet models for refraction", 2007, with alpha = r²).
+fn roughness_of(shininess: f64) -> f64 {
+    (2.0 / (shininess + 2.0)).sqrt().sqrt()
+}
+
+/// The exponent of a roughness, within its limits.
+fn shininess_of(roughness: f64) -> f64 {
+    (2.0 / roughness.powi(4) - 2.0).clamp(SHININESS.hard[0], SHININESS.hard[1])
+}
+
+fn roughness(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
+    let (label, help) = ("Roughness", "Small is a small, sharp highlight");
+    let range = [roughness_of(SHININESS.hard[1]), roughness_of(SHININESS.hard[0])];
+    let limits = Limits { soft: range, hard: range, unit: "" };
+    let field = Field { label, help, limits, default: Some(roughness_of(48.0)), taken_as: None };
+    let answer = fields::row(ui, label, help, |ui| {
+        let width = ui.available_width();
+        numbers::number(ui, &field, label, roughness_of(material.shininess), false, width)
+    });
+    if let Some(roughness) = answer.value {
+        let shininess = shininess_of(roughness);
+        sheet.bench().change_material(answer.widget, Material { shininess, ..material.clone() });
+    }
+}
+
 /// Emission beyond 1 cannot be picked as a colour: its brightest channel is a number of its own.
 fn glow_strength(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material, strength: f64) {
     let (label, help) = ("Glow strength", "Its brightest channel");
@@ -192,5 +217,22 @@ fn glow_strength(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material, streng
     if let Some(new) = answer.value {
         let emission = material.emission.map(|v| v * new / strength);
         sheet.bench().change_material(answer.widget, Material { emission, ..material.clone() });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roughness_is_the_other_way_to_write_the_exponent() {
+        for shininess in [1.0, 16.0, 48.0, 256.0, 1e4] {
+            let roughness = roughness_of(shininess);
+            assert!((0.0..1.0).contains(&roughness), "{roughness}");
+            assert!((shininess_of(roughness) / shininess - 1.0).abs() < 1e-9, "{shininess}");
+        }
+        assert!(roughness_of(256.0) < roughness_of(16.0));
+        assert_eq!(shininess_of(0.0), SHININESS.hard[1]);
+        assert_eq!(shininess_of(1.0), SHININESS.hard[0]);
     }
 }
