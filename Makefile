@@ -44,7 +44,7 @@ bench: setup ## Measure speed and accuracy; tables go into benches/README.md, ch
 	cargo bench --bench frame
 	cargo bench --bench report
 	cargo run --release -- bench --output target/bench
-	cargo run --release -- bench --growth --methods pruned,specialised,auto --output target/bench
+	cargo run --release -- bench --growth --methods tape,straight-line,auto --output target/bench
 	cargo run --release -- bench --blends --methods auto --output target/bench
 	cargo run --release -- bench --stress --output target/bench
 

@@ -1,5 +1,5 @@
 //! What the processor does between a drag and the GPU, at ten thousand nodes. The promise is less than a
-//! millisecond in all, and that no kernel is built.
+//! millisecond in all, and that no pipeline is built.
 
 mod ten_thousand;
 
@@ -38,7 +38,7 @@ fn drag(c: &mut Criterion) {
     ten_thousand::warm(&mut renderer, &shown, &camera, SIZE);
     let mut begin = |flat: &FlatScene| {
         renderer.begin(Slot::Full, flat, &[], &camera, SIZE, OverlaySettings::default()).expect("a frame");
-        renderer.kernels().built()
+        renderer.pipelines().built()
     };
     let built = begin(&shown);
     document.begin_gesture();
@@ -49,7 +49,7 @@ fn drag(c: &mut Criterion) {
             ten_thousand::drag(&mut document, dragged, radius);
             // The arrays that are shown stay alive meanwhile, as in the editor.
             let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
-            assert_eq!(begin(&flat), built, "a drag built a kernel");
+            assert_eq!(begin(&flat), built, "a drag built a pipeline");
             shown = flat;
         });
     });

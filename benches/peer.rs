@@ -8,7 +8,7 @@
 //!
 //! The peer is treated as its author would: the expression stands in the camera's space, where a tile is a box that
 //! is aligned with the axes and intervals are tightest; scales are multiplied into the constants; a ball is not
-//! turned; where two operands do not blend, what is left of the joint is two instructions. What depends on the
+//! turned; where two operands do not blend, what is left of the blend is two instructions. What depends on the
 //! camera only is not counted in the time of a frame, and neither is the conversion of voxels to distances.
 
 use std::ops::Range;
@@ -20,7 +20,7 @@ use fidget::raster::voxel::{EvalConfig, Image, RenderConfig, RenderSize, render}
 use fidget::render::{CancelToken, ThreadPool, TileSizes};
 use glam::{DAffine3, DMat3, DVec3};
 use isolith::bench::cpu_time;
-use isolith::flat::{BACKGROUND_DEPTH, Buffers, FIRST_FURTHER_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS};
+use isolith::flat::{BACKGROUND_DEPTH, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GBuffer, Join, LEAF_ROWS};
 use isolith::geometry::{Aabb, Camera};
 use isolith::scene::ShapeKind;
 
@@ -46,9 +46,9 @@ pub struct PeerPicture {
 }
 
 impl PeerPicture {
-    /// The picture as it is compared with the truth. The peer knows no leaves and no colours.
-    pub fn buffers(&self, size: u32) -> Buffers {
-        Buffers { depth: self.depth.clone(), normal: self.normal.clone(), ..Buffers::empty(size, size) }
+    /// The picture as it is compared with the reference. The peer knows no leaves and no colors.
+    pub fn buffers(&self, size: u32) -> GBuffer {
+        GBuffer { depth: self.depth.clone(), normal: self.normal.clone(), ..GBuffer::empty(size, size) }
     }
 }
 
@@ -196,14 +196,14 @@ fn fold(flat: &FlatScene, range: Range<usize>, space: &DAffine3) -> Option<Tree>
             at += 1;
             continue;
         }
-        if Join::ALL[node.join() as usize].is_further() || node.kernel() >= FIRST_FURTHER_KERNEL {
+        if Join::ALL[node.join() as usize].is_extended() || node.kernel() >= FIRST_EXTENDED_KERNEL {
             return None;
         }
         let end = at + node.extent as usize;
         let next = if node.is_group() { fold(flat, at + 1..end, space)? } else { leaf(flat, node, space)? };
         so_far = Some(match so_far {
             None => next,
-            Some(before) => joined(node, flat.numbers[node.numbers as usize][0], before, next),
+            Some(before) => joined(node, flat.params[node.params as usize][0], before, next),
         });
         at = end;
     }
@@ -242,10 +242,10 @@ fn blend(difference: Tree, support: f32, kernel: u32) -> Tree {
 
 /// The field of a leaf. A shape's size is scaled along with its space, so that the field needs no scale.
 fn leaf(flat: &FlatScene, node: &FlatNode, space: &DAffine3) -> Option<Tree> {
-    let numbers = &flat.numbers[node.numbers as usize..];
+    let params = &flat.params[node.params as usize..];
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
-    let scale = f64::from(numbers[0][1]);
-    let [x, y, z] = [1, 2, 3].map(|i| numbers[i].map(f64::from));
+    let scale = f64::from(params[0][1]);
+    let [x, y, z] = [1, 2, 3].map(|i| params[i].map(f64::from));
     let rows = DMat3::from_cols_array_2d(&[0, 1, 2].map(|i| [x[i], y[i], z[i]]));
     let shift = DVec3::new(x[3], y[3], z[3]);
     let mut local = DAffine3 { matrix3: rows * scale, translation: shift * scale } * *space;
@@ -259,7 +259,7 @@ fn leaf(flat: &FlatScene, node: &FlatNode, space: &DAffine3) -> Option<Tree> {
     });
     let mut parameters = [0.0; 8];
     for (row, four) in parameters.chunks_mut(4).take(kind.parameter_rows()).enumerate() {
-        four.copy_from_slice(&numbers[LEAF_ROWS + row].map(|v| (f64::from(v) * scale) as f32));
+        four.copy_from_slice(&params[LEAF_ROWS + row].map(|v| (f64::from(v) * scale) as f32));
     }
     shape(kind, p, &parameters)
 }
@@ -299,8 +299,8 @@ fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
             let (x, z) = (x - behind.clone() * mirror[0], z - behind * mirror[1]);
             let beside = x - q[0];
             let (outside, along) = (beside.max(0.0), (z.abs() - q[0] / 3.0_f32.sqrt()).max(0.0));
-            let outline = outside.and(length([outside.clone(), along])) + beside.min(0.0);
-            solid([outline, y.abs() - 0.5 * q[1]])
+            let profile = outside.and(length([outside.clone(), along])) + beside.min(0.0);
+            solid([profile, y.abs() - 0.5 * q[1]])
         }
         ShapeKind::BoxFrame => box_frame([x, y, z], q),
         _ => return None,
@@ -335,7 +335,7 @@ fn box_frame(p: [Tree; 3], q: &[f32; 8]) -> Tree {
     bar(0).min(bar(1)).min(bar(2)) + inside.min(0.0)
 }
 
-/// In the half plane through the axis a convex outline: the distance to its three sides, and the sign of its planes.
+/// In the half plane through the axis a convex profile: the distance to its three sides, and the sign of its planes.
 fn capped_cone(radius: Tree, y: Tree, q: &[f32; 8]) -> Tree {
     let (bottom, top, half) = (q[0], q[1], 0.5 * q[2]);
     let square = |d: [Tree; 2]| d[0].square() + d[1].square();

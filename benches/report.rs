@@ -11,12 +11,12 @@ use std::io::Write as _;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use isolith::bench::{Bench, Subject, Truths, Way};
-use isolith::flat::truth::truth;
+use isolith::bench::{Baseline, Bench, BenchScene, ReferenceCache};
+use isolith::flat::reference::image::render_reference;
 use isolith::flat::{Accuracy, Flattener};
 use isolith::mesh::MeshLibrary;
-use isolith::render::kernel::Quality;
-use isolith::render::{Method, OverlaySettings, Slot};
+use isolith::render::wgsl::Quality;
+use isolith::render::{EvalStrategy, OverlaySettings, Slot};
 
 /// Width and height of the measured pictures, in pixels.
 const SIDE: u32 = 256;
@@ -53,17 +53,17 @@ fn replaced(text: &str, mark: &str, table: &str) -> String {
 fn accuracy() -> String {
     let info = gpu::shared().gpu.info.clone();
     let mut out = format!("On {} ({}), {SIDE}x{SIDE} pixels.\n\n", info.name, info.driver_info);
-    out += "| scene | method | wrong | of them hit or miss | node | depth | grazing % | depth p50 | p99 | max | normal p50 | p99 | |\n";
+    out += "| scene | strategy | wrong | of them hit or miss | node | depth | grazing % | depth p50 | p99 | max | normal p50 | p99 | |\n";
     out += "|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
     for scene in gpu::scenes() {
-        let truth = truth(&scene.flat, &scene.meshes, &scene.camera, [SIDE, SIDE], &|_| ());
-        let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
-        for method in [Method::Interpreted, Method::Pruned, Method::Specialised] {
-            let a = Accuracy::against(&scene.render(SIDE, method), &scene.flat, &truth);
+        let reference = render_reference(&scene.flat, &scene.meshes, &scene.camera, [SIDE, SIDE], &|_| ());
+        let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+        for strategy in [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine] {
+            let a = Accuracy::against(&scene.render(SIDE, strategy), &scene.flat, &reference);
             let verdict = if a.faults().is_empty() { "" } else { "beyond the limit" };
             writeln!(
                 out,
-                "| {} | {method:?} | {} | {} | {} | {} | {:.4} | {:.5} | {:.5} | {:.4} | {:.4} | {:.3} | {verdict} |",
+                "| {} | {strategy:?} | {} | {} | {} | {} | {:.4} | {:.5} | {:.5} | {:.4} | {:.4} | {:.3} | {verdict} |",
                 scene.name,
                 a.wrong,
                 a.hit_miss_differs,
@@ -97,9 +97,10 @@ fn peer() -> String {
     let scenes = [("3 blended", isolith::gallery::random(3, 5)), ("random-37", isolith::gallery::random(32, 5))];
     let more = [("random-145", isolith::gallery::random(128, 5)), ("random-577", isolith::gallery::random(512, 5))];
     for (name, scene) in scenes.into_iter().chain(more) {
-        let subject = Subject::new(name, scene, &mut MeshLibrary::new(None)).unwrap_or_else(|error| panic!("{error}"));
-        let truth = Truths::default().of(&subject, PEER_SIDE).unwrap_or_else(|error| panic!("{error}"));
-        let row = bench.measure(&subject, Way::Auto, Quality::Default, PEER_SIDE, &truth);
+        let bench_scene =
+            BenchScene::new(name, scene, &mut MeshLibrary::new(None)).unwrap_or_else(|error| panic!("{error}"));
+        let reference = ReferenceCache::default().of(&bench_scene, PEER_SIDE).unwrap_or_else(|error| panic!("{error}"));
+        let row = bench.measure(&bench_scene, Baseline::Auto, Quality::Default, PEER_SIDE, &reference);
         let row = row.unwrap_or_else(|error| panic!("{name}: {error}"));
         writeln!(
             out,
@@ -107,13 +108,13 @@ fn peer() -> String {
             row.cpu_ms, row.depth_p99, row.normal_p50
         )
         .expect("strings take all");
-        let peer = peer::Peer::new(&subject.flat, &subject.camera).expect("a scene that the peer can express");
+        let peer = peer::Peer::new(&bench_scene.flat, &bench_scene.camera).expect("a scene that the peer can express");
         for depth in PEER_DEPTHS {
             let tiles = [&peer::DEFAULT_TILES, &peer::TUNED_TILES];
             let pictures =
                 tiles.iter().flat_map(|tiles| (0..PEER_REPEATS).map(|_| peer.render(PEER_SIDE, depth, *tiles)));
             let best = pictures.min_by_key(|picture| picture.cpu).expect("it draws more than once");
-            let error = Accuracy::of_depths(&best.buffers(PEER_SIDE), &truth);
+            let error = Accuracy::of_depths(&best.buffers(PEER_SIDE), &reference);
             let (ms, build) = (best.cpu.as_secs_f64() * 1e3, peer.build.as_secs_f64() * 1e3);
             writeln!(
                 out,
@@ -135,9 +136,9 @@ fn drag() -> String {
     let mut shown = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = shown.default_camera(&[], 16.0 / 9.0);
     let size = [1280, 720];
-    renderer.set_method(Method::Auto);
+    renderer.set_strategy(EvalStrategy::Auto);
     ten_thousand::warm(renderer, &shown, &camera, size);
-    let built = renderer.kernels().built();
+    let built = renderer.pipelines().built();
     let mut rows: [(&str, Vec<Duration>); 4] =
         [("edit", vec![]), ("flatten", vec![]), ("upload and plan", vec![]), ("all", vec![])];
     document.begin_gesture();
@@ -162,6 +163,7 @@ fn drag() -> String {
         times.sort();
         writeln!(out, "| {name} | {:.3} |", times[REPEATS / 2].as_secs_f64() * 1e3).expect("strings take all");
     }
-    writeln!(out, "\nKernels built by the drag: {}.", renderer.kernels().built() - built).expect("strings take all");
+    writeln!(out, "\nPipelines built by the drag: {}.", renderer.pipelines().built() - built)
+        .expect("strings take all");
     out
 }

@@ -41,7 +41,7 @@ pub fn document() -> (Document, NodeId) {
     (Document::new(scene), dragged)
 }
 
-/// Begins frames until every kernel of the scene is built, as they are after a moment in the editor.
+/// Begins frames until every pipeline of the scene is built, as they are after a moment in the editor.
 pub fn warm(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u32; 2]) {
     loop {
         renderer.begin(Slot::Full, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");

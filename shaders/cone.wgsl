@@ -5,24 +5,24 @@
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
-#include "common/work.wgsl"
-#include "common/quads.wgsl"
-#include "common/ahead.wgsl"
+#include "common/dispatch.wgsl"
+#include "common/subtiles.wgsl"
+#include "common/lookahead.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/counts.wgsl"
 
-@group(2) @binding(0) var farthest_target: texture_2d<f32>;
-@group(2) @binding(1) var<storage, read_write> quads: array<Quad>;
-// QUAD_COUNTS for each list.
-@group(2) @binding(2) var<storage, read_write> quad_counts: array<atomic<u32>>;
+@group(2) @binding(0) var hiz_target: texture_2d<f32>;
+@group(2) @binding(1) var<storage, read_write> subtiles: array<Subtile>;
+// SUBTILE_COUNTS for each list.
+@group(2) @binding(2) var<storage, read_write> subtile_counts: array<atomic<u32>>;
 // See `common/counts.wgsl`.
 @group(2) @binding(3) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 // Steps of a cone before it leaves the rest to the rays.
 const CONE_STEPS: u32 = 48u;
 // A cone stops where the surface may be nearer to its border than this, in footprints.
-const CONE_CLEARANCE: f32 = select(0.25, 0.1, LEAPS_FAR);
+const CONE_CLEARANCE: f32 = select(0.25, 0.1, VERIFIED_OVERSTEP);
 // What stands for a quarter that needs no rays.
 const CONE_PASSED: f32 = 3e38;
 
@@ -33,7 +33,7 @@ struct Cone {
     cosine: f32,
 }
 
-// Around the rays through the centres of `side` by `side` pixels. Angles come from how far the places of rays in the picture
+// Around the rays through the centers of `side` by `side` pixels. Angles come from how far the places of rays in the picture
 // are apart: nothing is left of small ones in a cosine.
 fn cone_around(component: Component, pixel: vec2u, side: u32) -> Cone {
     let middle = view_offset(vec2f(pixel) + 0.5 * f32(side));
@@ -81,9 +81,9 @@ fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
 
 @compute @workgroup_size(64)
 fn cone(@builtin(global_invocation_id) id: vec3u) {
-    let columns = (work.end.x - work.origin.x + TILE - 1u) / TILE;
-    let rows = (work.end.y - work.origin.y + TILE - 1u) / TILE;
-    let place = work.origin / TILE + vec2u(id.x % columns, id.x / columns);
+    let columns = (dispatch.end.x - dispatch.origin.x + TILE - 1u) / TILE;
+    let rows = (dispatch.end.y - dispatch.origin.y + TILE - 1u) / TILE;
+    let place = dispatch.origin / TILE + vec2u(id.x % columns, id.x / columns);
     let component = subject;
     field_begin(component);
 
@@ -94,18 +94,18 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let interval = bounds_interval(component, cone.axis, cone.spread * reached);
     let entry = cone_half_space_entry(component, place * TILE);
     // Distances along a ray are longer than along the axis, by at most the cosine.
-    let farthest = max(
-        max(cone_farthest(place, 0u), cone_farthest(place, 1u)),
-        max(cone_farthest(place, 2u), cone_farthest(place, 3u)),
+    let hiz = max(
+        max(cone_hiz(place, 0u), cone_hiz(place, 1u)),
+        max(cone_hiz(place, 2u), cone_hiz(place, 3u)),
     );
     let limit = min(interval.y, view.far);
-    var exit = min(limit, farthest);
+    var exit = min(limit, hiz);
     var t = max(max(interval.x, view.near), entry) * cone.cosine;
     let enters = id.x < columns * rows && t <= exit;
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
     // because the field is called from one place.
     var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
-    var falls = array<f32, 4>();
+    var descents = array<f32, 4>();
     if !CONES && enters {
         start = array<f32, 4>(t, t, t, t);
     }
@@ -118,19 +118,19 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     var last = NEVER;
     // The field there, and how it fell since the evaluation before; a quarter that stops at its first one has that of the tile.
     var before = 0.0;
-    var fall = 0.0;
+    var descent = 0.0;
     let reach = length(component.eye);
     while quarter < 4u {
-        ahead_begin(t - last, AHEAD_WINDOW * max(t - last, 0.0), 2.0 * SPACING * (t + reach));
+        lookahead_begin(t - last, LOOKAHEAD_WINDOW * max(t - last, 0.0), 2.0 * SPACING * (t + reach));
         let f = field(ray_at(cone.axis, t));
-        fall = select(fall, (before - f) / (t - last), t > last);
+        descent = select(descent, (before - f) / (t - last), t > last);
         last = t;
         before = f;
         steps += 1u;
         evaluations += 1u;
         let clear = f - cone.spread * t;
-        let stopped = clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, work.max_steps / 5u + 1u);
-        let next = t + max(min(clear / (ahead_slope(f) + cone.spread), ahead_window), clear / (1.0 + cone.spread));
+        let stopped = clear < CONE_CLEARANCE * view.footprint * t || steps >= min(CONE_STEPS, dispatch.max_steps / 5u + 1u);
+        let next = t + max(min(clear / (lookahead_slope(f) + cone.spread), lookahead_window), clear / (1.0 + cone.spread));
         if !stopped && next <= exit {
             t = next;
             continue;
@@ -143,15 +143,15 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
             whole = t * cone.cosine;
         } else {
             if stopped && t * cone.cosine <= exit {
-                let free = f - 2.0 * SPACING * (t + reach);
-                start[quarter] = select(t * cone.cosine, t + free, LEAPS_FAR && free > cone.spread * t);
-                falls[quarter] = fall;
+                let free_interval = f - 2.0 * SPACING * (t + reach);
+                start[quarter] = select(t * cone.cosine, t + free_interval, VERIFIED_OVERSTEP && free_interval > cone.spread * t);
+                descents[quarter] = descent;
             }
             quarter += 1u;
         }
         if quarter < 4u {
-            cone = cone_around(component, cone_quad(place, quarter) * QUAD, QUAD);
-            exit = min(limit, cone_farthest(place, quarter));
+            cone = cone_around(component, cone_subtile(place, quarter) * SUBTILE, SUBTILE);
+            exit = min(limit, cone_hiz(place, quarter));
             t = whole;
             last = NEVER;
             steps = 0u;
@@ -165,36 +165,36 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
         count += select(0u, 1u, start[i] < CONE_PASSED);
     }
     if count > 0u {
-        let list = work.list * QUAD_COUNTS;
-        var slot = atomicAdd(&quad_counts[list + 4u], count);
-        atomicMax(&quad_counts[list], (slot + count + 3u) / 4u);
+        let list = dispatch.list * SUBTILE_COUNTS;
+        var slot = atomicAdd(&subtile_counts[list + 4u], count);
+        atomicMax(&subtile_counts[list], (slot + count + 3u) / 4u);
         for (var i = 0u; i < 4u; i += 1u) {
             if start[i] < CONE_PASSED {
-                quads[work.first_quad + slot] = Quad(quad_packed(cone_quad(place, i)), start[i], falls[i]);
+                subtiles[dispatch.first_subtile + slot] = Subtile(subtile_pack(cone_subtile(place, i)), start[i], descents[i]);
                 slot += 1u;
             }
         }
     }
 }
 
-// A quarter of a tile among all quads.
-fn cone_quad(place: vec2u, quarter: u32) -> vec2u {
+// A quarter of a tile among all subtiles.
+fn cone_subtile(place: vec2u, quarter: u32) -> vec2u {
     return place * 2u + vec2u(quarter & 1u, quarter >> 1u);
 }
 
 // 0 for what lies outside of the picture.
-fn cone_farthest(place: vec2u, quarter: u32) -> f32 {
-    let quad = cone_quad(place, quarter);
-    return select(0.0, textureLoad(farthest_target, quad, 0).x, view_contains(quad * QUAD));
+fn cone_hiz(place: vec2u, quarter: u32) -> f32 {
+    let subtile = cone_subtile(place, quarter);
+    return select(0.0, textureLoad(hiz_target, subtile, 0).x, view_contains(subtile * SUBTILE));
 }
 
 // What the cones of a tile took, for the list, the tile and the component.
 fn cone_count(place: vec2u, evaluations: u32) {
-    atomicAdd(&quad_counts[work.list * QUAD_COUNTS + 3u], evaluations);
+    atomicAdd(&subtile_counts[dispatch.list * SUBTILE_COUNTS + 3u], evaluations);
     let of_tile = counts_of_tile(arrayLength(&march_counts), place);
     atomicAdd(&march_counts[of_tile], evaluations);
     atomicAdd(&march_counts[of_tile + 2u], walked.x);
     atomicAdd(&march_counts[of_tile + 3u], walked.y);
-    atomicAdd(&march_counts[work.component * COMPONENT_COUNTS + 3u], walked.x);
-    atomicAdd(&march_counts[work.component * COMPONENT_COUNTS + 4u], walked.y);
+    atomicAdd(&march_counts[dispatch.component * COMPONENT_COUNTS + 3u], walked.x);
+    atomicAdd(&march_counts[dispatch.component * COMPONENT_COUNTS + 4u], walked.y);
 }

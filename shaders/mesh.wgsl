@@ -5,7 +5,7 @@
 #include "common/depth.wgsl"
 
 struct Instance {
-    // Rows of world space, relative to the eye or to what `ahead` says, from the mesh's space.
+    // Rows of world space, relative to the eye or to what `ray_origin_depth` says, from the mesh's space.
     eye_from_local_x: vec4f,
     eye_from_local_y: vec4f,
     eye_from_local_z: vec4f,
@@ -13,22 +13,22 @@ struct Instance {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Factor of the vertices' colours and of their opacity.
+    // Factor of the vertices' colors and of their opacity.
     color: vec4f,
     // Rows of the texture's coordinates from those of the vertices.
     texture_x: vec4f,
     texture_y: vec4f,
     albedo: vec3f,
     specular: f32,
-    owner: u32,
-    // 1: `albedo` stands for the mesh's own colours. What these cut out stays cut out.
+    visibility: u32,
+    // 1: `albedo` stands for the mesh's own colors. What these cut out stays cut out.
     overridden: u32,
     // 1: the placement turns left into right, and so the order of a triangle's corners.
     mirrored: u32,
     // Where the opacity is less, there is no surface.
     alpha_cutoff: f32,
     // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
-    ahead: f32,
+    ray_origin_depth: f32,
     padding_0: u32,
     padding_1: u32,
     padding_2: u32,
@@ -47,7 +47,7 @@ struct Vertex {
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    // Relative to the point that `ahead` puts before the eye.
+    // Relative to the point that `ray_origin_depth` puts before the eye.
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
@@ -56,13 +56,13 @@ struct Varying {
 
 struct Written {
     @location(0) depth: f32,
-    @location(1) owner: u32,
+    @location(1) visibility: u32,
     @location(2) normal: vec4f,
     @location(3) diffuse: vec4f,
 }
 
 // The near limit is a distance along the ray. Clipped is by the depth along the view axis, which is less, by no more than this
-// towards any corner of a picture: a power of two, so that it changes no bit of any depth.
+// toward any corner of a picture: a power of two, so that it changes no bit of any depth.
 const NEAR_SHARE: f32 = 1.0 / 16777216.0;
 
 @vertex
@@ -80,7 +80,7 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
         dot(position, view.right) / dot(view.right, view.right),
         dot(position, view.up) / dot(view.up, view.up),
         view.near * NEAR_SHARE,
-        dot(position, view.forward) + instance.ahead,
+        dot(position, view.forward) + instance.ray_origin_depth,
     );
     let uv = vec3f(vertex.uv, 1.0);
     let place = vec2f(dot(instance.texture_x.xyz, uv), dot(instance.texture_y.xyz, uv));
@@ -92,9 +92,9 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
 fn mesh_distance(position: vec3f) -> f32 {
     let beyond = dot(position, view.forward);
     let aside = position - view.forward * beyond;
-    let depth = instance.ahead + beyond;
+    let depth = instance.ray_origin_depth + beyond;
     let more = dot(aside, aside) / (depth + length(vec2f(depth, length(aside))));
-    return select(length(position), depth + more, instance.ahead > 0.0);
+    return select(length(position), depth + more, instance.ray_origin_depth > 0.0);
 }
 
 @fragment
@@ -105,11 +105,11 @@ fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
         discard;
     }
     let length_of_normal = length(in.normal);
-    let away = in.position + view.forward * instance.ahead;
+    let away = in.position + view.forward * instance.ray_origin_depth;
     var normal = select(-away / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
     // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
     // point away though the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));
     let albedo = select(color.rgb, instance.albedo, instance.overridden == 1u);
-    return Written(t, instance.owner, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
+    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
 }

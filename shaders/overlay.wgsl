@@ -57,7 +57,7 @@ fn overlay_size() -> vec2f {
     return vec2f(f32(overlay.size & 0xffffu), f32(overlay.size >> 16u));
 }
 
-// Where a point of what is drawn on lies in the picture; whole numbers are centres of its pixels.
+// Where a point of what is drawn on lies in the picture; whole numbers are centers of its pixels.
 fn overlay_place(at: vec2f) -> vec2f {
     return at * vec2f(f32(view.width), f32(view.height)) / overlay_size() - 0.5;
 }
@@ -107,7 +107,7 @@ fn overlay_is_selected(pixel: vec2i) -> bool {
         return false;
     }
     let leaf = textureLoad(leaf_target, pixel, 0).x;
-    if leaf == NO_OWNER {
+    if leaf == VISIBILITY_NONE {
         return false;
     }
     let index = select(leaf, (leaf & ~MESH_BIT) + overlay.leaf_count, (leaf & MESH_BIT) != 0u);
@@ -126,7 +126,7 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
         return vec4f(0.0);
     }
     let at = overlay_ground(pixel);
-    // How far the ground moves from this pixel to its neighbours.
+    // How far the ground moves from this pixel to its neighbors.
     let right = view.right * (2.0 / f32(view.width));
     let down = view.up * (-2.0 / f32(view.height));
     let width = overlay_step(pixel, right) + overlay_step(pixel, down);
@@ -146,7 +146,7 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     return vec4f(color, strength * fade);
 }
 
-// Unit direction of the ray through the centre of a pixel of what is drawn on.
+// Unit direction of the ray through the center of a pixel of what is drawn on.
 fn overlay_direction(pixel: vec2u) -> vec3f {
     let at = (vec2f(pixel) + 0.5) / overlay_size() * 2.0 - 1.0;
     return normalize(view.right * at.x - view.up * at.y + view.forward);

@@ -1,4 +1,4 @@
-// Not a pass: the field at given points, for the tests that compare it with the CPU twin.
+// Not a pass: the field at given points, for the tests that compare it with the CPU evaluator.
 
 #include "generated/value.wgsl"
 #include "common/probe.wgsl"

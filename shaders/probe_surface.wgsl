@@ -1,9 +1,9 @@
-// Not a pass: what surfaces are like at given points, for the tests that compare it with the CPU twin.
+// Not a pass: what surfaces are like at given points, for the tests that compare it with the CPU evaluator.
 
 #include "generated/surface.wgsl"
 #include "common/probe.wgsl"
 
-// For each point the gradient with the distance, then the diffuse colour.
+// For each point the gradient with the distance, then the diffuse color.
 @group(2) @binding(1) var<storage, read_write> surfaces: array<vec4f>;
 
 @compute @workgroup_size(64)

@@ -1,5 +1,5 @@
 // Pass `shade`: light on what the passes before have found, and the background. It is drawn, not dispatched: lavapipe
-// takes some 16 ns for each texel that a kernel stores, and less where it draws.
+// takes some 16 ns for each texel that a pipeline stores, and less where it draws.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -13,7 +13,7 @@
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 @group(2) @binding(2) var diffuse_target: texture_2d<f32>;
 @group(2) @binding(3) var emission_target: texture_2d<f32>;
-@group(2) @binding(4) var owner_target: texture_2d<u32>;
+@group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
 #include "light/shade.wgsl"
 
@@ -22,13 +22,13 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(at.xy);
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
-    let owner = textureLoad(owner_target, pixel, 0).x;
+    let visibility = textureLoad(visibility_target, pixel, 0).x;
     var color = shade_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let diffuse = textureLoad(diffuse_target, pixel, 0);
         var emission = textureLoad(emission_target, pixel, 0);
-        if (owner & MESH_BIT) != 0u {
-            emission = mesh_emissions[owner & ~MESH_BIT];
+        if (visibility & MESH_BIT) != 0u {
+            emission = mesh_emissions[visibility & ~MESH_BIT];
         }
         color = shade_surface(
             diffuse.rgb,

@@ -2,19 +2,19 @@
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
-#include "common/work.wgsl"
-#include "common/quads.wgsl"
+#include "common/dispatch.wgsl"
+#include "common/subtiles.wgsl"
 #include "common/ray.wgsl"
 #include "generated/surface.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
-@group(2) @binding(1) var owner_target: texture_2d<u32>;
+@group(2) @binding(1) var visibility_target: texture_2d<u32>;
 @group(2) @binding(2) var normal_target: texture_storage_2d<rgba32float, write>;
 @group(2) @binding(3) var diffuse_target: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(4) var emission_target: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(5) var leaf_target: texture_storage_2d<r32uint, write>;
-// Those in which something was hit begin at `work.hits`.
-@group(2) @binding(6) var<storage, read> quads: array<Quad>;
+// Those in which something was hit begin at `dispatch.hits`.
+@group(2) @binding(6) var<storage, read> subtiles: array<Subtile>;
 // RAY_COUNTS for each list.
 @group(2) @binding(7) var<storage, read> ray_counts: array<u32>;
 
@@ -22,10 +22,10 @@
 fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
     let component = subject;
     surface_begin(component);
-    let slot = group.x * 4u + quad_of(lane);
-    let is_listed = slot < ray_counts[work.list * RAY_COUNTS + 6u];
-    let pixel = quad_pixel(quads[work.hits + work.first_quad + slot].place) + quad_place(lane);
-    let seen = is_listed && view_contains(pixel) && textureLoad(owner_target, pixel, 0).x == work.component;
+    let slot = group.x * 4u + subtile_of(lane);
+    let is_listed = slot < ray_counts[dispatch.list * RAY_COUNTS + 6u];
+    let pixel = subtile_pixel(subtiles[dispatch.hits + dispatch.first_subtile + slot].place) + subtile_place(lane);
+    let seen = is_listed && view_contains(pixel) && textureLoad(visibility_target, pixel, 0).x == dispatch.component;
     if RETURNS_EARLY && !seen {
         return;
     }
@@ -43,8 +43,8 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
 
 // How far before a hit whose normal points away it is looked for the place where the ray has entered, in footprints at first:
 // more than twice what is accepted. A thing of this thickness may have been hit at its far side.
-const ENTRY: f32 = select(2.5e-3, 1e-2, LEAPS_FAR) * FINENESS;
-// Where that is still inside it is looked farther off, by this factor, so often: beyond the longest leap.
+const ENTRY: f32 = select(2.5e-3, 1e-2, VERIFIED_OVERSTEP) * FINENESS;
+// Where that is still inside it is looked farther off, by this factor, so often: beyond the longest overstep.
 const ENTRY_GROWTH: f32 = 8.0;
 const ENTRY_LOOKS: u32 = 4u;
 // From outside the surface is found by so many of Newton's steps.
@@ -59,16 +59,16 @@ fn surface_entered(ray: Ray, t: f32, seen: bool) -> Surface {
     var steps = 0u;
     loop {
         let here = surface(ray_at(ray, at));
-        let fall = -dot(here.gradient, ray.direction);
+        let descent = -dot(here.gradient, ray.direction);
         let is_first = looks == 0u;
-        if is_first || fall > 0.0 {
+        if is_first || descent > 0.0 {
             found = here;
         }
-        if !seen || steps == ENTRY_STEPS || (is_first && fall >= 0.0) {
+        if !seen || steps == ENTRY_STEPS || (is_first && descent >= 0.0) {
             break;
         }
-        if fall > 0.0 {
-            at = min(at + here.distance / fall, t);
+        if descent > 0.0 {
+            at = min(at + here.distance / descent, t);
             steps += 1u;
         } else if looks == ENTRY_LOOKS || steps > 0u || (!is_first && here.distance >= 0.0) {
             break;

@@ -1,36 +1,36 @@
-// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996), over the quads
+// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996), over the subtiles
 // that the cone pass has left.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
-#include "common/work.wgsl"
-#include "common/quads.wgsl"
+#include "common/dispatch.wgsl"
+#include "common/subtiles.wgsl"
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/march.wgsl"
 #include "common/counts.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_storage_2d<r32float, read_write>;
-@group(2) @binding(1) var owner_target: texture_storage_2d<r32uint, write>;
+@group(2) @binding(1) var visibility_target: texture_storage_2d<r32uint, write>;
 // Where a march that has not ended goes on; MARCH_ENDED for the others.
 @group(2) @binding(2) var march_target: texture_storage_2d<r32float, read_write>;
-// The farthest depth in each quad.
-@group(2) @binding(3) var farthest_target: texture_storage_2d<r32float, write>;
-// Those that the cone pass has left; from `work.hits` on those in which something was hit, their places only.
-@group(2) @binding(4) var<storage, read_write> quads: array<Quad>;
-@group(2) @binding(8) var<storage, read> quad_counts: array<u32>;
-// For each list how many rays have not ended in the first round; then the pixels of those of the list under way,
+// The farthest depth in each subtile.
+@group(2) @binding(3) var hiz_target: texture_storage_2d<r32float, write>;
+// Those that the cone pass has left; from `dispatch.hits` on those in which something was hit, their places only.
+@group(2) @binding(4) var<storage, read_write> subtiles: array<Subtile>;
+@group(2) @binding(8) var<storage, read> subtile_counts: array<u32>;
+// For each list how many rays have not ended in the first launch; then the pixels of those of the list under way,
 // column and row, 16 bits each.
 @group(2) @binding(6) var<storage, read_write> rays: array<atomic<u32>>;
-// RAY_COUNTS for each list. Written in the first round.
+// RAY_COUNTS for each list. Written in the first launch.
 @group(2) @binding(7) var<storage, read_write> ray_counts: array<atomic<u32>>;
 // See `common/counts.wgsl`.
 @group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 const MARCH_ENDED: f32 = -1.0;
 
-var<workgroup> farthest: array<atomic<u32>, 4>;
-// Whether any ray of the quad has hit something, or has not ended.
+var<workgroup> hiz: array<atomic<u32>, 4>;
+// Whether any ray of the subtile has hit something, or has not ended.
 var<workgroup> has_hits: array<atomic<u32>, 4>;
 
 @compute @workgroup_size(8, 8)
@@ -38,15 +38,15 @@ fn trace(
     @builtin(workgroup_id) group: vec3u,
     @builtin(local_invocation_index) lane: u32,
 ) {
-    let slot = group.x * 4u + quad_of(lane);
-    let quad = quads[work.first_quad + slot];
-    let is_listed = slot < quad_counts[work.list * QUAD_COUNTS + 4u];
-    var pixel = quad_pixel(quad.place) + quad_place(lane);
+    let slot = group.x * 4u + subtile_of(lane);
+    let subtile = subtiles[dispatch.first_subtile + slot];
+    let is_listed = slot < subtile_counts[dispatch.list * SUBTILE_COUNTS + 4u];
+    var pixel = subtile_pixel(subtile.place) + subtile_place(lane);
     var exists = is_listed && view_contains(pixel);
-    if work.packed == 1u {
+    if dispatch.compacted == 1u {
         let at = group.x * 64u + lane;
-        exists = at < atomicLoad(&rays[work.list]);
-        let ray = atomicLoad(&rays[work.rays + at]);
+        exists = at < atomicLoad(&rays[dispatch.list]);
+        let ray = atomicLoad(&rays[dispatch.rays + at]);
         pixel = select(vec2u(0u), vec2u(ray & 0xffffu, ray >> 16u), exists);
     }
     let component = subject;
@@ -55,79 +55,79 @@ fn trace(
     let ray = ray_through(component, pixel);
     let interval = bounds_interval(component, ray, 0.0);
     let exit = min(min(interval.y, view.far), depth);
-    let passed = select(quad.start, quad_start(quad, lane), LEAPS_FAR);
+    let passed = select(subtile.start, subtile_start(subtile, lane), VERIFIED_OVERSTEP);
     let entry = bounds_half_space_entry(component, ray);
     var start = max(max(interval.x, view.near), max(passed, entry));
-    if work.round > 0u {
+    if dispatch.relaunch > 0u {
         start = textureLoad(march_target, pixel).x;
         start = select(start, NEVER, start == MARCH_ENDED);
     }
-    let steps = select(0u, work.max_steps, exists && start <= exit);
+    let steps = select(0u, dispatch.max_steps, exists && start <= exit);
     // Of a half space it is known how steeply it is entered, of others what the cone has seen.
-    let known_fall = select(select(0.0, quad.fall, LEAPS_FAR), -dot(component.half_space.xyz, ray.direction), start == entry);
-    let fall = select(0.0, known_fall, work.round == 0u);
-    let marched = march_along(component, ray, start, exit, fall, steps);
+    let known_descent = select(select(0.0, subtile.descent, VERIFIED_OVERSTEP), -dot(component.half_space.xyz, ray.direction), start == entry);
+    let descent = select(0.0, known_descent, dispatch.relaunch == 0u);
+    let marched = march_along(component, ray, start, exit, descent, steps);
     if exists {
         // The last step may have ended behind the far limit.
         let is_nearer = marched.hit && marched.t < min(depth, view.far);
         if is_nearer || !marched.ended {
-            atomicOr(&has_hits[quad_of(lane)], 1u);
+            atomicOr(&has_hits[subtile_of(lane)], 1u);
         }
         if is_nearer {
             depth = marched.t;
             textureStore(depth_target, pixel, vec4f(depth));
-            textureStore(owner_target, pixel, vec4u(work.component));
+            textureStore(visibility_target, pixel, vec4u(dispatch.component));
         }
         trace_leave(pixel, marched);
         if COUNTING {
             trace_count(pixel, marched.evaluations);
         }
     }
-    if work.packed == 1u {
-        // What was found by single rays only makes quads nearer: their farthest depths stay true.
+    if dispatch.compacted == 1u {
+        // What was found by single rays only makes subtiles nearer: their farthest depths stay true.
         return;
     }
     // Depths are positive, so their bits are in order.
-    atomicMax(&farthest[quad_of(lane)], bitcast<u32>(depth));
+    atomicMax(&hiz[subtile_of(lane)], bitcast<u32>(depth));
     workgroupBarrier();
     if lane % 16u == 0u && is_listed {
-        let deepest = bitcast<f32>(atomicLoad(&farthest[quad_of(lane)]));
-        textureStore(farthest_target, quad_unpacked(quad.place), vec4f(deepest));
-        if work.round == 0u && atomicLoad(&has_hits[quad_of(lane)]) > 0u {
-            let list = work.list * RAY_COUNTS;
+        let deepest = bitcast<f32>(atomicLoad(&hiz[subtile_of(lane)]));
+        textureStore(hiz_target, subtile_unpack(subtile.place), vec4f(deepest));
+        if dispatch.relaunch == 0u && atomicLoad(&has_hits[subtile_of(lane)]) > 0u {
+            let list = dispatch.list * RAY_COUNTS;
             let hit = atomicAdd(&ray_counts[list + 6u], 1u);
             atomicMax(&ray_counts[list + 3u], hit / 4u + 1u);
-            quads[work.hits + work.first_quad + hit].place = quad.place;
+            subtiles[dispatch.hits + dispatch.first_subtile + hit].place = subtile.place;
         }
     }
 }
 
-// What has not ended is left for the next round, or counted after the last one.
+// What has not ended is left for the next relaunch, or counted after the last one.
 fn trace_leave(pixel: vec2u, marched: March) {
-    if work.last_round == 1u {
+    if dispatch.last_relaunch == 1u {
         if !marched.ended {
-            atomicAdd(&march_counts[work.component * COMPONENT_COUNTS], 1u);
+            atomicAdd(&march_counts[dispatch.component * COMPONENT_COUNTS], 1u);
         }
         return;
     }
-    if work.round > 0u {
+    if dispatch.relaunch > 0u {
         textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
     } else if !marched.ended {
         textureStore(march_target, pixel, vec4f(marched.t));
-        let at = atomicAdd(&rays[work.list], 1u);
-        atomicMax(&ray_counts[work.list * RAY_COUNTS], at / 64u + 1u);
-        atomicStore(&rays[work.rays + at], pixel.x | (pixel.y << 16u));
+        let at = atomicAdd(&rays[dispatch.list], 1u);
+        atomicMax(&ray_counts[dispatch.list * RAY_COUNTS], at / 64u + 1u);
+        atomicStore(&rays[dispatch.rays + at], pixel.x | (pixel.y << 16u));
     }
 }
 
 // What a march took, for its pixel and for its component.
 fn trace_count(pixel: vec2u, evaluations: u32) {
-    let begun = select(0u, 1u, evaluations > 0u && work.packed == 0u);
-    let took = vec4u(evaluations, begun, walked);
+    let started = select(0u, 1u, evaluations > 0u && dispatch.compacted == 0u);
+    let counted = vec4u(evaluations, started, walked);
     let of_pixel = counts_of_pixel(arrayLength(&march_counts), pixel);
-    let of_component = work.component * COMPONENT_COUNTS + 1u;
+    let of_component = dispatch.component * COMPONENT_COUNTS + 1u;
     for (var i = 0u; i < PIXEL_COUNTS; i += 1u) {
-        atomicAdd(&march_counts[of_pixel + i], took[i]);
-        atomicAdd(&march_counts[of_component + i], took[i]);
+        atomicAdd(&march_counts[of_pixel + i], counted[i]);
+        atomicAdd(&march_counts[of_component + i], counted[i]);
     }
 }

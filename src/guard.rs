@@ -3,7 +3,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does the work; the error says what it panicked with. Nothing that the work was changing may be used afterwards.
+/// Does the work; the error says what it panicked with. Nothing that the work was changing may be used afterward.
 ///
 /// # Errors
 /// The work panicked.

@@ -1,29 +1,29 @@
-//! Every scene's picture against the truth, on the same rays.
+//! Every scene's picture against the reference, on the same rays.
 
 use isolith::flat::Accuracy;
-use isolith::flat::compare::{MAX_WRONG_SHARE, verdicts};
-use isolith::flat::truth::truth;
-use isolith::render::kernel::{Options, Quality};
-use isolith::render::{Method, OverlaySettings, Renderer, Slot};
+use isolith::flat::reference::accuracy::{MAX_WRONG_SHARE, verdicts};
+use isolith::flat::reference::image::render_reference;
+use isolith::render::wgsl::{Options, Quality};
+use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
 
-use crate::gpu::{Subject, scenes, shared};
+use crate::gpu::{BenchScene, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 256;
 
-/// Every way to evaluate a component: the command line draws by the interpreter and by lists, the window by kernels too.
-const METHODS: [Method; 3] = [Method::Interpreted, Method::Pruned, Method::Specialised];
+/// Every way to evaluate a component: the command line draws by the interpreter and by tapes, the window by pipelines too.
+const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
 /// Scenes that are known to be drawn wrong, with how many pixels at most by each of [`METHODS`]. The list only shrinks: an
 /// entry that is no longer needed, or that allows more than is there, fails the test.
 const KNOWN: [(&str, [usize; 3]); 0] = [];
 
-/// The errors of what the renderer draws of `drawn`, by each method, measured against the truth of `meant`.
-fn measure(drawn: &Subject, meant: &Subject, side: u32) -> [Accuracy; 3] {
-    let truth = truth(&meant.flat, &meant.meshes, &meant.camera, [side, side], &|_| ());
-    let truth = truth.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
-    METHODS.map(|method| Accuracy::against(&drawn.render(side, method), &drawn.flat, &truth))
+/// The errors of what the renderer draws of `drawn`, by each method, measured against the reference of `meant`.
+fn measure(drawn: &BenchScene, meant: &BenchScene, side: u32) -> [Accuracy; 3] {
+    let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [side, side], &|_| ());
+    let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
+    STRATEGIES.map(|strategy| Accuracy::against(&drawn.render(side, strategy), &drawn.flat, &reference))
 }
 
 #[test]
@@ -38,8 +38,8 @@ fn every_scene_is_as_exact_as_promised() {
             }
             Some(_) => {}
             None => {
-                for (method, found) in METHODS.iter().zip(all) {
-                    let of_scene = |fault: &String| format!("{}, {method:?}: {fault} ({found:?})", scene.name);
+                for (strategy, found) in STRATEGIES.iter().zip(all) {
+                    let of_scene = |fault: &String| format!("{}, {strategy:?}: {fault} ({found:?})", scene.name);
                     faults.extend(found.faults().iter().map(of_scene));
                 }
             }
@@ -49,15 +49,15 @@ fn every_scene_is_as_exact_as_promised() {
 }
 
 /// A ball before the background.
-fn ball(radius: f64, lifted: f64) -> Subject {
+fn ball(radius: f64, lifted: f64) -> BenchScene {
     let mut scene = Scene::new();
     let object = Object { shape: Shape::Sphere { radius }, material: MaterialId(1) };
     let node = Node::new("ball", NodeKind::Object(object)).at([0.0, lifted, 0.0].into());
     scene.insert(None, 0, node).expect("the scene has room");
-    let mut subject = Subject::new("ball", &scene, None);
+    let mut bench_scene = BenchScene::new("ball", &scene, None);
     let eye = glam::DVec3::new(0.3, 0.4, 3.0);
-    subject.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
-    subject
+    bench_scene.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
+    bench_scene
 }
 
 #[test]
@@ -71,17 +71,17 @@ fn a_ball_is_exact_and_a_slightly_different_one_is_refused() {
 }
 
 /// Ellipsoids before the background: one like an egg, a needle, and a disc seen nearly edge on.
-fn ellipsoids() -> Subject {
+fn ellipsoids() -> BenchScene {
     let mut scene = Scene::new();
     for (radii, at) in [([0.7, 0.45, 0.5], 0.0), ([0.03, 0.9, 0.03], -1.0), ([0.8, 0.02, 0.8], 1.7)] {
         let object = Object { shape: Shape::Ellipsoid { radii }, material: MaterialId(1) };
         let node = Node::new("ellipsoid", NodeKind::Object(object)).at([at, 0.0, 0.0].into());
         scene.insert(None, usize::MAX, node.rotated(glam::DQuat::from_rotation_z(0.2))).expect("the scene has room");
     }
-    let mut subject = Subject::new("ellipsoids", &scene, None);
+    let mut bench_scene = BenchScene::new("ellipsoids", &scene, None);
     let eye = glam::DVec3::new(0.3, 0.4, 6.0);
-    subject.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::X * 0.4, 0.55);
-    subject
+    bench_scene.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::X * 0.4, 0.55);
+    bench_scene
 }
 
 /// The thesis drew its ellipsoid by few steps and by many, and neither was right along the outline. Here nobody says how
@@ -91,32 +91,34 @@ fn ellipsoids() -> Subject {
 #[test]
 fn outlines_of_ellipsoids_are_right_by_few_and_by_many_steps() {
     let shipped = scenes().find(|scene| scene.name == "ellipsoid-and-plane").expect("it is shipped");
-    // Towards the horizon of the plane rays take many steps, each of them at a grazing angle.
-    for (subject, most) in [(ellipsoids(), 3.0), (shipped, 40.0)] {
-        let truth = truth(&subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], &|_| ()).expect("an end");
+    // Toward the horizon of the plane rays take many steps, each of them at a grazing angle.
+    for (bench_scene, most) in [(ellipsoids(), 3.0), (shipped, 40.0)] {
+        let reference =
+            render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], &|_| ())
+                .expect("an end");
         let gpu = shared().gpu.clone();
         let taken = Quality::ALL.map(|quality| {
             let options = Options { quality, counting: true, ..Renderer::options(&gpu) };
             let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
-            renderer.set_method(Method::Interpreted);
+            renderer.set_strategy(EvalStrategy::Interpreter);
             let overlay = OverlaySettings::default();
             let mut frame = renderer
-                .begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], overlay)
+                .begin(Slot::Full, &bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], overlay)
                 .expect("a frame");
             renderer.advance(&mut frame, std::time::Duration::MAX).expect("a picture");
             assert_eq!(renderer.unfinished_rays(&frame).expect("counts"), []);
             let picture = renderer.read(&frame).expect("a picture");
             let steps = renderer.pixel_counts(&frame).expect("counts").steps();
-            let verdicts = verdicts(&picture, &subject.flat, &truth);
+            let verdicts = verdicts(&picture, &bench_scene.flat, &reference);
             let other = (0..verdicts.len()).filter(|i| verdicts[*i].is_wrong());
             // Coarse pictures may have outlines a tenth of a pixel off, which is what they promise.
-            let is_near = |i: &usize| quality == Quality::Draft && truth.margin[*i] <= 0.1;
+            let is_near = |i: &usize| quality == Quality::Draft && reference.margin[*i] <= 0.1;
             let (near, wrong): (Vec<_>, Vec<_>) = other.partition(is_near);
-            let fits = wrong.len() as f64 <= MAX_WRONG_SHARE * truth.margin.len() as f64 && near.len() < 40;
-            assert!(fits, "{}, {quality:?}: {wrong:?} are wrong, {near:?} near", subject.name);
-            assert!(steps.mean < most, "{}, {quality:?}: {steps:?}", subject.name);
+            let fits = wrong.len() as f64 <= MAX_WRONG_SHARE * reference.margin.len() as f64 && near.len() < 40;
+            assert!(fits, "{}, {quality:?}: {wrong:?} are wrong, {near:?} near", bench_scene.name);
+            assert!(steps.mean < most, "{}, {quality:?}: {steps:?}", bench_scene.name);
             steps.mean
         });
-        assert!(taken.is_sorted(), "{}: {taken:?}", subject.name);
+        assert!(taken.is_sorted(), "{}: {taken:?}", bench_scene.name);
     }
 }

@@ -1,15 +1,15 @@
-//! The GPU's field is the CPU twin's: for every shape, every operator and random trees,
+//! The GPU's field is the CPU evaluator's: for every shape, every operator and random trees,
 //! |gpu − cpu| ≤ 1e-4 (1 + |d|) at 4 096 points.
 
-mod ahead;
 mod gradients;
+mod lookahead;
 
 use glam::{DQuat, DVec3};
-use isolith::flat::twin::field;
-use isolith::flat::{Body, CellTree, FlatScene, flatten, leaf_data, pruned_field};
+use isolith::flat::eval::field;
+use isolith::flat::{CellTree, FlatScene, PreparedShape, flatten, leaf_payload, tape_field};
 use isolith::gallery;
-use isolith::render::kernel::{Evaluator, Features, Options, ShapeSet, Skipping, Structure};
 use isolith::render::probe;
+use isolith::render::wgsl::{Evaluator, OpSet, Options, ShapeSet, SkipMode, Structure};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator, Scene,
     Shape, ShapeKind,
@@ -52,22 +52,22 @@ fn compare(flat: &FlatScene, component: usize, points: &[DVec3], values: &[f32])
 
 /// Compares every component of the scene at as many points as make 4 096 together.
 fn agree(what: &str, scene: &Scene, random: &mut Random) {
-    agree_skipping(what, scene, random, Skipping::Branches);
+    agree_with_skip_mode(what, scene, random, SkipMode::Branches);
 }
 
-/// The same; specialised kernels skip what is out of reach in the given way.
-fn agree_skipping(what: &str, scene: &Scene, random: &mut Random, skipping: Skipping) {
-    let options = Options { skipping, ..Options::default() };
+/// The same; specialized pipelines skip what is out of reach in the given way.
+fn agree_with_skip_mode(what: &str, scene: &Scene, random: &mut Random, skip_mode: SkipMode) {
+    let options = Options { skip_mode, ..Options::default() };
     let flat = flatten(scene, 0.0).unwrap();
     let share = POINTS.div_ceil(flat.components.len().max(1));
     for (index, component) in flat.components.iter().enumerate() {
         let points = points(random, share);
-        let mut evaluators = vec![Evaluator::Interpreted(Features::of(&flat))];
-        evaluators.extend(Structure::of(&flat, component).map(Evaluator::Specialised));
+        let mut evaluators = vec![Evaluator::Interpreter(OpSet::of(&flat))];
+        evaluators.extend(Structure::of(&flat, component).map(Evaluator::StraightLine));
         for evaluator in &evaluators {
             let values = probe::field(&shared().gpu, &flat, index, &points, evaluator, options).unwrap();
             compare(&flat, index, &points, &values)
-                .unwrap_or_else(|e| panic!("{what}, {evaluator:?}: {e}\n{:?}", flat.numbers));
+                .unwrap_or_else(|e| panic!("{what}, {evaluator:?}: {e}\n{:?}", flat.params));
         }
     }
 }
@@ -143,19 +143,19 @@ fn long_rows(random: &mut Random) -> Scene {
 /// Long rows of operands are skipped run by run, at every place and in both ways to skip.
 #[test]
 fn runs_agree() {
-    for (seed, skipping) in [(1, Skipping::Branches), (2, Skipping::Selects)] {
+    for (seed, skip_mode) in [(1, SkipMode::Branches), (2, SkipMode::Selects)] {
         let mut random = Random::new(seed);
         let scene = long_rows(&mut random);
         let flat = flatten(&scene, 0.0).unwrap();
         assert!(flat.nodes.iter().filter(|n| n.is_run()).count() >= 6, "nothing is skipped here");
-        assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a kernel");
-        agree_skipping("runs", &scene, &mut random, skipping);
+        assert!(Structure::of(&flat, &flat.components[0]).is_some(), "too large for a pipeline");
+        agree_with_skip_mode("runs", &scene, &mut random, skip_mode);
     }
 }
 
-/// A kernel for a form serves all structures of the form: few shapes, and so many that they are skipped.
+/// A pipeline for a template serves all structures of the template: few shapes, and so many that they are skipped.
 #[test]
-fn forms_agree() {
+fn templates_agree() {
     let few = gallery::random(16, 1);
     let mut many = Scene::new();
     let group =
@@ -164,24 +164,24 @@ fn forms_agree() {
     for (i, kind) in ShapeKind::ALL.iter().take(6).enumerate() {
         add(&mut many, Some(parent), object(kind.default_shape()).at(DVec3::X * 0.4 * i as f64));
     }
-    for (scene, skipping) in [(&few, Skipping::Branches), (&few, Skipping::Selects), (&many, Skipping::Selects)] {
+    for (scene, skip_mode) in [(&few, SkipMode::Branches), (&few, SkipMode::Selects), (&many, SkipMode::Selects)] {
         let (flat, mut random) = (flatten(scene, 0.0).unwrap(), Random::new(1));
         let used = flat.nodes.iter().filter(|node| node.is_leaf()).map(|n| ShapeKind::ALL[(n.code & 0xffff) as usize]);
         let used = ShapeSet::of(used);
         for (index, component) in flat.components.iter().enumerate() {
-            let form = Structure::form(&flat, component, used).expect("it is small");
-            let (points, options) = (points(&mut random, 500), Options { skipping, ..Options::default() });
-            let evaluator = Evaluator::Specialised(form);
+            let template = Structure::template(&flat, component, used).expect("it is small");
+            let (points, options) = (points(&mut random, 500), Options { skip_mode, ..Options::default() });
+            let evaluator = Evaluator::StraightLine(template);
             let values = probe::field(&shared().gpu, &flat, index, &points, &evaluator, options).unwrap();
-            compare(&flat, index, &points, &values).unwrap_or_else(|e| panic!("{skipping:?}: {e}"));
+            compare(&flat, index, &points, &values).unwrap_or_else(|e| panic!("{skip_mode:?}: {e}"));
         }
     }
 }
 
-/// Pruned lists: every component that can have them, against the twin of the same lists. A point near the border of
+/// Tapes: every component that can have them, against the CPU evaluator of the same tapes. A point near the border of
 /// two cells may fall to either.
 #[test]
-fn pruned_lists_agree() {
+fn tapes_agree() {
     const NEAR: f64 = 1e-5;
     let mut crowds = vec![gallery::crowd(60, true, 3), gallery::crowd(200, true, 4), gallery::boxes(40, 5)];
     crowds.extend(modified_crowds());
@@ -189,22 +189,22 @@ fn pruned_lists_agree() {
         let flat = flatten(scene, 0.0).unwrap();
         let tree = CellTree::build(&flat, &flat.components[0]);
         let points = points(&mut Random::new(seed), POINTS);
-        let mut features = Features::of(&flat);
+        let mut ops = OpSet::of(&flat);
         if flat.components[0].is_modified() {
-            // One kernel is compiled for all of them.
-            features = Features { modifiers: Features::all().modifiers, stack: 4, ..features };
+            // One pipeline is compiled for all of them.
+            ops = OpSet { modifiers: OpSet::all().modifiers, stack: 4, ..ops };
         }
-        let evaluator = Evaluator::Pruned(features);
-        for skipping in [Skipping::Branches, Skipping::Selects] {
-            let options = Options { skipping, ..Options::default() };
+        let evaluator = Evaluator::Tape(ops);
+        for skip_mode in [SkipMode::Branches, SkipMode::Selects] {
+            let options = Options { skip_mode, ..Options::default() };
             let values = probe::field(&shared().gpu, &flat, 0, &points, &evaluator, options).unwrap();
             for (p, gpu) in points.iter().zip(values) {
                 let around = [DVec3::ZERO, DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
-                let cpu = around.map(|d| pruned_field(&flat, &flat.components[0], &tree, *p + d * NEAR));
-                let truth = field(&flat, &flat.components[0], *p);
+                let cpu = around.map(|d| tape_field(&flat, &flat.components[0], &tree, *p + d * NEAR));
+                let reference = field(&flat, &flat.components[0], *p);
                 let is_same = |gpu: f64, cpu: f64| (gpu - cpu).abs() <= 1e-4 * (1.0 + cpu.abs());
-                // The GPU leaves out copies by their bounds, which may say more than cells without a list.
-                let is_between = |gpu: f64, cpu: f64| cpu <= gpu && gpu <= truth;
+                // The GPU leaves out copies by their bounds, which may say more than cells without a tape.
+                let is_between = |gpu: f64, cpu: f64| cpu <= gpu && gpu <= reference;
                 let agrees = |cpu: &f64| is_same(gpu.into(), *cpu) || is_between(gpu.into(), *cpu);
                 assert!(cpu.iter().any(agrees), "crowd {seed}: at {p} the GPU says {gpu}, the CPU {cpu:?}");
             }
@@ -244,9 +244,9 @@ fn every_modifier_agrees() {
     }
 }
 
-/// What has data, at joints that need all of their numbers, below modifiers and twice below copies.
+/// What has data, at blends that need all of their numbers, below modifiers and twice below copies.
 #[test]
-fn data_are_found_below_joints_and_modifiers() {
+fn data_are_found_below_blends_and_modifiers() {
     let mut scene = Scene::new();
     let blend = Blend { steps: 3, ..Blend::new(BlendKernel::Stairs, 0.2) };
     let group = |operator| {
@@ -267,14 +267,14 @@ fn data_are_found_below_joints_and_modifiers() {
     let mut rows = 0;
     for node in flat.nodes.iter().filter(|node| node.is_leaf()) {
         let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
-        let data = Body::new(&kind.default_shape()).rows;
-        let found = leaf_data(kind, &flat.numbers[node.numbers as usize..]);
+        let data = PreparedShape::new(&kind.default_shape()).payload;
+        let found = leaf_payload(kind, &flat.params[node.params as usize..]);
         assert_eq!(found, data.iter().map(|row| row.map(|v| v as f32)).collect::<Vec<_>>(), "{kind:?}");
         rows += data.len();
     }
     let [component] = &flat.components[..] else { panic!("one component") };
-    assert!(component.is_modified() && rows == component.data as usize);
+    assert!(component.is_modified() && rows == component.payload_rows as usize);
     let structure = Structure::of(&flat, component).unwrap();
-    assert_eq!(structure.rows() + structure.material_rows(), (component.rows - component.data) as usize);
+    assert_eq!(structure.rows() + structure.material_rows(), (component.param_rows - component.payload_rows) as usize);
     agree("data", &scene, &mut random);
 }

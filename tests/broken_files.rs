@@ -51,7 +51,7 @@ const CASES: &[Case] = &[
     ("  ]\n}", "  ]\n} {}", "", "", "trailing characters"),
     ("  ]\n}", "  ]", "", "", "EOF"),
     // Fields.
-    (r#""name": "Head","#, r#""name": "Head", "colour": 3,"#, "Head #2", "nodes[1].colour", "unknown field"),
+    (r#""name": "Head","#, r#""name": "Head", "color": 3,"#, "Head #2", "nodes[1].color", "unknown field"),
     (r#""radius": 0.5"#, r#""radus": 0.5"#, "Head #2", "nodes[1].object.shape.radus", "unknown field"),
     (
         r#""type": "sphere", "radius": 0.5"#,

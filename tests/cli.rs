@@ -178,14 +178,14 @@ fn quiet_is_quiet_and_overwrites() {
 }
 
 #[test]
-fn numbers_are_written_as_numbers_and_the_truth_agrees() {
+fn numbers_are_written_as_numbers_and_the_reference_agrees() {
     let place = Place::new();
     let mut depths = Vec::new();
-    for truth in [false, true] {
+    for reference in [false, true] {
         let mut arguments = vec!["render", "scene.json", "-o", "out.png", "--size", "24x16"];
         arguments.extend(["--depth", "depth.exr", "--normal", "normal.exr", "--node-id", "id.exr"]);
-        if truth {
-            arguments.push("--truth");
+        if reference {
+            arguments.push("--reference");
         }
         place.run(&arguments).succeeded();
         let [depth, normal] = ["depth", "normal"].map(|name| open(&place.path(&format!("{name}.exr"))).into_rgb32f());
@@ -233,7 +233,7 @@ fn pictures_show_what_the_view_says() {
     let (said, shaded) = render("shaded");
     assert!(said.contains("wrote out.png\n"), "{said}");
     assert_ne!(shaded, normals);
-    place.run(&["render", "scene.json", "-o", "out.png", "--view", "steps", "--truth"]).failed(2, &["--truth"]);
+    place.run(&["render", "scene.json", "-o", "out.png", "--view", "steps", "--reference"]).failed(2, &["--reference"]);
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
 #[test]
 fn bench_measures_every_method_and_writes_tables_and_charts() {
     let place = Place::new();
-    let methods = "thesis,generated,interpreted,pruned,specialised,limit,auto";
+    let methods = "thesis,baked,interpreter,tape,straight-line,limit,auto";
     let run = place.run(&["bench", "scene.json", "--methods", methods, "--size", "32", "--json", "--output", "report"]);
     run.succeeded();
     let rows: Vec<Value> = run.out.lines().map(|line| serde_json::from_str(line).expect("an object a line")).collect();
@@ -398,7 +398,7 @@ fn bench_measures_every_method_and_writes_tables_and_charts() {
     }
     for name in ["bench.md", "bench.csv"] {
         let text = std::fs::read_to_string(place.path("report").join(name)).expect("a table");
-        assert!(["interpreted", "auto", "grazing"].iter().all(|word| text.contains(word)), "{name}");
+        assert!(["interpreter", "auto", "grazing"].iter().all(|word| text.contains(word)), "{name}");
     }
     assert!(open(&place.path("report").join("scene.png")).dimensions().0 > 800);
 }
@@ -406,7 +406,7 @@ fn bench_measures_every_method_and_writes_tables_and_charts() {
 #[test]
 fn bench_refuses_what_it_does_not_know() {
     let place = Place::new();
-    place.run(&["bench", "scene.json", "--methods", "fastest"]).failed(2, &["fastest", "thesis, generated"]);
+    place.run(&["bench", "scene.json", "--methods", "fastest"]).failed(2, &["fastest", "thesis, baked"]);
     place.run(&["bench", "scene.json", "--qualities", "best"]).failed(2, &["best", "draft, default, fine"]);
     place.run(&["bench", "scene.json", "--size", "5"]).failed(2, &["16..=4096"]);
     place.run(&["bench", "missing.json"]).failed(3, &["missing.json"]);

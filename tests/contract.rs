@@ -2,11 +2,11 @@
 //! set are right, the value is a safe step, it is finite, and bounds enclose. Generated over the enums,
 //! so that a new variant is tested without a line here, except for its surface in `surfaces`.
 
+mod blends;
 mod drawn;
-mod joints;
 pub mod modifiers;
 mod operators;
-mod outlines;
+mod profiles;
 mod rules;
 pub mod samples;
 mod shapes;

@@ -3,29 +3,34 @@
 use glam::DVec3;
 use isolith::gallery;
 use isolith::geometry::Camera;
-use isolith::render::kernel::Options;
-use isolith::render::{Counts, Method, OverlaySettings, Renderer, Slot};
+use isolith::render::wgsl::Options;
+use isolith::render::{Counts, EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
 
-use crate::gpu::{Subject, scenes, shared};
+use crate::gpu::{BenchScene, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 128;
 
-/// What drawing the subject by pruned lists counts.
-fn count(subject: &Subject, options: impl Fn(Options) -> Options) -> Counts {
-    count_by(Method::Pruned, SIDE, subject, options)
+/// What drawing the bench_scene by tapes counts.
+fn count(bench_scene: &BenchScene, options: impl Fn(Options) -> Options) -> Counts {
+    count_by(EvalStrategy::Tape, SIDE, bench_scene, options)
 }
 
-/// What drawing the subject counts, in a picture of `side` by `side` pixels.
-fn count_by(method: Method, side: u32, subject: &Subject, options: impl Fn(Options) -> Options) -> Counts {
+/// What drawing the bench_scene counts, in a picture of `side` by `side` pixels.
+fn count_by(
+    strategy: EvalStrategy,
+    side: u32,
+    bench_scene: &BenchScene,
+    options: impl Fn(Options) -> Options,
+) -> Counts {
     let gpu = shared().gpu.clone();
     let options = options(Options { counting: true, ..Renderer::options(&gpu) });
     let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
-    renderer.set_method(method);
+    renderer.set_strategy(strategy);
     let overlay = OverlaySettings::default();
     let mut frame = renderer
-        .begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, [side, side], overlay)
+        .begin(Slot::Full, &bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [side, side], overlay)
         .expect("a frame");
     renderer.advance(&mut frame, std::time::Duration::MAX).expect("a picture");
     renderer.counts(&frame).expect("counts")
@@ -48,10 +53,10 @@ fn what_is_hidden_or_out_of_view_costs_nothing() {
     ] {
         scene.insert(None, usize::MAX, node).expect("the scene has room");
     }
-    let mut subject = Subject::new("wall", &scene, None);
-    subject.camera = Camera::looking_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, 0.6);
-    let counts = count(&subject, |options| options);
-    assert_eq!(subject.flat.components.len(), 4);
+    let mut bench_scene = BenchScene::new("wall", &scene, None);
+    bench_scene.camera = Camera::looking_at(DVec3::new(0.0, 0.0, 6.0), DVec3::ZERO, 0.6);
+    let counts = count(&bench_scene, |options| options);
+    assert_eq!(bench_scene.flat.components.len(), 4);
     let [wall, hidden, behind_the_eye, seen] = counts.of_components[..] else { panic!("{counts:?}") };
     assert!(wall > 0 && seen > 0, "{counts:?}");
     assert_eq!([hidden, behind_the_eye], [0, 0]);
@@ -64,13 +69,14 @@ fn per_pixel(counts: &Counts, side: u32) -> f64 {
 
 /// A wrong hit is as cheap as a right one: that the pictures are right is for the tests of agreement.
 #[test]
-fn kernels_take_few_evaluations_up_to_145_nodes() {
+fn straight_line_code_takes_few_evaluations_up_to_145_nodes() {
     for (name, most) in [("random-37", 1.7), ("random-145", 2.25)] {
-        let subject = scenes().find(|subject| subject.name == name).expect("the scene is there");
-        let counts = count_by(Method::Specialised, 512, &subject, |options| options);
+        let bench_scene = scenes().find(|bench_scene| bench_scene.name == name).expect("the scene is there");
+        let counts = count_by(EvalStrategy::StraightLine, 512, &bench_scene, |options| options);
         let reached = per_pixel(&counts, 512);
         assert!(reached > 1.0 && reached <= most, "{name}: {reached} evaluations per pixel, {most} allowed");
-        let unrelaxed = count_by(Method::Specialised, 512, &subject, |options| Options { relaxed: false, ..options });
+        let unrelaxed =
+            count_by(EvalStrategy::StraightLine, 512, &bench_scene, |options| Options { relaxed: false, ..options });
         assert!(per_pixel(&unrelaxed, 512) > most, "{name}: the gate cannot see what leaps save");
     }
 }
@@ -79,18 +85,19 @@ fn kernels_take_few_evaluations_up_to_145_nodes() {
 fn no_more_is_evaluated_than_was_once_reached() {
     let scenes =
         [gallery::random(32, 2), gallery::random(128, 2), gallery::crowd(100, true, 2), gallery::crowd(400, true, 2)];
-    let reached = scenes.map(|scene| per_pixel(&count(&Subject::new("random", &scene, None), |options| options), SIDE));
+    let reached =
+        scenes.map(|scene| per_pixel(&count(&BenchScene::new("random", &scene, None), |options| options), SIDE));
     assert!((0..4).all(|i| reached[i] <= MOST[i]), "{reached:?} evaluations per pixel, {MOST:?} allowed");
 }
 
 #[test]
 fn without_cones_more_is_evaluated() {
-    let subject = Subject::new("random", &gallery::random(32, 2), None);
-    let [with, without] = [true, false].map(|cones| per_pixel(&count(&subject, |o| Options { cones, ..o }), SIDE));
+    let bench_scene = BenchScene::new("random", &gallery::random(32, 2), None);
+    let [with, without] = [true, false].map(|cones| per_pixel(&count(&bench_scene, |o| Options { cones, ..o }), SIDE));
     assert!(without > 1.5 * with, "{without} without cones, {with} with them");
 }
 
 /// Evaluations per pixel that are allowed: those of 2026-11, with a twentieth of room for drivers that round otherwise.
 /// Of the first one 4.35 were allowed when nearness was a hit: to look behind costs 2 to 4 %.
-/// The second one was 5.95 when groups of eight shapes had no lists: cells end steps, but for each less is read.
+/// The second one was 5.95 when groups of eight shapes had no tapes: cells end steps, but for each less is read.
 const MOST: [f64; 4] = [4.5, 7.9, 5.3, 9.3];

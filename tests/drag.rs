@@ -1,8 +1,8 @@
-//! A dragged number reaches the picture in the same frame, builds no kernel and uploads next to nothing.
+//! A dragged number reaches the picture in the same frame, builds no pipeline and uploads next to nothing.
 
 use isolith::document::{Document, Edit};
-use isolith::flat::{Buffers, flatten};
-use isolith::render::{Method, Renderer};
+use isolith::flat::{GBuffer, flatten};
+use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{MaterialId, Node, NodeId, NodeKind, Object, Scene, Shape};
 
 use crate::gpu::{Shared, shared};
@@ -31,7 +31,7 @@ fn set_radius(document: &mut Document, id: NodeId, radius: f64) {
     document.apply(Edit::Replace(node)).expect("within the limits");
 }
 
-fn picture(renderer: &mut Renderer, document: &Document) -> Buffers {
+fn picture(renderer: &mut Renderer, document: &Document) -> GBuffer {
     let flat = flatten(document.scene(), 0.0).expect("within the limits");
     let eye = glam::DVec3::new(1.0, 1.0, 5.0);
     let camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::new(1.0, 0.0, 0.0), 0.8);
@@ -41,11 +41,11 @@ fn picture(renderer: &mut Renderer, document: &Document) -> Buffers {
 #[test]
 fn a_dragged_radius_is_in_the_next_picture_and_builds_nothing() {
     let Shared { gpu, renderer } = &mut *shared();
-    for method in [Method::Interpreted, Method::Specialised] {
-        renderer.set_method(method);
+    for strategy in [EvalStrategy::Interpreter, EvalStrategy::StraightLine] {
+        renderer.set_strategy(strategy);
         let (mut document, ball) = document();
         let mut last = picture(renderer, &document);
-        let (built, mut uploaded) = (renderer.kernels().built(), renderer.uploaded());
+        let (built, mut uploaded) = (renderer.pipelines().built(), renderer.uploaded());
         document.begin_gesture();
         for step in 1..=10 {
             set_radius(&mut document, ball, 0.4 + 0.05 * f64::from(step));
@@ -56,28 +56,28 @@ fn a_dragged_radius_is_in_the_next_picture_and_builds_nothing() {
             (last, uploaded) = (next, renderer.uploaded());
         }
         document.end_gesture();
-        assert_eq!(renderer.kernels().built(), built, "{method:?}: a drag built a kernel");
+        assert_eq!(renderer.pipelines().built(), built, "{strategy:?}: a drag built a pipeline");
         // A renderer that has seen nothing of the drag draws the same.
         let mut fresh = Renderer::new(gpu).expect("a renderer");
-        fresh.set_method(method);
+        fresh.set_strategy(strategy);
         assert_eq!(picture(&mut fresh, &document), last);
         assert!(document.undo() && !document.undo(), "the drag is one step of undo");
     }
 }
 
 #[test]
-fn a_new_shape_does_build_a_kernel() {
-    // The count above can move: a shape that the renderer has not seen needs a kernel.
+fn a_new_shape_does_build_a_pipeline() {
+    // The count above can move: a shape that the renderer has not seen needs a pipeline.
     let gpu = shared().gpu.clone();
     let mut renderer = Renderer::new(&gpu).expect("a renderer");
-    renderer.set_method(Method::Interpreted);
+    renderer.set_strategy(EvalStrategy::Interpreter);
     let (mut document, ball) = document();
     picture(&mut renderer, &document);
-    let built = renderer.kernels().built();
+    let built = renderer.pipelines().built();
     let mut node = Node::clone(document.scene().node(ball).expect("the ball"));
     let shape = Shape::Torus { major_radius: 0.5, minor_radius: 0.2 };
     node.kind = NodeKind::Object(Object { shape, material: MaterialId(1) });
     document.apply(Edit::Replace(node)).expect("within the limits");
     picture(&mut renderer, &document);
-    assert_eq!(renderer.kernels().built(), built + 1);
+    assert_eq!(renderer.pipelines().built(), built + 1);
 }

@@ -226,11 +226,11 @@ fn backspace_over_a_field_resets_it() {
 }
 
 #[test]
-fn a_colour_is_picked_by_dragging_and_by_typing() {
+fn a_color_is_picked_by_dragging_and_by_typing() {
     let (scene, _) = scene();
     let mut harness = open(scene.clone());
     select(&mut harness, "Ball");
-    let swatch = field(&harness, "Colour").rect().center();
+    let swatch = field(&harness, "Base color").rect().center();
     click(&mut harness, swatch);
     let square = harness.get_by_label("Saturation and brightness").rect();
     pointer(&mut harness, square.center(), true);
@@ -308,7 +308,7 @@ fn changing_the_shape_keeps_the_node() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene.clone());
     select(&mut harness, "Ball");
-    let combo = field(&harness, "Kind").rect().center();
+    let combo = field(&harness, "Primitive").rect().center();
     click(&mut harness, combo);
     let entries: Vec<_> = harness.get_all_by_label("Box").map(|n| n.rect().center()).collect();
     click(&mut harness, entries[0]);

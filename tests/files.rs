@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use isolith::scene::{Blend, BlendKernel, Group, Joining, NodeId, NodeKind, Operator, RadiusUnit, Scene, file};
+use isolith::scene::{Blend, BlendKernel, BlendOverride, Group, NodeId, NodeKind, Operator, RadiusUnit, Scene, file};
 
 use crate::random_scene::{Random, random_scene};
 
@@ -97,14 +97,17 @@ fn files_of_the_first_program_mean_what_they_meant() {
     let scene = read(text.as_bytes()).expect("the first version");
     let node = scene.node(NodeId(1)).expect("is there");
     let group = Group::new(Operator::Difference, Blend::new(BlendKernel::Cubic, 0.25));
-    assert_eq!((&node.kind, node.joining, node.apart.len()), (&NodeKind::Group(group), Joining::Inherit, 0));
+    assert_eq!(
+        (&node.kind, node.blend_override, node.apart.len()),
+        (&NodeKind::Group(group), BlendOverride::Inherit, 0)
+    );
     let written = file::to_json(&scene).expect("valid");
     let added = ["unit", "steps", "width", "depth", "share", "joining", "apart"];
     assert!(added.iter().all(|name| !written.contains(&format!("{name:?}:"))), "{written}");
 }
 
 #[test]
-fn joints_are_written_by_name() {
+fn blends_are_written_by_name() {
     let text = r#"{"isolith": 1, "nodes": [
         {"id": 1, "group": {"operator": "engrave", "blend": {"kernel": "stairs", "radius": 0.5, "unit": "size", "steps": 3}, "depth": 0.2}},
         {"id": 2, "parent": 1, "joining": "hard", "apart": [3], "camera": {"fov_y": 40, "near": 0.1, "far": 10}},
@@ -114,8 +117,20 @@ fn joints_are_written_by_name() {
     let blend = Blend { unit: RadiusUnit::Size, steps: 3, ..Blend::new(BlendKernel::Stairs, 0.5) };
     let group = Group { depth: 0.2, ..Group::new(Operator::Engrave, blend) };
     assert_eq!(scene.nodes()[0].kind, NodeKind::Group(group));
-    assert_eq!((scene.nodes()[1].joining, &scene.nodes()[1].apart[..]), (Joining::Hard, &[NodeId(3)][..]));
-    assert_eq!(scene.nodes()[2].joining, Joining::Radius(0.1));
+    assert_eq!((scene.nodes()[1].blend_override, &scene.nodes()[1].apart[..]), (BlendOverride::Hard, &[NodeId(3)][..]));
+    assert_eq!(scene.nodes()[2].blend_override, BlendOverride::Radius(0.1));
+}
+
+#[test]
+fn the_former_name_of_the_smooth_chamfer_is_read_and_not_written() {
+    let text = r#"{"isolith": 1, "nodes": [
+        {"id": 1, "group": {"operator": "union", "blend": {"kernel": "lean", "radius": 0.5}}}
+    ]}"#;
+    let scene = read(text.as_bytes()).expect("valid");
+    let group = Group::new(Operator::Union, Blend::new(BlendKernel::SmoothChamfer, 0.5));
+    assert_eq!(scene.nodes()[0].kind, NodeKind::Group(group));
+    let written = file::to_json(&scene).expect("valid");
+    assert!(written.contains(r#""kernel": "smooth_chamfer""#) && !written.contains("lean"), "{written}");
 }
 
 #[test]

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use image::{Rgba, RgbaImage};
-use isolith::flat::Buffers;
-use isolith::render::Method;
+use isolith::flat::GBuffer;
+use isolith::render::EvalStrategy;
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
 
-use crate::gpu::{Subject, scenes, shared};
+use crate::gpu::{BenchScene, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 256;
@@ -57,33 +57,33 @@ fn every_scene_looks_as_accepted() {
     if std::env::var_os("ISOLITH_ACCEPT_GOLDEN").is_some_and(|value| value == "1") {
         assert!(is_lavapipe, "pictures are accepted on lavapipe only, and this is {}", info.name);
         for scene in scenes() {
-            let picture = image(&scene.render(SIDE, Method::Interpreted));
+            let picture = image(&scene.render(SIDE, EvalStrategy::Interpreter));
             picture.save(accepted_path(&scene.name)).expect("the accepted picture can be written");
         }
     }
-    compare_with_accepted(Method::Interpreted, if is_lavapipe { Gate::Exact } else { Gate::Close });
+    compare_with_accepted(EvalStrategy::Interpreter, if is_lavapipe { Gate::Exact } else { Gate::Close });
 }
 
 /// Straight-line code may be rounded otherwise than the interpreter, so bits are not compared.
 #[test]
-fn every_scene_looks_the_same_with_specialised_kernels() {
-    compare_with_accepted(Method::Specialised, Gate::Close);
+fn every_scene_looks_the_same_with_straight_line_code() {
+    compare_with_accepted(EvalStrategy::StraightLine, Gate::Close);
 }
 
-fn compare_with_accepted(method: Method, gate: Gate) {
+fn compare_with_accepted(strategy: EvalStrategy, gate: Gate) {
     let mut faults = Vec::new();
     for scene in scenes() {
         let Ok(accepted) = image::open(accepted_path(&scene.name)) else {
             faults.push(format!("{}: no picture was accepted yet; look at it and run `make golden`", scene.name));
             continue;
         };
-        let (actual, accepted) = (image(&scene.render(SIDE, method)), accepted.to_rgba8());
+        let (actual, accepted) = (image(&scene.render(SIDE, strategy)), accepted.to_rgba8());
         if let Err(fault) = gate.check(&actual, &accepted) {
-            let place = keep(&format!("{}-{method:?}", scene.name), &actual, &accepted);
+            let place = keep(&format!("{}-{strategy:?}", scene.name), &actual, &accepted);
             faults.push(format!("{}: {fault}; see {}", scene.name, place.display()));
         }
     }
-    assert!(faults.is_empty(), "{method:?}, {gate:?}:\n{}", faults.join("\n"));
+    assert!(faults.is_empty(), "{strategy:?}, {gate:?}:\n{}", faults.join("\n"));
 }
 
 #[test]
@@ -143,15 +143,15 @@ fn sample(radius: f64, with_small: bool) -> Scene {
 
 /// The scene from a camera that does not depend on what is in it.
 fn picture_of(scene: &Scene) -> RgbaImage {
-    let mut subject = Subject::new("sample", scene, None);
+    let mut bench_scene = BenchScene::new("sample", scene, None);
     let eye = glam::DVec3::new(0.5, 0.7, 2.5);
-    subject.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
-    image(&subject.render(SIDE, Method::Interpreted))
+    bench_scene.camera = isolith::geometry::Camera::looking_at(eye, glam::DVec3::ZERO, 0.7);
+    image(&bench_scene.render(SIDE, EvalStrategy::Interpreter))
 }
 
-fn image(buffers: &Buffers) -> RgbaImage {
+fn image(buffers: &GBuffer) -> RgbaImage {
     let bytes = buffers.color.iter().flatten().copied().collect();
-    RgbaImage::from_raw(buffers.width, buffers.height, bytes).expect("one colour for each pixel")
+    RgbaImage::from_raw(buffers.width, buffers.height, bytes).expect("one color for each pixel")
 }
 
 fn accepted_path(scene: &str) -> PathBuf {

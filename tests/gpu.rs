@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 
-use isolith::flat::{Buffers, FlatScene, flatten};
+use isolith::flat::{FlatScene, GBuffer, flatten};
 use isolith::geometry::Camera;
 use isolith::mesh::{MeshLibrary, TriangleMesh};
-use isolith::render::{Gpu, Method, Renderer};
+use isolith::render::{EvalStrategy, Gpu, Renderer};
 use isolith::scene::{Scene, file};
 
 /// The device and what draws with it.
@@ -29,14 +29,14 @@ pub fn shared() -> MutexGuard<'static, Shared> {
 }
 
 /// A scene, ready to be drawn.
-pub struct Subject {
+pub struct BenchScene {
     pub name: String,
     pub flat: FlatScene,
     pub meshes: Vec<Option<Arc<TriangleMesh>>>,
     pub camera: Camera,
 }
 
-impl Subject {
+impl BenchScene {
     /// A scene that stands in no file, seen as it is by itself, in a square picture.
     pub fn new(name: &str, scene: &Scene, folder: Option<PathBuf>) -> Self {
         let flat = flatten(scene, 0.0).unwrap_or_else(|error| panic!("{name}: {error:?}"));
@@ -47,9 +47,9 @@ impl Subject {
     }
 
     /// Draws it on the shared device.
-    pub fn render(&self, side: u32, method: Method) -> Buffers {
+    pub fn render(&self, side: u32, strategy: EvalStrategy) -> GBuffer {
         let renderer = &mut shared().renderer;
-        renderer.set_method(method);
+        renderer.set_strategy(strategy);
         let picture = renderer.render(&self.flat, &self.meshes, &self.camera, [side, side], &mut |_| true);
         let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", self.name));
         assert!(unfinished.is_empty(), "{}: {unfinished:?}", self.name);
@@ -58,7 +58,7 @@ impl Subject {
 }
 
 /// Every scene of the folder `scenes`, in the order of their names.
-pub fn scenes() -> impl Iterator<Item = Subject> {
+pub fn scenes() -> impl Iterator<Item = BenchScene> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
     let entries = std::fs::read_dir(&folder).expect("the folder `scenes` can be read");
     let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry can be read").path()).collect();
@@ -68,6 +68,6 @@ pub fn scenes() -> impl Iterator<Item = Subject> {
     paths.into_iter().map(move |path| {
         let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
         let scene = file::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        Subject::new(&name, &scene, Some(folder.clone()))
+        BenchScene::new(&name, &scene, Some(folder.clone()))
     })
 }

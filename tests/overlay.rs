@@ -3,24 +3,24 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use isolith::flat::{Buffers, MESH_BIT};
-use isolith::render::{Method, OverlaySettings, Slot};
+use isolith::flat::{GBuffer, MESH_BIT};
+use isolith::render::{EvalStrategy, OverlaySettings, Slot};
 use isolith::scene::NodeId;
 
-use crate::gpu::{Subject, scenes, shared};
+use crate::gpu::{BenchScene, scenes, shared};
 
 /// Width and height of the pictures, in pixels: no multiple of a tile's.
 const SIDE: u32 = 150;
-/// The colour of the outline, sRGB.
+/// The color of the outline, sRGB.
 const ORANGE: [u8; 4] = [255, 158, 51, 255];
 /// A ring of radius 2 without its corners.
 const RING: [[i32; 2]; 12] =
     [[2, 0], [2, 1], [1, 2], [0, 2], [-1, 2], [-2, 1], [-2, 0], [-2, -1], [-1, -2], [0, -2], [1, -2], [2, -1]];
 
-fn draw(subject: &Subject, outline: &[NodeId]) -> Buffers {
+fn draw(bench_scene: &BenchScene, outline: &[NodeId]) -> GBuffer {
     let renderer = &mut shared().renderer;
-    renderer.set_method(Method::Interpreted);
-    let Subject { flat, meshes, camera, .. } = subject;
+    renderer.set_strategy(EvalStrategy::Interpreter);
+    let BenchScene { flat, meshes, camera, .. } = bench_scene;
     let overlay = OverlaySettings { outline: outline.to_vec(), ..OverlaySettings::default() };
     let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], overlay).expect("a frame");
     renderer.advance(&mut frame, Duration::MAX).expect("a picture");
@@ -28,11 +28,11 @@ fn draw(subject: &Subject, outline: &[NodeId]) -> Buffers {
 }
 
 /// The node that is seen in each pixel.
-fn seen(subject: &Subject, buffers: &Buffers) -> Vec<Option<NodeId>> {
+fn seen(bench_scene: &BenchScene, buffers: &GBuffer) -> Vec<Option<NodeId>> {
     let node = |leaf: &u32| {
         let leaf = *leaf as usize;
         let mesh = leaf.wrapping_sub(MESH_BIT as usize);
-        subject.flat.ids.get(leaf).copied().or_else(|| subject.flat.meshes.get(mesh).map(|m| m.id))
+        bench_scene.flat.ids.get(leaf).copied().or_else(|| bench_scene.flat.meshes.get(mesh).map(|m| m.id))
     };
     buffers.leaf.iter().map(node).collect()
 }
@@ -51,19 +51,20 @@ fn edges(seen: &[Option<NodeId>], selected: &[NodeId]) -> Vec<bool> {
 #[test]
 fn an_outline_is_around_what_is_selected_and_nowhere_else() {
     let mut drawn = 0;
-    for subject in scenes().filter(|s| ["mesh-and-fields", "pawn", "boolean-operations"].contains(&s.name.as_str())) {
-        let plain = draw(&subject, &[]);
-        let seen = seen(&subject, &plain);
+    for bench_scene in scenes().filter(|s| ["mesh-and-fields", "pawn", "boolean-operations"].contains(&s.name.as_str()))
+    {
+        let plain = draw(&bench_scene, &[]);
+        let seen = seen(&bench_scene, &plain);
         let nodes: Vec<NodeId> = seen.iter().flatten().copied().collect::<BTreeSet<_>>().into_iter().collect();
         // Each alone, and the first with the last: components that stand apart.
         let alone = nodes.iter().map(|id| vec![*id]);
         for selected in alone.chain([vec![nodes[0], nodes[nodes.len() - 1]]]) {
-            let outlined = draw(&subject, &selected);
+            let outlined = draw(&bench_scene, &selected);
             let expected = edges(&seen, &selected);
             for (at, is_edge) in expected.iter().enumerate() {
                 let color = if *is_edge { ORANGE } else { plain.color[at] };
                 let [x, y] = [at as u32 % SIDE, at as u32 / SIDE];
-                assert_eq!(outlined.color[at], color, "{}: {selected:?} at {x}, {y}", subject.name);
+                assert_eq!(outlined.color[at], color, "{}: {selected:?} at {x}, {y}", bench_scene.name);
             }
             drawn += usize::from(expected.contains(&true));
         }
@@ -73,19 +74,19 @@ fn an_outline_is_around_what_is_selected_and_nowhere_else() {
 
 #[test]
 fn what_is_not_seen_has_no_outline() {
-    let mut subject = scenes().find(|s| s.name == "pawn").expect("it is shipped");
+    let mut bench_scene = scenes().find(|s| s.name == "pawn").expect("it is shipped");
     // Looking away from everything.
-    let up = subject.camera.rotation;
-    subject.camera.rotation = up * glam::DQuat::from_rotation_y(std::f64::consts::PI);
-    let all: Vec<NodeId> = subject.flat.ids.clone();
-    assert!(draw(&subject, &all).color == draw(&subject, &[]).color);
+    let up = bench_scene.camera.rotation;
+    bench_scene.camera.rotation = up * glam::DQuat::from_rotation_y(std::f64::consts::PI);
+    let all: Vec<NodeId> = bench_scene.flat.ids.clone();
+    assert!(draw(&bench_scene, &all).color == draw(&bench_scene, &[]).color);
 }
 
 /// The pixels that the outline changes in a picture of this size that is shown at [`SIDE`].
-fn marked(subject: &Subject, size: u32, selected: &[NodeId]) -> Vec<bool> {
+fn marked(bench_scene: &BenchScene, size: u32, selected: &[NodeId]) -> Vec<bool> {
     let renderer = &mut shared().renderer;
-    renderer.set_method(Method::Interpreted);
-    let Subject { flat, meshes, camera, .. } = subject;
+    renderer.set_strategy(EvalStrategy::Interpreter);
+    let BenchScene { flat, meshes, camera, .. } = bench_scene;
     let mut shown = |outline: &[NodeId]| {
         let shown_at = Some([SIDE, SIDE]);
         let grid = true;
@@ -93,7 +94,7 @@ fn marked(subject: &Subject, size: u32, selected: &[NodeId]) -> Vec<bool> {
         let mut frame = renderer.begin(Slot::Preview, flat, meshes, camera, [size, size], overlay).expect("a frame");
         renderer.advance(&mut frame, Duration::MAX).expect("a picture");
         assert_eq!(renderer.picture(Slot::Preview).expect("a picture").1, [SIDE, SIDE]);
-        renderer.read_shown(Slot::Preview).expect("colours")
+        renderer.read_shown(Slot::Preview).expect("colors")
     };
     let (plain, outlined) = (shown(&[]), shown(selected));
     // Half a pixel of smoothing on either side does not count.
@@ -114,13 +115,13 @@ fn thickness(marked: &[bool]) -> usize {
 
 #[test]
 fn the_outline_in_coarse_pictures_is_as_thin_as_in_fine_ones() {
-    let subject = scenes().find(|s| s.name == "pawn").expect("it is shipped");
-    let all: Vec<NodeId> = subject.flat.ids.clone();
-    let fine = marked(&subject, SIDE, &all);
+    let bench_scene = scenes().find(|s| s.name == "pawn").expect("it is shipped");
+    let all: Vec<NodeId> = bench_scene.flat.ids.clone();
+    let fine = marked(&bench_scene, SIDE, &all);
     let of_fine = fine.iter().filter(|is_marked| **is_marked).count();
     assert!((1..=3).contains(&thickness(&fine)), "{}", thickness(&fine));
     for size in [SIDE / 2, SIDE / 4, SIDE / 7] {
-        let coarse = marked(&subject, size, &all);
+        let coarse = marked(&bench_scene, size, &all);
         assert!((1..=3).contains(&thickness(&coarse)), "{size}: {}", thickness(&coarse));
         let of_coarse = coarse.iter().filter(|is_marked| **is_marked).count();
         let ratio = of_coarse as f64 / of_fine as f64;

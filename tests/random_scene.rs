@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Axis, Blend, BlendKernel, CameraNode, Environment, Group, Joining, Light, LightKind, Limits, Material,
-    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind, Object,
-    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
+    Attenuation, Axis, Blend, BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Limits,
+    Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind,
+    Object, Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
 
 use crate::contract::samples::image;
@@ -151,8 +151,8 @@ impl Random {
 
     /// Surroundings within their limits.
     pub fn environment(&mut self) -> Environment {
-        let mut colour = || self.numbers(&limits::INTENSITY);
-        Environment { sky: colour(), horizon: colour(), ambient: colour() }
+        let mut color = || self.numbers(&limits::INTENSITY);
+        Environment { sky: color(), horizon: color(), ambient: color() }
     }
 
     fn light(&mut self) -> Light {
@@ -164,7 +164,7 @@ impl Random {
         };
         let (a, b) = (self.number(&limits::CONE), self.number(&limits::CONE));
         let light = match self.below(3) {
-            0 => LightKind::Directional {},
+            0 => LightKind::Sun {},
             1 => LightKind::Point { attenuation },
             _ => LightKind::Spot { attenuation, inner: a.min(b), outer: a.max(b) },
         };
@@ -217,7 +217,7 @@ impl Random {
         }
         if self.once_in(3) {
             let radius = self.number(&limits::BLEND_RADIUS);
-            node.joining = self.pick(&[Joining::Hard, Joining::Radius(radius)]);
+            node.blend_override = self.pick(&[BlendOverride::Hard, BlendOverride::Radius(radius)]);
             node.apart = (0..self.below(3)).map(|_| NodeId(self.below(1000) as u64)).collect();
         }
         node
@@ -232,7 +232,7 @@ pub fn random_scene(seed: u64, count: usize) -> Scene {
         let id = i * 3 + random.below(3) as u64;
         materials.push(random.material(id));
     }
-    let worn: Vec<MaterialId> = materials.iter().map(|m| m.id).collect();
+    let used: Vec<MaterialId> = materials.iter().map(|m| m.id).collect();
     let mut ids: Vec<u64> = (0..count as u64).map(|i| i * 3 + 1).collect();
     for i in (1..ids.len()).rev() {
         ids.swap(i, random.below(i + 1));
@@ -241,7 +241,7 @@ pub fn random_scene(seed: u64, count: usize) -> Scene {
     let mut open: Vec<NodeId> = Vec::new();
     for id in ids {
         open.truncate(if random.once_in(3) { random.below(open.len() + 1) } else { open.len() });
-        let node = Node { id: NodeId(id), parent: open.last().copied(), ..random.node(&worn) };
+        let node = Node { id: NodeId(id), parent: open.last().copied(), ..random.node(&used) };
         if matches!(node.kind, NodeKind::Group(_)) && open.len() < 40 {
             open.push(node.id);
         }

@@ -4,41 +4,41 @@
 use std::time::{Duration, Instant};
 
 use isolith::document::{Document, Edit};
-use isolith::flat::{Buffers, FlatScene, Flattener, flatten};
+use isolith::flat::{FlatScene, Flattener, GBuffer, flatten};
 use isolith::gallery;
 use isolith::geometry::Camera;
-use isolith::render::{Gpu, Method, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
+use isolith::render::{EvalStrategy, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Shape};
 
-use crate::gpu::{Subject, shared};
+use crate::gpu::{BenchScene, shared};
 
 const SIDE: u32 = 96;
 
-fn subject() -> Subject {
+fn bench_scene() -> BenchScene {
     let (name, scene) = gallery::all().into_iter().find(|(name, _)| *name == "pawn").expect("the pawn is shipped");
-    Subject::new(name, &scene, None)
+    BenchScene::new(name, &scene, None)
 }
 
-fn draw(renderer: &mut Renderer, subject: &Subject) -> Result<Buffers, RenderError> {
-    let Subject { flat, meshes, camera, .. } = subject;
+fn draw(renderer: &mut Renderer, bench_scene: &BenchScene) -> Result<GBuffer, RenderError> {
+    let BenchScene { flat, meshes, camera, .. } = bench_scene;
     renderer.render(flat, meshes, camera, [SIDE, SIDE], &mut |_| true).map(|(buffers, _)| buffers)
 }
 
 fn own_renderer() -> (Gpu, Renderer) {
     let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
     let mut renderer = Renderer::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
-    renderer.set_method(Method::Interpreted);
+    renderer.set_strategy(EvalStrategy::Interpreter);
     (gpu, renderer)
 }
 
 #[test]
 fn a_device_lost_in_the_middle_of_a_frame_is_an_error_and_the_next_one_draws_the_same() {
-    let subject = subject();
+    let bench_scene = bench_scene();
     let (_, mut renderer) = own_renderer();
-    let whole = draw(&mut renderer, &subject).expect("a picture");
+    let whole = draw(&mut renderer, &bench_scene).expect("a picture");
     for batches in 0..3 {
         let (gpu, mut renderer) = own_renderer();
-        let Subject { flat, meshes, camera, .. } = &subject;
+        let BenchScene { flat, meshes, camera, .. } = &bench_scene;
         let none = OverlaySettings::default();
         let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], none).expect("a frame");
         for _ in 0..batches {
@@ -47,52 +47,53 @@ fn a_device_lost_in_the_middle_of_a_frame_is_an_error_and_the_next_one_draws_the
             }
         }
         gpu.device.destroy();
-        let error = draw(&mut renderer, &subject).expect_err("the device is gone");
+        let error = draw(&mut renderer, &bench_scene).expect_err("the device is gone");
         assert!(matches!(error, RenderError::Gpu(_)), "{error}");
         assert!(gpu.is_lost());
         let (_, mut renderer) = own_renderer();
-        assert!(draw(&mut renderer, &subject).expect("a picture") == whole, "after {batches} batches");
+        assert!(draw(&mut renderer, &bench_scene).expect("a picture") == whole, "after {batches} batches");
     }
 }
 
 #[test]
-fn a_frame_can_be_cancelled_between_dispatches() {
-    let subject = subject();
+fn a_frame_can_be_canceled_between_dispatches() {
+    let bench_scene = bench_scene();
     let renderer = &mut shared().renderer;
     let mut asked = 0;
-    let result = renderer.render(&subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], &mut |share| {
-        assert!((0.0..=1.0).contains(&share));
-        asked += 1;
-        false
-    });
-    assert!(matches!(result, Err(RenderError::Cancelled)));
+    let result =
+        renderer.render(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], &mut |share| {
+            assert!((0.0..=1.0).contains(&share));
+            asked += 1;
+            false
+        });
+    assert!(matches!(result, Err(RenderError::Canceled)));
     assert_eq!(asked, 1);
 }
 
 #[test]
 fn what_has_not_changed_is_not_uploaded() {
-    let subject = subject();
+    let bench_scene = bench_scene();
     let (_, mut renderer) = own_renderer();
-    draw(&mut renderer, &subject).expect("a picture");
-    let (uploaded, built) = (renderer.uploaded(), renderer.kernels().built());
+    draw(&mut renderer, &bench_scene).expect("a picture");
+    let (uploaded, built) = (renderer.uploaded(), renderer.pipelines().built());
     assert!(uploaded > 0);
-    draw(&mut renderer, &subject).expect("a picture");
+    draw(&mut renderer, &bench_scene).expect("a picture");
     assert_eq!(renderer.uploaded(), uploaded);
-    assert_eq!(renderer.kernels().built(), built);
+    assert_eq!(renderer.pipelines().built(), built);
 }
 
 #[test]
 fn a_picture_larger_than_the_device_allows_is_refused_with_the_limit() {
-    let subject = subject();
+    let bench_scene = bench_scene();
     let renderer = &mut shared().renderer;
     for size in [[0, 10], [10, 1 << 20]] {
-        let result = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
+        let result = renderer.render(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &mut |_| true);
         assert!(matches!(result, Err(RenderError::Size(..))), "{size:?}");
     }
 }
 
 /// Width and height of the pictures whose time is taken, in pixels. As most windows no power of two, nor a part of one:
-/// lavapipe compiles a kernel once more for such targets.
+/// lavapipe compiles a pipeline once more for such targets.
 const TIMED_SIDE: u32 = 300;
 /// What a picture may take at once; the window shows a coarse one where a whole one would take longer.
 const AT_ONCE: Duration = Duration::from_millis(60);
@@ -114,11 +115,11 @@ fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> (Durati
     (start.elapsed(), size)
 }
 
-/// Shares of the pixels that may differ in depth between kernels of two kinds, as in `methods`.
+/// Shares of the pixels that may differ in depth between pipelines of two kinds, as in `strategies`.
 const MAX_SHARE: f64 = 2e-3;
 
 /// Whether two pictures show the same: hit or miss everywhere, depth but for a few pixels at edges.
-fn is_same(a: &Buffers, b: &Buffers) -> bool {
+fn is_same(a: &GBuffer, b: &GBuffer) -> bool {
     let pairs = || a.depth.iter().zip(&b.depth);
     let far = pairs().filter(|(a, b)| a.is_finite() && (*a - *b).abs() > 1e-3 * **a).count();
     pairs().all(|(a, b)| a.is_finite() == b.is_finite()) && far as f64 <= MAX_SHARE * a.depth.len() as f64
@@ -127,11 +128,11 @@ fn is_same(a: &Buffers, b: &Buffers) -> bool {
 /// Width and height of the pictures that the interpreter draws too, in pixels.
 const SMALL_SIDE: u32 = 60;
 
-fn picture(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> Buffers {
+fn picture(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> GBuffer {
     renderer.render(flat, &[], camera, [SMALL_SIDE; 2], &mut |_| true).expect("a picture").0
 }
 
-fn wait_for_kernels(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) {
+fn wait_for_pipelines(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) {
     loop {
         renderer.estimate(flat, camera, [SIDE, SIDE]).expect("an estimate");
         if !renderer.is_preparing() {
@@ -142,14 +143,14 @@ fn wait_for_kernels(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) 
 }
 
 #[test]
-fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_kernel() {
+fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_pipeline() {
     let (_, mut plain) = own_renderer();
     let mut renderer = Renderer::new(plain.gpu()).expect("a renderer");
     let mut document = Document::new(gallery::random(512, 5));
     let mut flattener = Flattener::default();
     let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
-    wait_for_kernels(&mut renderer, &flat, &camera);
+    wait_for_pipelines(&mut renderer, &flat, &camera);
     answer(&mut renderer, &flat, &camera);
     let group = |document: &Document, at: usize| {
         let groups = document.scene().nodes().iter().filter(|n| n.parent.is_some() && n.name.starts_with("Group"));
@@ -178,13 +179,13 @@ fn the_picture_after_a_change_of_structure_is_right_and_waits_for_no_kernel() {
         note(&format!("577 nodes, {name}: flat after {:.1} ms, {size:?} pixels {:.1} ms later", ms(edited), ms(drawn)));
         let (next, right) = (picture(&mut renderer, &flat, &camera), picture(&mut plain, &flat, &camera));
         assert!(is_same(&next, &right), "{name}");
-        wait_for_kernels(&mut renderer, &flat, &camera);
-        assert!(is_same(&picture(&mut renderer, &flat, &camera), &right), "{name}, once kernels are there");
+        wait_for_pipelines(&mut renderer, &flat, &camera);
+        assert!(is_same(&picture(&mut renderer, &flat, &camera), &right), "{name}, once pipelines are there");
     }
 }
 
 #[test]
-fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
+fn tapes_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     let (_, mut plain) = own_renderer();
     let mut renderer = Renderer::new(plain.gpu()).expect("a renderer");
     let mut document = Document::new(gallery::crowd(200, true, 3));
@@ -193,24 +194,24 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     let camera = flat.default_camera(&[], 1.0);
     // The interpreter is built, which is not what is timed.
     let few = flatten(&gallery::crowd(8, true, 3), 0.0).expect("within the limits");
-    wait_for_kernels(&mut renderer, &few, &camera);
+    wait_for_pipelines(&mut renderer, &few, &camera);
     let start = Instant::now();
     renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
     note(&format!("200 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
-    assert!(renderer.pruner().building() > 0, "lists of this size are not waited for");
+    assert!(renderer.tape_cache().building() > 0, "tapes of this size are not waited for");
     // Without them this would be millions of dispatches, which is no reason to refuse it.
     let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
     assert!(huge > Duration::from_secs(100_000), "{huge:?}");
     let refused = renderer.begin(Slot::Full, &flat, &[], &camera, [8_192; 2], OverlaySettings::default());
-    let Err(RenderError::Work(8_192, 8_192, node)) = refused else { panic!("it is not refused") };
+    let Err(RenderError::TooManyDispatches(8_192, 8_192, node)) = refused else { panic!("it is not refused") };
     assert!(flat.ids.contains(&node));
     assert!(is_same(&picture(&mut renderer, &flat, &camera), &picture(&mut plain, &flat, &camera)));
-    wait_for_kernels(&mut renderer, &flat, &camera);
+    wait_for_pipelines(&mut renderer, &flat, &camera);
     let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
     assert!(huge < Duration::from_secs(1_000), "{huge:?}");
     let uploaded = renderer.uploaded();
     picture(&mut renderer, &flat, &camera);
-    assert!(renderer.uploaded() > uploaded + 20_000, "the lists are on the device now");
+    assert!(renderer.uploaded() > uploaded + 20_000, "the tapes are on the device now");
     for step in 0..2 {
         let leaf = document.scene().nodes().iter().filter(|n| matches!(n.kind, NodeKind::Object(_))).nth(80 * step);
         let mut node = Node::clone(leaf.expect("two hundred leaves"));
@@ -224,7 +225,7 @@ fn lists_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
         assert!(is_same(&next, &right), "edit {step}");
     }
     let uploaded = renderer.uploaded();
-    wait_for_kernels(&mut renderer, &flat, &camera);
+    wait_for_pipelines(&mut renderer, &flat, &camera);
     let last = picture(&mut renderer, &flat, &camera);
     assert!(is_same(&last, &picture(&mut plain, &flat, &camera)));
     let uploaded_once = renderer.uploaded();

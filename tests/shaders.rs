@@ -4,9 +4,11 @@ use std::mem::{offset_of, size_of};
 
 use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
-use isolith::render::kernel::{Evaluator, FILES, Features, Options, ShapeSet, Skipping, Structure, fits_forms, source};
-use isolith::render::uniforms::{GpuComponent, View, Work};
-use isolith::render::{Inspect, Instance, Overlay};
+use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
+use isolith::render::wgsl::{
+    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates,
+};
+use isolith::render::{DebugView, Instance, Overlay};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -15,7 +17,7 @@ fn passes() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(name, _)| *name).filter(|name| !name.contains('/'))
 }
 
-/// The interpreter for every shape, and specialised kernels for every structure of the shipped scenes.
+/// The interpreter for every shape, and specialized pipelines for every structure of the shipped scenes.
 fn evaluators() -> Vec<Evaluator> {
     let flats =
         gallery::all().into_iter().map(|(name, scene)| flatten(&scene, 0.0).unwrap_or_else(|e| panic!("{name}: {e}")));
@@ -23,27 +25,28 @@ fn evaluators() -> Vec<Evaluator> {
         .flat_map(|flat| flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect::<Vec<_>>())
         .collect();
     let everything = flatten(&gallery::random(16, 1), 0.0).expect("within the limits");
-    let shapes = ShapeSet::of(ShapeKind::ALL.iter().copied().filter(|kind| fits_forms(*kind)));
-    structures.extend(everything.components.iter().filter_map(|c| Structure::form(&everything, c, shapes)));
+    let shapes = ShapeSet::of(ShapeKind::ALL.iter().copied().filter(|kind| fits_templates(*kind)));
+    structures.extend(everything.components.iter().filter_map(|c| Structure::template(&everything, c, shapes)));
     structures.sort();
     structures.dedup();
-    let alone = ShapeKind::ALL.iter().map(|kind| Features { shapes: [*kind].into(), ..Features::none() });
-    let kinds = Features::all().modifiers;
-    let modified = kinds.iter().map(|kind| Features { modifiers: [*kind].into(), stack: 2, ..Features::none() });
-    let walked: Vec<_> = alone.chain(modified).chain([Features::all()]).collect();
-    let interpreted = walked.iter().cloned().map(Evaluator::Interpreted);
-    let pruned = walked.iter().cloned().map(Evaluator::Pruned);
-    interpreted.chain(pruned).chain(structures.into_iter().map(Evaluator::Specialised)).collect()
+    let alone = ShapeKind::ALL.iter().map(|kind| OpSet { shapes: [*kind].into(), ..OpSet::none() });
+    let kinds = OpSet::all().modifiers;
+    let modified = kinds.iter().map(|kind| OpSet { modifiers: [*kind].into(), stack: 2, ..OpSet::none() });
+    let walked: Vec<_> = alone.chain(modified).chain([OpSet::all()]).collect();
+    let interpreted = walked.iter().cloned().map(Evaluator::Interpreter);
+    let tape = walked.iter().cloned().map(Evaluator::Tape);
+    interpreted.chain(tape).chain(structures.into_iter().map(Evaluator::StraightLine)).collect()
 }
 
-/// Every file of a pass with the interpreter for everything, then with a specialised kernel.
+/// Every file of a pass with the interpreter for everything, then with a specialized pipeline.
 fn sources() -> Vec<(&'static str, String)> {
-    let everything = Evaluator::Interpreted(Features::all());
+    let everything = Evaluator::Interpreter(OpSet::all());
     let special =
-        evaluators().into_iter().find(|e| matches!(e, Evaluator::Specialised(_))).expect("scenes have structures");
-    let pruned = Evaluator::Pruned(Features::all());
-    let text = |pass, evaluator| source(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
-    let all = [everything, pruned, special];
+        evaluators().into_iter().find(|e| matches!(e, Evaluator::StraightLine(_))).expect("scenes have structures");
+    let tape = Evaluator::Tape(OpSet::all());
+    let text =
+        |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
+    let all = [everything, tape, special];
     passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
 }
 
@@ -58,12 +61,12 @@ fn validate(source: &str) -> Result<naga::Module, String> {
 #[test]
 fn every_pass_is_valid_with_every_evaluator() {
     let choices = evaluators();
-    let options = [Options::default(), Options { counting: true, skipping: Skipping::Selects, ..Options::default() }];
+    let options = [Options::default(), Options { counting: true, skip_mode: SkipMode::Selects, ..Options::default() }];
     let mut count = 0;
     for pass in passes() {
         for evaluator in &choices {
             for options in options {
-                let text = source(pass, evaluator, options).unwrap_or_else(|error| panic!("{error}"));
+                let text = assemble(pass, evaluator, options).unwrap_or_else(|error| panic!("{error}"));
                 // Passes without a field are the same for all.
                 if !text.contains("fn field(") && !text.contains("fn surface(") && count > 0 {
                     continue;
@@ -135,7 +138,25 @@ impl Layout {
 }
 
 fn flat_node() -> Layout {
-    layout!("FlatNode" = FlatNode { code, extent, numbers, material })
+    layout!("FlatNode" = FlatNode { code, extent, params, material })
+}
+
+fn dispatch_params() -> Layout {
+    layout!(
+        "DispatchParams" = DispatchParams {
+            origin,
+            end,
+            component,
+            max_steps,
+            relaunch,
+            last_relaunch,
+            list,
+            first_subtile,
+            compacted,
+            rays,
+            hits
+        }
+    )
 }
 
 #[test]
@@ -150,24 +171,21 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 low,
                 end,
                 high,
-                numbers,
+                params,
                 half_space,
                 grid_low,
                 grid_side,
                 grid_counts,
-                lists,
-                ahead,
+                tapes,
+                ray_origin_depth,
                 flush
             }
         ),
         layout!(
             "View" =
-                View { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
+                GpuView { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
         ),
-        layout!(
-            "Work" =
-                Work { origin, end, component, max_steps, round, last_round, list, first_quad, packed, rays, hits }
-        ),
+        dispatch_params(),
         layout!(
             "Instance" = Instance {
                 eye_from_local_x,
@@ -181,18 +199,21 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 texture_y,
                 albedo,
                 specular,
-                owner,
+                visibility,
                 overridden,
                 mirrored,
                 alpha_cutoff,
-                ahead,
+                ray_origin_depth,
                 padding_0,
                 padding_1,
                 padding_2
             }
         ),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
-        layout!("Inspect" = Inspect { look, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }),
+        layout!(
+            "DebugView" =
+                DebugView { view_mode, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }
+        ),
         layout!(
             "Light" =
                 GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }
@@ -200,10 +221,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
     ];
     let modules: Vec<_> = passes()
         .map(|pass| {
-            validate(
-                &source(pass, &Evaluator::Interpreted(Features::all()), Options::default()).expect("checked above"),
-            )
-            .expect("checked above")
+            validate(&assemble(pass, &Evaluator::Interpreter(OpSet::all()), Options::default()).expect("checked above"))
+                .expect("checked above")
         })
         .collect();
     for layout in &layouts {
@@ -222,9 +241,9 @@ fn a_struct_that_lies_differently_is_caught() {
         let text = format!("struct FlatNode {{ {members} }}\n@group(0) @binding(0) var<storage> n: FlatNode;");
         !flat_node().differences(&validate(&text).expect("a valid sample")).is_empty()
     };
-    assert!(!differs("code: u32, extent: u32, numbers: u32, material: u32"));
-    assert!(differs("extent: u32, code: u32, numbers: u32, material: u32"));
-    assert!(differs("code: u32, extent: u32, numbers: u32"));
-    assert!(differs("code: u32, extent: u32, numbers: vec2u"));
-    assert!(differs("code: u32, extent: u32, numbers: u32, material: u32, more: u32"));
+    assert!(!differs("code: u32, extent: u32, params: u32, material: u32"));
+    assert!(differs("extent: u32, code: u32, params: u32, material: u32"));
+    assert!(differs("code: u32, extent: u32, params: u32"));
+    assert!(differs("code: u32, extent: u32, params: vec2u"));
+    assert!(differs("code: u32, extent: u32, params: u32, material: u32, more: u32"));
 }

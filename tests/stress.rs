@@ -1,12 +1,12 @@
 //! Numerical stress: what `isolith bench --stress` draws, held to what is allowed and to what is known to be wrong.
 
-use isolith::bench::{Allowed, Figures, cases};
-use isolith::flat::truth::{Truth, truth};
+use isolith::bench::{Allowed, Metrics, cases};
+use isolith::flat::reference::image::{ReferenceImage, render_reference};
 use isolith::geometry::Camera;
-use isolith::render::{Method, Renderer};
+use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind};
 
-use crate::gpu::{Subject, shared};
+use crate::gpu::{BenchScene, shared};
 
 /// The file with what is known to be drawn wrong, by the worst method: wrong pixels, pixels that methods show otherwise, and the depth's
 /// error at the 99th percentile in footprints, neither more than measured on lavapipe. Why stands beside them, and in
@@ -15,7 +15,7 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/stress/known.txt
 
 /// A line of [`KNOWN`].
 struct Known<'a> {
-    subject: &'a str,
+    node: &'a str,
     circumstance: &'a str,
     wrong: usize,
     differ: usize,
@@ -26,50 +26,49 @@ struct Known<'a> {
 fn known_cases(text: &str) -> Vec<Known<'_>> {
     let read = |line| {
         let fields: Vec<&str> = str::split(line, '|').map(str::trim).collect();
-        let [subject, circumstance, wrong, differ, depth] = fields[..] else { panic!("{line}: not five fields") };
+        let [node, circumstance, wrong, differ, depth] = fields[..] else { panic!("{line}: not five fields") };
         let count = |text: &str| text.parse().unwrap_or_else(|error| panic!("{line}: {error}"));
         let depth = depth.parse().unwrap_or_else(|error| panic!("{line}: {error}"));
-        Known { subject, circumstance, wrong: count(wrong), differ: count(differ), depth }
+        Known { node, circumstance, wrong: count(wrong), differ: count(differ), depth }
     };
     text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')).map(read).collect()
 }
 
-/// The command line draws by the interpreter and by lists, the window by kernels.
-const METHODS: [Method; 3] = [Method::Interpreted, Method::Pruned, Method::Specialised];
+/// The command line draws by the interpreter and by tapes, the window by pipelines.
+const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
 /// The line of [`KNOWN`] that a case would have.
-fn line(figures: &Figures) -> String {
-    let Figures { subject, circumstance, wrong, differ, depth_p99, .. } = figures;
-    format!("{subject} | {circumstance} | {wrong} | {differ} | {:.4}", (depth_p99 * 1e4).ceil() * 1e-4)
+fn line(metrics: &Metrics) -> String {
+    let Metrics { node, circumstance, wrong, differ, depth_p99, .. } = metrics;
+    format!("{node} | {circumstance} | {wrong} | {differ} | {:.4}", (depth_p99 * 1e4).ceil() * 1e-4)
 }
 
 #[test]
 fn what_is_difficult_is_drawn_as_it_is() {
     let gpu = shared().gpu.clone();
     let mut renderer = Renderer::new(&gpu).expect("a renderer");
-    renderer.pruner().prune_all();
+    renderer.tape_cache().build_all();
     let text = std::fs::read_to_string(KNOWN).expect("the list is part of the source");
     let known = known_cases(&text);
     let (mut faults, mut lines, mut met, mut drawn) = (Vec::new(), Vec::new(), 0, 0);
     for case in cases() {
-        let figures = case.measure(&mut renderer, &METHODS);
-        let figures = figures.unwrap_or_else(|error| panic!("{}, {}: {error}", case.name(), case.circumstance));
-        let Some(mut figures) = figures else { continue };
+        let metrics = case.measure(&mut renderer, &STRATEGIES);
+        let metrics = metrics.unwrap_or_else(|error| panic!("{}, {}: {error}", case.name(), case.circumstance));
+        let Some(mut metrics) = metrics else { continue };
         drawn += 1;
-        if !figures.faults().is_empty() {
-            lines.push(line(&figures));
+        if !metrics.faults().is_empty() {
+            lines.push(line(&metrics));
         }
-        let is_it =
-            |known: &&Known<'_>| (known.subject, known.circumstance) == (&*figures.subject, &*figures.circumstance);
+        let is_it = |known: &&Known<'_>| (known.node, known.circumstance) == (&*metrics.node, &*metrics.circumstance);
         if let Some(known) = known.iter().find(is_it) {
             met += 1;
-            if figures.faults().is_empty() {
-                faults.push(format!("{}, {}: is right now", figures.subject, figures.circumstance));
+            if metrics.faults().is_empty() {
+                faults.push(format!("{}, {}: is right now", metrics.node, metrics.circumstance));
             }
-            let wrong = known.wrong as f64 / figures.pixels as f64;
-            figures.allowed = Allowed { wrong, depth: known.depth, differ: known.differ };
+            let wrong = known.wrong as f64 / metrics.pixels as f64;
+            metrics.allowed = Allowed { wrong, depth: known.depth, differ: known.differ };
         }
-        faults.extend(figures.faults());
+        faults.extend(metrics.faults());
     }
     assert!(faults.is_empty(), "{}\nAll that is beyond what is allowed:\n{}", faults.join("\n"), lines.join("\n"));
     assert_eq!(met, known.len());
@@ -89,25 +88,25 @@ fn every_shape_operator_and_modifier_is_stressed() {
 }
 
 /// A ball before the background.
-fn ball(radius: f64) -> Subject {
+fn ball(radius: f64) -> BenchScene {
     let mut scene = Scene::new();
     let object = Object { shape: Shape::Sphere { radius }, material: MaterialId(1) };
     scene.insert(None, 0, Node::new("Ball", NodeKind::Object(object))).unwrap();
-    let mut subject = Subject::new("ball", &scene, None);
-    subject.camera = Camera::looking_at(glam::DVec3::new(0.3, 0.4, 3.0), glam::DVec3::ZERO, 0.5);
-    subject
+    let mut bench_scene = BenchScene::new("ball", &scene, None);
+    bench_scene.camera = Camera::looking_at(glam::DVec3::new(0.3, 0.4, 3.0), glam::DVec3::ZERO, 0.5);
+    bench_scene
 }
 
 #[test]
 fn another_radius_and_what_is_no_number_are_refused() {
     const SIDE: u32 = 40;
     let right = ball(0.5);
-    let truth: Truth = truth(&right.flat, &[], &right.camera, [SIDE, SIDE], &|_| ()).unwrap();
-    let faults = |buffers: &_| Figures::of(buffers, &right.flat, &truth).faults();
-    let picture = right.render(SIDE, Method::Interpreted);
+    let reference: ReferenceImage = render_reference(&right.flat, &[], &right.camera, [SIDE, SIDE], &|_| ()).unwrap();
+    let faults = |buffers: &_| Metrics::of(buffers, &right.flat, &reference).faults();
+    let picture = right.render(SIDE, EvalStrategy::Interpreter);
     assert!(faults(&picture).is_empty(), "{:?}", faults(&picture));
     for radius in [0.49, 0.51] {
-        assert!(!faults(&ball(radius).render(SIDE, Method::Interpreted)).is_empty(), "{radius}");
+        assert!(!faults(&ball(radius).render(SIDE, EvalStrategy::Interpreter)).is_empty(), "{radius}");
     }
     let hit = picture.depth.iter().position(|depth| depth.is_finite()).unwrap();
     for pixel in [0, hit] {

@@ -1,5 +1,5 @@
 //! The rules of the house: who may use whom, how long a file may be, which words are not used. Each rule
-//! has a twin below that breaks it and must be caught.
+//! has a counterexample below that breaks it and must be caught.
 
 mod rules;
 mod source;

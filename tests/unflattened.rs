@@ -2,8 +2,8 @@
 //! walks the scene's tree in f64.
 
 use glam::{DQuat, DVec3};
-use isolith::flat::trace::Tracer;
-use isolith::flat::twin::field;
+use isolith::flat::eval::field;
+use isolith::flat::reference::trace::Tracer;
 use isolith::flat::unflattened::SceneField;
 use isolith::flat::{FlatScene, flatten};
 use isolith::gallery;
@@ -93,13 +93,13 @@ fn the_arrays_of_every_example_are_the_scene() {
     assert!(told > 50_000, "{told}");
 }
 
-/// The scene with all that is hidden shown, and blends measured in metres.
+/// The scene with all that is hidden shown, and blends measured in meters.
 fn plain(scene: &Scene) -> Scene {
     let mut plain = scene.clone();
     for node in scene.nodes() {
         let mut node = Node { visible: true, ..Node::clone(node) };
         if let NodeKind::Group(group) = &mut node.kind {
-            group.blend.unit = RadiusUnit::Metres;
+            group.blend.unit = RadiusUnit::Meters;
         }
         plain.replace(node).unwrap();
     }
@@ -148,17 +148,17 @@ fn the_arrays_of_every_modifier_are_the_scene() {
 }
 
 #[test]
-fn a_scene_that_differs_by_a_millimetre_is_told() {
+fn a_scene_that_differs_by_a_millimeter_is_told() {
     for (name, scene) in scenes() {
         let Some(changed) = moved(&scene) else { continue };
         let flat = flatten(&scene, 0.0).unwrap();
         let tree = SceneField::new(&changed).unwrap();
         let found = (0..8).find_map(|seed| compare(&flat, &tree, &mut Random::new(seed)).err());
-        assert!(found.is_some(), "{name}: a millimetre is not seen");
+        assert!(found.is_some(), "{name}: a millimeter is not seen");
     }
 }
 
-/// The scene with its largest shape moved by a millimetre.
+/// The scene with its largest shape moved by a millimeter.
 fn moved(scene: &Scene) -> Option<Scene> {
     let size = |node: &Node| match &node.kind {
         NodeKind::Object(Object { shape, .. }) if node.visible && shape.bounds().is_finite() => {

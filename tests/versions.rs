@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
+use isolith::flat::eval::field;
 use isolith::flat::flatten;
-use isolith::flat::twin::field;
 use isolith::scene::{NodeKind, Scene, file};
 
-/// Of a file: groups, objects, meshes, lights and cameras, then the field at some points, in metres, to a millimetre.
+/// Of a file: groups, objects, meshes, lights and cameras, then the field at some points, in meters, to a millimeter.
 type Meaning = ([usize; 5], [f64; 5]);
 
 /// Taken when the format's first version was still the only one. They are never changed: a change of what is read is what

@@ -138,7 +138,7 @@ run() {
     check "a locked node is not deleted" exists Ring
     keys l; settle; keys x; settle; keys x; settle; save
     check "an unlocked one is" gone Ring
-    check "and nothing is selected afterwards" exists Sun
+    check "and nothing is selected afterward" exists Sun
     keys ctrl+z; settle; save
     check "undo brings it back" exists Ring
 

@@ -1,14 +1,14 @@
-// Where counts stand in the buffer of counts: what each component took at its beginning; where kernels count, what
-// each pixel took at its end, and what the cones of each tile took behind that. `PixelCounts` on the CPU is its twin.
+// Where counts stand in the buffer of counts: what each component took at its beginning; where pipelines count, what
+// each pixel took at its end, and what the cones of each tile took behind that. `PixelCounts` on the CPU is its counterpart.
 
 #include "common/view.wgsl"
-#include "common/work.wgsl"
+#include "common/dispatch.wgsl"
 #include "common/walked.wgsl"
 
-// Words of a component: rays that had not ended after the last round, evaluations by rays, rays begun; then, by
-// rays and cones, cells and tokens read.
+// Words of a component: rays that had not ended after the last relaunch, evaluations by rays, rays started; then, by
+// rays and cones, cells and tape entries read.
 const COMPONENT_COUNTS: u32 = 5u;
-// Words of a pixel: evaluations by its rays, rays begun, cells, tokens. Of a tile the same by its cones, and no rays.
+// Words of a pixel: evaluations by its rays, rays started, cells, tape entries. Of a tile the same by its cones, and no rays.
 const PIXEL_COUNTS: u32 = 4u;
 
 fn counts_tiles_across() -> u32 {

@@ -1,9 +1,9 @@
 // The depth target, R32Float: distance from the eye along the pixel's ray, in world units.
-// `src/render/targets.rs` is this file's twin.
+// `src/render/resources/targets.rs` is this file's counterpart.
 
 // Where nothing was hit. Finite, because WGSL need not keep infinities.
 const BACKGROUND: f32 = 1e30;
-// In the owner target: no component and no mesh.
-const NO_OWNER: u32 = 0xffffffffu;
-// In the owner and leaf targets: a mesh; the other bits are its index.
+// In the visibility target: no component and no mesh.
+const VISIBILITY_NONE: u32 = 0xffffffffu;
+// In the visibility and leaf targets: a mesh; the other bits are its index.
 const MESH_BIT: u32 = 0x80000000u;

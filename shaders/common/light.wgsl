@@ -6,7 +6,7 @@ struct Light {
     // Unit vector in which the light travels.
     direction: vec3f,
     range: f32,
-    // Colour times intensity, linear.
+    // Color times intensity, linear.
     color: vec3f,
     constant: f32,
     linear: f32,

@@ -3,8 +3,8 @@
 #include "common/view.wgsl"
 #include "common/scene.wgsl"
 
-// Neighbouring rays of a narrow picture are too close together for f32 over the whole way from the eye. So positions on a ray
-// count from a plane across the view, `component.ahead` before the eye: there places in the picture are known exactly. In
+// Neighboring rays of a narrow picture are too close together for f32 over the whole way from the eye. So positions on a ray
+// count from a plane across the view, `component.ray_origin_depth` before the eye: there places in the picture are known exactly. In
 // wide pictures it is 0, and the plane goes through the eye. `t` is the distance from the eye everywhere.
 struct Ray {
     // Where the ray meets the plane, relative to the component's origin.
@@ -20,11 +20,11 @@ fn ray_toward(component: Component, offset: vec3f) -> Ray {
     let along = offset + view.forward;
     // The length of `along` less 1, without a difference of nearly equal numbers.
     let longer = dot(offset, offset) / (1.0 + length(along));
-    let skipped = component.ahead + component.ahead * longer;
-    return Ray(component.eye + offset * component.ahead, skipped, normalize(along));
+    let skipped = component.ray_origin_depth + component.ray_origin_depth * longer;
+    return Ray(component.eye + offset * component.ray_origin_depth, skipped, normalize(along));
 }
 
-// The ray through the centre of a pixel.
+// The ray through the center of a pixel.
 fn ray_through(component: Component, pixel: vec2u) -> Ray {
     return ray_toward(component, view_offset(vec2f(pixel) + 0.5));
 }

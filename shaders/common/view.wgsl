@@ -5,7 +5,7 @@ struct View {
     // Half the picture's width at distance 1, to the right.
     right: vec3f,
     near: f32,
-    // Half the picture's height at distance 1, upwards.
+    // Half the picture's height at distance 1, upward.
     up: vec3f,
     far: f32,
     // Unit direction of view.
@@ -29,7 +29,7 @@ fn view_offset(place: vec2f) -> vec3f {
     return view.right * at.x - view.up * at.y;
 }
 
-// Unit direction of the ray through the centre of a pixel.
+// Unit direction of the ray through the center of a pixel.
 fn view_direction(pixel: vec2u) -> vec3f {
     return normalize(view_offset(vec2f(pixel) + 0.5) + view.forward);
 }

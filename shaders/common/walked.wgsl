@@ -1,3 +1,3 @@
-// What an evaluator with lists has read so far, where kernels count: cells, and tokens of their lists.
+// What an evaluator with tapes has read so far, where pipelines count: cells, and entries of their tapes.
 
 var<private> walked: vec2u;

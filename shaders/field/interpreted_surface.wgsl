@@ -1,5 +1,5 @@
 // The field with what the surface is made of: the same fold as `interpreted_value.wgsl`.
-// Twin of `flat::twin::surface`.
+// Counterpart of `flat::eval::surface`.
 
 #include "field/leaf.wgsl"
 #include "field/joined_surface.wgsl"
@@ -24,7 +24,7 @@ var<private> surface_least: array<Surface, STACK_SIZE>;
 // Chooses the component. Before any call of `surface`.
 fn surface_begin(component: Component) {
     surface_first = component.first;
-    // And nothing, which no compiler knows: lavapipe compiles a kernel anew for each value of a uniform that ends a loop.
+    // And nothing, which no compiler knows: lavapipe compiles a pipeline anew for each value of a uniform that ends a loop.
     surface_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
@@ -35,17 +35,17 @@ fn surface(p: vec3f) -> Surface {
     var at = surface_first;
     while at < surface_end {
         let node = nodes[at];
-        let joint = scene_row(node.numbers);
+        let blend_params = scene_row(node.params);
         let kind = node.code & 0xffffu;
         if kind >= MODIFIER {
-            var has_content = !field_group_is_out_of_reach(node, joint, so_far.distance, q);
+            var has_content = !field_group_is_out_of_reach(node, blend_params, so_far.distance, q);
             if has_content && kind != RUN {
                 surface_stack[depth] = so_far;
                 surface_group[depth] = at;
 #if MODIFIERS
                 if kind < RUN {
-                    let local = leaf_place(node.numbers + 2u, q);
-                    let row = node.numbers + MODIFIER_ROWS;
+                    let local = leaf_place(node.params + 2u, q);
+                    let row = node.params + MODIFIER_ROWS;
                     let least = modifier_start(kind, local, row);
                     let copy = modifier_next(kind, local, 0u, least, row);
                     surface_outside[depth] = q;
@@ -66,7 +66,7 @@ fn surface(p: vec3f) -> Surface {
             }
             at += node.extent;
         } else {
-            so_far = joined_surface_leaf(at, kind, (node.code >> 16u) & 0xffu, node.code >> 24u, node.numbers, so_far, q);
+            so_far = joined_surface_leaf(at, kind, (node.code >> 16u) & 0xffu, node.code >> 24u, node.params, so_far, q);
             at += 1u;
         }
         while depth > 0u {
@@ -78,7 +78,7 @@ fn surface(p: vec3f) -> Surface {
             let modifier = group.code & 0xffffu;
             if modifier < RUN {
                 let local = surface_local[depth - 1u];
-                let row = group.numbers + MODIFIER_ROWS;
+                let row = group.params + MODIFIER_ROWS;
                 var copy = surface_copy[depth - 1u];
                 var least = surface_least[depth - 1u];
                 if copy < NO_COPY {
@@ -96,12 +96,12 @@ fn surface(p: vec3f) -> Surface {
                     at = surface_group[depth - 1u] + 1u;
                     break;
                 }
-                so_far = surface_modified(modifier, group.numbers, local, least);
+                so_far = surface_modified(modifier, group.params, local, least);
                 q = surface_outside[depth - 1u];
             }
 #end
             depth -= 1u;
-            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.numbers), surface_stack[depth], so_far);
+            so_far = joined_surface((group.code >> 16u) & 0xffu, group.code >> 24u, scene_row(group.params), surface_stack[depth], so_far);
         }
     }
     return so_far;

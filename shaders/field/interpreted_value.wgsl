@@ -1,5 +1,5 @@
 // The field of a component: the fold over its range of the subtree-extent array.
-// Twin of `flat::twin::field`.
+// Counterpart of `flat::eval::field`.
 
 #include "field/leaf.wgsl"
 #if MODIFIERS
@@ -18,18 +18,18 @@ var<private> value_copy: array<u32, STACK_SIZE>;
 var<private> value_least: array<f32, STACK_SIZE>;
 #end
 
-fn join_value(node: FlatNode, joint: vec4f, so_far: f32, value: f32) -> f32 {
+fn join_value(node: FlatNode, blend_params: vec4f, so_far: f32, value: f32) -> f32 {
     let join = (node.code >> 16u) & 0xffu;
     if join == JOIN_FIRST {
         return value;
     }
-    return op_join(join, so_far, value, joint, node.code >> 24u).x;
+    return op_join(join, so_far, value, blend_params, node.code >> 24u).x;
 }
 
 // Chooses the component. Before any call of `field`.
 fn field_begin(component: Component) {
     value_first = component.first;
-    // And nothing, which no compiler knows: lavapipe compiles a kernel anew for each value of a uniform that ends a loop.
+    // And nothing, which no compiler knows: lavapipe compiles a pipeline anew for each value of a uniform that ends a loop.
     value_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
@@ -41,17 +41,17 @@ fn field(p: vec3f) -> f32 {
     var at = value_first;
     while at < value_end {
         let node = nodes[at];
-        let joint = scene_row(node.numbers);
+        let blend_params = scene_row(node.params);
         let kind = node.code & 0xffffu;
         if kind >= MODIFIER {
-            var has_content = !field_group_is_out_of_reach(node, joint, so_far, q);
+            var has_content = !field_group_is_out_of_reach(node, blend_params, so_far, q);
             if has_content && kind != RUN {
                 value_stack[depth] = so_far;
                 value_group[depth] = at;
 #if MODIFIERS
                 if kind < RUN {
-                    let local = leaf_place(node.numbers + 2u, q);
-                    let row = node.numbers + MODIFIER_ROWS;
+                    let local = leaf_place(node.params + 2u, q);
+                    let row = node.params + MODIFIER_ROWS;
                     let least = modifier_start(kind, local, row);
                     let copy = modifier_next(kind, local, 0u, least, row);
                     value_outside[depth] = q;
@@ -72,7 +72,7 @@ fn field(p: vec3f) -> f32 {
             }
             at += node.extent;
         } else {
-            so_far = join_value(node, joint, so_far, leaf_distance(kind, node.numbers, joint, q));
+            so_far = join_value(node, blend_params, so_far, leaf_distance(kind, node.params, blend_params, q));
             at += 1u;
         }
         // Every group that ends here joins what stood before it.
@@ -85,7 +85,7 @@ fn field(p: vec3f) -> f32 {
             let modifier = group.code & 0xffffu;
             if modifier < RUN {
                 let local = value_local[depth - 1u];
-                let row = group.numbers + MODIFIER_ROWS;
+                let row = group.params + MODIFIER_ROWS;
                 var copy = value_copy[depth - 1u];
                 var least = value_least[depth - 1u];
                 if copy < NO_COPY {
@@ -100,12 +100,12 @@ fn field(p: vec3f) -> f32 {
                     at = value_group[depth - 1u] + 1u;
                     break;
                 }
-                so_far = modifier_value(modifier, least, local, row) * scene_row(group.numbers + 1u).w;
+                so_far = modifier_value(modifier, least, local, row) * scene_row(group.params + 1u).w;
                 q = value_outside[depth - 1u];
             }
 #end
             depth -= 1u;
-            so_far = join_value(group, scene_row(group.numbers), value_stack[depth], so_far);
+            so_far = join_value(group, scene_row(group.params), value_stack[depth], so_far);
         }
     }
     return so_far;

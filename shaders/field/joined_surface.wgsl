@@ -1,16 +1,16 @@
-// Surfaces joined one after the other, for evaluators that walk lists. Gradients are mixed by the derivatives of the
-// joint, materials by the share of what joins.
+// Surfaces joined one after the other, for evaluators that walk tapes. Gradients are mixed by the derivatives of the
+// blend, materials by the weight of what joins.
 
 #include "field/leaf.wgsl"
 #include "field/surface.wgsl"
 #include "generated/gradients.wgsl"
 
 // A group that has ended, `so_far`, joins what stood before it.
-fn joined_surface(join: u32, kernel: u32, joint: vec4f, before: Surface, so_far: Surface) -> Surface {
+fn joined_surface(join: u32, kernel: u32, blend_params: vec4f, before: Surface, so_far: Surface) -> Surface {
     if join == JOIN_FIRST {
         return so_far;
     }
-    let joined = op_join(join, before.distance, so_far.distance, joint, kernel);
+    let joined = op_join(join, before.distance, so_far.distance, blend_params, kernel);
     let w = joined.w;
     return Surface(
         joined.x,
@@ -24,11 +24,11 @@ fn joined_surface(join: u32, kernel: u32, joint: vec4f, before: Surface, so_far:
 // The leaf at the entry `at`, whose rows begin at `row`, joins. Gradient and material are looked up only where
 // the surface follows the leaf.
 fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, before: Surface, p: vec3f) -> Surface {
-    let joint = scene_row(row);
-    let distance = leaf_distance(shape, row, joint, p);
+    let blend_params = scene_row(row);
+    let distance = leaf_distance(shape, row, blend_params, p);
     var joined = vec4f(distance, 0.0, 1.0, 1.0);
     if join != JOIN_FIRST {
-        joined = op_join(join, before.distance, distance, joint, kernel);
+        joined = op_join(join, before.distance, distance, blend_params, kernel);
     }
     let w = joined.w;
     var so_far = before;
@@ -37,7 +37,7 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
     so_far.leaf = select(before.leaf, at, w > 0.5);
     if w > 0.0 || joined.z != 0.0 {
         let m = materials[nodes[at].material];
-        so_far.gradient += joined_surface_gradient(shape, row, joint, p) * joined.z;
+        so_far.gradient += joined_surface_gradient(shape, row, blend_params, p) * joined.z;
         so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
         so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
     }
@@ -45,7 +45,7 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
 }
 
 // The derivatives of a leaf's distance along the component's axes.
-fn joined_surface_gradient(shape: u32, row: u32, joint: vec4f, p: vec3f) -> vec3f {
-    let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * joint.y;
+fn joined_surface_gradient(shape: u32, row: u32, blend_params: vec4f, p: vec3f) -> vec3f {
+    let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * blend_params.y;
     return scene_row(row + 1u).xyz * d.x + scene_row(row + 2u).xyz * d.y + scene_row(row + 3u).xyz * d.z;
 }

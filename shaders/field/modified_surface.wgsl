@@ -10,13 +10,13 @@ fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Su
 }
 
 // What the modifier at the entry makes of the nearest copy.
-fn surface_modified(modifier: u32, numbers: u32, local: vec3f, content: Surface) -> Surface {
-    let slopes = modifier_slopes(modifier, content.distance, local, numbers + MODIFIER_ROWS);
+fn surface_modified(modifier: u32, params: u32, local: vec3f, content: Surface) -> Surface {
+    let slopes = modifier_slopes(modifier, content.distance, local, params + MODIFIER_ROWS);
     let d = content.gradient * slopes.w + slopes.xyz;
-    let scale = scene_row(numbers + 1u).w;
+    let scale = scene_row(params + 1u).w;
     var seen = content;
-    seen.distance = modifier_value(modifier, content.distance, local, numbers + MODIFIER_ROWS) * scale;
+    seen.distance = modifier_value(modifier, content.distance, local, params + MODIFIER_ROWS) * scale;
     seen.gradient = scale
-        * (scene_row(numbers + 3u).xyz * d.x + scene_row(numbers + 4u).xyz * d.y + scene_row(numbers + 5u).xyz * d.z);
+        * (scene_row(params + 3u).xyz * d.x + scene_row(params + 4u).xyz * d.y + scene_row(params + 5u).xyz * d.z);
     return seen;
 }

@@ -1,10 +1,10 @@
-// Leaves of a specialised kernel: where the point stands in the leaf's own space.
+// Leaves of a specialized pipeline: where the point stands in the leaf's own space.
 
-#include "common/ahead.wgsl"
+#include "common/lookahead.wgsl"
 #include "common/scene.wgsl"
 #include "sdf/op.wgsl"
 
-// The component's rows; a specialised kernel knows at which of them each leaf begins.
+// The component's rows; a specialized pipeline knows at which of them each leaf begins.
 @group(1) @binding(4) var<uniform> rows: array<vec4f, ROW_COUNT>;
 
 fn placed(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
@@ -28,7 +28,7 @@ fn placed_gradient_moved(d: vec4f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
 
 // The least that the field of a group, or of each operand of a run, can be: see `Row` on the CPU.
 // Nothing is known of it within the bounds.
-fn placed_bounds(p: vec3f, joint: vec4f, center: vec4f, half: vec4f) -> f32 {
-    let least = joint.y * length(max(abs(p - center.xyz) - half.xyz, vec3f(0.0)));
+fn placed_bounds(p: vec3f, blend_params: vec4f, center: vec4f, half: vec4f) -> f32 {
+    let least = blend_params.y * length(max(abs(p - center.xyz) - half.xyz, vec3f(0.0)));
     return select(-3e38, least, least > 0.0);
 }

@@ -1,5 +1,5 @@
-// Colour of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from everywhere.
-// Needs `lights: array<Light>`. All colours are linear until `shade_encode`.
+// Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from everywhere.
+// Needs `lights: array<Light>`. All colors are linear until `shade_encode`.
 
 // `position` is relative to the eye; `normal` and `to_eye` have unit length.
 fn shade_surface(
@@ -26,7 +26,7 @@ fn shade_surface(
     return color;
 }
 
-// Unit vector towards the light, and the share of the light that arrives, shadows aside.
+// Unit vector toward the light, and the share of the light that arrives, shadows aside.
 fn shade_incoming(light: Light, position: vec3f) -> vec4f {
     if light.kind == LIGHT_DIRECTIONAL {
         return vec4f(-light.direction, 1.0);

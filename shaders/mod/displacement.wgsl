@@ -1,4 +1,4 @@
-// A displacement by the heights of an image. a: tiles per metre along its width and along its length, its columns and
+// A displacement by the heights of an image. a: tiles per meter along its width and along its length, its columns and
 // lines; b: 1 / largest slope, least and greatest height, the axis along which it is projected (0, 1, 2). `data` is the row
 // of its first height, see `sdf_heights`.
 //

@@ -10,13 +10,13 @@ fn noise_corner(x: i32, y: i32, z: i32, seed: u32) -> f32 {
     return f32(h >> 8u) * (2.0 / 16777215.0) - 1.0;
 }
 
-fn held_noise_cell(p: vec3f) -> vec3f {
+fn detach_noise_cell(p: vec3f) -> vec3f {
     return floor(p);
 }
 
 // Value noise between -1 and 1 with weights 3u² - 2u³ (Perlin, "An Image Synthesizer", 1985).
 fn noise_value(p: vec3f, seed: u32) -> f32 {
-    let cell = held_noise_cell(p);
+    let cell = detach_noise_cell(p);
     let x = i32(cell.x);
     let y = i32(cell.y);
     let z = i32(cell.z);

@@ -1,9 +1,9 @@
 // Copies at equal distances. `src/flat/modify.rs` writes the rows:
-// a: spacing, turn per cell; b: first cells, flags of mirrored axes; c: last cells, neighbours to look at (one
+// a: spacing, turn per cell; b: first cells, flags of mirrored axes; c: last cells, neighbors to look at (one
 // number to the base of 128); d: middle of the content in its cell, its least slope; e: its half extent; f: offsets;
 // g, h: the block that is left out, first cell and the one after the last; i, j: corners of the bounds.
 //
-// Looked at are the cell around the point and, along each axis, so many of its neighbours, nearer ones first. What
+// Looked at are the cell around the point and, along each axis, so many of its neighbors, nearer ones first. What
 // is not looked at is farther away than its bounds: that bounds the field. So it is right for any content.
 
 fn repeat_candidates(c: vec4f) -> vec3u {
@@ -16,7 +16,7 @@ fn repeat_base(x: f32, spacing: f32, first: f32, last: f32, middle: f32) -> f32 
     return clamp(round((x - middle) / spacing), first, last);
 }
 
-// The n-th neighbour: itself, the nearer one, the one across, and so on.
+// The n-th neighbor: itself, the nearer one, the one across, and so on.
 fn repeat_step(n: u32, side: f32) -> f32 {
     let away = f32((n + 1u) / 2u);
     return select(-away, away, (n & 1u) == 1u) * side;
@@ -27,7 +27,7 @@ fn repeat_side(x: f32) -> f32 {
 }
 
 // The cell of the k-th copy.
-fn held_repeat_index(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, f: vec4f) -> vec3f {
+fn detach_repeat_index(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, f: vec4f) -> vec3f {
     let n = repeat_candidates(c);
     let y = repeat_base(p.y, a.y, b.y, c.y, d.y);
     let z = repeat_base(p.z, a.z, b.z, c.z, d.z);
@@ -90,14 +90,14 @@ fn mod_repeat_start(p: vec3f, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, 
 
 // The least that the k-th copy can be; 3e38 where there is none, -3e38 where nothing is known.
 fn mod_repeat_bound(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f, h: vec4f, i: vec4f, j: vec4f) -> f32 {
-    let index = held_repeat_index(p, k, a, b, c, d, f);
+    let index = detach_repeat_index(p, k, a, b, c, d, f);
     let away = length(max(abs(p - repeat_place(index, a, f) - d.xyz) - e.xyz, vec3f(0.0))) * d.w;
     return select(3e38, select(-3e38, away, away > 0.0), repeat_exists(index, b, c, g, h));
 }
 
 // Where the point stands in the k-th copy.
 fn mod_repeat_point(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f, h: vec4f, i: vec4f, j: vec4f) -> vec3f {
-    let index = held_repeat_index(p, k, a, b, c, d, f);
+    let index = detach_repeat_index(p, k, a, b, c, d, f);
     var q = p - repeat_place(index, a, f);
     if a.w != 0.0 {
         let angle = a.w * (index.x + index.y + index.z);

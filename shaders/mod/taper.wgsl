@@ -1,4 +1,4 @@
-// Wider or narrower with height. a: change of width per metre, 1 / largest stretch, margin; b: middle of the bounds,
+// Wider or narrower with height. a: change of width per meter, 1 / largest stretch, margin; b: middle of the bounds,
 // least height of the content; c: half extent, greatest height.
 
 #include "mod/enclosed.wgsl"

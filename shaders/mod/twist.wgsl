@@ -1,4 +1,4 @@
-// Turned around Y with height. a: radians per metre, 1 / largest stretch, radius of the content, margin; b: its
+// Turned around Y with height. a: radians per meter, 1 / largest stretch, radius of the content, margin; b: its
 // middle and half height.
 
 #include "mod/enclosed.wgsl"

@@ -1,4 +1,4 @@
-// A displacement by waves. a: amplitude, radians per metre, phase, 1 / largest slope.
+// A displacement by waves. a: amplitude, radians per meter, phase, 1 / largest slope.
 
 fn mod_waves_value(f: f32, p: vec3f, a: vec4f) -> f32 {
     let q = sin(p * a.y + a.z);

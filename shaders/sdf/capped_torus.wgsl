@@ -1,7 +1,7 @@
 // A ring around Y of which an arc around X is left: major radius a.x, minor radius a.y, sine and cosine of half the arc
 // a.zw.
 //
-// In the plane of the ring the nearest point of the arc lies in the same direction from the centre, or is an end
+// In the plane of the ring the nearest point of the arc lies in the same direction from the center, or is an end
 // (idea: Quilez, "distance functions").
 
 fn sdf_capped_torus(p: vec3f, a: vec4f, b: vec4f) -> f32 {

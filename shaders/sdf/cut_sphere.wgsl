@@ -1,6 +1,6 @@
 // A ball cut flat: radius a.x, height of the cut a.y. What is above stays.
 //
-// Outside the nearest point lies on the ball where the way to its centre says so, else on the flat or its rim;
+// Outside the nearest point lies on the ball where the way to its center says so, else on the flat or its rim;
 // inside the nearer of both is exact.
 
 fn sdf_cut_sphere(p: vec3f, a: vec4f, b: vec4f) -> f32 {

@@ -1,4 +1,4 @@
-// A cylinder along Y: radius a.x, height a.y, rounding a.z inwards.
+// A cylinder along Y: radius a.x, height a.y, rounding a.z inward.
 
 fn sdf_cylinder(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let size = vec2f(a.x, 0.5 * a.y);

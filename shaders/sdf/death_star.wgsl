@@ -1,4 +1,4 @@
-// A ball without another: radius a.x, radius of the other a.y, distance of the centres a.z along Y.
+// A ball without another: radius a.x, radius of the other a.y, distance of the centers a.z along Y.
 //
 // Outside the nearest point is that on the ball or that in the hollow, where such a point belongs to the surface,
 // else on the circle where both meet; inside the nearer of both is exact.
@@ -16,7 +16,7 @@ fn sdf_death_star(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     if over <= 0.0 && within <= 0.0 {
         return max(over, within);
     }
-    // Twice the distance times the height of the circle over either centre.
+    // Twice the distance times the height of the circle over either center.
     let height = radius * radius + (distance - cut_radius) * (distance + cut_radius);
     let cut_height = (radius - cut_radius) * (radius + cut_radius) - distance * distance;
     let twice = 2.0 * distance;

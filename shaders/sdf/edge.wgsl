@@ -1,13 +1,13 @@
 // Distance to a segment of the plane, negative on its left.
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 fn sdf_edge(q: vec2f, start: vec2f, end: vec2f) -> f32 {
     let axis = end - start;
     let from_start = q - start;
     // The nearest point: where it moves along the segment, the distance does not follow it.
     let square = dot(axis, axis);
-    let t = held_f32(clamp(dot(from_start, axis) / max(square, 1e-30), 0.0, 1.0));
+    let t = detach_f32(clamp(dot(from_start, axis) / max(square, 1e-30), 0.0, 1.0));
     let side = from_start - axis * t;
     let over = dot(side, vec2f(axis.y, -axis.x) / max(length(axis), 1e-30));
     // Between the ends `side` is along the normal; at the segment only rounding is left of it. What is shorter is a point.

@@ -8,7 +8,7 @@
 // At the best n the gradient is n itself, so n takes no part in differentiation.
 // The half axes are sorted first; points on the planes of symmetry are moved off them by 1e-7.
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     var r = a.xyz;
@@ -16,10 +16,10 @@ fn sdf_ellipsoid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     if r.x > r.y { r = r.yxz; q = q.yxz; }
     if r.y > r.z { r = r.xzy; q = q.xzy; }
     if r.x > r.y { r = r.yxz; q = q.yxz; }
-    let scale = held_f32(max(max(r.z, max(q.x, max(q.y, q.z))), 1e-30));
+    let scale = detach_f32(max(max(r.z, max(q.x, max(q.y, q.z))), 1e-30));
     r /= scale;
     q /= scale;
-    let off = held_vec3(max(q, vec3f(1e-7)));
+    let off = detach_vec3(max(q, vec3f(1e-7)));
     let gap = (r - r.x) * (r + r.x);
     let w = r * off;
     let least = max(max(w.x, max(w.y - gap.y, w.z - gap.z)), max(length(w) - gap.z, 1e-30));

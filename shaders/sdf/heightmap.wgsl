@@ -1,11 +1,11 @@
-// A landscape from an image: b.y columns and b.z lines of heights; see `sdf_relief` for the rest. `data` is the first row,
-// behind which the heights stand, see `flat::body::relief` on the CPU; beyond the border the height of the border.
+// A landscape from an image: b.y columns and b.z lines of heights; see `sdf_heightfield` for the rest. `data` is the first row,
+// behind which the heights stand, see `flat::prepare::heightfield` on the CPU; beyond the border the height of the border.
 
-#include "sdf/relief.wgsl"
+#include "sdf/heightfield.wgsl"
 #include "sdf/heights.wgsl"
 
 fn sdf_heightmap(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     let half = a.xz;
     let place = (clamp(p.xz, -half, half) / max(half, vec2f(1e-9)) * 0.5 + 0.5) * b.yz;
-    return sdf_relief(p, a, b, sdf_heights(place, b.yz, data + 1u));
+    return sdf_heightfield(p, a, b, sdf_heights(place, b.yz, data + 1u));
 }

@@ -1,6 +1,6 @@
 // The height of a grid of `size` columns and lines at a place, in cells from its first corner, within the grid: a quadratic
 // B-spline (de Boor, "A practical guide to splines", 1978). At `first` stand the heights, line by line, each with its
-// neighbours along X; beyond the border the heights of the border.
+// neighbors along X; beyond the border the heights of the border.
 
 fn sdf_heights(place: vec2f, size: vec2f, first: u32) -> f32 {
     let cell = min(floor(place), size - 1.0);

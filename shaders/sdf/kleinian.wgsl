@@ -4,7 +4,7 @@
 //
 // The field is the radius of a ball around the point that is certainly on one side, from the distance to the disc back
 // through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² where that is more than
-// 1, so a way of s from r inwards becomes at most k / (r - s) - k / r; solved for s this is what it gives back.
+// 1, so a way of s from r inward becomes at most k / (r - s) - k / r; solved for s this is what it gives back.
 
 fn sdf_kleinian(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let corner = vec3f(a.zw, b.x);

@@ -1,6 +1,6 @@
-// A Mandelbulb (White and Nylander, "The unravelling of the real 3D Mandelbulb", 2009): radius a.x of the ball that holds
+// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): radius a.x of the ball that holds
 // it, power n a.y, steps a.z. Where z -> P(z) + c, from z = c on, does not leave the ball of radius B = 2^(1/(n-1)), outside
-// of which every step leads farther out. P raises the distance from the centre to the power n, and makes n-fold the angle
+// of which every step leads farther out. P raises the distance from the center to the power n, and makes n-fold the angle
 // from the Y axis and the angle around it.
 //
 // The field is the radius of a ball around the point that is certainly on one side (the idea: Hart, Sandin and Kauffman,
@@ -9,7 +9,7 @@
 // and c moves by no more than z. P stretches by n |z|^(n-1) max(1, |sin n a / sin a|), a being the angle from the axis; of
 // that quotient the least of n and 1 / sin a is taken. Balls within such a ball are so found too: the slope is at most 1.
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 fn sdf_mandelbulb(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let power = clamp(floor(a.y + 0.5), 2.0, 16.0);
@@ -19,7 +19,7 @@ fn sdf_mandelbulb(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let scale = max(a.x, 1e-9) / escape;
     let start = p / scale;
     var at = start;
-    // Distances from the centre and from the axis.
+    // Distances from the center and from the axis.
     var orbit: array<vec2f, 17>;
     var last = 0;
     loop {
@@ -56,12 +56,12 @@ fn sdf_mandelbulb_times(u: vec4f, v: vec4f) -> vec4f {
     return u.xxzz * v.xyzw + vec4f(-1.0, 1.0, -1.0, 1.0) * u.yyww * v.yxwz;
 }
 
-// The radius e at a place of the orbit (distance from the centre, from the axis) for which e (1 + L) is the way. Newton's
+// The radius e at a place of the orbit (distance from the center, from the axis) for which e (1 + L) is the way. Newton's
 // method on logarithms, in which the slope only grows, comes down to it; what is left is taken off. Only the last step
 // takes part in differentiation.
 fn sdf_mandelbulb_back(spot: vec2f, way: f32, power: f32) -> f32 {
-    let fixed = held_vec2(spot);
-    let goal = held_f32(max(way, 1e-30));
+    let fixed = detach_vec2(spot);
+    let goal = detach_f32(max(way, 1e-30));
     var radius = goal / (1.0 + sdf_mandelbulb_stretch(fixed, 0.0, power).x);
     for (var i = 0; i < 6; i++) {
         let stretch = sdf_mandelbulb_stretch(fixed, radius, power);
@@ -72,9 +72,9 @@ fn sdf_mandelbulb_back(spot: vec2f, way: f32, power: f32) -> f32 {
         }
     }
     let stretch = sdf_mandelbulb_stretch(spot, radius, power);
-    let slope = held_f32(1.0 + stretch.x + stretch.y);
-    let safe = radius / max(held_f32(radius * (1.0 + stretch.x)) / goal, 1.0);
-    return safe + (way - held_f32(way) - radius * (stretch.x - held_f32(stretch.x))) / slope;
+    let slope = detach_f32(1.0 + stretch.x + stretch.y);
+    let safe = radius / max(detach_f32(radius * (1.0 + stretch.x)) / goal, 1.0);
+    return safe + (way - detach_f32(way) - radius * (stretch.x - detach_f32(stretch.x))) / slope;
 }
 
 // L within the radius, and the radius times its derivative.

@@ -1,7 +1,7 @@
-// Waves: a sum of b.y waves, half as sharp as b.z says; see `sdf_relief` for the rest. `data` is the first row, see
-// `flat::body::relief` on the CPU.
+// Waves: a sum of b.y waves, half as sharp as b.z says; see `sdf_heightfield` for the rest. `data` is the first row, see
+// `flat::prepare::heightfield` on the CPU.
 
-#include "sdf/relief.wgsl"
+#include "sdf/heightfield.wgsl"
 
 fn sdf_ocean(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     var height = 0.0;
@@ -10,7 +10,7 @@ fn sdf_ocean(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
         let turns = dot(p.xz, row.xy) + row.w;
         height += (sdf_ocean_cosine(turns) + 0.5 * b.z * sdf_ocean_cosine(2.0 * turns)) * row.z;
     }
-    return sdf_relief(p, a, b, height);
+    return sdf_heightfield(p, a, b, height);
 }
 
 // The cosine of so many turns, within 1e-7: drivers' own need not be that exact. With the quarter from which it is

@@ -1,9 +1,9 @@
-// A regular octahedron: centre to corner a.x.
+// A regular octahedron: center to corner a.x.
 //
 // In the positive octant: on the face where the plane's foot lies within it, else on the nearest edge
 // (idea: Quilez, "octahedron distance").
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let q = abs(p);
@@ -20,6 +20,6 @@ fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
         edge = q.xy;
     }
     // The nearest point of the edge: where it moves along the edge, the distance does not follow it.
-    let t = held_f32(clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x));
+    let t = detach_f32(clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x));
     return length(vec3f(least, edge.x - a.x + t, edge.y - t));
 }

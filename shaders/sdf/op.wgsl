@@ -1,7 +1,7 @@
-// Operators. `joint` is the first row of the operand that joins: x the support, z and w what else the operator or
-// the kernel needs. Those of `op_join` return (value, derivative by a, derivative by b, b's share of the material);
+// Operators. `blend_params` is the first row of the operand that joins: x the support, z and w what else the operator or
+// the kernel needs. Those of `op_join` return (value, derivative by a, derivative by b, b's weight in the material);
 // union, intersection and difference return (value, weight of b): the weight is the size of the derivative by b,
-// and is also b's share of the material; a has the rest. Twin: `flat::twin::op`.
+// and is also b's weight in the material; a has the rest. Counterpart: `flat::eval::op`.
 //
 // Beyond |a - b| >= support union, intersection and difference are exactly hard. Support 0 is hard everywhere.
 // The numbers of the joins and kernels are those of `Join` and `BlendKernel` on the CPU.
@@ -17,56 +17,56 @@ const JOIN_TONGUE: u32 = 7u;
 const JOIN_ENGRAVE: u32 = 8u;
 const JOIN_MORPH: u32 = 9u;
 const JOIN_PAINT: u32 = 10u;
-const JOIN_REMAINDER: u32 = 11u;
+const JOIN_REVERSE_DIFFERENCE: u32 = 11u;
 
 const KERNEL_CIRCULAR: u32 = 0u;
 const KERNEL_QUADRATIC: u32 = 1u;
 const KERNEL_CUBIC: u32 = 2u;
-const KERNEL_LEAN: u32 = 3u;
+const KERNEL_SMOOTH_CHAMFER: u32 = 3u;
 const KERNEL_CHAMFER: u32 = 4u;
 const KERNEL_STAIRS: u32 = 5u;
 const KERNEL_COLUMNS: u32 = 6u;
 
 const SQRT_2: f32 = 1.41421356;
 
-// The operand b joins what stands so far, a. `FURTHER_JOINS` and `FURTHER_KERNELS` say whether the component has
+// The operand b joins what stands so far, a. `EXTENDED_JOINS` and `EXTENDED_KERNELS` say whether the component has
 // any beyond the first three: they are left out of all other kernels.
-fn op_join(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
-    if FURTHER_JOINS && join > JOIN_DIFFERENCE {
-        return op_further(join, a, b, joint, kernel);
+fn op_join(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
+    if EXTENDED_JOINS && join > JOIN_DIFFERENCE {
+        return op_extended(join, a, b, blend_params, kernel);
     }
     let sign_a = select(1.0, -1.0, join >= JOIN_INTERSECTION);
     let sign_b = select(1.0, -1.0, join == JOIN_INTERSECTION);
-    let joined = op_union(sign_a * a, sign_b * b, joint, kernel);
+    let joined = op_union(sign_a * a, sign_b * b, blend_params, kernel);
     return vec4f(sign_a * joined.x, 1.0 - joined.y, sign_a * sign_b * joined.y, joined.y);
 }
 
-fn op_union(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
-    let blend = op_blend(abs(a - b), joint, kernel);
+fn op_union(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
+    let blend = op_blend(abs(a - b), blend_params, kernel);
     // Not `min`: for that lavapipe also asks whether either is no number.
     return vec2f(select(a, b, b < a) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
 }
 
-fn op_intersection(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
-    let joined = op_union(-a, -b, joint, kernel);
+fn op_intersection(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
+    let joined = op_union(-a, -b, blend_params, kernel);
     return vec2f(-joined.x, joined.y);
 }
 
 // a without b.
-fn op_difference(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec2f {
-    let joined = op_union(-a, b, joint, kernel);
+fn op_difference(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
+    let joined = op_union(-a, b, blend_params, kernel);
     return vec2f(-joined.x, joined.y);
 }
 
 // What a blend takes from the lesser of two operands that differ by `difference`, and the weight of the
 // greater. Kernels: Quilez, "smooth minimum", scaled by their supports to one thickening.
-fn op_blend(difference: f32, joint: vec4f, kernel: u32) -> vec2f {
-    let support = joint.x;
+fn op_blend(difference: f32, blend_params: vec4f, kernel: u32) -> vec2f {
+    let support = blend_params.x;
     let h = (support - difference) * (1.0 / support);
     // Beyond the support this may be no number; it is thrown away there.
     var blend: vec2f;
-    if FURTHER_KERNELS && kernel >= KERNEL_LEAN {
-        blend = op_further_blend(difference, h, joint, kernel);
+    if EXTENDED_KERNELS && kernel >= KERNEL_SMOOTH_CHAMFER {
+        blend = op_extended_blend(difference, h, blend_params, kernel);
     } else if kernel == KERNEL_CIRCULAR {
         let root = sqrt(2.0 * support * support - difference * difference);
         blend = vec2f(support - 0.5 * difference - 0.5 * root, 0.5 - 0.5 * difference / root);
@@ -80,9 +80,9 @@ fn op_blend(difference: f32, joint: vec4f, kernel: u32) -> vec2f {
 
 // The same for bevels. Steps and columns: Mercury's hg_sdf (2015) builds its stairs in the same coordinates, the
 // operands' sum and difference; here the columns are arcs of 90 degrees, so that no derivative exceeds 1.
-fn op_further_blend(difference: f32, h: f32, joint: vec4f, kernel: u32) -> vec2f {
-    let support = joint.x;
-    if kernel == KERNEL_LEAN {
+fn op_extended_blend(difference: f32, h: f32, blend_params: vec4f, kernel: u32) -> vec2f {
+    let support = blend_params.x;
+    if kernel == KERNEL_SMOOTH_CHAMFER {
         if h > 0.5 {
             return vec2f(0.5 * (0.75 * support - difference), 0.5);
         }
@@ -91,9 +91,9 @@ fn op_further_blend(difference: f32, h: f32, joint: vec4f, kernel: u32) -> vec2f
     if kernel == KERNEL_CHAMFER {
         return vec2f(0.5 * support * h, 0.5);
     }
-    // Each of joint.z steps is two `half` wide; u is where in its step the point is, from -1 to 1.
-    let half = support / joint.z;
-    let u = clamp(2.0 * fract(0.5 * h * joint.z), 0.0, 2.0);
+    // Each of blend_params.z steps is two `half` wide; u is where in its step the point is, from -1 to 1.
+    let half = support / blend_params.z;
+    let u = clamp(2.0 * fract(0.5 * h * blend_params.z), 0.0, 2.0);
     if kernel == KERNEL_STAIRS {
         return vec2f(0.5 * (support * h + half * (1.0 - abs(1.0 - u))), select(0.0, 1.0, u <= 1.0));
     }
@@ -102,33 +102,33 @@ fn op_further_blend(difference: f32, h: f32, joint: vec4f, kernel: u32) -> vec2f
 }
 
 // The operators beyond the first three.
-fn op_further(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+fn op_extended(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
     if join == JOIN_XOR {
-        return op_xor(a, b, joint, kernel);
+        return op_xor(a, b, blend_params, kernel);
     }
     if join == JOIN_PIPE {
-        return op_pipe(a, b, joint.z);
+        return op_pipe(a, b, blend_params.z);
     }
     if join == JOIN_MORPH {
-        return vec4f(mix(a, b, joint.w), 1.0 - joint.w, joint.w, joint.w);
+        return vec4f(mix(a, b, blend_params.w), 1.0 - blend_params.w, blend_params.w, blend_params.w);
     }
     if join == JOIN_PAINT {
-        return vec4f(a, 1.0, 0.0, op_paint(b, joint.x));
+        return vec4f(a, 1.0, 0.0, op_paint(b, blend_params.x));
     }
     if join == JOIN_ENGRAVE {
-        return op_engrave(a, b, joint, kernel);
+        return op_engrave(a, b, blend_params, kernel);
     }
-    if join == JOIN_REMAINDER {
-        let joined = op_difference(b, a, joint, kernel);
+    if join == JOIN_REVERSE_DIFFERENCE {
+        let joined = op_difference(b, a, blend_params, kernel);
         return vec4f(joined.x, -joined.y, 1.0 - joined.y, 1.0 - joined.y);
     }
-    return op_groove(join, a, b, joint, kernel);
+    return op_groove(join, a, b, blend_params, kernel);
 }
 
 // What is in one but not in both.
-fn op_xor(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
-    let outer = op_union(a, b, joint, kernel);
-    let inner = op_intersection(a, b, joint, kernel);
+fn op_xor(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
+    let outer = op_union(a, b, blend_params, kernel);
+    let inner = op_intersection(a, b, blend_params, kernel);
     if -inner.x > outer.x {
         return vec4f(-inner.x, inner.y - 1.0, -inner.y, inner.y);
     }
@@ -136,7 +136,7 @@ fn op_xor(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
 }
 
 // A round tube along the curve where both are 0. Both terms are bounds of the distance: the first has the surface,
-// and is divided by the greatest slope that it can have; the second is the greater far away. It wears b's material.
+// and is divided by the greatest slope that it can have; the second is the greater far away. It has b's material.
 fn op_pipe(a: f32, b: f32, radius: f32) -> vec4f {
     let greater = max(abs(a), abs(b));
     let part = min(abs(a), abs(b)) / max(greater, 1e-30);
@@ -152,12 +152,12 @@ fn op_pipe(a: f32, b: f32, radius: f32) -> vec4f {
     return vec4f(greater - radius, (1.0 - follows) * sign_a, follows * sign_b, 1.0);
 }
 
-// A groove or a tongue of half width joint.z along the surface of b, joint.w deep or high.
-fn op_groove(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
+// A groove or a tongue of half width blend_params.z along the surface of b, blend_params.w deep or high.
+fn op_groove(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
     let sign = select(1.0, -1.0, join == JOIN_GROOVE);
-    let side = abs(b) - joint.z;
-    let end = sign * a - joint.w;
-    let joined = op_union(sign * a, max(side, end), joint, kernel);
+    let side = abs(b) - blend_params.z;
+    let end = sign * a - blend_params.w;
+    let joined = op_union(sign * a, max(side, end), blend_params, kernel);
     let w = joined.y;
     if end > side {
         return vec4f(sign * joined.x, 1.0, 0.0, w);
@@ -165,15 +165,15 @@ fn op_groove(join: u32, a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
     return vec4f(sign * joined.x, 1.0 - w, sign * select(w, -w, b < 0.0), w);
 }
 
-// A V of 45 degrees along the surface of b, joint.w deep.
-fn op_engrave(a: f32, b: f32, joint: vec4f, kernel: u32) -> vec4f {
-    let cut = 0.5 * (abs(b) - a - joint.w);
-    let joined = op_difference(a, cut, joint, kernel);
+// A V of 45 degrees along the surface of b, blend_params.w deep.
+fn op_engrave(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
+    let cut = 0.5 * (abs(b) - a - blend_params.w);
+    let joined = op_difference(a, cut, blend_params, kernel);
     let w = joined.y;
     return vec4f(joined.x, 1.0 - 0.5 * w, 0.5 * select(-w, w, b < 0.0), w);
 }
 
-// The share of the paint b, whose edge fades over `radius` to both sides.
+// The weight of the paint b, whose edge fades over `radius` to both sides.
 fn op_paint(b: f32, radius: f32) -> f32 {
     if abs(b) >= radius {
         return select(0.0, 1.0, b < 0.0);

@@ -13,7 +13,7 @@ fn sdf_polygon_sector(q: vec2f, sides: vec3f) -> vec2f {
     return turned - 2.0 * max(dot(turned, mirror), 0.0) * mirror;
 }
 
-// `radius` from the centre to the middle of a side.
+// `radius` from the center to the middle of a side.
 fn sdf_polygon(q: vec2f, sides: vec3f, radius: f32) -> f32 {
     let t = sdf_polygon_sector(q, sides);
     let beside = vec2f(t.x - radius, max(t.y - radius * sides.z / sides.y, 0.0));

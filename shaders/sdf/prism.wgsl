@@ -1,4 +1,4 @@
-// A prism along Y over a regular polygon: sides a.xyz, inner radius a.w, height b.x, rounding b.y inwards.
+// A prism along Y over a regular polygon: sides a.xyz, inner radius a.w, height b.x, rounding b.y inward.
 
 #include "sdf/polygon.wgsl"
 

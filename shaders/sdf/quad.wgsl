@@ -1,6 +1,6 @@
 // A parallelogram in the XZ plane: width a.x, depth a.y, skew a.z, thickness a.w.
 //
-// It is its own picture under a half turn, so only the half towards +Z is looked at.
+// It is its own picture under a half turn, so only the half toward +Z is looked at.
 
 #include "sdf/edge.wgsl"
 

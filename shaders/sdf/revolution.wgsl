@@ -1,7 +1,7 @@
 // A profile turned around the Y axis: a.x groups, a.y whether overlaps are inside.
 
-#include "sdf/outline.wgsl"
+#include "sdf/profile.wgsl"
 
 fn sdf_revolution(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    return sdf_outline(vec2f(length(p.xz), p.y), u32(a.x), a.y != 0.0, data);
+    return sdf_profile(vec2f(length(p.xz), p.y), u32(a.x), a.y != 0.0, data);
 }

@@ -1,4 +1,4 @@
-// A prism along Y over a rhombus: width a.x, depth a.y, height a.z, rounding a.w inwards.
+// A prism along Y over a rhombus: width a.x, depth a.y, height a.z, rounding a.w inward.
 //
 // The rhombus within, from whose sides those of the whole are as far as the rounding, is smaller by a factor.
 
@@ -9,7 +9,7 @@ fn sdf_rhombus(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let inner_radius = corner.x * corner.y / max(length(corner), 1e-30);
     let rounding = min(a.w, min(inner_radius, 0.5 * a.z));
     let shrunk = corner * (1.0 - rounding / max(inner_radius, 1e-30));
-    let outline = sdf_edge(abs(p.xz), vec2f(shrunk.x, 0.0), vec2f(0.0, shrunk.y));
-    let d = vec2f(outline, abs(p.y) - 0.5 * a.z + rounding);
+    let profile = sdf_edge(abs(p.xz), vec2f(shrunk.x, 0.0), vec2f(0.0, shrunk.y));
+    let d = vec2f(profile, abs(p.y) - 0.5 * a.z + rounding);
     return length(max(d, vec2f(0.0))) + min(max(d.x, d.y), 0.0) - rounding;
 }

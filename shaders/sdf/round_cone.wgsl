@@ -1,4 +1,4 @@
-// The hull of two balls on Y: bottom radius a.x, top radius a.y, distance of the centres a.z.
+// The hull of two balls on Y: bottom radius a.x, top radius a.y, distance of the centers a.z.
 
 fn sdf_round_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let height = a.z;

@@ -1,7 +1,7 @@
-// Hills: a sum of b.y layers of noise with the seed b.z; see `sdf_relief` for the rest. `data` is the first row, see
-// `flat::body::relief` on the CPU.
+// Hills: a sum of b.y layers of noise with the seed b.z; see `sdf_heightfield` for the rest. `data` is the first row, see
+// `flat::prepare::heightfield` on the CPU.
 
-#include "sdf/relief.wgsl"
+#include "sdf/heightfield.wgsl"
 
 fn sdf_terrain(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     var height = 0.0;
@@ -9,7 +9,7 @@ fn sdf_terrain(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
         let row = scene_row(data + 1u + layer);
         height += sdf_terrain_noise(p.xz * row.x, u32(b.z), u32(row.z)) * row.y;
     }
-    return sdf_relief(p, a, b, height);
+    return sdf_heightfield(p, a, b, height);
 }
 
 // Smooth noise between -1 and 1: random numbers at whole coordinates, between them t² (3 - 2 t) (value noise, Perlin, "An

@@ -2,7 +2,7 @@
 //
 // The nearest point lies on the nearer cap or on the slanted side (idea: Quilez, "distance functions").
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 fn sdf_trapezoid(q: vec2f, bottom: f32, top: f32, height: f32) -> f32 {
     let half_height = 0.5 * height;
@@ -11,7 +11,7 @@ fn sdf_trapezoid(q: vec2f, bottom: f32, top: f32, height: f32) -> f32 {
     let from_top = q - vec2f(top, half_height);
     // The nearest point: where it moves along the slanted side, the distance does not follow it.
     let square = dot(slope, slope);
-    let t = held_f32(clamp(dot(from_top, slope) / max(square, 1e-30), 0.0, 1.0));
+    let t = detach_f32(clamp(dot(from_top, slope) / max(square, 1e-30), 0.0, 1.0));
     let side = from_top - slope * t;
     // Between the ends `side` is along the normal. At the surface only rounding is left of it, so its own
     // direction is worth nothing there.

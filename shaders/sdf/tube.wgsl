@@ -1,18 +1,18 @@
-// A tube: balls along arcs. a.x pieces in a.y groups; `data` is its first row, see `flat::body::tube` on the CPU.
+// A tube: balls along arcs. a.x pieces in a.y groups; `data` is its first row, see `flat::prepare::tube` on the CPU.
 //
 // The field is the least of |p - c| - r over its balls. Around the nearest one it changes by the square of a change of
 // the ball, so its gradient is that of the ball alone, and the search for it takes no part.
 
-#include "sdf/held.wgsl"
+#include "sdf/detach.wgsl"
 
 const TUBE_GROUP: u32 = 8u;
 
 fn sdf_tube(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let ball = held_vec4(sdf_tube_nearest(p, u32(a.x), u32(a.y), data + 1u));
+    let ball = detach_vec4(sdf_tube_nearest(p, u32(a.x), u32(a.y), data + 1u));
     return length(p - ball.xyz) - ball.w;
 }
 
-// Centre and radius of the nearest ball.
+// Center and radius of the nearest ball.
 fn sdf_tube_nearest(p: vec3f, pieces: u32, groups: u32, data: u32) -> vec4f {
     // No group is farther away than its ball's far side.
     var least = 1e37;

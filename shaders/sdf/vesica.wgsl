@@ -1,13 +1,13 @@
 // A spindle along Y, an arc turned about its chord: height a.x, width a.y.
 //
-// The arc's centre may be very far away, so the distance to it less its radius is written as the difference of their
+// The arc's center may be very far away, so the distance to it less its radius is written as the difference of their
 // squares over their sum, all times `k`, the ratio of the half axes.
 
 fn sdf_vesica(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let half_height = 0.5 * a.x;
     let scale = max(half_height, 1e-9);
     let k = min(0.5 * a.y, half_height) / scale;
-    // k times the distance of the arc's centre from the axis, in half heights.
+    // k times the distance of the arc's center from the axis, in half heights.
     let away = 0.5 * (1.0 - k) * (1.0 + k);
     let q = vec2f(length(p.xz), abs(p.y));
     let u = q / scale;

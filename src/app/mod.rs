@@ -1,6 +1,6 @@
 //! Joins editor and renderer in one window, and opens the window again when the graphics device is lost.
 
-mod canvas;
+mod viewport_renderer;
 mod window;
 
 use std::cell::RefCell;
@@ -33,7 +33,7 @@ pub enum AppError {
 
 /// What outlives a window.
 #[derive(Clone)]
-struct Shared {
+struct SharedApp {
     editor: Rc<RefCell<Editor>>,
     /// The device of the window that is open or was last.
     gpu: Rc<RefCell<Option<Gpu>>>,
@@ -68,7 +68,7 @@ pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Resul
         }
         Err(reason) => editor.report(Message::warning(format!("Unsaved work cannot be kept for recovery: {reason}."))),
     }
-    let shared = Shared { editor: Rc::new(RefCell::new(editor)), gpu: Rc::default() };
+    let shared = SharedApp { editor: Rc::new(RefCell::new(editor)), gpu: Rc::default() };
     let mut losses: Vec<Instant> = Vec::new();
     loop {
         if open_window(&shared, adapter)? == Ending::Closed {
@@ -92,7 +92,7 @@ fn start_recovery() -> Result<Recovery, String> {
     Recovery::start(&folder.join("recovery")).map_err(|error| error.to_string())
 }
 
-fn open_window(shared: &Shared, adapter: &AdapterChoice) -> Result<Ending, AppError> {
+fn open_window(shared: &SharedApp, adapter: &AdapterChoice) -> Result<Ending, AppError> {
     let for_window = shared.clone();
     // Painting on a lost device panics in places. The editor is not part of what is torn then.
     let result = catch_unwind(AssertUnwindSafe(|| {

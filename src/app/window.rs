@@ -4,15 +4,15 @@ use std::time::Duration;
 
 use egui::{Vec2, vec2};
 
-use super::Shared;
-use super::canvas::Canvas;
+use super::SharedApp;
+use super::viewport_renderer::ViewportRenderer;
 use crate::editor::{Editor, Message};
 use crate::render::{Gpu, RenderError};
 
 /// The window's content, as eframe runs it.
 pub(super) struct Window {
-    canvas: Canvas,
-    shared: Shared,
+    viewport: ViewportRenderer,
+    shared: SharedApp,
     /// Whether the window has been painted: before its first picture, for which a driver may compile for seconds.
     is_open: bool,
     /// How long each frame waits, to see the window as it is on a slow machine.
@@ -24,14 +24,19 @@ const FRAME_DELAY: &str = "ISOLITH_FRAME_DELAY";
 
 impl Window {
     /// Shows the editor that is in `shared`.
-    pub fn new(context: &eframe::CreationContext<'_>, shared: Shared) -> Result<Self, RenderError> {
+    pub fn new(context: &eframe::CreationContext<'_>, shared: SharedApp) -> Result<Self, RenderError> {
         Editor::setup(&context.egui_ctx);
         let state = context.wgpu_render_state.clone().expect("the window is opened with the wgpu renderer");
         let gpu = Gpu::watch(state.device.clone(), state.queue.clone(), state.adapter.get_info());
         *shared.gpu.borrow_mut() = Some(gpu.clone());
         crate::render::driver::loop_iterations(&gpu)?;
         let delay = std::env::var(FRAME_DELAY).ok().and_then(|text| text.parse().ok()).map(Duration::from_millis);
-        Ok(Self { canvas: Canvas::new(gpu, state)?, shared, is_open: false, delay: delay.unwrap_or_default() })
+        Ok(Self {
+            viewport: ViewportRenderer::new(gpu, state)?,
+            shared,
+            is_open: false,
+            delay: delay.unwrap_or_default(),
+        })
     }
 }
 
@@ -60,7 +65,7 @@ fn fitting(inner: Vec2, monitor: Vec2) -> Option<Vec2> {
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        if self.canvas.is_lost() {
+        if self.viewport.is_lost() {
             // Nothing can be painted any more.
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             return;
@@ -70,16 +75,16 @@ impl eframe::App for Window {
         }
         let mut slot = self.shared.editor.borrow_mut();
         let editor = &mut *slot;
-        editor.show(ui, &self.canvas.picture());
+        editor.show(ui, &self.viewport.picture());
         if !std::mem::replace(&mut self.is_open, true) {
             fit_to_screen(ui.ctx());
             ui.ctx().request_repaint();
             return;
         }
-        match self.canvas.update(editor, ui.ctx()) {
+        match self.viewport.update(editor, ui.ctx()) {
             Ok(()) => {}
             // What this frame has drawn cannot be painted: the pass is repeated, empty.
-            Err(_) if self.canvas.is_lost() => ui.ctx().request_discard("the device is lost"),
+            Err(_) if self.viewport.is_lost() => ui.ctx().request_discard("the device is lost"),
             Err(error) => editor.report(Message::error(error.to_string())),
         }
     }

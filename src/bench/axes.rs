@@ -8,11 +8,11 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::drawing::DrawingArea;
 use plotters::style::{Color, RGBColor};
 
-use super::canvas::{Canvas, FINE, Failed, Sheet, letters};
+use super::canvas::{ChartCanvas, FINE, Failed, ImageBackend, letters};
 
-/// The colour of words that must be read.
+/// The color of words that must be read.
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
-/// The colour of words that explain.
+/// The color of words that explain.
 pub(super) const SOFT_INK: RGBColor = RGBColor(0x50, 0x50, 0x50);
 const AXIS: RGBColor = RGBColor(0x80, 0x80, 0x80);
 const GRID: RGBColor = RGBColor(0xd8, 0xd8, 0xd8);
@@ -131,19 +131,19 @@ pub(super) struct Words<'a> {
 
 /// The part of a chart between its axes.
 pub(super) struct Plane<'a> {
-    area: DrawingArea<Canvas<'a>, Cartesian2d<LogAxis, LogAxis>>,
+    area: DrawingArea<ImageBackend<'a>, Cartesian2d<LogAxis, LogAxis>>,
 }
 
 impl<'a> Plane<'a> {
     /// Draws the axes. `margins` are those above and to the right, in pixels of the chart.
     pub fn draw(
-        sheet: &Sheet<'a>,
+        canvas: &ChartCanvas<'a>,
         (x, y): (LogAxis, LogAxis),
         margins: [u32; 2],
         words: &Words<'_>,
     ) -> Result<Self, Failed> {
         let fine = FINE.unsigned_abs();
-        let mut chart = ChartBuilder::on(&sheet.area)
+        let mut chart = ChartBuilder::on(&canvas.area)
             .margin_top(margins[0] * fine)
             .margin_right(margins[1] * fine)
             .margin_left(14 * fine)
@@ -171,13 +171,13 @@ impl<'a> Plane<'a> {
         Ok(Self { area: chart.plotting_area().clone() })
     }
 
-    /// Where the point with these logarithms lies on the sheet.
+    /// Where the point with these logarithms lies on the canvas.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         let (x, y) = self.area.map_coordinate(&(x, y));
         (f64::from(x) / f64::from(FINE), f64::from(y) / f64::from(FINE))
     }
 
-    /// The left, upper, right and lower edge on the sheet.
+    /// The left, upper, right and lower edge on the canvas.
     pub fn edges(&self) -> [f64; 4] {
         let (x, y) = self.area.get_pixel_range();
         [x.start, y.start, x.end, y.end].map(|fine| f64::from(fine) / f64::from(FINE))

@@ -26,23 +26,23 @@ pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
 pub(super) type Failed = DrawingAreaErrorKind<Infallible>;
 
 /// An image as plotters draws on it.
-pub(super) struct Canvas<'a> {
+pub(super) struct ImageBackend<'a> {
     image: &'a mut RgbImage,
 }
 
 /// A chart that is being drawn. All lengths are in pixels of the finished chart.
-pub(super) struct Sheet<'a> {
+pub(super) struct ChartCanvas<'a> {
     /// The whole chart, in fine pixels.
-    pub area: DrawingArea<Canvas<'a>, Shift>,
+    pub area: DrawingArea<ImageBackend<'a>, Shift>,
 }
 
 /// A chart of this size, drawn by `draw` on empty paper.
-pub(super) fn sheet(size: (u32, u32), draw: impl FnOnce(&Sheet<'_>) -> Result<(), Failed>) -> RgbImage {
+pub(super) fn canvas(size: (u32, u32), draw: impl FnOnce(&ChartCanvas<'_>) -> Result<(), Failed>) -> RgbImage {
     let fine = FINE.unsigned_abs();
     let mut image = RgbImage::from_pixel(size.0 * fine, size.1 * fine, Rgb([PAPER.0, PAPER.1, PAPER.2]));
-    let sheet = Sheet { area: Canvas { image: &mut image }.into_drawing_area() };
-    draw(&sheet).expect("an image in memory can always be drawn on");
-    drop(sheet);
+    let canvas = ChartCanvas { area: ImageBackend { image: &mut image }.into_drawing_area() };
+    draw(&canvas).expect("an image in memory can always be drawn on");
+    drop(canvas);
     imageops::thumbnail(&image, size.0, size.1)
 }
 
@@ -51,7 +51,7 @@ fn fine((x, y): (f64, f64)) -> (i32, i32) {
     ((x * f64::from(FINE)).round() as i32, (y * f64::from(FINE)).round() as i32)
 }
 
-impl Sheet<'_> {
+impl ChartCanvas<'_> {
     /// A line through all the points.
     pub fn line(&self, points: &[(f64, f64)], color: RGBColor, width: f64) -> Result<(), Failed> {
         let mut path: Vec<(i32, i32)> = points.iter().copied().map(fine).collect();
@@ -177,7 +177,7 @@ fn start(anchor: Pos, width: f32, em: f32) -> Point {
     point(x, y * em)
 }
 
-impl DrawingBackend for Canvas<'_> {
+impl DrawingBackend for ImageBackend<'_> {
     type ErrorType = Infallible;
 
     fn get_size(&self) -> (u32, u32) {
@@ -253,7 +253,7 @@ mod tests {
     #[test]
     fn text_is_as_wide_as_said_and_ends_at_its_anchor() {
         let right = Pos { h_pos: HPos::Right, v_pos: VPos::Center };
-        let image = sheet((300, 40), |sheet| sheet.text("Hamburgefons", (280.0, 20.0), 20.0, BLACK, right));
+        let image = canvas((300, 40), |canvas| canvas.text("Hamburgefons", (280.0, 20.0), 20.0, BLACK, right));
         let (first, last) = ink(&image);
         let width = text_width("Hamburgefons", 20.0);
         assert!((f64::from(last) - 279.0).abs() <= 2.0, "ends at {last}");
@@ -262,12 +262,12 @@ mod tests {
 
     #[test]
     fn nothing_breaks_at_the_edge_or_without_length() {
-        sheet((20, 20), |sheet| {
-            sheet.text("far out", (-30.0, 500.0), 20.0, BLACK, LEFT)?;
-            sheet.line(&[(5.0, 5.0), (5.0, 5.0)], BLACK, 2.0)?;
-            sheet.line(&[], BLACK, 2.0)?;
-            sheet.dashed([(5.0, 5.0), (5.0, 5.0)], BLACK, 2.0, [3.0, 3.0])?;
-            sheet.disc((19.0, 19.0), 8.0, BLACK)
+        canvas((20, 20), |canvas| {
+            canvas.text("far out", (-30.0, 500.0), 20.0, BLACK, LEFT)?;
+            canvas.line(&[(5.0, 5.0), (5.0, 5.0)], BLACK, 2.0)?;
+            canvas.line(&[], BLACK, 2.0)?;
+            canvas.dashed([(5.0, 5.0), (5.0, 5.0)], BLACK, 2.0, [3.0, 3.0])?;
+            canvas.disc((19.0, 19.0), 8.0, BLACK)
         });
     }
 

@@ -4,13 +4,13 @@ use image::RgbImage;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::axes::{INK, LogAxis, Plane, SOFT_INK, Words};
-use super::canvas::{Failed, LEFT, PAPER, Sheet, fitting, sheet, text_width};
+use super::canvas::{ChartCanvas, Failed, LEFT, PAPER, canvas, fitting, text_width};
 use super::frontier::frontier;
-use super::labels::{Obstacles, Place, Wish, along, around};
-use super::legend::{DASH, FRONTIER, FRONTIER_WIDTH, Group, Sign, TITLE_EM, TITLE_WIDTH, legend, title};
+use super::labels::{LabelPlace, Obstacles, Wish, along, around};
+use super::legend::{DASH, FRONTIER, FRONTIER_WIDTH, LegendGroup, Sign, TITLE_EM, TITLE_WIDTH, legend, title};
 use super::marks::{RADIUS, color, cross, faint, mark, methods, qualities, ring};
-use super::row::{DEFAULT, LIMIT, Row};
-use crate::flat::compare::MAX_WRONG_SHARE;
+use super::row::{BenchRow, DEFAULT, LIMIT};
+use crate::flat::reference::accuracy::MAX_WRONG_SHARE;
 
 /// Width and height of a chart, in pixels.
 pub(super) const SIZE: (u32, u32) = (1100, 760);
@@ -26,7 +26,7 @@ const LABEL_EM: f64 = 14.5;
 
 /// A measurement as a point, in the logarithms of its error and of its time.
 struct Dot<'a> {
-    row: &'a Row,
+    row: &'a BenchRow,
     x: f64,
     y: f64,
 }
@@ -56,18 +56,18 @@ impl Dot<'_> {
 /// The frontier joins what no other point beats. It leaves out the method `limit`, which nobody can choose, and
 /// whatever is wrong in too many pixels: depth errors are only taken where both pictures show a surface, so they say
 /// little there.
-pub fn time_against_error(rows_of_one_scene: &[Row]) -> RgbImage {
+pub fn time_against_error(rows_of_one_scene: &[BenchRow]) -> RgbImage {
     let dots: Vec<Dot<'_>> = rows_of_one_scene
         .iter()
         .filter(|row| row.cpu_ms.is_finite() && row.depth_p99.is_finite())
         .map(|row| Dot { row, x: row.depth_p99.max(LEAST_ERROR).log10(), y: row.cpu_ms.max(LEAST_TIME).log10() })
         .collect();
-    sheet(SIZE, |sheet| draw(sheet, rows_of_one_scene, &dots))
+    canvas(SIZE, |canvas| draw(canvas, rows_of_one_scene, &dots))
 }
 
-fn draw(sheet: &Sheet<'_>, rows: &[Row], dots: &[Dot<'_>]) -> Result<(), Failed> {
+fn draw(canvas: &ChartCanvas<'_>, rows: &[BenchRow], dots: &[Dot<'_>]) -> Result<(), Failed> {
     let (headline, below) = words(rows, dots.len());
-    title(sheet, &headline, &below)?;
+    title(canvas, &headline, &below)?;
     let floor = LEAST_ERROR.log10();
     let x = match dots {
         [] => LogAxis { low: -4.5, high: 0.5 },
@@ -79,18 +79,18 @@ fn draw(sheet: &Sheet<'_>, rows: &[Row], dots: &[Dot<'_>]) -> Result<(), Failed>
         y: "CPU time (ms)",
         floor: dots.iter().any(|dot| dot.x == floor).then_some((floor, "≤ 0.000001")),
     };
-    let plane = Plane::draw(sheet, axes, [TITLE, LEGEND], &words)?;
+    let plane = Plane::draw(canvas, axes, [TITLE, LEGEND], &words)?;
     if dots.is_empty() {
-        nothing(sheet, &plane)?;
+        nothing(canvas, &plane)?;
     }
-    let lines = draw_lines(sheet, &plane, dots)?;
-    draw_dots(sheet, &plane, dots)?;
-    draw_labels(sheet, &plane, dots, lines)?;
+    let lines = draw_lines(canvas, &plane, dots)?;
+    draw_dots(canvas, &plane, dots)?;
+    draw_labels(canvas, &plane, dots, lines)?;
     let [_, top, right, _] = plane.edges();
-    legend(sheet, (right + 22.0, top + 10.0), f64::from(LEGEND) - 32.0, &groups(dots))
+    legend(canvas, (right + 22.0, top + 10.0), f64::from(LEGEND) - 32.0, &groups(dots))
 }
 
-fn words(rows: &[Row], drawn: usize) -> (String, String) {
+fn words(rows: &[BenchRow], drawn: usize) -> (String, String) {
     let Some(first) = rows.first() else { return ("Run time against error".into(), String::new()) };
     let grazing = rows.iter().map(|row| row.grazing_share).fold(0.0, f64::max) * 100.0;
     let below =
@@ -107,34 +107,34 @@ fn words(rows: &[Row], drawn: usize) -> (String, String) {
 }
 
 /// Says that there is nothing to see.
-pub(super) fn nothing(sheet: &Sheet<'_>, plane: &Plane<'_>) -> Result<(), Failed> {
+pub(super) fn nothing(canvas: &ChartCanvas<'_>, plane: &Plane<'_>) -> Result<(), Failed> {
     let [left, top, right, bottom] = plane.edges();
     let middle = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
     let at = ((left + right) / 2.0, (top + bottom) / 2.0);
-    sheet.rectangle([at.0 - 90.0, at.1 - 18.0, at.0 + 90.0, at.1 + 18.0], PAPER)?;
-    sheet.text("no measurements", at, 20.0, SOFT_INK, middle)
+    canvas.rectangle([at.0 - 90.0, at.1 - 18.0, at.0 + 90.0, at.1 + 18.0], PAPER)?;
+    canvas.text("no measurements", at, 20.0, SOFT_INK, middle)
 }
 
 /// Draws what lies behind the marks, and returns points along it for the labels to keep away from.
-fn draw_lines(sheet: &Sheet<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<Vec<(f64, f64)>, Failed> {
+fn draw_lines(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<Vec<(f64, f64)>, Failed> {
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     let choices: Vec<&Dot<'_>> = dots.iter().filter(|dot| dot.row.method != LIMIT && !dot.is_wrong()).collect();
     let points: Vec<(f64, f64)> = choices.iter().map(|dot| (dot.x, dot.y)).collect();
     let best: Vec<(f64, f64)> = frontier(&points).into_iter().map(|i| plane.at(points[i].0, points[i].1)).collect();
-    sheet.line(&best, FRONTIER, FRONTIER_WIDTH)?;
-    best.iter().try_for_each(|at| sheet.disc(*at, RADIUS + 4.5, FRONTIER))?;
+    canvas.line(&best, FRONTIER, FRONTIER_WIDTH)?;
+    best.iter().try_for_each(|at| canvas.disc(*at, RADIUS + 4.5, FRONTIER))?;
     lines.push(best);
     if let Some(limit) = limit(dots) {
         let [left, _, right, _] = plane.edges();
         let y = plane.at(limit.x, limit.y).1;
-        sheet.dashed([(left, y), (right, y)], color(LIMIT), 2.0, DASH)?;
+        canvas.dashed([(left, y), (right, y)], color(LIMIT), 2.0, DASH)?;
         lines.push(vec![(left, y), (right, y)]);
     }
     for method in methods(dots.iter().map(|dot| dot.row.method.as_str())) {
         let mut own: Vec<&Dot<'_>> = dots.iter().filter(|dot| dot.row.method == method).collect();
         own.sort_by(|a, b| a.y.total_cmp(&b.y));
         let path: Vec<(f64, f64)> = own.iter().map(|dot| plane.at(dot.x, dot.y)).collect();
-        sheet.line(&path, faint(color(method)), 1.7)?;
+        canvas.line(&path, faint(color(method)), 1.7)?;
         lines.push(path);
     }
     Ok(lines.iter().flat_map(|line| line.windows(2)).flat_map(|pair| along(pair[0], pair[1])).collect())
@@ -148,23 +148,28 @@ fn limit<'a, 'b>(dots: &'a [Dot<'b>]) -> Option<&'a Dot<'b>> {
 }
 
 /// The marks, the default above the others: it is where somebody looks for it.
-fn draw_dots(sheet: &Sheet<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<(), Failed> {
+fn draw_dots(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<(), Failed> {
     let mut order: Vec<&Dot<'_>> = dots.iter().collect();
     order.sort_by_key(|dot| dot.row.is_the_default());
     for dot in order {
         let at = plane.at(dot.x, dot.y);
-        mark(sheet, at, &dot.row.quality, color(&dot.row.method))?;
+        mark(canvas, at, &dot.row.quality, color(&dot.row.method))?;
         if dot.is_wrong() {
-            cross(sheet, at)?;
+            cross(canvas, at)?;
         }
         if dot.row.is_the_default() {
-            ring(sheet, at, INK)?;
+            ring(canvas, at, INK)?;
         }
     }
     Ok(())
 }
 
-fn draw_labels(sheet: &Sheet<'_>, plane: &Plane<'_>, dots: &[Dot<'_>], lines: Vec<(f64, f64)>) -> Result<(), Failed> {
+fn draw_labels(
+    canvas: &ChartCanvas<'_>,
+    plane: &Plane<'_>,
+    dots: &[Dot<'_>],
+    lines: Vec<(f64, f64)>,
+) -> Result<(), Failed> {
     // What people look for is placed first: the default, then the default quality, then the rest.
     let mut order: Vec<&Dot<'_>> = dots.iter().collect();
     order.sort_by_key(|dot| (!dot.row.is_the_default(), dot.row.quality != DEFAULT));
@@ -185,27 +190,33 @@ fn draw_labels(sheet: &Sheet<'_>, plane: &Plane<'_>, dots: &[Dot<'_>], lines: Ve
     let places = Obstacles { inside, taken, lines }.place(&wishes);
     for (((dot, text), wish), place) in order.iter().zip(&texts).zip(&wishes).zip(places) {
         if let Some(place) = place {
-            draw_label(sheet, dot, text, wish, &place)?;
+            draw_label(canvas, dot, text, wish, &place)?;
         }
     }
     Ok(())
 }
 
-fn draw_label(sheet: &Sheet<'_>, dot: &Dot<'_>, text: &str, wish: &Wish, place: &Place) -> Result<(), Failed> {
+fn draw_label(
+    canvas: &ChartCanvas<'_>,
+    dot: &Dot<'_>,
+    text: &str,
+    wish: &Wish,
+    place: &LabelPlace,
+) -> Result<(), Failed> {
     let [left, top, _, bottom] = place.edges;
-    sheet.rectangle(place.edges, PAPER)?;
+    canvas.rectangle(place.edges, PAPER)?;
     if let Some(end) = place.leader {
         let length = (end.0 - wish.at.0).hypot(end.1 - wish.at.1);
         let toward = |d: f64| {
             let t = d / length;
             (wish.at.0 + (end.0 - wish.at.0) * t, wish.at.1 + (end.1 - wish.at.1) * t)
         };
-        sheet.line(&[toward(wish.reach), toward(length - 1.0)], faint(color(&dot.row.method)), 1.0)?;
+        canvas.line(&[toward(wish.reach), toward(length - 1.0)], faint(color(&dot.row.method)), 1.0)?;
     }
-    sheet.text(text, (left + 2.0, (top + bottom) / 2.0), LABEL_EM, color(&dot.row.method), LEFT)
+    canvas.text(text, (left + 2.0, (top + bottom) / 2.0), LABEL_EM, color(&dot.row.method), LEFT)
 }
 
-fn groups<'a>(dots: &[Dot<'a>]) -> [Group<'a>; 3] {
+fn groups<'a>(dots: &[Dot<'a>]) -> [LegendGroup<'a>; 3] {
     let method = |name: &'a str| (Sign::Stroke(color(name)), name.to_string());
     let quality = |name: &'a str| (Sign::Shape(name), name.to_string());
     let mut other = Vec::new();
@@ -222,15 +233,15 @@ fn groups<'a>(dots: &[Dot<'a>]) -> [Group<'a>; 3] {
         other.push((Sign::Cross, "wrong beyond 0.01 %".into()));
     }
     [
-        Group {
+        LegendGroup {
             heading: "method",
             entries: methods(dots.iter().map(|d| d.row.method.as_str())).into_iter().map(method).collect(),
         },
-        Group {
+        LegendGroup {
             heading: "quality",
             entries: qualities(dots.iter().map(|d| d.row.quality.as_str())).into_iter().map(quality).collect(),
         },
-        Group { heading: "", entries: other },
+        LegendGroup { heading: "", entries: other },
     ]
 }
 
@@ -244,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn every_method_shows_its_colour() {
+    fn every_method_shows_its_color() {
         let rows = scene("random-145", 145);
         let image = time_against_error(&rows);
         assert_eq!(image.dimensions(), SIZE);
@@ -261,7 +272,7 @@ mod tests {
         }
         let mut exact = scene("exact", 4);
         exact.iter_mut().for_each(|row| row.depth_p99 = 0.0);
-        assert!(has(&time_against_error(&exact), color("pruned")));
+        assert!(has(&time_against_error(&exact), color("tape")));
     }
 
     #[test]

@@ -4,11 +4,11 @@ use image::RgbImage;
 use plotters::style::RGBColor;
 
 use super::axes::{LogAxis, Plane, SOFT_INK, Words};
-use super::canvas::{Failed, LEFT, PAPER, Sheet, sheet, text_width};
+use super::canvas::{ChartCanvas, Failed, LEFT, PAPER, canvas, text_width};
 use super::chart::{LEAST_TIME, LEGEND, SIZE, TITLE, nothing};
-use super::legend::{DASH, DOTS, Group, Sign, legend, title};
+use super::legend::{DASH, DOTS, LegendGroup, Sign, legend, title};
 use super::marks::{color, mark, methods};
-use super::row::{AUTO, DEFAULT, LIMIT, Row};
+use super::row::{AUTO, BenchRow, DEFAULT, LIMIT};
 
 /// The guide goes through the point of `auto` whose scene is nearest to this number of nodes.
 const GUIDE_NODES: f64 = 145.0;
@@ -31,20 +31,20 @@ struct Curve<'a> {
 /// Draws the CPU time of each method against the number of nodes, both logarithmic, at the default quality; at
 /// the first one in the rows where that is not among them. Rows without a finite time or without nodes are
 /// left out. A dotted line shows the promise: 2.5 times the time for 8 times the nodes.
-pub fn growth(rows: &[Row]) -> RgbImage {
+pub fn growth(rows: &[BenchRow]) -> RgbImage {
     let names = || rows.iter().map(|row| row.quality.as_str());
     let quality = names().find(|name| *name == DEFAULT).or_else(|| names().next()).unwrap_or(DEFAULT);
-    let drawn: Vec<&Row> =
+    let drawn: Vec<&BenchRow> =
         rows.iter().filter(|row| row.quality == quality && row.cpu_ms.is_finite() && row.nodes > 0).collect();
     let curves: Vec<Curve<'_>> = methods(drawn.iter().map(|row| row.method.as_str()))
         .into_iter()
         .map(|method| Curve::new(method, drawn.iter().copied().filter(|row| row.method == method)))
         .collect();
-    sheet(SIZE, |sheet| draw(sheet, &drawn, &curves, quality))
+    canvas(SIZE, |canvas| draw(canvas, &drawn, &curves, quality))
 }
 
 impl<'a> Curve<'a> {
-    fn new(method: &'a str, rows: impl Iterator<Item = &'a Row>) -> Self {
+    fn new(method: &'a str, rows: impl Iterator<Item = &'a BenchRow>) -> Self {
         let mut points: Vec<(f64, f64)> =
             rows.map(|row| ((row.nodes as f64).log10(), row.cpu_ms.max(LEAST_TIME).log10())).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -54,27 +54,27 @@ impl<'a> Curve<'a> {
     }
 }
 
-fn draw(sheet: &Sheet<'_>, rows: &[&Row], curves: &[Curve<'_>], quality: &str) -> Result<(), Failed> {
-    title(sheet, "Growth of the run time with the number of nodes", &below(rows, quality))?;
+fn draw(canvas: &ChartCanvas<'_>, rows: &[&BenchRow], curves: &[Curve<'_>], quality: &str) -> Result<(), Failed> {
+    title(canvas, "Growth of the run time with the number of nodes", &below(rows, quality))?;
     let points = || curves.iter().flat_map(|curve| &curve.points);
     let x = with_room_for_names(LogAxis::around(points().map(|point| point.0)));
     let axes = (x, LogAxis::around(points().map(|point| point.1)));
     let words = Words { x: "nodes", y: "CPU time (ms)", floor: None };
-    let plane = Plane::draw(sheet, axes, [TITLE, LEGEND], &words)?;
+    let plane = Plane::draw(canvas, axes, [TITLE, LEGEND], &words)?;
     if curves.is_empty() {
-        nothing(sheet, &plane)?;
+        nothing(canvas, &plane)?;
     }
     let guide = guide(curves, axes);
     if let Some([from, to]) = guide {
-        sheet.dashed([plane.at(from.0, from.1), plane.at(to.0, to.1)], GUIDE, 1.5, DOTS)?;
+        canvas.dashed([plane.at(from.0, from.1), plane.at(to.0, to.1)], GUIDE, 1.5, DOTS)?;
     }
     // The first methods of the legend are drawn last, above the others.
     for curve in curves.iter().rev() {
-        draw_curve(sheet, &plane, curve, quality)?;
+        draw_curve(canvas, &plane, curve, quality)?;
     }
-    draw_names(sheet, &plane, curves)?;
+    draw_names(canvas, &plane, curves)?;
     let [_, top, right, _] = plane.edges();
-    legend(sheet, (right + 22.0, top + 10.0), f64::from(LEGEND) - 32.0, &groups(curves, guide.is_some()))
+    legend(canvas, (right + 22.0, top + 10.0), f64::from(LEGEND) - 32.0, &groups(curves, guide.is_some()))
 }
 
 /// The axis, longer at its end, where the names of the methods stand behind their last points.
@@ -83,11 +83,11 @@ fn with_room_for_names(axis: LogAxis) -> LogAxis {
 }
 
 /// The line below the title: what all the points have in common.
-fn below(rows: &[&Row], quality: &str) -> String {
+fn below(rows: &[&BenchRow], quality: &str) -> String {
     let sizes = || rows.iter().map(|row| row.size);
     match (sizes().min(), sizes().max()) {
         (Some(least), Some(most)) if least == most => {
-            let [wrong, grazing] = [|row: &Row| row.wrong_share, |row: &Row| row.grazing_share]
+            let [wrong, grazing] = [|row: &BenchRow| row.wrong_share, |row: &BenchRow| row.grazing_share]
                 .map(|share| rows.iter().map(|row| share(row)).fold(0.0, f64::max) * 100.0);
             format!("{least} × {least} pixels, {quality} quality; at most {wrong:.4} % wrong, {grazing:.4} % grazing.")
         }
@@ -109,21 +109,21 @@ fn guide(curves: &[Curve<'_>], (x, y): (LogAxis, LogAxis)) -> Option<[(f64, f64)
     Some(ends.map(|x| (x, through.1 + (x - through.0) * slope)))
 }
 
-fn draw_curve(sheet: &Sheet<'_>, plane: &Plane<'_>, curve: &Curve<'_>, quality: &str) -> Result<(), Failed> {
+fn draw_curve(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, curve: &Curve<'_>, quality: &str) -> Result<(), Failed> {
     let color = color(curve.method);
     let path: Vec<(f64, f64)> = curve.line.iter().map(|point| plane.at(point.0, point.1)).collect();
     if curve.method == LIMIT {
         for pair in path.windows(2) {
-            sheet.dashed([pair[0], pair[1]], color, 2.0, DASH)?;
+            canvas.dashed([pair[0], pair[1]], color, 2.0, DASH)?;
         }
     } else {
-        sheet.line(&path, color, 2.2)?;
+        canvas.line(&path, color, 2.2)?;
     }
-    curve.points.iter().try_for_each(|point| mark(sheet, plane.at(point.0, point.1), quality, color))
+    curve.points.iter().try_for_each(|point| mark(canvas, plane.at(point.0, point.1), quality, color))
 }
 
 /// The name of each method behind its last point; names that would lie on each other are moved apart.
-fn draw_names(sheet: &Sheet<'_>, plane: &Plane<'_>, curves: &[Curve<'_>]) -> Result<(), Failed> {
+fn draw_names(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, curves: &[Curve<'_>]) -> Result<(), Failed> {
     let [_, _, right, _] = plane.edges();
     let mut names: Vec<(f64, f64, &str)> = curves
         .iter()
@@ -135,8 +135,8 @@ fn draw_names(sheet: &Sheet<'_>, plane: &Plane<'_>, curves: &[Curve<'_>]) -> Res
     for ((x, _, method), y) in names.into_iter().zip(heights) {
         let x = (x + 13.0).min(right - 4.0 - text_width(method, LABEL_EM));
         let half = LABEL_EM * 0.55;
-        sheet.rectangle([x - 2.0, y - half, x + text_width(method, LABEL_EM) + 2.0, y + half], PAPER)?;
-        sheet.text(method, (x, y), LABEL_EM, color(method), LEFT)?;
+        canvas.rectangle([x - 2.0, y - half, x + text_width(method, LABEL_EM) + 2.0, y + half], PAPER)?;
+        canvas.text(method, (x, y), LABEL_EM, color(method), LEFT)?;
     }
     Ok(())
 }
@@ -163,7 +163,7 @@ fn apart(heights: &[f64], gap: f64) -> Vec<f64> {
     stacks.into_iter().flat_map(spread).collect()
 }
 
-fn groups<'a>(curves: &[Curve<'a>], guided: bool) -> [Group<'a>; 2] {
+fn groups<'a>(curves: &[Curve<'a>], guided: bool) -> [LegendGroup<'a>; 2] {
     let method = |curve: &Curve<'a>| {
         let color = color(curve.method);
         let sign = if curve.method == LIMIT { Sign::Dashed(color) } else { Sign::Stroke(color) };
@@ -174,8 +174,8 @@ fn groups<'a>(curves: &[Curve<'a>], guided: bool) -> [Group<'a>; 2] {
         (Sign::More, format!("for {TIMES_NODES} times the nodes")),
     ];
     [
-        Group { heading: "method", entries: curves.iter().map(method).collect() },
-        Group { heading: "", entries: promise.into_iter().filter(|_| guided).collect() },
+        LegendGroup { heading: "method", entries: curves.iter().map(method).collect() },
+        LegendGroup { heading: "", entries: promise.into_iter().filter(|_| guided).collect() },
     ]
 }
 
@@ -186,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_guide_goes_through_auto_at_its_slope() {
-        let rows: Vec<Row> = [37, 145, 577].into_iter().flat_map(|n| scene(&format!("random-{n}"), n)).collect();
+        let rows: Vec<BenchRow> = [37, 145, 577].into_iter().flat_map(|n| scene(&format!("random-{n}"), n)).collect();
         let auto = Curve::new(AUTO, rows.iter().filter(|row| row.is_the_default()));
         let through = auto.line[1];
         let axes = (LogAxis { low: 1.0, high: 3.5 }, LogAxis { low: -1.0, high: 3.0 });

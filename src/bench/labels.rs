@@ -1,6 +1,6 @@
 //! Finds a place for each label where it covers neither a mark nor another label.
 
-/// A rectangle on the sheet: left, upper, right and lower edge, in pixels.
+/// A rectangle on the canvas: left, upper, right and lower edge, in pixels.
 pub(super) type Edges = [f64; 4];
 
 /// What wants a label.
@@ -15,7 +15,7 @@ pub(super) struct Wish {
 
 /// A label with a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct LabelPlace {
     /// The rectangle that the label fills.
     pub edges: Edges,
     /// Where a line from the mark to the label ends, if it stands so far away that it needs one.
@@ -41,8 +41,8 @@ const COST_OF_LINE: f64 = 5.0;
 
 impl Obstacles {
     /// Places the labels in their order; whoever comes first has the choice. A label that fits nowhere gets
-    /// no place: colour and shape still say what its mark is, and a heap of words would say nothing.
-    pub fn place(&mut self, wishes: &[Wish]) -> Vec<Option<Place>> {
+    /// no place: color and shape still say what its mark is, and a heap of words would say nothing.
+    pub fn place(&mut self, wishes: &[Wish]) -> Vec<Option<LabelPlace>> {
         wishes
             .iter()
             .map(|wish| {
@@ -56,8 +56,8 @@ impl Obstacles {
             .collect()
     }
 
-    fn best(&self, wish: &Wish) -> Option<Place> {
-        let mut best: Option<(f64, Place)> = None;
+    fn best(&self, wish: &Wish) -> Option<LabelPlace> {
+        let mut best: Option<(f64, LabelPlace)> = None;
         for distance in DISTANCES {
             for i in 0..DIRECTIONS {
                 let place = candidate(wish, distance, i);
@@ -71,7 +71,7 @@ impl Obstacles {
     }
 
     /// How bad a place is; none where it covers what it must not.
-    fn cost(&self, wish: &Wish, place: &Place, distance: f64) -> Option<f64> {
+    fn cost(&self, wish: &Wish, place: &LabelPlace, distance: f64) -> Option<f64> {
         let [left, top, right, bottom] = place.edges;
         let inside =
             left >= self.inside[0] && top >= self.inside[1] && right <= self.inside[2] && bottom <= self.inside[3];
@@ -94,7 +94,7 @@ impl Obstacles {
 }
 
 /// The label whose nearest point to the mark lies in this direction, so far from it.
-fn candidate(wish: &Wish, distance: f64, direction: usize) -> Place {
+fn candidate(wish: &Wish, distance: f64, direction: usize) -> LabelPlace {
     let (sin, cos) = (direction as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
     let far = wish.reach + distance;
     let (x, y) = (wish.at.0 + cos * far, wish.at.1 + sin * far);
@@ -103,7 +103,7 @@ fn candidate(wish: &Wish, distance: f64, direction: usize) -> Place {
     let top = y - wish.size.1 * (0.5 - 0.5 * sin);
     let edges = [left, top, left + wish.size.0, top + wish.size.1];
     let end = (wish.at.0.clamp(edges[0], edges[2]), wish.at.1.clamp(edges[1], edges[3]));
-    Place { edges, leader: (distance > NEAR).then_some(end) }
+    LabelPlace { edges, leader: (distance > NEAR).then_some(end) }
 }
 
 /// Points along a straight line, a few pixels apart.
@@ -147,7 +147,7 @@ mod tests {
             lines: along((0.0, 190.0), (500.0, 190.0)).collect(),
         };
         let wishes: Vec<Wish> = points.iter().map(|at| Wish { at: *at, size: (90.0, 16.0), reach: 7.0 }).collect();
-        let places: Vec<Place> = obstacles.place(&wishes).into_iter().flatten().collect();
+        let places: Vec<LabelPlace> = obstacles.place(&wishes).into_iter().flatten().collect();
         assert!(places.len() >= 6, "only {} labels have a place", places.len());
         for (i, place) in places.iter().enumerate() {
             assert!(marks.iter().all(|mark| !overlap(*mark, place.edges)));

@@ -1,9 +1,9 @@
-//! What colours and shapes mean, in a column beside the plane, and the words above it.
+//! What colors and shapes mean, in a column beside the plane, and the words above it.
 
 use plotters::style::RGBColor;
 
 use super::axes::{INK, SOFT_INK};
-use super::canvas::{Failed, LEFT, Sheet, fitting};
+use super::canvas::{ChartCanvas, Failed, LEFT, fitting};
 use super::marks::{RADIUS, cross, mark, ring};
 
 /// The line through what no other point beats.
@@ -27,7 +27,7 @@ const GAP: f64 = 24.0;
 
 /// What stands before the words of an entry.
 pub(super) enum Sign<'a> {
-    /// A stroke in the colour of a method.
+    /// A stroke in the color of a method.
     Stroke(RGBColor),
     /// The shape of a quality.
     Shape(&'a str),
@@ -46,24 +46,29 @@ pub(super) enum Sign<'a> {
 }
 
 /// A group of entries below a heading.
-pub(super) struct Group<'a> {
+pub(super) struct LegendGroup<'a> {
     /// What the entries are; empty for a gap without words.
     pub heading: &'a str,
     /// The signs and what they mean.
     pub entries: Vec<(Sign<'a>, String)>,
 }
 
-/// Draws the groups from `at` downwards, into a column of this width.
-pub(super) fn legend(sheet: &Sheet<'_>, at: (f64, f64), width: f64, groups: &[Group<'_>]) -> Result<(), Failed> {
+/// Draws the groups from `at` downward, into a column of this width.
+pub(super) fn legend(
+    canvas: &ChartCanvas<'_>,
+    at: (f64, f64),
+    width: f64,
+    groups: &[LegendGroup<'_>],
+) -> Result<(), Failed> {
     let (x, mut y) = at;
     for group in groups.iter().filter(|group| !group.entries.is_empty()) {
         if !group.heading.is_empty() {
-            sheet.text(group.heading, (x, y), EM, SOFT_INK, LEFT)?;
+            canvas.text(group.heading, (x, y), EM, SOFT_INK, LEFT)?;
             y += LINE;
         }
         for (sign, words) in &group.entries {
-            draw_sign(sheet, (x + 11.0, y), sign)?;
-            sheet.text(&fitting(words, EM, width - 11.0 - GAP), (x + 11.0 + GAP, y), EM, INK, LEFT)?;
+            draw_sign(canvas, (x + 11.0, y), sign)?;
+            canvas.text(&fitting(words, EM, width - 11.0 - GAP), (x + 11.0 + GAP, y), EM, INK, LEFT)?;
             y += LINE;
         }
         y += LINE * 0.6;
@@ -71,25 +76,25 @@ pub(super) fn legend(sheet: &Sheet<'_>, at: (f64, f64), width: f64, groups: &[Gr
     Ok(())
 }
 
-fn draw_sign(sheet: &Sheet<'_>, at: (f64, f64), sign: &Sign<'_>) -> Result<(), Failed> {
+fn draw_sign(canvas: &ChartCanvas<'_>, at: (f64, f64), sign: &Sign<'_>) -> Result<(), Failed> {
     let ends = [(at.0 - 12.0, at.1), (at.0 + 12.0, at.1)];
     match sign {
-        Sign::Stroke(color) => sheet.line(&ends, *color, 5.0),
-        Sign::Shape(quality) => mark(sheet, at, quality, SOFT_INK),
+        Sign::Stroke(color) => canvas.line(&ends, *color, 5.0),
+        Sign::Shape(quality) => mark(canvas, at, quality, SOFT_INK),
         Sign::Frontier => {
-            sheet.line(&ends, FRONTIER, FRONTIER_WIDTH)?;
-            sheet.disc(at, RADIUS + 2.0, FRONTIER)
+            canvas.line(&ends, FRONTIER, FRONTIER_WIDTH)?;
+            canvas.disc(at, RADIUS + 2.0, FRONTIER)
         }
-        Sign::Ring => ring(sheet, at, INK),
-        Sign::Cross => cross(sheet, at),
-        Sign::Dashed(color) => sheet.dashed(ends, *color, 2.0, DASH),
-        Sign::Dotted(color) => sheet.dashed(ends, *color, 1.5, DOTS),
+        Sign::Ring => ring(canvas, at, INK),
+        Sign::Cross => cross(canvas, at),
+        Sign::Dashed(color) => canvas.dashed(ends, *color, 2.0, DASH),
+        Sign::Dotted(color) => canvas.dashed(ends, *color, 1.5, DOTS),
         Sign::More => Ok(()),
     }
 }
 
 /// The title of a chart and the line below it, cut at the edge of the chart.
-pub(super) fn title(sheet: &Sheet<'_>, title: &str, below: &str) -> Result<(), Failed> {
-    sheet.text(&fitting(title, TITLE_EM, TITLE_WIDTH), (22.0, 32.0), TITLE_EM, INK, LEFT)?;
-    sheet.text(&fitting(below, EM, TITLE_WIDTH), (22.0, 60.0), EM, SOFT_INK, LEFT)
+pub(super) fn title(canvas: &ChartCanvas<'_>, title: &str, below: &str) -> Result<(), Failed> {
+    canvas.text(&fitting(title, TITLE_EM, TITLE_WIDTH), (22.0, 32.0), TITLE_EM, INK, LEFT)?;
+    canvas.text(&fitting(below, EM, TITLE_WIDTH), (22.0, 60.0), EM, SOFT_INK, LEFT)
 }

@@ -1,21 +1,21 @@
-//! How a method and a quality look: a colour and a shape.
+//! How a method and a quality look: a color and a shape.
 
 use plotters::style::RGBColor;
 
-use super::canvas::{Failed, PAPER, Sheet};
+use super::canvas::{ChartCanvas, Failed, PAPER};
 
 /// Half the width of a mark, in pixels.
 pub(super) const RADIUS: f64 = 6.5;
-/// What is wrong is crossed out in this colour.
+/// What is wrong is crossed out in this color.
 pub(super) const WRONG: RGBColor = RGBColor(0xc0, 0x00, 0x20);
 
-/// The methods in the order of the legend. The colours can be told apart by those who see no red or no green.
+/// The methods in the order of the legend. The colors can be told apart by those who see no red or no green.
 const METHODS: [(&str, RGBColor); 7] = [
     ("auto", RGBColor(0x1a, 0x1a, 0x1a)),
-    ("specialised", RGBColor(0xd5, 0x5e, 0x00)),
-    ("pruned", RGBColor(0x00, 0x8a, 0x66)),
-    ("interpreted", RGBColor(0x00, 0x72, 0xb2)),
-    ("generated", RGBColor(0xb8, 0x86, 0x00)),
+    ("straight-line", RGBColor(0xd5, 0x5e, 0x00)),
+    ("tape", RGBColor(0x00, 0x8a, 0x66)),
+    ("interpreter", RGBColor(0x00, 0x72, 0xb2)),
+    ("baked", RGBColor(0xb8, 0x86, 0x00)),
     ("thesis", RGBColor(0xa8, 0x4a, 0x86)),
     ("limit", RGBColor(0x70, 0x70, 0x70)),
 ];
@@ -24,13 +24,13 @@ const OTHERS: [RGBColor; 3] = [RGBColor(0x3a, 0xa6, 0xdd), RGBColor(0x7a, 0x5c, 
 /// The qualities in the order of the legend.
 const QUALITIES: [&str; 3] = ["draft", "default", "fine"];
 
-/// The colour of a method.
+/// The color of a method.
 pub(super) fn color(method: &str) -> RGBColor {
     let known = METHODS.iter().find(|(name, _)| *name == method).map(|(_, color)| *color);
     known.unwrap_or_else(|| OTHERS[method.bytes().map(usize::from).sum::<usize>() % OTHERS.len()])
 }
 
-/// The same colour, so light that it stays behind the marks.
+/// The same color, so light that it stays behind the marks.
 pub(super) fn faint(RGBColor(r, g, b): RGBColor) -> RGBColor {
     let mix = |c: u8| (f64::from(c) * 0.4 + 255.0 * 0.6) as u8;
     RGBColor(mix(r), mix(g), mix(b))
@@ -61,37 +61,37 @@ pub(super) fn qualities<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec
 }
 
 /// Draws the mark of a quality, with a thin edge of paper, so that marks that touch stay apart.
-pub(super) fn mark(sheet: &Sheet<'_>, at: (f64, f64), quality: &str, color: RGBColor) -> Result<(), Failed> {
+pub(super) fn mark(canvas: &ChartCanvas<'_>, at: (f64, f64), quality: &str, color: RGBColor) -> Result<(), Failed> {
     for (grow, color) in [(1.3, PAPER), (0.0, color)] {
         let r = RADIUS + grow;
         match quality {
-            "default" => sheet.disc(at, r - 0.3, color)?,
+            "default" => canvas.disc(at, r - 0.3, color)?,
             // Shapes with corners hold about as much ink as the disc.
-            "draft" => sheet.polygon(&corners(at, r * 1.22 + grow, 3, 0.0), color)?,
-            "fine" => sheet.polygon(&corners(at, r * 1.2, 4, std::f64::consts::FRAC_PI_4), color)?,
-            _ => sheet.polygon(&corners(at, r * 1.2, 4, 0.0), color)?,
+            "draft" => canvas.polygon(&corners(at, r * 1.22 + grow, 3, 0.0), color)?,
+            "fine" => canvas.polygon(&corners(at, r * 1.2, 4, std::f64::consts::FRAC_PI_4), color)?,
+            _ => canvas.polygon(&corners(at, r * 1.2, 4, 0.0), color)?,
         }
     }
     Ok(())
 }
 
-/// The corners of a regular polygon, the first of them above the centre when `turn` is zero.
+/// The corners of a regular polygon, the first of them above the center when `turn` is zero.
 fn corners((x, y): (f64, f64), radius: f64, count: usize, turn: f64) -> Vec<(f64, f64)> {
     let angles = (0..count).map(|i| turn + i as f64 * std::f64::consts::TAU / count as f64);
     angles.map(|angle| (x + radius * angle.sin(), y - radius * angle.cos())).collect()
 }
 
 /// Crosses out a mark.
-pub(super) fn cross(sheet: &Sheet<'_>, (x, y): (f64, f64)) -> Result<(), Failed> {
+pub(super) fn cross(canvas: &ChartCanvas<'_>, (x, y): (f64, f64)) -> Result<(), Failed> {
     // Thin and long, so that the shape below can still be told.
     let r = RADIUS + 4.0;
-    sheet.line(&[(x - r, y - r), (x + r, y + r)], WRONG, 1.7)?;
-    sheet.line(&[(x - r, y + r), (x + r, y - r)], WRONG, 1.7)
+    canvas.line(&[(x - r, y - r), (x + r, y + r)], WRONG, 1.7)?;
+    canvas.line(&[(x - r, y + r), (x + r, y - r)], WRONG, 1.7)
 }
 
 /// A ring around a mark.
-pub(super) fn ring(sheet: &Sheet<'_>, at: (f64, f64), color: RGBColor) -> Result<(), Failed> {
-    sheet.circle(at, RADIUS + 5.5, color, 2.0)
+pub(super) fn ring(canvas: &ChartCanvas<'_>, at: (f64, f64), color: RGBColor) -> Result<(), Failed> {
+    canvas.circle(at, RADIUS + 5.5, color, 2.0)
 }
 
 #[cfg(test)]
@@ -100,14 +100,14 @@ mod tests {
 
     #[test]
     fn the_legend_has_an_order_and_takes_what_it_does_not_know() {
-        let names = ["thesis", "novel", "auto", "thesis", "pruned"];
-        assert_eq!(methods(names.into_iter()), ["auto", "pruned", "thesis", "novel"]);
+        let names = ["thesis", "novel", "auto", "thesis", "tape"];
+        assert_eq!(methods(names.into_iter()), ["auto", "tape", "thesis", "novel"]);
         assert_eq!(qualities(["fine", "draft", "odd"].into_iter()), ["draft", "fine", "odd"]);
         assert_eq!(color("novel"), color("novel"));
     }
 
     #[test]
-    fn known_methods_have_colours_of_their_own() {
+    fn known_methods_have_colors_of_their_own() {
         for (i, (_, a)) in METHODS.iter().enumerate() {
             assert!(METHODS[i + 1..].iter().all(|(_, b)| a != b));
         }

@@ -7,15 +7,15 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use super::row::Row;
-use super::way::Way;
-use crate::flat::trace::TraceError;
-use crate::flat::truth::{Truth, truth};
-use crate::flat::{Accuracy, Buffers, FlatScene, FlattenError, Hitee, flatten, flatten_whole};
+use super::baseline::Baseline;
+use super::row::BenchRow;
+use crate::flat::reference::image::{ReferenceImage, render_reference};
+use crate::flat::reference::trace::TraceError;
+use crate::flat::{Accuracy, FlatScene, FlattenError, GBuffer, HitTarget, flatten, flatten_whole};
 use crate::geometry::Camera;
 use crate::mesh::{MeshLibrary, TriangleMesh};
-use crate::render::kernel::{Options, Quality};
-use crate::render::{Counts, Frame, Gpu, Method, OverlaySettings, PixelCounts, RenderError, Renderer, Slot};
+use crate::render::wgsl::{Options, Quality};
+use crate::render::{Counts, EvalStrategy, Frame, Gpu, OverlaySettings, PixelCounts, RenderError, Renderer, Slot};
 use crate::scene::Scene;
 
 /// Why something could not be measured.
@@ -30,9 +30,9 @@ pub enum BenchError {
     /// The ray that finds a view has no end.
     #[error(transparent)]
     View(#[from] TraceError),
-    /// The truth could not be found.
+    /// The reference could not be found.
     #[error("{scene}: {error}")]
-    Truth {
+    Reference {
         /// The scene.
         scene: String,
         /// Where a ray had no end.
@@ -63,7 +63,7 @@ pub fn cpu_time() -> Duration {
 }
 
 /// A scene to measure.
-pub struct Subject {
+pub struct BenchScene {
     /// Its name.
     pub name: String,
     /// The scene.
@@ -76,7 +76,7 @@ pub struct Subject {
     pub camera: Camera,
 }
 
-impl Subject {
+impl BenchScene {
     /// A scene as it is seen by itself in a square picture.
     ///
     /// # Errors
@@ -89,24 +89,24 @@ impl Subject {
     }
 }
 
-/// The truth of each scene, found once.
+/// The reference of each scene, found once.
 #[derive(Default)]
-pub struct Truths {
-    found: HashMap<(String, u32), Arc<Truth>>,
+pub struct ReferenceCache {
+    found: HashMap<(String, u32), Arc<ReferenceImage>>,
 }
 
-impl Truths {
-    /// The truth of `subject` at `size` pixels a side.
+impl ReferenceCache {
+    /// The reference of `bench_scene` at `size` pixels a side.
     ///
     /// # Errors
     /// A ray has no end.
-    pub fn of(&mut self, subject: &Subject, size: u32) -> Result<Arc<Truth>, BenchError> {
-        let key = (subject.name.clone(), size);
+    pub fn of(&mut self, bench_scene: &BenchScene, size: u32) -> Result<Arc<ReferenceImage>, BenchError> {
+        let key = (bench_scene.name.clone(), size);
         if let Some(found) = self.found.get(&key) {
             return Ok(found.clone());
         }
-        let made = truth(&subject.flat, &subject.meshes, &subject.camera, [size, size], &|_| ())
-            .map_err(|error| BenchError::Truth { scene: subject.name.clone(), error })?;
+        let made = render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [size, size], &|_| ())
+            .map_err(|error| BenchError::Reference { scene: bench_scene.name.clone(), error })?;
         let made = Arc::new(made);
         self.found.insert(key, made.clone());
         Ok(made)
@@ -122,7 +122,7 @@ pub struct Bench {
 struct Runs {
     cpu: Vec<Duration>,
     wall: Vec<Duration>,
-    buffers: Buffers,
+    buffers: GBuffer,
     counts: Counts,
     pixels: PixelCounts,
 }
@@ -138,35 +138,36 @@ impl Bench {
         &self.gpu
     }
 
-    /// Measures `subject` by `way`; errors against `truth`.
+    /// Measures `bench_scene` by `baseline`; errors against `reference`.
     ///
     /// # Errors
-    /// The scene is too large for this way, or the device fails.
+    /// The scene is too large for this baseline, or the device fails.
     pub fn measure(
         &self,
-        subject: &Subject,
-        way: Way,
+        bench_scene: &BenchScene,
+        baseline: Baseline,
         quality: Quality,
         size: u32,
-        truth: &Truth,
-    ) -> Result<Row, BenchError> {
-        let whole = if way.is_whole() { Some(flatten_whole(&subject.scene, 0.0)?) } else { None };
-        let flat = whole.as_ref().unwrap_or(&subject.flat);
-        let (method, timed) = self.quickest(subject, flat, way, quality, size)?;
-        let counted = self.run(subject, flat, (way, method), quality, size, true)?;
-        let error = Accuracy::against(&timed.buffers, flat, truth);
+        reference: &ReferenceImage,
+    ) -> Result<BenchRow, BenchError> {
+        let whole = if baseline.is_whole() { Some(flatten_whole(&bench_scene.scene, 0.0)?) } else { None };
+        let flat = whole.as_ref().unwrap_or(&bench_scene.flat);
+        let (strategy, timed) = self.quickest(bench_scene, flat, baseline, quality, size)?;
+        let counted = self.run(bench_scene, flat, (baseline, strategy), quality, size, true)?;
+        let error = Accuracy::against(&timed.buffers, flat, reference);
         let pixels = f64::from(size) * f64::from(size);
-        let fields =
-            (0..timed.buffers.leaf.len()).filter(|i| matches!(timed.buffers.hitee(*i), Hitee::Leaf(_))).count();
+        let fields = (0..timed.buffers.leaf.len())
+            .filter(|i| matches!(timed.buffers.hit_target(*i), HitTarget::Leaf(_)))
+            .count();
         let Counts { steps, cone_steps, .. } = counted.counts;
         // The limit counts only what it evaluates itself.
-        let cones = if way == Way::Limit { 0 } else { cone_steps };
+        let cones = if baseline == Baseline::Limit { 0 } else { cone_steps };
         let ms = |times: &[Duration]| times.iter().map(|t| t.as_secs_f64() * 1e3).collect::<Vec<_>>();
         let (cpu, wall) = (ms(&timed.cpu), ms(&timed.wall));
-        let row = Row {
-            scene: subject.name.clone(),
-            nodes: subject.scene.nodes().len(),
-            method: way.name().to_owned(),
+        let row = BenchRow {
+            scene: bench_scene.name.clone(),
+            nodes: bench_scene.scene.nodes().len(),
+            method: baseline.name().to_owned(),
             size,
             cpu_ms: median(&cpu),
             wall_ms: median(&wall),
@@ -184,61 +185,61 @@ impl Bench {
             cpu_ms_spread: spread(&cpu),
             steps_p99: counted.pixels.steps().p99,
             steps_max: counted.pixels.steps().max,
-            cells_per_px: counted.pixels.per_pixel(|took| took.cells),
-            entries_per_px: counted.pixels.per_pixel(|took| took.entries),
+            cells_per_px: counted.pixels.per_pixel(|counted| counted.cells),
+            entries_per_px: counted.pixels.per_pixel(|counted| counted.entries),
         };
         row.check()?;
         Ok(row)
     }
 
-    /// What the runs of the quickest of the way's methods gave, and which that is: the limit is that of the quickest.
+    /// What the runs of the quickest of the baseline's methods gave, and which that is: the limit is that of the quickest.
     fn quickest(
         &self,
-        subject: &Subject,
+        bench_scene: &BenchScene,
         flat: &FlatScene,
-        way: Way,
+        baseline: Baseline,
         quality: Quality,
         size: u32,
-    ) -> Result<(Method, Runs), BenchError> {
-        let mut best: Option<(Method, Runs)> = None;
-        for method in way.methods() {
-            let runs = self.run(subject, flat, (way, *method), quality, size, false)?;
+    ) -> Result<(EvalStrategy, Runs), BenchError> {
+        let mut best: Option<(EvalStrategy, Runs)> = None;
+        for strategy in baseline.strategies() {
+            let runs = self.run(bench_scene, flat, (baseline, *strategy), quality, size, false)?;
             let time = |runs: &Runs| {
                 let mut cpu = runs.cpu.clone();
                 cpu.sort();
                 cpu[cpu.len() / 2]
             };
             if best.as_ref().is_none_or(|(_, least)| time(&runs) < time(least)) {
-                best = Some((*method, runs));
+                best = Some((*strategy, runs));
             }
         }
-        Ok(best.expect("every way has a method"))
+        Ok(best.expect("every baseline has a strategy"))
     }
 
     fn run(
         &self,
-        subject: &Subject,
+        bench_scene: &BenchScene,
         flat: &FlatScene,
-        (way, method): (Way, Method),
+        (baseline, strategy): (Baseline, EvalStrategy),
         quality: Quality,
         size: u32,
         counting: bool,
     ) -> Result<Runs, BenchError> {
         let options = Options { quality, counting, ..Renderer::options(&self.gpu) };
-        let mut renderer = Renderer::with_options(&self.gpu, way.options(options))?;
-        renderer.set_method(method);
+        let mut renderer = Renderer::with_options(&self.gpu, baseline.options(options))?;
+        renderer.set_strategy(strategy);
         let begin = |renderer: &mut Renderer| {
             let overlay = OverlaySettings::default();
             let mut frame =
-                renderer.begin(Slot::Full, flat, &subject.meshes, &subject.camera, [size, size], overlay)?;
+                renderer.begin(Slot::Full, flat, &bench_scene.meshes, &bench_scene.camera, [size, size], overlay)?;
             frame.skip_shading();
             Ok::<_, RenderError>(frame)
         };
-        // Kernels and lists are built and the pace is learnt before anything counts.
-        renderer.estimate(flat, &subject.camera, [size, size])?;
-        while method == Method::Auto && renderer.is_preparing() {
+        // Pipelines and tapes are built and the pace is learned before anything counts.
+        renderer.estimate(flat, &bench_scene.camera, [size, size])?;
+        while strategy == EvalStrategy::Auto && renderer.is_preparing() {
             std::thread::sleep(Duration::from_millis(5));
-            renderer.estimate(flat, &subject.camera, [size, size])?;
+            renderer.estimate(flat, &bench_scene.camera, [size, size])?;
         }
         let mut frame = begin(&mut renderer)?;
         renderer.advance(&mut frame, Duration::MAX)?;
@@ -247,7 +248,7 @@ impl Bench {
         while cpu.is_empty() || (!counting && cpu.len() < RUNS && started.elapsed() < ENOUGH) {
             let (cpu_start, start);
             let mut next: Frame;
-            if way == Way::Limit {
+            if baseline == Baseline::Limit {
                 next = begin(&mut renderer)?;
                 renderer.advance(&mut next, Duration::MAX)?;
                 renderer.gpu().wait().map_err(RenderError::from)?;

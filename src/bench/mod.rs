@@ -3,13 +3,14 @@
 //! | file | what it does |
 //! |---|---|
 //! | `measure` | one scene by one method: times, counts, errors |
-//! | `way` | the methods |
+//! | `baseline` | the methods |
 //! | `row`, `table` | what was measured, as JSON, CSV and Markdown |
 //! | `chart`, `growth`, `frontier` | run time against error, run time against nodes |
 //! | `stress` | shapes, operators and modifiers where numbers get difficult |
 //! | `canvas`, `axes`, `legend`, `labels`, `marks` | what the charts are drawn with |
 
 mod axes;
+mod baseline;
 mod canvas;
 mod chart;
 mod frontier;
@@ -23,13 +24,12 @@ mod row;
 mod samples;
 mod stress;
 mod table;
-mod way;
 
+pub use baseline::Baseline;
 pub use chart::time_against_error;
 pub use frontier::frontier;
 pub use growth::growth;
-pub use measure::{Bench, BenchError, Subject, Truths, cpu_time};
-pub use row::{NotFinite, Row};
-pub use stress::{Allowed, Case, Figures, cases, first_of_each, stress_sheet, stress_table, worst_first};
+pub use measure::{Bench, BenchError, BenchScene, ReferenceCache, cpu_time};
+pub use row::{BenchRow, NotFinite};
+pub use stress::{Allowed, Metrics, StressCase, cases, first_of_each, stress_sheet, stress_table, worst_first};
 pub use table::{csv, markdown, noise};
-pub use way::Way;

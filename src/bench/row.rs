@@ -12,12 +12,12 @@ pub(super) const DEFAULT: &str = "default";
 
 /// One measurement. The fields stand in the order in which they are written, as JSON and as CSV.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct BenchRow {
     /// Name of the scene.
     pub scene: String,
     /// How many nodes the scene has.
     pub nodes: usize,
-    /// How the picture was made: thesis, generated, interpreted, pruned, specialised, limit or auto.
+    /// How the picture was made: thesis, baked, interpreter, tape, straight-line, limit or auto.
     pub method: String,
     /// Pixels along each side of the picture.
     pub size: u32,
@@ -54,9 +54,9 @@ pub struct Row {
     pub steps_p99: f64,
     /// Most steps of a pixel.
     pub steps_max: f64,
-    /// Cells of pruned lists looked up per pixel, by rays and cones.
+    /// Cells of tapes looked up per pixel, by rays and cones.
     pub cells_per_px: f64,
-    /// Entries of pruned lists read per pixel, by rays and cones.
+    /// Entries of tapes read per pixel, by rays and cones.
     pub entries_per_px: f64,
 }
 
@@ -72,7 +72,7 @@ pub struct NotFinite {
     pub field: &'static str,
 }
 
-impl Row {
+impl BenchRow {
     /// Says which number is not finite, if one is. Whoever measures asks this first, so that a failed
     /// measurement ends as an error and not as a number.
     pub fn check(&self) -> Result<(), NotFinite> {

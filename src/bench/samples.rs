@@ -1,10 +1,10 @@
 //! Rows as a measurement could give them, for the tests.
 
-use super::Row;
+use super::BenchRow;
 
 /// A row with numbers that fit the time and the error.
-pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, depth_p99: f64) -> Row {
-    Row {
+pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, depth_p99: f64) -> BenchRow {
+    BenchRow {
         scene: scene.into(),
         nodes,
         method: method.into(),
@@ -31,14 +31,14 @@ pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, 
 }
 
 /// Every method at every quality for a scene of so many nodes.
-pub fn scene(name: &str, nodes: usize) -> Vec<Row> {
+pub fn scene(name: &str, nodes: usize) -> Vec<BenchRow> {
     let n = nodes as f64 / 145.0;
     let methods = [
         ("thesis", 2900.0 * n, 40.0, 1.3),
-        ("generated", 310.0 * n, 1.0, 1.2),
-        ("interpreted", 720.0 * n, 1.0, 1.25),
-        ("pruned", 30.0 * n.powf(0.47), 1.0, 1.4),
-        ("specialised", 32.5 * n.powf(0.52), 1.02, 1.38),
+        ("baked", 310.0 * n, 1.0, 1.2),
+        ("interpreter", 720.0 * n, 1.0, 1.25),
+        ("tape", 30.0 * n.powf(0.47), 1.0, 1.4),
+        ("straight-line", 32.5 * n.powf(0.52), 1.02, 1.38),
         ("limit", 11.0 * n.powf(0.3), 1.0, 1.3),
         ("auto", 30.4 * n.powf(0.46), 1.0, 1.4),
     ];

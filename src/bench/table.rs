@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::row::Row;
+use super::row::BenchRow;
 
 /// The heads of the columns of the Markdown tables. The first two hold words, the others numbers.
 const HEADS: [&str; 20] = [
@@ -33,14 +33,14 @@ const WORDS: usize = 2;
 /// runs, "× auto" the CPU time over that of `auto` at the default quality in the same table. Depths are in
 /// pixel footprints, normals in degrees. "p99" and "max" are steps, too: of 99 of 100 pixels, and of the worst one.
 /// "evals/px" are evaluations of all passes, "of surfaces" those of them that find normal and material.
-pub fn markdown(rows: &[Row]) -> String {
+pub fn markdown(rows: &[BenchRow]) -> String {
     let tables: Vec<String> = scenes(rows).iter().map(|rows| scene_table(rows)).collect();
     tables.join("\n")
 }
 
 /// The rows of each scene at each size, both in the order in which they come.
-fn scenes(rows: &[Row]) -> Vec<Vec<&Row>> {
-    let mut scenes: Vec<Vec<&Row>> = Vec::new();
+fn scenes(rows: &[BenchRow]) -> Vec<Vec<&BenchRow>> {
+    let mut scenes: Vec<Vec<&BenchRow>> = Vec::new();
     for row in rows {
         match scenes.iter_mut().find(|scene| scene[0].scene == row.scene && scene[0].size == row.size) {
             Some(scene) => scene.push(row),
@@ -50,7 +50,7 @@ fn scenes(rows: &[Row]) -> Vec<Vec<&Row>> {
     scenes
 }
 
-fn scene_table(rows: &[&Row]) -> String {
+fn scene_table(rows: &[&BenchRow]) -> String {
     let auto = rows.iter().find(|row| row.is_the_default()).map(|row| row.cpu_ms);
     let mut lines: Vec<Vec<String>> = vec![HEADS.map(String::from).to_vec()];
     lines.extend(rows.iter().map(|row| cells(row, auto)));
@@ -82,7 +82,7 @@ fn aligned(cells: &[String], widths: &[usize]) -> String {
     line + "\n"
 }
 
-fn cells(row: &Row, auto: Option<f64>) -> Vec<String> {
+fn cells(row: &BenchRow, auto: Option<f64>) -> Vec<String> {
     let ratio = auto.filter(|&ms| ms > 0.0).map_or("–".into(), |ms| format!("{:.2}", row.cpu_ms / ms));
     vec![
         row.method.replace('|', "\\|"),
@@ -124,13 +124,13 @@ fn in_text(value: f64) -> String {
 }
 
 /// All rows with all their digits, below a line of names: the same as in JSON, in the same order.
-pub fn csv(rows: &[Row]) -> String {
+pub fn csv(rows: &[BenchRow]) -> String {
     let mut text = String::from(
         "scene,nodes,method,size,cpu_ms,wall_ms,steps_per_px,evals_per_px,surface_evals_per_px,wrong_share,grazing_share,\
          depth_p50,depth_p99,depth_max,normal_p50,normal_p99,quality,cpu_ms_spread,steps_p99,steps_max,cells_per_px,\
          entries_per_px\n",
     );
-    for row in rows.iter().map(Row::clamped) {
+    for row in rows.iter().map(BenchRow::clamped) {
         let numbers = [
             row.cpu_ms,
             row.wall_ms,
@@ -170,8 +170,8 @@ fn quoted(text: &str) -> String {
 
 /// A sentence for each two methods whose times, for the same scene, size and quality, differ by less than the
 /// runs of one of them do among themselves. Whoever reads the tables must not call one of the two faster.
-pub fn noise(rows: &[Row]) -> Vec<String> {
-    let mut groups: BTreeMap<(&str, u32, &str), Vec<&Row>> = BTreeMap::new();
+pub fn noise(rows: &[BenchRow]) -> Vec<String> {
+    let mut groups: BTreeMap<(&str, u32, &str), Vec<&BenchRow>> = BTreeMap::new();
     for row in rows {
         groups.entry((&row.scene, row.size, &row.quality)).or_default().push(row);
     }
@@ -251,23 +251,23 @@ mod tests {
             row.cpu_ms_spread = spread;
             row
         };
-        let rows = [measured("pruned", 30.0, 1.0), measured("specialised", 32.0, 4.0), measured("thesis", 90.0, 4.0)];
+        let rows = [measured("tape", 30.0, 1.0), measured("straight-line", 32.0, 4.0), measured("thesis", 90.0, 4.0)];
         assert_eq!(
             noise(&rows),
-            ["random-145: pruned (30 ms) and specialised (32 ms) differ by less than the noise of 4 ms"]
+            ["random-145: tape (30 ms) and straight-line (32 ms) differ by less than the noise of 4 ms"]
         );
-        assert!(noise(&[measured("pruned", 30.0, 0.0), measured("thesis", 30.0, 0.0)]).is_empty());
+        assert!(noise(&[measured("tape", 30.0, 0.0), measured("thesis", 30.0, 0.0)]).is_empty());
         assert!(noise(&[]).is_empty());
     }
 
     #[test]
     fn only_like_is_compared_with_like() {
-        let mut rows = [row("a", 1, "pruned", "default", 1.0, 0.1), row("a", 1, "thesis", "fine", 1.0, 0.1)];
+        let mut rows = [row("a", 1, "tape", "default", 1.0, 0.1), row("a", 1, "thesis", "fine", 1.0, 0.1)];
         rows[0].cpu_ms_spread = 1.0;
         assert!(noise(&rows).is_empty());
         rows[0].quality = "fine".into();
         assert_eq!(noise(&rows).len(), 1);
-        assert!(noise(&rows)[0].starts_with("a (fine): pruned (1 ms)"));
+        assert!(noise(&rows)[0].starts_with("a (fine): tape (1 ms)"));
         rows[1].size = 512;
         assert!(noise(&rows).is_empty());
     }

@@ -11,14 +11,14 @@ use super::outputs::write_bytes;
 use super::progress::{Interrupts, Progress};
 use super::{complain, say};
 use crate::bench::{
-    Bench, BenchError, Figures, Row, Subject, Truths, Way, cases, csv, first_of_each, growth, markdown, noise,
-    stress_sheet, stress_table, time_against_error, worst_first,
+    Baseline, Bench, BenchError, BenchRow, BenchScene, Metrics, ReferenceCache, cases, csv, first_of_each, growth,
+    markdown, noise, stress_sheet, stress_table, time_against_error, worst_first,
 };
 use crate::gallery;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
-use crate::render::kernel::Quality;
-use crate::render::{Gpu, Method, Renderer};
+use crate::render::wgsl::Quality;
+use crate::render::{EvalStrategy, Gpu, Renderer};
 use crate::scene::file;
 
 /// Smallest and largest side of a measured picture, in pixels.
@@ -33,8 +33,8 @@ const GROWTH_SEED: u64 = 5;
 pub struct BenchArguments {
     /// Scene files; without any, the example scenes
     scenes: Vec<PathBuf>,
-    /// Methods, separated by commas: thesis, generated, interpreted, pruned, specialised, limit, auto
-    #[arg(long, value_delimiter = ',', default_values_t = [Way::Interpreted, Way::Pruned, Way::Specialised, Way::Limit, Way::Auto].map(|w| w.name().to_owned()))]
+    /// Methods, separated by commas: thesis, baked, interpreter, tape, straight-line, limit, auto
+    #[arg(long, value_delimiter = ',', default_values_t = [Baseline::Interpreter, Baseline::Tape, Baseline::StraightLine, Baseline::Limit, Baseline::Auto].map(|w| w.name().to_owned()))]
     methods: Vec<String>,
     /// Qualities, separated by commas: draft, default, fine
     #[arg(long, value_delimiter = ',', default_values_t = ["default".to_owned()])]
@@ -48,7 +48,7 @@ pub struct BenchArguments {
     /// Measure large blends instead: 256 and 2 000 leaves in one union, blended and hard, 186 boxes, 1 001 spheres
     #[arg(long, conflicts_with_all = ["scenes", "growth"])]
     blends: bool,
-    /// Draw every shape, operator and modifier where numbers get difficult, and compare with the truth
+    /// Draw every shape, operator and modifier where numbers get difficult, and compare with the reference
     #[arg(long, conflicts_with_all = ["scenes", "growth", "blends", "json", "methods", "qualities", "size"])]
     stress: bool,
     /// Write tables (bench.md, bench.csv) and charts (SCENE.png) into this folder
@@ -68,31 +68,33 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     if arguments.stress {
         return stress(arguments);
     }
-    let ways: Vec<Way> = parsed(&arguments.methods, |name| name.parse())?;
+    let baselines: Vec<Baseline> = parsed(&arguments.methods, |name| name.parse())?;
     let qualities: Vec<Quality> = parsed(&arguments.qualities, |name| {
         let found = Quality::ALL.into_iter().find(|quality| quality.name() == name);
         found.ok_or_else(|| format!("{name} is none of draft, default, fine"))
     })?;
-    let subjects = subjects(arguments)?;
+    let bench_scenes = bench_scenes(arguments)?;
     if arguments.output.is_some() {
-        one_chart_each(&subjects)?;
+        one_chart_each(&bench_scenes)?;
     }
     let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let bench = Bench::new(gpu);
-    let mut truths = Truths::default();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut references = ReferenceCache::default();
+    let mut rows: Vec<BenchRow> = Vec::new();
     let mut progress = Progress::start("measuring", arguments.json, Interrupts::StopTheTask);
-    let all = (subjects.len() * ways.len() * qualities.len()).max(1);
+    let all = (bench_scenes.len() * baselines.len() * qualities.len()).max(1);
     let mut done = 0;
-    for subject in &subjects {
-        let truth = truths.of(subject, arguments.size).map_err(failed)?;
-        for (way, quality) in ways.iter().flat_map(|way| qualities.iter().map(move |quality| (*way, *quality))) {
+    for bench_scene in &bench_scenes {
+        let reference = references.of(bench_scene, arguments.size).map_err(failed)?;
+        for (baseline, quality) in
+            baselines.iter().flat_map(|baseline| qualities.iter().map(move |quality| (*baseline, *quality)))
+        {
             if !progress.update(done as f64 / all as f64) {
-                return Err(Failure::Cancelled);
+                return Err(Failure::Canceled);
             }
             done += 1;
-            match bench.measure(subject, way, quality, arguments.size, &truth) {
+            match bench.measure(bench_scene, baseline, quality, arguments.size, &reference) {
                 Ok(row) => {
                     if arguments.json {
                         say(&row.to_json_line())?;
@@ -100,7 +102,7 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
                     rows.push(row);
                 }
                 Err(BenchError::Scene(error)) => {
-                    complain(&format!("left out: {}: {}: {error}", subject.name, way.name()))
+                    complain(&format!("left out: {}: {}: {error}", bench_scene.name, baseline.name()))
                 }
                 Err(error) => return Err(failed(error)),
             }
@@ -122,25 +124,26 @@ const SHOWN: usize = 10;
 const PRINTED: usize = 40;
 
 /// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
-/// the ten worst subjects.
+/// the ten worst nodes.
 fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
     let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
     let mut renderer = Renderer::new(&gpu)?;
-    renderer.pruner().prune_all();
+    renderer.tape_cache().build_all();
     let mut progress = Progress::start("stressing", false, Interrupts::StopTheTask);
     let all = cases();
-    let mut figures: Vec<Figures> = Vec::new();
+    let mut metrics: Vec<Metrics> = Vec::new();
     let (mut unseen, mut left_out) = (0, 0);
     for (i, case) in all.iter().enumerate() {
         if !progress.update(i as f64 / all.len() as f64) {
-            return Err(Failure::Cancelled);
+            return Err(Failure::Canceled);
         }
         let name = || format!("{}, {}", case.name(), case.circumstance);
-        match case.measure(&mut renderer, &[Method::Interpreted, Method::Pruned, Method::Specialised]) {
-            Ok(Some(found)) => figures.push(found),
+        match case.measure(&mut renderer, &[EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine])
+        {
+            Ok(Some(found)) => metrics.push(found),
             Ok(None) => unseen += 1,
-            Err(error @ (BenchError::Scene(_) | BenchError::View(_) | BenchError::Truth { .. })) => {
+            Err(error @ (BenchError::Scene(_) | BenchError::View(_) | BenchError::Reference { .. })) => {
                 complain(&format!("left out: {}: {error}", name()));
                 left_out += 1;
             }
@@ -148,12 +151,12 @@ fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
         }
     }
     progress.finish();
-    worst_first(&mut figures);
-    say(&stress_table(&figures, PRINTED))?;
+    worst_first(&mut metrics);
+    say(&stress_table(&metrics, PRINTED))?;
     say(&format!("{unseen} cases show no surface, {left_out} were left out."))?;
     let Some(folder) = arguments.output.as_deref() else { return Ok(()) };
-    write_text(folder, "stress.md", &stress_table(&figures, figures.len()))?;
-    write_picture(folder, "stress.png", &stress_sheet(&first_of_each(&figures), SHOWN))
+    write_text(folder, "stress.md", &stress_table(&metrics, metrics.len()))?;
+    write_picture(folder, "stress.png", &stress_sheet(&first_of_each(&metrics), SHOWN))
 }
 
 fn parsed<T>(names: &[String], parse: impl Fn(&str) -> Result<T, String>) -> Result<Vec<T>, Failure> {
@@ -167,12 +170,12 @@ fn failed(error: BenchError) -> Failure {
     }
 }
 
-fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
+fn bench_scenes(arguments: &BenchArguments) -> Result<Vec<BenchScene>, Failure> {
     if arguments.growth {
         let random = |leaves: &usize| {
             let scene = gallery::random(*leaves, GROWTH_SEED);
             let name = format!("random-{}", scene.nodes().len());
-            Subject::new(&name, scene, &mut MeshLibrary::new(None)).map_err(failed)
+            BenchScene::new(&name, scene, &mut MeshLibrary::new(None)).map_err(failed)
         };
         return GROWTH_LEAVES.iter().map(random).collect();
     }
@@ -186,20 +189,20 @@ fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
             ("boxes-186", gallery::boxes(186, GROWTH_SEED)),
             ("spheres-1001", gallery::spheres(GROWTH_SEED)),
         ];
-        let subject = |(name, scene)| Subject::new(name, scene, &mut MeshLibrary::new(None)).map_err(failed);
-        return all.into_iter().map(subject).collect();
+        let bench_scene = |(name, scene)| BenchScene::new(name, scene, &mut MeshLibrary::new(None)).map_err(failed);
+        return all.into_iter().map(bench_scene).collect();
     }
     if arguments.scenes.is_empty() {
         let examples = Path::new("scenes");
         let mut library = MeshLibrary::new(examples.is_dir().then(|| examples.to_path_buf()));
         let all = gallery::all().into_iter();
-        return all.map(|(name, scene)| Subject::new(name, scene, &mut library).map_err(failed)).collect();
+        return all.map(|(name, scene)| BenchScene::new(name, scene, &mut library).map_err(failed)).collect();
     }
     let load = |path: &PathBuf| {
         let scene = file::load(path).map_err(Failure::Scene)?;
         let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         let mut library = MeshLibrary::new(path.parent().map(Path::to_path_buf));
-        Subject::new(&name, scene, &mut library).map_err(|error| match error {
+        BenchScene::new(&name, scene, &mut library).map_err(|error| match error {
             BenchError::Scene(error) => Failure::beyond_limit(path, &error),
             error => failed(error),
         })
@@ -207,7 +210,7 @@ fn subjects(arguments: &BenchArguments) -> Result<Vec<Subject>, Failure> {
     arguments.scenes.iter().map(load).collect()
 }
 
-fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), Failure> {
+fn write(folder: &Path, bench: &Bench, rows: &[BenchRow], grown: bool) -> Result<(), Failure> {
     let info = &bench.gpu().info;
     let heading = format!("On {} ({}).\n\n", info.name, info.driver_info);
     write_text(folder, "bench.md", &(heading + &markdown(rows)))?;
@@ -222,10 +225,13 @@ fn write(folder: &Path, bench: &Bench, rows: &[Row], grown: bool) -> Result<(), 
 }
 
 /// Charts are named after scenes: of two of one name one would be lost.
-fn one_chart_each(subjects: &[Subject]) -> Result<(), Failure> {
-    let repeated = subjects.iter().enumerate().find(|(i, a)| subjects[..*i].iter().any(|b| b.name == a.name));
-    repeated.map_or(Ok(()), |(_, subject)| {
-        Err(Failure::Usage(format!("two scenes are called {0}, and {0}.png could show only one of them", subject.name)))
+fn one_chart_each(bench_scenes: &[BenchScene]) -> Result<(), Failure> {
+    let repeated = bench_scenes.iter().enumerate().find(|(i, a)| bench_scenes[..*i].iter().any(|b| b.name == a.name));
+    repeated.map_or(Ok(()), |(_, bench_scene)| {
+        Err(Failure::Usage(format!(
+            "two scenes are called {0}, and {0}.png could show only one of them",
+            bench_scene.name
+        )))
     })
 }
 

@@ -67,7 +67,7 @@ struct Report {
     components: usize,
     limits: Vec<LimitUse>,
     cameras: Vec<String>,
-    warnings: Vec<Warning>,
+    warnings: Vec<CheckWarning>,
 }
 
 /// How much of a limit the scene uses.
@@ -79,12 +79,12 @@ struct LimitUse {
     node: Option<String>,
 }
 
-struct Warning {
+struct CheckWarning {
     node: String,
     reason: String,
 }
 
-impl From<flat::Warning> for Warning {
+impl From<flat::Warning> for CheckWarning {
     fn from(warning: flat::Warning) -> Self {
         Self { node: format!("{} {}", warning.name, warning.node), reason: warning.reason }
     }
@@ -94,11 +94,11 @@ fn read(path: &Path) -> Result<Report, Failure> {
     let scene = read_scene(path)?;
     let flattened = flatten_until(&scene, 0.0, &Cancel::default());
     let flattened = flattened.map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
-    let (flat, usages) = flattened.ok_or(Failure::Cancelled)?;
+    let (flat, usages) = flattened.ok_or(Failure::Canceled)?;
     let mut report = Report::new(&scene, &flat, &usages);
     let mut library = MeshLibrary::new(folder(path));
     let (_, missing) = flat.load_meshes(&mut library);
-    report.warnings.extend(missing.into_iter().map(Warning::from));
+    report.warnings.extend(missing.into_iter().map(CheckWarning::from));
     Ok(report)
 }
 
@@ -122,7 +122,7 @@ impl Report {
             components: flat.components.len(),
             limits: of_scene.into_iter().chain(of_arrays).collect(),
             cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
-            warnings: flat.warnings.iter().cloned().map(Warning::from).collect(),
+            warnings: flat.warnings.iter().cloned().map(CheckWarning::from).collect(),
         }
     }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::flat::FlattenError;
-use crate::flat::trace::TraceError;
+use crate::flat::reference::trace::TraceError;
 use crate::render::{GpuError, RenderError};
 use crate::scene::Scene;
 use crate::scene::file::FileError;
@@ -31,8 +31,8 @@ pub enum Failure {
         reason: String,
     },
     /// The person said stop.
-    #[error("cancelled")]
-    Cancelled,
+    #[error("canceled")]
+    Canceled,
     /// There are warnings, and they were to be errors.
     #[error("{}: {count} warnings, which --strict makes errors", file.display())]
     Strict {
@@ -75,7 +75,7 @@ impl Failure {
         serde_json::json!({ "ok": false, "file": file, "node": node, "field": field, "reason": reason })
     }
 
-    /// What a scene whose truth cannot be found is reported as: a limit that a node of its file is beyond.
+    /// What a scene whose reference cannot be found is reported as: a limit that a node of its file is beyond.
     pub fn given_up(path: &Path, scene: &Scene, error: &TraceError) -> Self {
         let name = scene.node(error.node).map_or("", |node| node.name.as_str());
         Self::Scene(FileError {
@@ -94,7 +94,7 @@ impl Failure {
             Self::Scene(_) | Self::Strict { .. } | Self::Several { .. } => 3,
             Self::Graphics(_) => 4,
             Self::Write { .. } => 5,
-            Self::Cancelled => 130,
+            Self::Canceled => 130,
         }
     }
 }
@@ -112,10 +112,12 @@ impl From<GpuError> for Failure {
 impl From<RenderError> for Failure {
     fn from(error: RenderError) -> Self {
         match error {
-            RenderError::Cancelled => Self::Cancelled,
+            RenderError::Canceled => Self::Canceled,
             RenderError::Gpu(error) => error.into(),
             RenderError::Size(..) => Self::Usage(error.to_string()),
-            RenderError::Shader(_) | RenderError::Counts(..) | RenderError::Work(..) => Self::Other(error.to_string()),
+            RenderError::Shader(_) | RenderError::Counts(..) | RenderError::TooManyDispatches(..) => {
+                Self::Other(error.to_string())
+            }
         }
     }
 }
@@ -126,7 +128,7 @@ mod tests {
     use crate::scene::{Group, Node, NodeKind};
 
     #[test]
-    fn a_truth_that_is_given_up_names_file_and_node() {
+    fn a_reference_that_is_given_up_names_file_and_node() {
         let mut scene = Scene::new();
         let node = scene.insert(None, 0, Node::new("n0", NodeKind::Group(Group::UNION))).expect("room");
         let failure = Failure::given_up(Path::new("slow.json"), &scene, &TraceError { node });

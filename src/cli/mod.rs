@@ -49,7 +49,7 @@ const EXIT_CODES: &str = "Exit codes:
   3    the scene file is missing, broken or beyond a limit, or has warnings under --strict
   4    no graphics: no Vulkan, Metal or DirectX driver answers, or no display
   5    an output cannot be written
-  130  cancelled with Ctrl-C";
+  130  canceled with Ctrl-C";
 
 /// Build, animate and render scenes of signed distance functions.
 #[derive(Debug, Parser)]
@@ -60,11 +60,11 @@ struct Arguments {
     #[command(flatten)]
     adapter: adapters::AdapterArguments,
     #[command(subcommand)]
-    command: Option<Command>,
+    command: Option<CliCommand>,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     /// Render a scene to a picture, without a window
     #[command(after_help = EXIT_CODES)]
     Render(render::RenderArguments),
@@ -109,13 +109,13 @@ pub fn main() -> ExitCode {
 fn run(arguments: Arguments) -> Result<(), Failure> {
     match arguments.command {
         None => open(arguments.scene.as_deref(), &arguments.adapter),
-        Some(Command::Render(arguments)) => render::render(&arguments),
-        Some(Command::Check(arguments)) => check::check(&arguments),
-        Some(Command::Bench(arguments)) => bench::bench(&arguments),
-        Some(Command::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
-        Some(Command::Gallery { folder }) => write_gallery(&folder),
-        Some(Command::Adapters(arguments)) => adapters::list(&arguments),
-        Some(Command::Probe(adapter)) => probe(&adapter),
+        Some(CliCommand::Render(arguments)) => render::render(&arguments),
+        Some(CliCommand::Check(arguments)) => check::check(&arguments),
+        Some(CliCommand::Bench(arguments)) => bench::bench(&arguments),
+        Some(CliCommand::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
+        Some(CliCommand::Gallery { folder }) => write_gallery(&folder),
+        Some(CliCommand::Adapters(arguments)) => adapters::list(&arguments),
+        Some(CliCommand::Probe(adapter)) => probe(&adapter),
     }
 }
 

@@ -8,7 +8,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat};
 use super::exr_ids;
 use super::failure::Failure;
 use super::input::is_standard;
-use crate::flat::{Buffers, FlatScene, Hitee};
+use crate::flat::{FlatScene, GBuffer, HitTarget};
 use crate::scene::file;
 
 /// What a file shows.
@@ -16,7 +16,7 @@ use crate::scene::file;
 pub enum Quantity {
     /// The picture.
     Color,
-    /// Distance along the ray, in metres.
+    /// Distance along the ray, in meters.
     Depth,
     /// World normal.
     Normal,
@@ -38,7 +38,7 @@ impl Quantity {
 
 /// Writes one quantity of the buffers, as the path's ending asks; `-` is standard output and gets a PNG. Returns what a
 /// person needs to know to read it, to be put behind the file's name.
-pub fn write(quantity: Quantity, path: &Path, buffers: &Buffers, flat: &FlatScene) -> Result<String, Failure> {
+pub fn write(quantity: Quantity, path: &Path, buffers: &GBuffer, flat: &FlatScene) -> Result<String, Failure> {
     let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
     let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat).map_err(failed)?;
     if is_standard(path) {
@@ -50,10 +50,10 @@ pub fn write(quantity: Quantity, path: &Path, buffers: &Buffers, flat: &FlatScen
     Ok(note)
 }
 
-fn encode(quantity: Quantity, as_exr: bool, buffers: &Buffers, flat: &FlatScene) -> Result<(Vec<u8>, String), String> {
+fn encode(quantity: Quantity, as_exr: bool, buffers: &GBuffer, flat: &FlatScene) -> Result<(Vec<u8>, String), String> {
     let (image, note) = match (quantity, as_exr) {
         (Quantity::Color, _) => (color(buffers), String::new()),
-        (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (metres)".into()),
+        (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (meters)".into()),
         (Quantity::Depth, false) => depth_picture(buffers),
         (Quantity::Normal, true) => (raw(buffers, |i| buffers.normal[i]), " (X, Y, Z)".into()),
         (Quantity::Normal, false) => (normal_picture(buffers), String::new()),
@@ -100,44 +100,44 @@ pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure
     Ok(())
 }
 
-fn color(buffers: &Buffers) -> DynamicImage {
+fn color(buffers: &GBuffer) -> DynamicImage {
     let bytes = buffers.color.iter().flatten().copied().collect();
     let image = ImageBuffer::from_raw(buffers.width, buffers.height, bytes);
-    DynamicImage::ImageRgba8(image.expect("one colour for each pixel"))
+    DynamicImage::ImageRgba8(image.expect("one color for each pixel"))
 }
 
-fn raw(buffers: &Buffers, value: impl Fn(usize) -> [f32; 3]) -> DynamicImage {
+fn raw(buffers: &GBuffer, value: impl Fn(usize) -> [f32; 3]) -> DynamicImage {
     let values = (0..buffers.depth.len()).flat_map(value).collect();
     let image = ImageBuffer::from_raw(buffers.width, buffers.height, values);
     DynamicImage::ImageRgb32F(image.expect("three numbers for each pixel"))
 }
 
-fn picture_of(buffers: &Buffers, pixel: impl Fn(usize) -> [u8; 3]) -> DynamicImage {
+fn picture_of(buffers: &GBuffer, pixel: impl Fn(usize) -> [u8; 3]) -> DynamicImage {
     let bytes = (0..buffers.depth.len()).flat_map(pixel).collect();
     let image = ImageBuffer::from_raw(buffers.width, buffers.height, bytes);
     DynamicImage::ImageRgb8(image.expect("three bytes for each pixel"))
 }
 
-/// Near is white, far dark grey, background black, with 16 bits so that it can be measured.
-fn depth_picture(buffers: &Buffers) -> (DynamicImage, String) {
+/// Near is white, far dark gray, background black, with 16 bits so that it can be measured.
+fn depth_picture(buffers: &GBuffer) -> (DynamicImage, String) {
     const FARTHEST: f64 = 0.1;
     let finite = || buffers.depth.iter().copied().filter(|depth| depth.is_finite()).map(f64::from);
     let (near, far) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
-    let grey = |depth: f32| -> u16 {
+    let gray = |depth: f32| -> u16 {
         if !depth.is_finite() {
             return 0;
         }
         let share = (f64::from(depth) - near) / (far - near).max(f64::MIN_POSITIVE);
         ((1.0 - share * (1.0 - FARTHEST)) * f64::from(u16::MAX)).round() as u16
     };
-    let values = buffers.depth.iter().map(|depth| grey(*depth)).collect();
-    let image = ImageBuffer::from_raw(buffers.width, buffers.height, values).expect("one grey for each pixel");
+    let values = buffers.depth.iter().map(|depth| gray(*depth)).collect();
+    let image = ImageBuffer::from_raw(buffers.width, buffers.height, values).expect("one gray for each pixel");
     let note =
-        if near <= far { format!(" (white {near:.4} m, grey 0.1 {far:.4} m)") } else { " (nothing is seen)".into() };
+        if near <= far { format!(" (white {near:.4} m, gray 0.1 {far:.4} m)") } else { " (nothing is seen)".into() };
     (DynamicImage::ImageLuma16(image), note)
 }
 
-fn normal_picture(buffers: &Buffers) -> DynamicImage {
+fn normal_picture(buffers: &GBuffer) -> DynamicImage {
     picture_of(buffers, |i| match buffers.depth[i].is_finite() {
         true => buffers.normal[i].map(|n| ((n * 0.5 + 0.5) * 255.0).round() as u8),
         false => [0; 3],
@@ -145,20 +145,20 @@ fn normal_picture(buffers: &Buffers) -> DynamicImage {
 }
 
 /// The id of the node that a pixel shows, 0 where it shows none.
-fn node_id(buffers: &Buffers, flat: &FlatScene, pixel: usize) -> u64 {
-    match buffers.hitee(pixel) {
-        Hitee::Background => 0,
-        Hitee::Leaf(leaf) => flat.ids[leaf].0,
-        Hitee::Mesh(mesh) => flat.meshes[mesh].id.0,
+fn node_id(buffers: &GBuffer, flat: &FlatScene, pixel: usize) -> u64 {
+    match buffers.hit_target(pixel) {
+        HitTarget::Background => 0,
+        HitTarget::Leaf(leaf) => flat.ids[leaf].0,
+        HitTarget::Mesh(mesh) => flat.meshes[mesh].id.0,
     }
 }
 
-fn node_id_picture(buffers: &Buffers, flat: &FlatScene) -> DynamicImage {
+fn node_id_picture(buffers: &GBuffer, flat: &FlatScene) -> DynamicImage {
     picture_of(buffers, |i| match node_id(buffers, flat, i) {
         0 => [0; 3],
         id => {
-            // Fibonacci hashing spreads neighbouring ids over the whole range; at least 64 keeps the
-            // colours apart from the background.
+            // Fibonacci hashing spreads neighboring ids over the whole range; at least 64 keeps the
+            // colors apart from the background.
             let hash = id.wrapping_mul(0x9e37_79b9_7f4a_7c15);
             [56, 48, 40].map(|shift| 64 + ((hash >> shift) & 0xff) as u8 / 4 * 3)
         }

@@ -53,7 +53,7 @@ impl Progress {
             self.last_line = Instant::now();
             super::complain(&format!("{}: {:.0} %", self.task, share * 100.0));
         }
-        !is_cancelled()
+        !is_canceled()
     }
 
     /// Takes the bar away.
@@ -72,8 +72,8 @@ fn bar(task: &'static str) -> ProgressBar {
 }
 
 /// Whether Ctrl-C was pressed.
-pub fn is_cancelled() -> bool {
-    CANCEL.is_cancelled()
+pub fn is_canceled() -> bool {
+    CANCEL.is_canceled()
 }
 
 /// Whether Ctrl-C ends the program at once.
@@ -92,7 +92,7 @@ fn catch_interrupts() {
     ONCE.get_or_init(|| {
         // Without a handler Ctrl-C still ends the program, only less gently.
         let _ = ctrlc::set_handler(|| {
-            if is_cancelled() || AT_ONCE.load(Ordering::Relaxed) {
+            if is_canceled() || AT_ONCE.load(Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);
             }
             CANCEL.cancel();

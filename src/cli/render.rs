@@ -13,14 +13,14 @@ use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
 use super::{complain, say};
-use crate::flat::inspect::{Look, Span};
+use crate::flat::debug_view::{DepthRange, ViewMode};
 use crate::flat::mesh_rays::Meshes;
-use crate::flat::truth::truth;
-use crate::flat::{Buffers, Cancel, FlatScene, Warning, flatten_until};
+use crate::flat::reference::image::render_reference;
+use crate::flat::{Cancel, FlatScene, GBuffer, Warning, flatten_until};
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
-use crate::render::{Gpu, Method, Renderer};
+use crate::render::{EvalStrategy, Gpu, Renderer};
 use crate::scene::Scene;
 
 /// Longest side of a picture, in pixels.
@@ -45,23 +45,23 @@ pub struct RenderArguments {
     /// Camera of the scene by name, instead of its first one; a scene without cameras is seen whole
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
-    /// Also write the distance along the ray: .exr holds metres (background is infinite), .png a picture
+    /// Also write the distance along the ray: .exr holds meters (background is infinite), .png a picture
     /// of them
     #[arg(long, value_name = "FILE", value_parser = output_path)]
     depth: Option<PathBuf>,
     /// Also write the surface's normal in the world: .exr holds X, Y and Z, .png maps -1…1 to 0…255
     #[arg(long, value_name = "FILE", value_parser = output_path)]
     normal: Option<PathBuf>,
-    /// Also write which node is seen: .exr holds its id (background is 0), .png a colour for each
+    /// Also write which node is seen: .exr holds its id (background is 0), .png a color for each
     #[arg(long, value_name = "FILE", value_parser = output_path)]
     node_id: Option<PathBuf>,
     /// What the picture shows: shaded, steps, evaluations, cells, entries, distance, normals, slope, nodes or
     /// components
-    #[arg(long, value_name = "LOOK", default_value = "shaded", value_parser = Look::from_str, conflicts_with = "truth")]
-    view: Look,
-    /// Render the truth: on the processor, in double precision, every ray to certainty. Slow
-    #[arg(long)]
-    truth: bool,
+    #[arg(long, value_name = "MODE", default_value = "shaded", value_parser = ViewMode::from_str, conflicts_with = "reference")]
+    view: ViewMode,
+    /// Render the reference: on the processor, in double precision, every ray to certainty. Slow
+    #[arg(long, alias = "truth")]
+    reference: bool,
     /// Make warnings errors, such as a model that is missing; then nothing is written
     #[arg(long)]
     strict: bool,
@@ -88,8 +88,8 @@ impl RenderArguments {
             depth: None,
             normal: None,
             node_id: None,
-            view: Look::Shaded,
-            truth: false,
+            view: ViewMode::Shaded,
+            reference: false,
             strict: false,
             json: false,
             quiet: false,
@@ -156,17 +156,17 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     let flat = flatten_until(&scene, arguments.time, &cancel)
         .map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?
         .map(|(flat, _)| flat)
-        .ok_or(Failure::Cancelled)?;
+        .ok_or(Failure::Canceled)?;
     let mut library = MeshLibrary::new(folder(&arguments.scene));
     let (meshes, missing) = flat.load_meshes(&mut library);
     let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
     arguments.warn(&warnings)?;
-    if cancel.is_cancelled() {
-        return Err(Failure::Cancelled);
+    if cancel.is_canceled() {
+        return Err(Failure::Canceled);
     }
     let camera = choose_camera(&flat, &meshes, arguments)?;
-    let buffers = if arguments.truth {
-        truth_picture(arguments, &scene, &flat, &meshes, &camera)?
+    let buffers = if arguments.reference {
+        reference_picture(arguments, &scene, &flat, &meshes, &camera)?
     } else {
         let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera, &cancel)?;
         arguments.warn(&unfinished)?;
@@ -177,7 +177,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     for (quantity, path) in arguments.outputs() {
         let mut note = outputs::write(quantity, path, &buffers, &flat)?;
         if quantity == Quantity::Color {
-            note += &arguments.view.note(&Span::of(&flat.content(&meshes), camera.position));
+            note += &arguments.view.note(&DepthRange::of(&flat.content(&meshes), camera.position));
         }
         arguments.tell(&format!("wrote {}{note}", path.display()))?;
         let file = path.display().to_string();
@@ -217,33 +217,33 @@ fn gpu_picture(
     meshes: &Meshes,
     camera: &Camera,
     cancel: &Cancel,
-) -> Result<(Buffers, Vec<Warning>), Failure> {
+) -> Result<(GBuffer, Vec<Warning>), Failure> {
     let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
-    let look = arguments.view;
-    let mut renderer = if look.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
-    if !look.counts() {
-        // One picture is done before kernels of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Lists are
+    let view_mode = arguments.view;
+    let mut renderer = if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
+    if !view_mode.counts() {
+        // One picture is done before pipelines of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Tapes are
         // made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
-        renderer.set_method(Method::Pruned);
+        renderer.set_strategy(EvalStrategy::Tape);
     }
     renderer.set_cancel(cancel);
     let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
     let mut update = |share| progress.update(f64::from(share));
-    let result = renderer.render_as(look, flat, meshes, camera, arguments.size, &mut update);
+    let result = renderer.render_as(view_mode, flat, meshes, camera, arguments.size, &mut update);
     progress.finish();
     Ok(result?)
 }
 
-fn truth_picture(
+fn reference_picture(
     arguments: &RenderArguments,
     scene: &Scene,
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
-) -> Result<Buffers, Failure> {
+) -> Result<GBuffer, Failure> {
     let progress = Mutex::new(Progress::start("tracing", arguments.quiet, Interrupts::EndTheProgram));
-    let truth = truth(flat, meshes, camera, arguments.size, &|share| {
+    let reference = render_reference(flat, meshes, camera, arguments.size, &|share| {
         if let Ok(mut progress) = progress.lock() {
             progress.update(share);
         }
@@ -251,7 +251,7 @@ fn truth_picture(
     if let Ok(progress) = progress.into_inner() {
         progress.finish();
     }
-    truth.map(|truth| truth.buffers).map_err(|error| Failure::given_up(&arguments.scene, scene, &error))
+    reference.map(|reference| reference.buffers).map_err(|error| Failure::given_up(&arguments.scene, scene, &error))
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -50,7 +50,7 @@ pub enum Edit {
     ReplaceMaterial(Material),
     /// Adds a material under the id that it brings, see [`Scene::next_material_id`].
     InsertMaterial(Material),
-    /// Takes out a material that nothing wears.
+    /// Takes out a material that nothing uses.
     RemoveMaterial(MaterialId),
     /// Changes what surrounds the scene.
     SetEnvironment(Environment),

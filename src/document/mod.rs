@@ -39,7 +39,7 @@ pub struct Document {
 
 /// What saving a document to a path would replace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Replaced {
+pub enum OverwriteRisk {
     /// Nothing, or the document's own file as it was read or saved last.
     Nothing,
     /// The document's own file, which somebody else has changed since.
@@ -238,16 +238,16 @@ impl Document {
     }
 
     /// What saving to this path would replace: to be asked before, because saving itself does not.
-    pub fn would_replace(&self, path: &Path) -> Replaced {
+    pub fn would_replace(&self, path: &Path) -> OverwriteRisk {
         let is_own = self.path.as_deref().is_some_and(|own| own == path || file::is_same_place(own, path));
         if !is_own {
-            return if path.exists() { Replaced::OtherFile } else { Replaced::Nothing };
+            return if path.exists() { OverwriteRisk::OtherFile } else { OverwriteRisk::Nothing };
         }
         match self.stamp {
-            Some(stamp) if !stamp.is_outdated(path) => Replaced::Nothing,
+            Some(stamp) if !stamp.is_outdated(path) => OverwriteRisk::Nothing,
             // Recovered, and nobody knows any more what its file was.
-            None if !path.exists() => Replaced::Nothing,
-            _ => Replaced::ChangedByOthers,
+            None if !path.exists() => OverwriteRisk::Nothing,
+            _ => OverwriteRisk::ChangedByOthers,
         }
     }
 

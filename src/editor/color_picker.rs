@@ -1,5 +1,5 @@
-//! Choosing a colour: a square of saturation and brightness, a strip of hues, a field for hex digits.
-//! Colours go in and out linear; what is shown is as the screen shows it.
+//! Choosing a color: a square of saturation and brightness, a strip of hues, a field for hex digits.
+//! Colors go in and out linear; what is shown is as the screen shows it.
 
 use egui::ecolor::HsvaGamma;
 use egui::{Color32, Id, Key, Mesh, Pos2, Rect, Response, Rgba, RichText, Sense, Shape, Stroke, TextEdit, Ui, vec2};
@@ -10,7 +10,7 @@ const SIDE: f32 = 210.0;
 const HEIGHT: f32 = 140.0;
 const STRIP: f32 = 16.0;
 
-/// Shows the picker; true where the colour was changed.
+/// Shows the picker; true where the color was changed.
 pub fn show(ui: &mut Ui, linear: &mut [f32; 3]) -> bool {
     let id = ui.scope_id().with("picker");
     let mut hsv = remembered(ui, id, *linear);
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, linear: &mut [f32; 3]) -> bool {
         *linear = color;
         hsv = from_linear(color);
     }
-    // Grey has no hue and black has no saturation: they are kept while the colour stays.
+    // Gray has no hue and black has no saturation: they are kept while the color stays.
     ui.data_mut(|d| d.insert_temp(id, (*linear, hsv.h, hsv.s)));
     changed || typed.is_some()
 }
@@ -68,7 +68,7 @@ fn square(ui: &mut Ui, hsv: &mut HsvaGamma) -> bool {
     if let Some([s, down]) = held {
         (hsv.s, hsv.v) = (s, 1.0 - down);
     }
-    // A grid, because the colour is a product of both axes and triangles blend only linearly.
+    // A grid, because the color is a product of both axes and triangles blend only linearly.
     grid(ui, rect, [14, 14], |x, y| shade(hsv.h, x, 1.0 - y));
     let knob = rect.lerp_inside(vec2(hsv.s, 1.0 - hsv.v));
     paint_knob(ui, knob, shade(hsv.h, hsv.s, hsv.v));
@@ -114,7 +114,7 @@ fn paint_knob(ui: &Ui, at: Pos2, color: Color32) {
     ui.painter().circle_stroke(at, 6.0, Stroke::new(1.5, Color32::WHITE));
 }
 
-/// The colour as the screen shows it, in hex digits; answers with the linear colour typed.
+/// The color as the screen shows it, in hex digits; answers with the linear color typed.
 fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
     let mut typed = None;
     ui.horizontal(|ui| {
@@ -128,11 +128,11 @@ fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
         name(ui, &response, "Hex");
         if response.lost_focus() && text != actual && !ui.input(|i| i.key_pressed(Key::Escape)) {
             typed = parse_hex(&text);
-            let reason = || format!("“{text}” is no colour: type six hex digits, such as #e5d4b6.");
+            let reason = || format!("“{text}” is no color: type six hex digits, such as #e5d4b6.");
             super::numbers::refuse(ui, response.id, typed.is_none().then(reason));
         }
         let typing = response.has_focus();
-        // What is half typed is kept; otherwise the field shows the colour.
+        // What is half typed is kept; otherwise the field shows the color.
         ui.data_mut(|d| {
             d.remove::<String>(text_id);
             if typing {
@@ -144,7 +144,7 @@ fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
     typed
 }
 
-/// `#e5d4b6`, `e5d4b6` or `#fff` as a linear colour.
+/// `#e5d4b6`, `e5d4b6` or `#fff` as a linear color.
 fn parse_hex(text: &str) -> Option<[f32; 3]> {
     let digits = text.trim().trim_start_matches('#');
     let color = Color32::from_hex(&format!("#{digits}")).ok().filter(|_| digits.len() == 3 || digits.len() == 6)?;
@@ -152,7 +152,7 @@ fn parse_hex(text: &str) -> Option<[f32; 3]> {
     Some([color.r(), color.g(), color.b()])
 }
 
-/// A button filled with a colour; a click opens the picker. `value` is linear. `mixed` shows a dash instead.
+/// A button filled with a color; a click opens the picker. `value` is linear. `mixed` shows a dash instead.
 pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (Response, bool) {
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -163,7 +163,7 @@ pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (R
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, Stroke::new(1.0, border), egui::StrokeKind::Inside);
     if mixed {
         let font = egui::TextStyle::Button.resolve(ui.style());
-        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, super::fields::MIXED, font, theme::TEXT);
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, super::widgets::MIXED, font, theme::TEXT);
     }
     let mut changed = false;
     let close = egui::PopupCloseBehavior::CloseOnClickOutside;
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn colours_survive_the_way_through_hue_and_saturation() {
+    fn colors_survive_the_way_through_hue_and_saturation() {
         for color in [[0.8, 0.1, 0.3], [0.05, 0.9, 0.9], [0.2, 0.2, 0.2], [0.0, 0.0, 0.0]] {
             let back = to_linear(from_linear(color));
             for c in 0..3 {

@@ -7,25 +7,25 @@ use egui::{Button, Context, Id, Key, Modal, RichText, vec2};
 use super::dialogs::Next;
 use super::messages::Message;
 use super::{Editor, theme};
-use crate::document::{Document, Replaced};
+use crate::document::{Document, OverwriteRisk};
 use crate::scene::file::Stamp;
 
 /// A question that waits, and what has been told.
 #[derive(Default)]
 pub(super) struct Conflict {
-    question: Option<Question>,
+    question: Option<ConflictQuestion>,
     had_focus: bool,
     /// What the file was when the artist was told that it is another one.
     told: Option<Stamp>,
 }
 
 /// Whether to write over the file, and how to go on then.
-struct Question {
+struct ConflictQuestion {
     path: PathBuf,
     then: Option<Next>,
 }
 
-enum Answer {
+enum ConflictAnswer {
     Overwrite,
     SaveAs,
     Reload,
@@ -42,17 +42,17 @@ impl Conflict {
 impl Editor {
     /// Saves to the path, unless somebody else has changed the document's file: then it asks first.
     pub(super) fn save_unless_changed(&mut self, path: &Path, then: Option<Next>, ctx: &Context) {
-        match self.bench.document.would_replace(path) {
-            Replaced::ChangedByOthers => {
-                self.conflict.question = Some(Question { path: path.to_path_buf(), then });
+        match self.session.document.would_replace(path) {
+            OverwriteRisk::ChangedByOthers => {
+                self.conflict.question = Some(ConflictQuestion { path: path.to_path_buf(), then });
             }
-            Replaced::Nothing | Replaced::OtherFile => self.save_to(path, then, ctx),
+            OverwriteRisk::Nothing | OverwriteRisk::OtherFile => self.save_to(path, then, ctx),
         }
     }
 
     /// Reads the document's file again. Changes are given up, so they are asked about first.
     pub(super) fn reload(&mut self) {
-        let Some(path) = self.bench.document.path().map(Path::to_path_buf) else { return };
+        let Some(path) = self.session.document.path().map(Path::to_path_buf) else { return };
         match Document::open(&path) {
             Ok(document) => {
                 self.replace_document(document);
@@ -67,10 +67,10 @@ impl Editor {
         let has_focus = ctx.input(|i| i.focused);
         let had_focus = std::mem::replace(&mut self.conflict.had_focus, has_focus);
         let came_back = has_focus && !had_focus;
-        let stamp = self.bench.document.stamp();
-        if came_back && self.conflict.told != stamp && self.bench.document.seems_outdated() {
+        let stamp = self.session.document.stamp();
+        if came_back && self.conflict.told != stamp && self.session.document.seems_outdated() {
             self.conflict.told = stamp;
-            let name = self.bench.document.title();
+            let name = self.session.document.title();
             let name = name.trim_end_matches(" *");
             let text = format!("Another program has changed {name}. File, Reload reads it again; saving asks first.");
             self.report(Message::warning(text));
@@ -81,17 +81,17 @@ impl Editor {
     pub(super) fn show_conflict(&mut self, ctx: &Context) {
         let Some(question) = &self.conflict.question else { return };
         let Some(answer) = ask(ctx, &question.path) else { return };
-        let Some(Question { path, then }) = self.conflict.question.take() else { return };
+        let Some(ConflictQuestion { path, then }) = self.conflict.question.take() else { return };
         match answer {
-            Answer::Overwrite => self.save_to(&path, then, ctx),
-            Answer::SaveAs => self.choose_save_path(then, ctx),
-            Answer::Reload => self.reload(),
-            Answer::Cancel => {}
+            ConflictAnswer::Overwrite => self.save_to(&path, then, ctx),
+            ConflictAnswer::SaveAs => self.choose_save_path(then, ctx),
+            ConflictAnswer::Reload => self.reload(),
+            ConflictAnswer::Cancel => {}
         }
     }
 }
 
-fn ask(ctx: &Context, path: &Path) -> Option<Answer> {
+fn ask(ctx: &Context, path: &Path) -> Option<ConflictAnswer> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut answer = None;
     let frame = egui::Frame::window(&ctx.global_style()).inner_margin(18.0);
@@ -107,27 +107,27 @@ fn ask(ctx: &Context, path: &Path) -> Option<Answer> {
         ui.horizontal(|ui| {
             let size = vec2(96.0, 28.0);
             if ui.add(Button::new("Reload").min_size(size)).clicked() {
-                answer = Some(Answer::Reload);
+                answer = Some(ConflictAnswer::Reload);
             }
             if ui.add(Button::new("Overwrite").min_size(size)).clicked() {
-                answer = Some(Answer::Overwrite);
+                answer = Some(ConflictAnswer::Overwrite);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let text = RichText::new("Save as…").color(egui::Color32::BLACK);
                 if ui.add(Button::new(text).fill(theme::ACCENT).min_size(size)).clicked() {
-                    answer = Some(Answer::SaveAs);
+                    answer = Some(ConflictAnswer::SaveAs);
                 }
                 if ui.add(Button::new("Cancel").min_size(size)).clicked() {
-                    answer = Some(Answer::Cancel);
+                    answer = Some(ConflictAnswer::Cancel);
                 }
             });
         });
     });
     if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Enter)) {
-        answer = answer.or(Some(Answer::SaveAs));
+        answer = answer.or(Some(ConflictAnswer::SaveAs));
     }
     if response.should_close() {
-        answer = answer.or(Some(Answer::Cancel));
+        answer = answer.or(Some(ConflictAnswer::Cancel));
     }
     answer
 }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use egui::{Button, Color32, Context, Id, Key, Label, Modal, Modifiers, RichText, TextEdit, Ui, vec2};
 
 use super::dialogs::{Next, PathField, Purpose, Question};
-use super::{Editor, fields, theme};
+use super::{Editor, theme, widgets};
 
 /// What is answered to a question.
 #[derive(Clone, Copy, PartialEq)]
-enum Answer {
+enum DialogAnswer {
     /// Do what the accented button says.
     Agree,
     Discard,
@@ -32,15 +32,15 @@ impl Editor {
     }
 
     fn ask_to_save(&mut self, next: Next, ctx: &Context) {
-        let title = self.bench.document.title();
+        let title = self.session.document.title();
         let name = title.trim_end_matches(" *").to_owned();
         let shown = question(ctx, ("Save the changes to", &name, "They are lost otherwise."), Some("Discard"), "Save");
         let enter = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter)) || wants_save(ctx);
-        match shown.or(enter.then_some(Answer::Agree)) {
+        match shown.or(enter.then_some(DialogAnswer::Agree)) {
             None => self.dialogs.question = Some(Question::Unsaved(next)),
-            Some(Answer::Agree) => self.save(Some(next), ctx),
-            Some(Answer::Discard) => self.perform(next, ctx),
-            Some(Answer::Cancel) => {}
+            Some(DialogAnswer::Agree) => self.save(Some(next), ctx),
+            Some(DialogAnswer::Discard) => self.perform(next, ctx),
+            Some(DialogAnswer::Cancel) => {}
         }
     }
 
@@ -51,7 +51,7 @@ impl Editor {
         let text = format!("There is a file of this name in {folder} already. What it holds is lost then.");
         match question(ctx, ("Replace", &name, &text), None, "Replace") {
             None => self.dialogs.question = Some(Question::Replace(path, then)),
-            Some(Answer::Agree) => self.save_to(&path, then, ctx),
+            Some(DialogAnswer::Agree) => self.save_to(&path, then, ctx),
             Some(_) => {
                 let (purpose, text) = (Purpose::Save(then), path.display().to_string());
                 self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });
@@ -86,7 +86,7 @@ impl Editor {
     }
 }
 
-/// The field and its buttons; whether it is agreed or cancelled.
+/// The field and its buttons; whether it is agreed or canceled.
 fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     let mut done = None;
     let edit = TextEdit::singleline(&mut field.text)
@@ -129,12 +129,12 @@ fn question(
     (verb, name, text): (&str, &str, &str),
     discard: Option<&str>,
     agree: &str,
-) -> Option<Answer> {
+) -> Option<DialogAnswer> {
     let mut answer = None;
     let response = Modal::new(Id::unique("question").with(verb)).frame(frame(ctx)).show(ctx, |ui| {
         ui.set_width(380.0);
         ui.add_space(4.0);
-        let short = fields::elided(name, NAME);
+        let short = widgets::elided(name, NAME);
         let title = RichText::new(format!("{verb} “{short}”?")).heading().color(Color32::WHITE);
         let title = ui.add(Label::new(title).wrap());
         if short != name {
@@ -145,19 +145,19 @@ fn question(
         ui.add_space(14.0);
         ui.horizontal(|ui| {
             if discard.is_some_and(|text| ui.add(Button::new(text).min_size(BUTTON)).clicked()) {
-                answer = Some(Answer::Discard);
+                answer = Some(DialogAnswer::Discard);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if accented(ui, agree) {
-                    answer = Some(Answer::Agree);
+                    answer = Some(DialogAnswer::Agree);
                 }
                 if ui.add(Button::new("Cancel").min_size(BUTTON)).clicked() {
-                    answer = Some(Answer::Cancel);
+                    answer = Some(DialogAnswer::Cancel);
                 }
             });
         });
     });
-    answer.or(response.should_close().then_some(Answer::Cancel))
+    answer.or(response.should_close().then_some(DialogAnswer::Cancel))
 }
 
 /// Ctrl S agrees where saving is what is asked about.

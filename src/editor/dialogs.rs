@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Context, ViewportCommand};
 
+use super::edit_session::WantedFile;
 use super::messages::Message;
-use super::workbench::WantedFile;
 use super::{Editor, insertion, portal};
 use crate::document::Document;
 use crate::scene::{Attached, MeshNode, Node, NodeKind};
@@ -149,9 +149,9 @@ impl Dialogs {
 impl Editor {
     /// Does it, after asking where work would be lost. What cannot be read is refused before that.
     pub fn intend(&mut self, intent: Intent, ctx: &Context) {
-        self.bench.finish();
+        self.session.finish();
         let Some(next) = self.prepare(intent) else { return };
-        if self.bench.document.is_changed() && !matches!(next, Next::Choose) {
+        if self.session.document.is_changed() && !matches!(next, Next::Choose) {
             self.dialogs.question = Some(Question::Unsaved(next));
         } else {
             self.perform(next, ctx);
@@ -196,8 +196,8 @@ impl Editor {
 
     /// Saves, asking for a path where there is none; then goes on with `then`.
     pub fn save(&mut self, then: Option<Next>, ctx: &Context) {
-        self.bench.finish();
-        match self.bench.document.path().map(Path::to_path_buf) {
+        self.session.finish();
+        match self.session.document.path().map(Path::to_path_buf) {
             None => self.choose_save_path(then, ctx),
             Some(path) => self.save_unless_changed(&path, then, ctx),
         }
@@ -210,7 +210,7 @@ impl Editor {
 
     /// Asks for a mesh file and adds it.
     pub fn choose_mesh(&mut self, ctx: &Context) {
-        if self.bench.document.path().is_none() {
+        if self.session.document.path().is_none() {
             self.report(Message::info("Save the scene first: mesh files are named relative to the scene's folder."));
         } else {
             self.choose(Purpose::Mesh, ctx);
@@ -218,7 +218,7 @@ impl Editor {
     }
 
     pub(super) fn save_to(&mut self, path: &Path, then: Option<Next>, ctx: &Context) {
-        match self.bench.document.save_as(path) {
+        match self.session.document.save_as(path) {
             Ok(()) => {
                 self.forget_kept();
                 self.recent.add(path);
@@ -265,7 +265,7 @@ impl Editor {
             Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
             Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &["json"]),
         };
-        let path = self.bench.document.path();
+        let path = self.session.document.path();
         if let Some(folder) = path.and_then(Path::parent).filter(|f| f.is_absolute()) {
             dialog = dialog.set_directory(folder);
         }
@@ -276,7 +276,7 @@ impl Editor {
     }
 
     fn ask_in_window(&mut self, purpose: Purpose) {
-        let path = self.bench.document.path();
+        let path = self.session.document.path();
         let text = match (&purpose, path) {
             (Purpose::Save(_), Some(path)) => path.display().to_string(),
             (Purpose::Save(_), None) => std::path::absolute(suggested_name(None))
@@ -291,8 +291,8 @@ impl Editor {
 
     /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
     pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
-        if let Some(wanted) = self.bench.wanted_file.take() {
-            self.bench.finish();
+        if let Some(wanted) = self.session.wanted_file.take() {
+            self.session.finish();
             self.choose(Purpose::Attach(wanted), ctx);
         }
         let Some(dialog) = &self.dialogs.system else { return };
@@ -344,7 +344,7 @@ impl Editor {
 
     /// Whether it is the document's own file, by whatever name.
     fn is_own(&self, path: &Path) -> bool {
-        let own = self.bench.document.path();
+        let own = self.session.document.path();
         own.is_some_and(|own| match (own.canonicalize(), path.canonicalize()) {
             (Ok(own), Ok(path)) => own == path,
             _ => own == path,
@@ -352,7 +352,7 @@ impl Editor {
     }
 
     fn add_mesh(&mut self, path: &Path) {
-        let folder = self.bench.document.path().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
+        let folder = self.session.document.path().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
         let relative = path.strip_prefix(&folder).ok().filter(|_| path.is_absolute()).unwrap_or(path);
         if relative.is_absolute() {
             let text = "Only files in the scene's folder or below it can be used. Copy the mesh there first.";
@@ -368,7 +368,7 @@ impl Editor {
     /// Refuses to close the window while work would be lost, and asks.
     pub(super) fn guard_closing(&mut self, ctx: &Context) {
         let requested = ctx.input(|i| i.viewport().close_requested());
-        if requested && !self.dialogs.closing && self.bench.document.is_changed() {
+        if requested && !self.dialogs.closing && self.session.document.is_changed() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             if !self.has_dialog() {
                 self.intend(Intent::Quit, ctx);

@@ -31,11 +31,11 @@ pub(super) struct Flattened {
 /// What a thread is at.
 struct Away {
     cancel: Cancel,
-    answer: Receiver<Answer>,
+    answer: Receiver<FlattenResult>,
 }
 
-/// What a thread gives back: what it flattens with, and what came of it; nothing where it was cancelled.
-type Answer = (Flattener, Result<Option<Arc<FlatScene>>, String>);
+/// What a thread gives back: what it flattens with, and what came of it; nothing where it was canceled.
+type FlattenResult = (Flattener, Result<Option<Arc<FlatScene>>, String>);
 
 /// How soon a thread is looked after again.
 const LATER: Duration = Duration::from_millis(20);
@@ -103,7 +103,7 @@ impl Flattened {
             Err(TryRecvError::Disconnected) => Err("the scene could not be prepared".into()),
             Ok((flattener, result)) => {
                 self.flattener = flattener;
-                result.transpose().unwrap_or_else(|| Err("preparing the scene was cancelled".into()))
+                result.transpose().unwrap_or_else(|| Err("preparing the scene was canceled".into()))
             }
         };
         self.away = None;
@@ -115,10 +115,10 @@ impl Flattened {
 impl Editor {
     /// Follows the document; also once for another document, before its first frame.
     pub(super) fn refresh_flat(&mut self) {
-        let revision = self.bench.document.revision();
+        let revision = self.session.document.revision();
         let is_new = self.flat.revision != Some(revision);
         if is_new {
-            self.flat.follow(self.bench.document.scene(), revision);
+            self.flat.follow(self.session.document.scene(), revision);
         }
         if !self.flat.poll() && !is_new {
             return;

@@ -4,8 +4,8 @@
 use egui::{Painter, Pos2, Shape, Stroke, vec2};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::edit_session::EditSession;
 use super::viewport::Projection;
-use super::workbench::Workbench;
 use super::{selection, theme};
 use crate::geometry::Ray;
 use crate::scene::NodeId;
@@ -26,10 +26,10 @@ const GRAB: f32 = 8.0;
 const SHORTEST: f32 = 14.0;
 
 /// The middle of the selected nodes' origins in the world; `None` where nothing can be moved.
-pub fn pivot(bench: &Workbench) -> Option<DVec3> {
-    let scene = bench.document.scene();
+pub fn pivot(session: &EditSession) -> Option<DVec3> {
+    let scene = session.document.scene();
     let ids: Vec<_> =
-        selection::roots(bench).into_iter().filter(|id| selection::holder_of_lock(scene, *id).is_none()).collect();
+        selection::roots(session).into_iter().filter(|id| selection::holder_of_lock(scene, *id).is_none()).collect();
     if ids.is_empty() {
         return None;
     }
@@ -47,7 +47,7 @@ impl Arrows {
     /// The arrows at a pivot; `None` behind the eye.
     pub fn new(pivot: DVec3, projection: &Projection) -> Option<Self> {
         let center = projection.to_screen(pivot)?;
-        let length = projection.metres_per_point(pivot) * f64::from(LENGTH);
+        let length = projection.meters_per_point(pivot) * f64::from(LENGTH);
         let tips = std::array::from_fn(|axis| {
             let tip = projection.to_screen(pivot + DVec3::AXES[axis] * length)?;
             (tip.distance(center) >= SHORTEST).then_some(tip)
@@ -108,11 +108,11 @@ struct Start {
 
 impl Drag {
     /// Grabs a handle with the ray of the pointer; `forward` is where the eye looks.
-    pub fn begin(bench: &Workbench, handle: Handle, ray: &Ray, forward: DVec3) -> Option<Self> {
-        let pivot = pivot(bench)?;
-        let scene = bench.document.scene();
+    pub fn begin(session: &EditSession, handle: Handle, ray: &Ray, forward: DVec3) -> Option<Self> {
+        let pivot = pivot(session)?;
+        let scene = session.document.scene();
         let is_free = |id: &NodeId| selection::holder_of_lock(scene, *id).is_none();
-        let nodes = selection::roots(bench).into_iter().filter(is_free).filter_map(|id| scene.node(id));
+        let nodes = selection::roots(session).into_iter().filter(is_free).filter_map(|id| scene.node(id));
         let nodes = nodes
             .map(|n| Start {
                 id: n.id,
@@ -124,7 +124,7 @@ impl Drag {
         Some(Self { handle, offset: DVec3::ZERO, pivot, grabbed, nodes })
     }
 
-    /// Follows the pointer. `precise` moves a tenth as far; `snap` is a step in metres, 0 for none.
+    /// Follows the pointer. `precise` moves a tenth as far; `snap` is a step in meters, 0 for none.
     pub fn follow(&mut self, ray: &Ray, forward: DVec3, precise: bool, snap: f64) {
         let Some(point) = grabbed_point(self.handle, self.pivot, ray, forward) else { return };
         let mut offset = (point - self.grabbed) * if precise { 0.1 } else { 1.0 };
@@ -137,17 +137,17 @@ impl Drag {
     }
 
     /// Puts the nodes where the drag has brought them.
-    pub fn apply(&self, bench: &mut Workbench, widget: egui::Id) {
+    pub fn apply(&self, session: &mut EditSession, widget: egui::Id) {
         for start in &self.nodes {
             let moved = start.translation + start.parent_from_world * self.offset;
             if moved.is_finite() {
-                bench.change(widget, &[start.id], |n| n.transform.translation = tidy(moved));
+                session.change(widget, &[start.id], |n| n.transform.translation = tidy(moved));
             }
         }
     }
 }
 
-/// Rounded to a hundred-thousandth of a metre, so that the inspector and the file show tidy numbers.
+/// Rounded to a hundred-thousandth of a meter, so that the inspector and the file show tidy numbers.
 fn tidy(v: DVec3) -> DVec3 {
     (v * 1e5).round() / 1e5
 }
@@ -217,7 +217,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_towards_the_eye_cannot_be_dragged() {
+    fn a_line_toward_the_eye_cannot_be_dragged() {
         let ray = Ray { origin: DVec3::Z * 5.0, direction: DVec3::NEG_Z };
         assert_eq!(nearest_on_line(DVec3::ZERO, DVec3::Z, &ray), None);
     }

@@ -10,11 +10,11 @@ use crate::scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, 
 
 /// Adds an object of the given kind and selects it.
 pub fn shape(editor: &mut Editor, kind: ShapeKind) {
-    editor.bench.document.begin_gesture();
+    editor.session.document.begin_gesture();
     let material = material(editor);
     let object = Object { shape: kind.default_shape(), material };
     node(editor, Node::new(kind.label(), NodeKind::Object(object)));
-    editor.bench.document.end_gesture();
+    editor.session.document.end_gesture();
 }
 
 /// Adds a node at the view's target and selects it.
@@ -22,23 +22,23 @@ pub fn node(editor: &mut Editor, node: Node) -> Option<NodeId> {
     node_above(editor, node, 0.0)
 }
 
-/// Adds a node the given number of metres above the view's target and selects it.
+/// Adds a node the given number of meters above the view's target and selects it.
 pub fn node_above(editor: &mut Editor, node: Node, up: f64) -> Option<NodeId> {
-    let target = if editor.bench.document.scene().nodes().is_empty() { DVec3::ZERO } else { tidy_target(editor) };
+    let target = if editor.session.document.scene().nodes().is_empty() { DVec3::ZERO } else { tidy_target(editor) };
     node_in_world(editor, node.at(target + DVec3::Y * up))
 }
 
 /// Adds a node whose transform is meant in the world, and selects it.
 pub fn node_in_world(editor: &mut Editor, mut node: Node) -> Option<NodeId> {
-    let scene = editor.bench.document.scene();
-    let (parent, position) = place(scene, editor.bench.document.selection());
+    let scene = editor.session.document.scene();
+    let (parent, position) = place(scene, editor.session.document.selection());
     if let Some(parent) = parent {
         let local = scene.world_from_local(parent).inverse().transform_point3(node.transform.translation);
         node.transform.translation = if local.is_finite() { local } else { DVec3::ZERO };
     }
     node.name = free_name(scene, &node.name);
-    let added = editor.bench.apply(Edit::Insert { parent, position, node }).first().copied()?;
-    editor.bench.document.select(vec![added]);
+    let added = editor.session.apply(Edit::Insert { parent, position, node }).first().copied()?;
+    editor.session.document.select(vec![added]);
     Some(added)
 }
 
@@ -55,8 +55,8 @@ fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
 fn tidy_target(editor: &Editor) -> DVec3 {
     let step = 10.0_f64.powf((editor.navigation.distance * 0.02).log10().floor());
     // Dividing by the step's reciprocal gives 0.3, where multiplying by 0.1 gives 0.30000000000000004.
-    let per_metre = (1.0 / step).round().max(1.0);
-    (editor.navigation.target * per_metre).round() / per_metre
+    let per_meter = (1.0 / step).round().max(1.0);
+    (editor.navigation.target * per_meter).round() / per_meter
 }
 
 /// The name itself, or with the first number that is free.
@@ -68,8 +68,8 @@ fn free_name(scene: &Scene, base: &str) -> String {
 
 /// The active object's material, or the scene's first, or a new one.
 fn material(editor: &mut Editor) -> MaterialId {
-    let scene = editor.bench.document.scene();
-    let active = editor.bench.selected().last().and_then(|n| match &n.kind {
+    let scene = editor.session.document.scene();
+    let active = editor.session.selected().last().and_then(|n| match &n.kind {
         NodeKind::Object(object) => Some(object.material),
         _ => None,
     });
@@ -77,6 +77,6 @@ fn material(editor: &mut Editor) -> MaterialId {
         return id;
     }
     let id = scene.next_material_id();
-    editor.bench.apply(Edit::InsertMaterial(Material::new(id, "Clay", [0.62, 0.56, 0.50])));
+    editor.session.apply(Edit::InsertMaterial(Material::new(id, "Clay", [0.62, 0.56, 0.50])));
     id
 }

@@ -1,15 +1,15 @@
-//! The panel on the right: everything about the selection, or the surroundings when nothing is selected.
+//! The panel on the right: everything about the selection, or the world when nothing is selected.
 
 use std::sync::Arc;
 
 use egui::{RichText, ScrollArea, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
-use super::sheet::Sheet;
-use super::workbench::Workbench;
+use super::edit_session::EditSession;
+use super::multi_edit::MultiEdit;
 use super::{
-    fields, glyphs, inspector_joints, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
-    inspector_transform, selection, theme,
+    icons, inspector_blends, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
+    inspector_transform, selection, theme, widgets,
 };
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
@@ -23,15 +23,15 @@ pub struct Inspector {
 
 impl Inspector {
     /// Shows the panel.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Workbench) {
+    pub fn show(&mut self, ui: &mut Ui, session: &mut EditSession) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 8.0;
-            let selected = bench.selected();
+            let selected = session.selected();
             match selected.last() {
-                None => inspector_scene::show(ui, bench),
+                None => inspector_scene::show(ui, session),
                 // What is typed for one node is not for another one.
                 Some(active) => {
-                    ui.push_id(active.id, |ui| self.show_selection(ui, bench, active.clone(), selected.clone()));
+                    ui.push_id(active.id, |ui| self.show_selection(ui, session, active.clone(), selected.clone()));
                 }
             }
             ui.add_space(12.0);
@@ -39,13 +39,13 @@ impl Inspector {
     }
 
     /// The places of those that are not locked.
-    fn transform(&mut self, ui: &mut Ui, bench: &mut Workbench, all: &[Arc<Node>]) {
-        let scene = bench.document.snapshot();
+    fn transform(&mut self, ui: &mut Ui, session: &mut EditSession, all: &[Arc<Node>]) {
+        let scene = session.document.snapshot();
         let (locked, free): (Vec<_>, Vec<_>) =
             all.iter().cloned().partition(|node| selection::holder_of_lock(&scene, node.id).is_some());
         let is_free = !free.is_empty();
-        let Some(mut sheet) = Sheet::new(bench, if is_free { free } else { locked.clone() }) else { return };
-        ui.add_enabled_ui(is_free, |ui| self.transform.show(ui, &mut sheet));
+        let Some(mut edit) = MultiEdit::new(session, if is_free { free } else { locked.clone() }) else { return };
+        ui.add_enabled_ui(is_free, |ui| self.transform.show(ui, &mut edit));
         if !locked.is_empty() {
             let which = match (locked.len(), all.len()) {
                 (1, 1) => "It is".to_owned(),
@@ -57,32 +57,32 @@ impl Inspector {
         }
     }
 
-    fn show_selection(&mut self, ui: &mut Ui, bench: &mut Workbench, active: Arc<Node>, all: Vec<Arc<Node>>) {
-        header(ui, bench, &active, &all);
+    fn show_selection(&mut self, ui: &mut Ui, session: &mut EditSession, active: Arc<Node>, all: Vec<Arc<Node>>) {
+        header(ui, session, &active, &all);
         if all.iter().all(|n| n.has_field())
-            && let Some(mut sheet) = Sheet::new(bench, all.clone())
+            && let Some(mut edit) = MultiEdit::new(session, all.clone())
         {
-            inspector_joints::role(ui, &mut sheet);
+            inspector_blends::role(ui, &mut edit);
         }
-        self.transform(ui, bench, &all);
+        self.transform(ui, session, &all);
         let with_fields = all.iter().all(|n| n.has_field()).then(|| all.clone());
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
-        let Some(mut sheet) = Sheet::new(bench, alike) else { return };
+        let Some(mut edit) = MultiEdit::new(session, alike) else { return };
         match &active.kind {
-            NodeKind::Group(_) => inspector_joints::group(ui, &mut sheet),
+            NodeKind::Group(_) => inspector_blends::group(ui, &mut edit),
             NodeKind::Object(_) => {
-                inspector_kinds::shape(ui, &mut sheet);
-                inspector_material::show(ui, &mut sheet);
+                inspector_kinds::shape(ui, &mut edit);
+                inspector_material::show(ui, &mut edit);
             }
             NodeKind::Mesh(mesh) => {
-                inspector_kinds::mesh(ui, &mut sheet, mesh);
-                inspector_material::show(ui, &mut sheet);
+                inspector_kinds::mesh(ui, &mut edit, mesh);
+                inspector_material::show(ui, &mut edit);
             }
-            NodeKind::Light(_) => inspector_kinds::light(ui, &mut sheet),
-            NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut sheet),
+            NodeKind::Light(_) => inspector_kinds::light(ui, &mut edit),
+            NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut edit),
         }
-        if let Some(mut sheet) = with_fields.and_then(|nodes| Sheet::new(bench, nodes)) {
-            inspector_modifiers::show(ui, &mut sheet);
+        if let Some(mut edit) = with_fields.and_then(|nodes| MultiEdit::new(session, nodes)) {
+            inspector_modifiers::show(ui, &mut edit);
         }
     }
 }
@@ -103,10 +103,10 @@ pub fn kind_label(node: &Node) -> &'static str {
 }
 
 /// Icon, name, visibility, lock; the number of nodes where it is several.
-fn header(ui: &mut Ui, bench: &mut Workbench, active: &Node, all: &[Arc<Node>]) {
+fn header(ui: &mut Ui, session: &mut EditSession, active: &Node, all: &[Arc<Node>]) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(22.0, theme::ROW_HEIGHT), egui::Sense::hover());
-        glyphs::paint_node(ui.painter(), glyphs::centered(rect, 17.0), active);
+        icons::paint_node(ui.painter(), icons::centered(rect, 17.0), active);
         let mut name = active.name.clone();
         let field = TextEdit::singleline(&mut name)
             .char_limit(MAX_NAME)
@@ -115,20 +115,20 @@ fn header(ui: &mut Ui, bench: &mut Workbench, active: &Node, all: &[Arc<Node>]) 
         let response = ui.add(field).on_hover_text("The name of the active node");
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Name"));
         if response.changed() {
-            bench.apply_by(response.id, Edit::Replace(Node { name, ..active.clone() }));
+            session.apply_by(response.id, Edit::Replace(Node { name, ..active.clone() }));
         }
         let ids: Vec<_> = all.iter().map(|n| n.id).collect();
         let (icon, text) = if active.visible { (ICON_VISIBILITY, "Hide") } else { (ICON_VISIBILITY_OFF, "Show") };
         let color = if active.visible { theme::WEAK } else { theme::WARNING };
-        let eye = fields::icon_button(ui, icon, text, color);
+        let eye = widgets::icon_button(ui, icon, text, color);
         if eye.clicked() {
-            bench.change(eye.id, &ids, |n| n.visible = !active.visible);
+            session.change(eye.id, &ids, |n| n.visible = !active.visible);
         }
         let (icon, text) = if active.locked { (ICON_LOCK, "Unlock") } else { (ICON_LOCK_OPEN, "Lock") };
         let color = if active.locked { theme::WARNING } else { theme::WEAK };
-        let lock = fields::icon_button(ui, icon, text, color);
+        let lock = widgets::icon_button(ui, icon, text, color);
         if lock.clicked() {
-            bench.change(lock.id, &ids, |n| n.locked = !active.locked);
+            session.change(lock.id, &ids, |n| n.locked = !active.locked);
         }
     });
     let what = match all.len() {

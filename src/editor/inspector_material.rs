@@ -1,19 +1,19 @@
-//! The material that the selection wears: which one, and what it looks like.
+//! The material of the selection: which one, and what it looks like.
 
 use egui::{Color32, Rgba, RichText, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
 
-use super::fields::{self, MIXED};
-use super::numbers::{self, Field};
-use super::sheet::Sheet;
+use super::multi_edit::MultiEdit;
+use super::numbers::{self, NumberField};
 use super::theme;
+use super::widgets::{self, MIXED};
 use crate::document::Edit;
 use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS, UNIT};
 use crate::scene::{Limits, Material, MaterialId, Node, NodeKind};
 
-/// What the nodes of a sheet wear.
+/// The materials of the nodes that are edited.
 #[derive(Clone, Copy, PartialEq)]
-enum Worn {
+enum CommonMaterial {
     /// All the same; `None` for meshes that keep their own.
     Same(Option<MaterialId>),
     /// Not all the same.
@@ -21,19 +21,19 @@ enum Worn {
 }
 
 /// The card.
-pub fn show(ui: &mut Ui, sheet: &mut Sheet<'_>) {
-    fields::card(ui, "Material", |ui| {
-        let worn = sheet.common(material_of).map_or(Worn::Mixed, Worn::Same);
-        picker(ui, sheet, worn);
-        let Worn::Same(worn) = worn else {
+pub fn show(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
+    widgets::card(ui, "Material", |ui| {
+        let common = edit.common(material_of).map_or(CommonMaterial::Mixed, CommonMaterial::Same);
+        picker(ui, edit, common);
+        let CommonMaterial::Same(common) = common else {
             ui.label(RichText::new("Different materials: choose one to give it to all.").color(theme::WEAK));
             return;
         };
-        let material = worn.and_then(|id| sheet.bench().document.scene().material(id).cloned());
+        let material = common.and_then(|id| edit.session().document.scene().material(id).cloned());
         match material {
             Some(material) => {
                 // What is typed for one material is not for another one.
-                ui.push_id(material.id, |ui| editor(ui, sheet, &material));
+                ui.push_id(material.id, |ui| editor(ui, edit, &material));
             }
             None => {
                 ui.label(RichText::new("The file's own materials are used.").color(theme::WEAK));
@@ -50,7 +50,7 @@ fn material_of(node: &Node) -> Option<MaterialId> {
     }
 }
 
-fn wear(node: &mut Node, id: Option<MaterialId>) {
+fn set_material(node: &mut Node, id: Option<MaterialId>) {
     match &mut node.kind {
         NodeKind::Object(object) => object.material = id.unwrap_or(object.material),
         NodeKind::Mesh(mesh) => mesh.material = id,
@@ -58,61 +58,63 @@ fn wear(node: &mut Node, id: Option<MaterialId>) {
     }
 }
 
-fn picker(ui: &mut Ui, sheet: &mut Sheet<'_>, worn: Worn) {
-    let materials = sheet.bench().document.scene().materials().to_vec();
-    let of_mesh = matches!(sheet.active().kind, NodeKind::Mesh(_));
-    let current = materials.iter().find(|m| worn == Worn::Same(Some(m.id)));
+fn picker(ui: &mut Ui, edit: &mut MultiEdit<'_>, common: CommonMaterial) {
+    let materials = edit.session().document.scene().materials().to_vec();
+    let of_mesh = matches!(edit.active().kind, NodeKind::Mesh(_));
+    let current = materials.iter().find(|m| common == CommonMaterial::Same(Some(m.id)));
     let mut chosen = None;
     let mut new = false;
-    let widget = fields::row(ui, "Wears", "Materials are shared: a change shows on everything that wears it", |ui| {
-        let shown = match (worn, current) {
-            (_, Some(material)) => material.name.as_str(),
-            (Worn::Mixed, None) => MIXED,
-            (Worn::Same(_), None) => "From the file",
-        };
-        let combo = egui::ComboBox::from_id_salt("material").selected_text(shown).width(ui.available_width() - 28.0);
-        let combo = combo.height(fields::list_room(ui.ctx()));
-        let response = combo.truncate().show_ui(ui, |ui| {
-            if of_mesh && ui.selectable_label(worn == Worn::Same(None), "From the file").clicked() {
-                chosen = Some(None);
-            }
-            for material in &materials {
-                if swatch_label(ui, material, worn == Worn::Same(Some(material.id))).clicked() {
-                    chosen = Some(Some(material.id));
+    let widget =
+        widgets::row(ui, "Material", "Materials are shared: a change shows on everything that uses it", |ui| {
+            let shown = match (common, current) {
+                (_, Some(material)) => material.name.as_str(),
+                (CommonMaterial::Mixed, None) => MIXED,
+                (CommonMaterial::Same(_), None) => "From the file",
+            };
+            let combo =
+                egui::ComboBox::from_id_salt("material").selected_text(shown).width(ui.available_width() - 28.0);
+            let combo = combo.height(widgets::list_room(ui.ctx()));
+            let response = combo.truncate().show_ui(ui, |ui| {
+                if of_mesh && ui.selectable_label(common == CommonMaterial::Same(None), "From the file").clicked() {
+                    chosen = Some(None);
                 }
-            }
+                for material in &materials {
+                    if swatch_label(ui, material, common == CommonMaterial::Same(Some(material.id))).clicked() {
+                        chosen = Some(Some(material.id));
+                    }
+                }
+            });
+            ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("Material"));
+            let (icon, text) = match current {
+                Some(_) => (ICON_CONTENT_COPY, "A copy of this material, for the selection alone"),
+                None => (ICON_ADD, "A new material"),
+            };
+            new = widgets::icon_button(ui, icon, text, theme::WEAK).clicked();
+            response.response.id
         });
-        ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label("Material"));
-        let (icon, text) = match current {
-            Some(_) => (ICON_CONTENT_COPY, "A copy of this material, for the selection alone"),
-            None => (ICON_ADD, "A new material"),
-        };
-        new = fields::icon_button(ui, icon, text, theme::WEAK).clicked();
-        response.response.id
-    });
     if let Some(id) = chosen {
-        sheet.change(widget, |node| wear(node, id));
+        edit.change(widget, |node| set_material(node, id));
     }
     if new {
-        let id = sheet.bench().document.scene().next_material_id();
+        let id = edit.session().document.scene().next_material_id();
         let material = match current {
             Some(m) => Material { id, name: format!("{} copy", m.name), ..Material::clone(m) },
             None => Material::new(id, "New material", [0.6; 3]),
         };
-        sheet.bench().apply_by(widget, Edit::InsertMaterial(material));
-        sheet.change(widget, |node| wear(node, Some(id)));
+        edit.session().apply_by(widget, Edit::InsertMaterial(material));
+        edit.change(widget, |node| set_material(node, Some(id)));
     }
 }
 
 /// Most letters of a material's name in the list.
 const MOST_LETTERS: usize = 32;
 
-/// An entry of the list with the material's colour in front.
+/// An entry of the list with the material's color in front.
 fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Response {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
         ui.painter().rect_filled(rect, 3.0, display_color(material.albedo));
-        let short = fields::elided(&material.name, MOST_LETTERS);
+        let short = widgets::elided(&material.name, MOST_LETTERS);
         let label = ui.selectable_label(selected, &short);
         ui.ctx().accesskit_node_builder(label.id, |node| node.set_label(material.name.clone()));
         if short == material.name { label } else { label.on_hover_text(&material.name) }
@@ -120,63 +122,63 @@ fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Respo
     .inner
 }
 
-/// A linear colour as the screen shows it.
+/// A linear color as the screen shows it.
 pub fn display_color(linear: [f64; 3]) -> Color32 {
     let [r, g, b] = linear.map(|v| v.clamp(0.0, 1.0) as f32);
     Rgba::from_rgb(r, g, b).into()
 }
 
-fn editor(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
+fn editor(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     let mut name = material.name.clone();
-    let response = fields::row(ui, "Name", "", |ui| {
+    let response = widgets::row(ui, "Name", "", |ui| {
         ui.add(TextEdit::singleline(&mut name).char_limit(MAX_NAME).desired_width(ui.available_width()))
     });
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Material name"));
     if response.changed() {
-        sheet.bench().change_material(response.id, Material { name, ..material.clone() });
+        edit.session().change_material(response.id, Material { name, ..material.clone() });
     }
-    color(ui, sheet, ("Colour", "Diffuse reflectance"), material, |m| &mut m.albedo);
-    number(ui, sheet, ("Highlight", "Strength of the highlight; 0 is matt"), (UNIT, 0.25), material, |m| {
+    color(ui, edit, ("Base color", "Diffuse reflectance"), material, |m| &mut m.albedo);
+    number(ui, edit, ("Specular", "Strength of the highlight; 0 is matte"), (UNIT, 0.25), material, |m| {
         &mut m.specular
     });
-    roughness(ui, sheet, material);
-    color(ui, sheet, ("Glow", "Light that it emits"), material, |m| &mut m.emission);
+    roughness(ui, edit, material);
+    color(ui, edit, ("Emission", "Light that it emits"), material, |m| &mut m.emission);
     let strength = material.emission.iter().copied().fold(0.0, f64::max);
     if strength > 0.0 {
-        glow_strength(ui, sheet, material, strength);
+        emission_strength(ui, edit, material, strength);
     }
 }
 
-type Part<T> = fn(&mut Material) -> &mut T;
+type ParamAccess<T> = fn(&mut Material) -> &mut T;
 
-fn color(ui: &mut Ui, sheet: &mut Sheet<'_>, text: (&str, &str), material: &Material, part: Part<[f64; 3]>) {
+fn color(ui: &mut Ui, edit: &mut MultiEdit<'_>, text: (&str, &str), material: &Material, part: ParamAccess<[f64; 3]>) {
     let mut edited = material.clone();
     let value = *part(&mut edited);
-    let (widget, changed) = fields::row(ui, text.0, text.1, |ui| fields::color(ui, text.0, value, false));
+    let (widget, changed) = widgets::row(ui, text.0, text.1, |ui| widgets::color(ui, text.0, value, false));
     if let Some(value) = changed {
         *part(&mut edited) = value;
-        sheet.bench().change_material(widget, edited);
+        edit.session().change_material(widget, edited);
     }
 }
 
 fn number(
     ui: &mut Ui,
-    sheet: &mut Sheet<'_>,
+    edit: &mut MultiEdit<'_>,
     (label, help): (&str, &str),
     (limits, default): (Limits, f64),
     material: &Material,
-    part: Part<f64>,
+    part: ParamAccess<f64>,
 ) {
     let mut edited = material.clone();
     let value = *part(&mut edited);
-    let field = Field { label, help, limits, default: Some(default), taken_as: None };
-    let answer = fields::row(ui, label, help, |ui| {
+    let field = NumberField { label, help, limits, default: Some(default), taken_as: None };
+    let answer = widgets::row(ui, label, help, |ui| {
         let width = ui.available_width();
         numbers::number(ui, &field, label, value, false, width)
     });
     if let Some(value) = answer.value {
         *part(&mut edited) = value;
-        sheet.bench().change_material(answer.widget, edited);
+        edit.session().change_material(answer.widget, edited);
     }
 }
 
@@ -191,32 +193,32 @@ fn shininess_of(roughness: f64) -> f64 {
     (2.0 / roughness.powi(4) - 2.0).clamp(SHININESS.hard[0], SHININESS.hard[1])
 }
 
-fn roughness(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material) {
+fn roughness(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     let (label, help) = ("Roughness", "Small is a small, sharp highlight");
     let range = [roughness_of(SHININESS.hard[1]), roughness_of(SHININESS.hard[0])];
     let limits = Limits { soft: range, hard: range, unit: "" };
-    let field = Field { label, help, limits, default: Some(roughness_of(48.0)), taken_as: None };
-    let answer = fields::row(ui, label, help, |ui| {
+    let field = NumberField { label, help, limits, default: Some(roughness_of(48.0)), taken_as: None };
+    let answer = widgets::row(ui, label, help, |ui| {
         let width = ui.available_width();
         numbers::number(ui, &field, label, roughness_of(material.shininess), false, width)
     });
     if let Some(roughness) = answer.value {
         let shininess = shininess_of(roughness);
-        sheet.bench().change_material(answer.widget, Material { shininess, ..material.clone() });
+        edit.session().change_material(answer.widget, Material { shininess, ..material.clone() });
     }
 }
 
-/// Emission beyond 1 cannot be picked as a colour: its brightest channel is a number of its own.
-fn glow_strength(ui: &mut Ui, sheet: &mut Sheet<'_>, material: &Material, strength: f64) {
-    let (label, help) = ("Glow strength", "Its brightest channel");
-    let field = Field { label, help, limits: INTENSITY, default: None, taken_as: None };
-    let answer = fields::row(ui, field.label, field.help, |ui| {
+/// Emission beyond 1 cannot be picked as a color: its brightest channel is a number of its own.
+fn emission_strength(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material, strength: f64) {
+    let (label, help) = ("Emission strength", "Its brightest channel");
+    let field = NumberField { label, help, limits: INTENSITY, default: None, taken_as: None };
+    let answer = widgets::row(ui, field.label, field.help, |ui| {
         let width = ui.available_width();
         numbers::number(ui, &field, field.label, strength, false, width)
     });
     if let Some(new) = answer.value {
         let emission = material.emission.map(|v| v * new / strength);
-        sheet.bench().change_material(answer.widget, Material { emission, ..material.clone() });
+        edit.session().change_material(answer.widget, Material { emission, ..material.clone() });
     }
 }
 

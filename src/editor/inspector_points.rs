@@ -2,8 +2,8 @@
 
 use egui::{RichText, ScrollArea, Ui, vec2};
 
-use super::numbers::{self, Field};
-use super::sheet::Sheet;
+use super::multi_edit::MultiEdit;
+use super::numbers::{self, NumberField};
 use super::theme;
 use crate::scene::{List, Node, Param};
 
@@ -14,7 +14,7 @@ const NUMBER_WIDTH: f32 = 30.0;
 
 /// What is done to a row.
 #[derive(Clone, Copy)]
-enum Change {
+enum PointChange {
     Set(usize, f64),
     Insert,
     Remove,
@@ -25,15 +25,15 @@ enum Change {
 /// The points that a parameter holds. The button in front of a row adds, removes and moves.
 pub fn list(
     ui: &mut Ui,
-    sheet: &mut Sheet<'_>,
+    edit: &mut MultiEdit<'_>,
     (label, param): (&str, &Param),
     get: impl Fn(&Node) -> Option<List>,
     set: impl Fn(&mut Node, List),
 ) {
-    let Some(shown) = get(sheet.active()) else { return };
-    if sheet.common(&get).is_none() {
-        super::fields::row(ui, label, param.help, |ui| {
-            ui.label(super::fields::MIXED).on_hover_text("Different points: choose one node to edit its own");
+    let Some(shown) = get(edit.active()) else { return };
+    if edit.common(&get).is_none() {
+        super::widgets::row(ui, label, param.help, |ui| {
+            ui.label(super::widgets::MIXED).on_hover_text("Different points: choose one node to edit its own");
         });
         return;
     }
@@ -50,7 +50,7 @@ pub fn list(
         }
     });
     if let Some((widget, index, change)) = done {
-        sheet.change(widget, |node| {
+        edit.change(widget, |node| {
             if let Some(mut list) = get(node).filter(|list| index < list.rows.len()) {
                 apply(&mut list, index, change);
                 set(node, list);
@@ -59,7 +59,7 @@ pub fn list(
     }
 }
 
-fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::Id, Change)> {
+fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::Id, PointChange)> {
     let mut done = None;
     ui.horizontal(|ui| {
         let gap = 4.0;
@@ -70,10 +70,10 @@ fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::I
         let button = egui::Button::new(format!("{}", index + 1)).min_size(vec2(NUMBER_WIDTH, theme::ROW_HEIGHT));
         let response = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| {
             let choices = [
-                ("Add behind", Change::Insert, list.rows.len() < list.count[1]),
-                ("Remove", Change::Remove, list.rows.len() > list.count[0]),
-                ("Move up", Change::Up, index > 0),
-                ("Move down", Change::Down, index + 1 < list.rows.len()),
+                ("Add behind", PointChange::Insert, list.rows.len() < list.count[1]),
+                ("Remove", PointChange::Remove, list.rows.len() > list.count[0]),
+                ("Move up", PointChange::Up, index > 0),
+                ("Move down", PointChange::Down, index + 1 < list.rows.len()),
             ];
             for (text, change, allowed) in choices {
                 let entry = ui.add_enabled(allowed, egui::Button::new(text));
@@ -89,23 +89,23 @@ fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::I
             let label = format!("{name} {title}");
             // The unit would take the room of the number.
             let limits = crate::scene::Limits { unit: "", ..list.limits(column, &param.limits) };
-            let field = Field { label: &label, help: title, limits, default: None, taken_as: None };
+            let field = NumberField { label: &label, help: title, limits, default: None, taken_as: None };
             let answer = numbers::number(ui, &field, &label, list.rows[index][column], false, width);
             if let Some(value) = answer.value {
-                done = Some((answer.widget, Change::Set(column, value)));
+                done = Some((answer.widget, PointChange::Set(column, value)));
             }
         }
     });
     done
 }
 
-fn apply(list: &mut List, index: usize, change: Change) {
+fn apply(list: &mut List, index: usize, change: PointChange) {
     match change {
-        Change::Set(column, value) => list.rows[index][column] = value,
-        Change::Remove if list.rows.len() > list.count[0] => drop(list.rows.remove(index)),
-        Change::Up if index > 0 => list.rows.swap(index, index - 1),
-        Change::Down if index + 1 < list.rows.len() => list.rows.swap(index, index + 1),
-        Change::Insert if list.rows.len() < list.count[1] => {
+        PointChange::Set(column, value) => list.rows[index][column] = value,
+        PointChange::Remove if list.rows.len() > list.count[0] => drop(list.rows.remove(index)),
+        PointChange::Up if index > 0 => list.rows.swap(index, index - 1),
+        PointChange::Down if index + 1 < list.rows.len() => list.rows.swap(index, index + 1),
+        PointChange::Insert if list.rows.len() < list.count[1] => {
             // Half-way to the next point, or as far beyond the last one as it is from the one before it.
             let here = list.rows[index];
             let other = list.rows.get(index + 1).or(list.rows.get(index.wrapping_sub(1))).copied().unwrap_or(here);
@@ -114,7 +114,7 @@ fn apply(list: &mut List, index: usize, change: Change) {
             new[3] = new[3].max(0.0);
             list.rows.insert(index + 1, new);
         }
-        Change::Remove | Change::Up | Change::Down | Change::Insert => {}
+        PointChange::Remove | PointChange::Up | PointChange::Down | PointChange::Insert => {}
     }
 }
 
@@ -135,14 +135,14 @@ mod tests {
             apply(&mut list, index, change);
             firsts(&list)
         };
-        assert_eq!(after(3, 0, Change::Insert), [0.0, 0.5, 1.0, 2.0]);
-        assert_eq!(after(3, 2, Change::Insert), [0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(after(4, 2, Change::Insert), [0.0, 1.0, 2.0, 3.0]);
-        assert_eq!(after(3, 1, Change::Remove), [0.0, 2.0]);
-        assert_eq!(after(2, 1, Change::Remove), [0.0, 1.0]);
-        assert_eq!(after(3, 1, Change::Up), [1.0, 0.0, 2.0]);
-        assert_eq!(after(3, 1, Change::Down), [0.0, 2.0, 1.0]);
-        assert_eq!(after(3, 0, Change::Up), [0.0, 1.0, 2.0]);
-        assert_eq!(after(3, 1, Change::Set(0, 7.0)), [0.0, 7.0, 2.0]);
+        assert_eq!(after(3, 0, PointChange::Insert), [0.0, 0.5, 1.0, 2.0]);
+        assert_eq!(after(3, 2, PointChange::Insert), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(after(4, 2, PointChange::Insert), [0.0, 1.0, 2.0, 3.0]);
+        assert_eq!(after(3, 1, PointChange::Remove), [0.0, 2.0]);
+        assert_eq!(after(2, 1, PointChange::Remove), [0.0, 1.0]);
+        assert_eq!(after(3, 1, PointChange::Up), [1.0, 0.0, 2.0]);
+        assert_eq!(after(3, 1, PointChange::Down), [0.0, 2.0, 1.0]);
+        assert_eq!(after(3, 0, PointChange::Up), [0.0, 1.0, 2.0]);
+        assert_eq!(after(3, 1, PointChange::Set(0, 7.0)), [0.0, 7.0, 2.0]);
     }
 }

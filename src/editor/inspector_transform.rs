@@ -4,27 +4,27 @@
 use egui::{Id, Ui};
 use glam::{DQuat, DVec3, EulerRot};
 
-use super::fields;
-use super::numbers::{self, Answer, Field};
-use super::sheet::Sheet;
+use super::multi_edit::MultiEdit;
+use super::numbers::{self, FieldResponse, NumberField};
+use super::widgets;
 use crate::scene::limits::{POSITION, SCALE};
 use crate::scene::{Limits, Node, NodeKind};
 
-const POSITION_FIELD: Field<'_> = Field {
+const POSITION_FIELD: NumberField<'_> = NumberField {
     label: "Position",
-    help: "Where the node stands in its group, in metres",
+    help: "Where the node stands in its group, in meters",
     limits: POSITION,
     default: Some(0.0),
     taken_as: None,
 };
-const ROTATION_FIELD: Field<'_> = Field {
+const ROTATION_FIELD: NumberField<'_> = NumberField {
     label: "Rotation",
     help: "Degrees: Y turns like a compass, then X tilts, then Z rolls",
     limits: Limits { soft: [-180.0, 180.0], hard: [-36_000.0, 36_000.0], unit: "°" },
     default: Some(0.0),
     taken_as: None,
 };
-const SCALE_FIELD: Field<'_> = Field {
+const SCALE_FIELD: NumberField<'_> = NumberField {
     label: "Scale",
     help: "Factor along each local axis; negative mirrors, zero is refused",
     limits: Limits { soft: SCALE.soft, hard: [-SCALE.hard[1], SCALE.hard[1]], unit: "" },
@@ -41,31 +41,31 @@ pub struct EulerMemory {
 
 impl EulerMemory {
     /// The card.
-    pub fn show(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
-        fields::card(ui, "Transform", |ui| {
-            sheet.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
-            self.rotation_row(ui, sheet);
+    pub fn show(&mut self, ui: &mut Ui, edit: &mut MultiEdit<'_>) {
+        widgets::card(ui, "Transform", |ui| {
+            edit.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
+            self.rotation_row(ui, edit);
             let scalable = |n: &Node| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_));
-            sheet.vector(ui, &SCALE_FIELD, |n| scalable(n).then_some(n.transform.scale), |n, v| n.transform.scale = v);
+            edit.vector(ui, &SCALE_FIELD, |n| scalable(n).then_some(n.transform.scale), |n, v| n.transform.scale = v);
         });
     }
 
-    fn rotation_row(&mut self, ui: &mut Ui, sheet: &mut Sheet<'_>) {
-        let shown = self.degrees(sheet.active().transform.rotation);
-        let mixed = [0, 1, 2].map(|axis| sheet.common(|n| self.degrees(n.transform.rotation)[axis]).is_none());
-        let changed = fields::row(ui, ROTATION_FIELD.label, ROTATION_FIELD.help, |ui| {
+    fn rotation_row(&mut self, ui: &mut Ui, edit: &mut MultiEdit<'_>) {
+        let shown = self.degrees(edit.active().transform.rotation);
+        let mixed = [0, 1, 2].map(|axis| edit.common(|n| self.degrees(n.transform.rotation)[axis]).is_none());
+        let changed = widgets::row(ui, ROTATION_FIELD.label, ROTATION_FIELD.help, |ui| {
             numbers::vector(ui, &ROTATION_FIELD, shown.to_array(), mixed)
         });
-        let Some((axis, Answer { widget, value: Some(value) })) = changed else { return };
-        self.turn(sheet, widget, axis, value);
+        let Some((axis, FieldResponse { widget, value: Some(value) })) = changed else { return };
+        self.turn(edit, widget, axis, value);
     }
 
     /// Sets one angle in every node, leaving their other angles.
-    fn turn(&mut self, sheet: &mut Sheet<'_>, widget: Id, axis: usize, value: f64) {
-        let mut degrees = self.degrees(sheet.active().transform.rotation);
+    fn turn(&mut self, edit: &mut MultiEdit<'_>, widget: Id, axis: usize, value: f64) {
+        let mut degrees = self.degrees(edit.active().transform.rotation);
         degrees[axis] = value;
-        let (active, rotation) = (sheet.active().id, to_quaternion(degrees));
-        sheet.change(widget, |node| {
+        let (active, rotation) = (edit.active().id, to_quaternion(degrees));
+        edit.change(widget, |node| {
             node.transform.rotation = if node.id == active {
                 rotation
             } else {

@@ -1,21 +1,21 @@
-//! The corner of the viewport that explains the colours of a look.
+//! The corner of the viewport that explains the colors of a view mode.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, pos2, vec2};
 use glam::Vec3;
 
 use super::theme;
-use crate::flat::inspect::{Legend, Look, Span};
+use crate::flat::debug_view::{DepthRange, Legend, ViewMode};
 
 /// From the viewport's corner, and from the legend's border to what is in it, in points.
 const MARGIN: f32 = 12.0;
-/// Width of the colour bar, in points.
+/// Width of the color bar, in points.
 const BAR_WIDTH: f32 = 250.0;
 const BAR_HEIGHT: f32 = 12.0;
 const LINE: f32 = 18.0;
 
-/// Paints the legend of `look` into the lower left corner of `rect`; nothing for the lit picture.
-pub fn paint(painter: &Painter, rect: Rect, look: Look, span: &Span) {
-    let legend = look.legend(span);
+/// Paints the legend of `view_mode` into the lower left corner of `rect`; nothing for the lit picture.
+pub fn paint(painter: &Painter, rect: Rect, view_mode: ViewMode, depth_range: &DepthRange) {
+    let legend = view_mode.legend(depth_range);
     if legend.unit.is_empty() {
         return;
     }
@@ -25,7 +25,7 @@ pub fn paint(painter: &Painter, rect: Rect, look: Look, span: &Span) {
     let card = Rect::from_min_size(rect.left_bottom() + vec2(MARGIN, -MARGIN - size.y), size);
     painter.rect_filled(card, CornerRadius::same(8), Color32::from_rgba_unmultiplied(20, 22, 26, 225));
     let mut at = card.min + vec2(MARGIN + 4.0, MARGIN - 2.0);
-    let title = capitalised(look.name());
+    let title = capitalized(view_mode.name());
     painter.text(at, Align2::LEFT_TOP, title, FontId::proportional(14.0), theme::TEXT);
     at.y += LINE + 1.0;
     painter.text(at, Align2::LEFT_TOP, &legend.unit, FontId::proportional(12.0), theme::WEAK);
@@ -38,7 +38,7 @@ pub fn paint(painter: &Painter, rect: Rect, look: Look, span: &Span) {
 }
 
 /// The name as a title.
-pub fn capitalised(name: &str) -> String {
+pub fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

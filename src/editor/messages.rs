@@ -21,7 +21,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Its colour.
+    /// Its color.
     pub fn color(self) -> egui::Color32 {
         match self {
             Self::Info => theme::ACCENT,
@@ -31,7 +31,7 @@ impl Severity {
         }
     }
 
-    /// Its icon, coloured.
+    /// Its icon, colored.
     pub fn icon(self) -> RichText {
         let icon = match self {
             Self::Info => ICON_INFO,
@@ -83,7 +83,7 @@ impl Message {
     }
 }
 
-struct Entry {
+struct LogEntry {
     message: Message,
     count: u32,
     /// When its toast goes, in seconds of the program's clock; `None` until it is first shown.
@@ -94,7 +94,7 @@ struct Entry {
 /// The last messages, newest last.
 #[derive(Default)]
 pub struct Messages {
-    entries: VecDeque<Entry>,
+    entries: VecDeque<LogEntry>,
     /// Whether the log is open.
     pub show_log: bool,
 }
@@ -111,7 +111,7 @@ impl Messages {
             last.dismissed = false;
             return;
         }
-        self.entries.push_back(Entry { message, count: 1, until: None, dismissed: false });
+        self.entries.push_back(LogEntry { message, count: 1, until: None, dismissed: false });
         if self.entries.len() > Self::KEPT {
             self.entries.pop_front();
         }
@@ -144,9 +144,9 @@ impl Messages {
     /// The window with all messages.
     pub fn show_log(&mut self, ctx: &Context) {
         let mut open = self.show_log;
-        egui::Window::new("Messages").open(&mut open).default_size([460.0, 260.0]).show(ctx, |ui| {
+        egui::Window::new("Log").open(&mut open).default_size([460.0, 260.0]).show(ctx, |ui| {
             if self.entries.is_empty() {
-                ui.label(RichText::new("Nothing has happened yet.").color(theme::WEAK));
+                ui.label(RichText::new("No messages").color(theme::WEAK));
             }
             egui::ScrollArea::vertical().stick_to_bottom(true).auto_shrink(false).show(ui, |ui| {
                 for entry in &self.entries {
@@ -161,13 +161,13 @@ impl Messages {
     }
 }
 
-impl Entry {
+impl LogEntry {
     fn text(&self) -> String {
         if self.count > 1 { format!("{} ({}×)", self.message.text, self.count) } else { self.message.text.clone() }
     }
 }
 
-fn toast(ui: &mut egui::Ui, entry: &mut Entry) {
+fn toast(ui: &mut egui::Ui, entry: &mut LogEntry) {
     let color = entry.message.severity.color();
     let frame = Frame::popup(ui.style()).inner_margin(10.0).stroke((1.0, color.gamma_multiply(0.5)));
     frame.show(ui, |ui| {

@@ -1,36 +1,39 @@
 //! The editor: what the artist sees and does. Names egui only; the picture comes from outside as a
-//! texture, and what it should show goes out as a [`View`] and a [`FlatScene`].
+//! texture, and what it should show goes out as a [`ViewSettings`] and a [`FlatScene`].
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `workbench` | the document with gestures (one drag, one undo step) and messages |
-//! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, palette |
+//! | `edit_session` | the document with gestures (one drag, one undo step) and messages |
+//! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, command palette |
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
-//! | `sheet`, `fields`, `numbers`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
+//! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
 //! | `navigation`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
-//! | `legend` | what the colours of a picture mean that is not lit |
-//! | `dialogs`, `dialog_views`, `portal`, `palette`, `messages` | what comes up in front |
+//! | `legend` | what the colors of a picture mean that is not lit |
+//! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | what comes up in front |
 //! | `input_order` | events in the order in which they came, however slow the frames are |
-//! | `reading` | files that nodes keep, read beside the frames |
+//! | `file_jobs` | files that nodes keep, read beside the frames |
 //! | `recovery` | unsaved work, kept beside the frames and offered again |
 //! | `conflict` | a file that another program has changed |
 //! | `flattening` | the document as arrays, made beside the frames where that takes long |
 
 mod bounds;
 mod color_picker;
+mod command_palette;
 mod commands;
 mod conflict;
 mod dialog_views;
 mod dialogs;
+mod edit_session;
 mod expression;
-mod fields;
+mod file_jobs;
 mod flattening;
+mod framing;
 mod gizmo;
-mod glyphs;
+mod icons;
 mod input_order;
 mod insertion;
 mod inspector;
-mod inspector_joints;
+mod inspector_blends;
 mod inspector_kinds;
 mod inspector_material;
 mod inspector_modifiers;
@@ -40,25 +43,22 @@ mod inspector_transform;
 mod legend;
 mod messages;
 mod models;
+mod multi_edit;
 mod navigation;
 mod numbers;
 mod outliner;
 mod overlay;
-mod palette;
 mod picking;
 mod portal;
-mod reading;
 mod recovery;
 mod selection;
 mod shape_change;
-mod sheet;
-mod silhouettes;
+mod shape_icons;
 mod status;
 mod theme;
 mod toolbar;
-mod viewing;
 mod viewport;
-mod workbench;
+mod widgets;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -71,11 +71,11 @@ pub use navigation::{Navigation, Side};
 
 use crate::document::{Document, RecentFiles};
 use crate::flat::FlatScene;
-use crate::flat::inspect::Look;
+use crate::flat::debug_view::ViewMode;
 use crate::geometry::Camera;
 use crate::mesh::MeshLibrary;
 use crate::scene::{Light, Node, NodeKind, Scene};
-use workbench::Workbench;
+use edit_session::EditSession;
 
 /// Most characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
@@ -95,7 +95,7 @@ pub struct Picture {
 
 /// What the renderer should make.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct View {
+pub struct ViewSettings {
     /// From where.
     pub camera: Camera,
     /// Size of the viewport in pixels; at least 1 × 1.
@@ -107,7 +107,7 @@ pub struct View {
     /// Whether the selection is to be marked.
     pub show_outline: bool,
     /// What the picture is to show.
-    pub look: Look,
+    pub view_mode: ViewMode,
 }
 
 /// An example that the File menu offers.
@@ -122,7 +122,7 @@ pub struct Example {
 
 /// The editor.
 pub struct Editor {
-    bench: Workbench,
+    session: EditSession,
     flat: flattening::Flattened,
     meshes: MeshLibrary,
     models: models::Models,
@@ -130,18 +130,18 @@ pub struct Editor {
     viewport: viewport::Viewport,
     outliner: outliner::Outliner,
     inspector: inspector::Inspector,
-    palette: palette::Palette,
+    command_palette: command_palette::CommandPalette,
     dialogs: dialogs::Dialogs,
     recent: RecentFiles,
     examples: Vec<Example>,
     /// Files that nodes are to keep, on their way.
-    readings: Vec<reading::Reading>,
+    file_jobs: Vec<file_jobs::FileJob>,
     /// Keeps what is not saved; none where nothing is to be kept.
     safekeeping: Option<recovery::Safekeeping>,
     conflict: conflict::Conflict,
     show_grid: bool,
     show_outline: bool,
-    look: Look,
+    view_mode: ViewMode,
     shown_title: String,
     /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
     typing: bool,
@@ -153,7 +153,7 @@ impl Editor {
     /// An editor for the document.
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
-            bench: Workbench::new(Document::new(Scene::new())),
+            session: EditSession::new(Document::new(Scene::new())),
             flat: flattening::Flattened::default(),
             meshes: MeshLibrary::new(None),
             models: models::Models::default(),
@@ -161,16 +161,16 @@ impl Editor {
             viewport: viewport::Viewport::default(),
             outliner: outliner::Outliner::default(),
             inspector: inspector::Inspector::default(),
-            palette: palette::Palette::default(),
+            command_palette: command_palette::CommandPalette::default(),
             dialogs: dialogs::Dialogs::default(),
             recent: RecentFiles::default(),
             examples: Vec::new(),
-            readings: Vec::new(),
+            file_jobs: Vec::new(),
             safekeeping: None,
             conflict: conflict::Conflict::default(),
             show_grid: true,
             show_outline: true,
-            look: Look::Shaded,
+            view_mode: ViewMode::Shaded,
             shown_title: String::new(),
             typing: false,
             pending: None,
@@ -179,7 +179,7 @@ impl Editor {
         editor
     }
 
-    /// Installs fonts and the look. Once, before the first frame.
+    /// Installs fonts and the theme. Once, before the first frame.
     pub fn setup(ctx: &Context) {
         theme::install(ctx);
         ctx.add_plugin(input_order::InputOrder::default());
@@ -202,35 +202,35 @@ impl Editor {
         self.dialogs.in_window = true;
     }
 
-    /// Shows everything and takes the input of one frame. Afterwards [`Editor::flat`] and
+    /// Shows everything and takes the input of one frame. Afterward [`Editor::flat`] and
     /// [`Editor::view`] are those of this frame: a dragged value is in them already.
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.poll_dialogs(&ctx);
         self.guard_closing(&ctx);
         self.open_dropped(&ctx);
-        if self.bench.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
-            self.bench.cancel();
+        if self.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
+            self.session.cancel();
         }
         commands::run_shortcuts(self, &ctx);
         self.show_panels(ui, picture);
         if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
         }
-        self.poll_readings(&ctx);
+        self.poll_file_jobs(&ctx);
         self.show_dialogs(&ctx);
         self.show_conflict(&ctx);
         self.show_recovery(&ctx);
-        palette::show(self, &ctx);
+        command_palette::show(self, &ctx);
         let corner = self.viewport.rect();
-        self.bench.messages.show_toasts(&ctx, corner);
-        if self.bench.messages.show_log {
-            self.bench.messages.show_log(&ctx);
+        self.session.messages.show_toasts(&ctx, corner);
+        if self.session.messages.show_log {
+            self.session.messages.show_log(&ctx);
         }
         if let Some(command) = self.pending.take() {
             command.run(self, &ctx);
         }
-        self.bench.settle(&ctx);
+        self.session.settle(&ctx);
         self.refresh_flat();
         self.poll_models(&ctx);
         self.is_flattening(&ctx);
@@ -247,37 +247,37 @@ impl Editor {
         let narrow = Frame::new().fill(theme::BAR).inner_margin(Margin::symmetric(10, 3));
         Panel::bottom("status").frame(narrow).show(ui, |ui| status::show(self, ui, picture));
         Panel::left("outliner").frame(side).default_size(240.0).size_range(160.0..=520.0).show(ui, |ui| {
-            let chosen = fields::fixed(ui, |ui| self.outliner.show(ui, &mut self.bench));
+            let chosen = widgets::fixed(ui, |ui| self.outliner.show(ui, &mut self.session));
             for command in chosen {
                 command.run(self, &ui.ctx().clone());
             }
         });
         Panel::right("inspector").frame(side).default_size(300.0).size_range(240.0..=520.0).show(ui, |ui| {
-            fields::fixed(ui, |ui| self.inspector.show(ui, &mut self.bench));
+            widgets::fixed(ui, |ui| self.inspector.show(ui, &mut self.session));
         });
         CentralPanel::default().frame(Frame::new().fill(theme::LINE)).show(ui, |ui| viewport::show(self, ui, picture));
     }
 
     /// What the renderer should show.
-    pub fn view(&self) -> View {
-        View {
+    pub fn view(&self) -> ViewSettings {
+        ViewSettings {
             camera: self.navigation.camera(),
             size_px: self.viewport.size_px(),
-            navigating: self.viewport.is_navigating() || self.bench.is_changing(),
+            navigating: self.viewport.is_navigating() || self.session.is_changing(),
             show_grid: self.show_grid,
             show_outline: self.show_outline,
-            look: self.look,
+            view_mode: self.view_mode,
         }
     }
 
     /// The document.
     pub fn document(&self) -> &Document {
-        &self.bench.document
+        &self.session.document
     }
 
     /// The document, for changes from outside the panels.
     pub fn document_mut(&mut self) -> &mut Document {
-        &mut self.bench.document
+        &mut self.session.document
     }
 
     /// The document as arrays; the last good ones where the document is beyond a limit.
@@ -297,17 +297,17 @@ impl Editor {
 
     /// Tells the artist something.
     pub fn report(&mut self, message: Message) {
-        self.bench.messages.push(message);
+        self.session.messages.push(message);
     }
 
     /// The messages so far, oldest first.
     pub fn messages(&self) -> impl DoubleEndedIterator<Item = &Message> {
-        self.bench.messages.iter()
+        self.session.messages.iter()
     }
 
     /// The window's title.
     pub fn title(&self) -> String {
-        format!("{} – Isolith", fields::elided(&self.bench.document.title(), MOST_TITLE))
+        format!("{} – Isolith", widgets::elided(&self.session.document.title(), MOST_TITLE))
     }
 
     /// Whether the artist has agreed to close the window: nothing is left to save.
@@ -317,15 +317,15 @@ impl Editor {
 
     /// Whether a question waits for its answer.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.palette.is_open() || self.conflict.is_open() || self.is_offering()
+        self.dialogs.is_open() || self.command_palette.is_open() || self.conflict.is_open() || self.is_offering()
     }
 
     fn replace_document(&mut self, document: Document) {
-        self.bench.finish();
-        self.readings.clear();
+        self.session.finish();
+        self.file_jobs.clear();
         self.forget_kept();
         self.meshes.set_folder(document.path().and_then(folder_of));
-        self.bench.document = document;
+        self.session.document = document;
         self.outliner = outliner::Outliner::default();
         self.flat.reset();
         self.refresh_flat();
@@ -347,8 +347,8 @@ impl Editor {
     }
 
     fn rename_active(&mut self) {
-        if let Some(&id) = self.bench.document.selection().last() {
-            self.outliner.start_rename(self.bench.document.scene(), id);
+        if let Some(&id) = self.session.document.selection().last() {
+            self.outliner.start_rename(self.session.document.scene(), id);
         }
     }
 }

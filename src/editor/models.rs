@@ -9,7 +9,7 @@ use egui::Context;
 use super::Editor;
 use super::messages::Message;
 use crate::flat::FlatMesh;
-use crate::mesh::{Replaced, TriangleMesh, Watcher};
+use crate::mesh::{ReloadOutcome, TriangleMesh, Watcher};
 
 /// Looks after the files of the meshes.
 #[derive(Default)]
@@ -39,10 +39,10 @@ impl Editor {
         for fresh in news {
             let path = fresh.source().path().to_owned();
             let message = match self.meshes.replace(fresh) {
-                Replaced::Fresh(_) => Message::info(format!("{path} was read again")),
-                Replaced::Kept(error) => Message::error(format!("{error}. It is shown as it was before")),
-                Replaced::Broken(error) => Message::error(error.to_string()),
-                Replaced::Unwanted => continue,
+                ReloadOutcome::Fresh(_) => Message::info(format!("{path} was read again")),
+                ReloadOutcome::Kept(error) => Message::error(format!("{error}. It is shown as it was before")),
+                ReloadOutcome::Broken(error) => Message::error(error.to_string()),
+                ReloadOutcome::Unwanted => continue,
             };
             self.report(message);
         }

@@ -43,7 +43,7 @@ impl Side {
 pub struct Navigation {
     /// What it turns about.
     pub target: DVec3,
-    /// From the target to the eye, in metres.
+    /// From the target to the eye, in meters.
     pub distance: f64,
     /// World from camera.
     pub rotation: DQuat,
@@ -59,7 +59,7 @@ impl Default for Navigation {
 }
 
 impl Navigation {
-    /// Nearest and farthest distance to the target, in metres.
+    /// Nearest and farthest distance to the target, in meters.
     pub const DISTANCES: [f64; 2] = [1e-4, 1e7];
 
     /// The camera as the renderer takes it.

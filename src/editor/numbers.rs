@@ -4,13 +4,13 @@ use std::cell::RefCell;
 
 use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
 
-use super::fields::MIXED;
+use super::widgets::MIXED;
 use super::{expression, theme};
 use crate::scene::Limits;
 
 /// What stands around a number.
 #[derive(Clone, Copy)]
-pub struct Field<'a> {
+pub struct NumberField<'a> {
     /// On its left.
     pub label: &'a str,
     /// One sentence, as a tooltip.
@@ -23,7 +23,7 @@ pub struct Field<'a> {
     pub taken_as: Option<fn(f64) -> f64>,
 }
 
-impl Field<'_> {
+impl NumberField<'_> {
     /// What becomes of a number.
     fn taken(&self, value: f64) -> f64 {
         let value = if self.limits.is_whole() { value.round() } else { value };
@@ -33,8 +33,8 @@ impl Field<'_> {
     }
 }
 
-/// What a number field answers.
-pub struct Answer {
+/// What a number field returns.
+pub struct FieldResponse {
     /// Names the gesture.
     pub widget: Id,
     /// The new value, where the artist changed it.
@@ -42,19 +42,19 @@ pub struct Answer {
 }
 
 /// A number in a field of the given width. `mixed` shows a dash until it is changed.
-pub fn number(ui: &mut Ui, field: &Field<'_>, name: &str, value: f64, mixed: bool, width: f32) -> Answer {
+pub fn number(ui: &mut Ui, field: &NumberField<'_>, name: &str, value: f64, mixed: bool, width: f32) -> FieldResponse {
     prefixed_number(ui, field, name, value, mixed, width, None)
 }
 
 fn prefixed_number(
     ui: &mut Ui,
-    field: &Field<'_>,
+    field: &NumberField<'_>,
     name: &str,
     value: f64,
     mixed: bool,
     width: f32,
     axis: Option<usize>,
-) -> Answer {
+) -> FieldResponse {
     let Limits { soft, hard, unit } = field.limits;
     let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
     // A value beyond the soft range, typed before, is not thrown back by a drag.
@@ -62,9 +62,9 @@ fn prefixed_number(
     let mut edited = value;
     let typed = RefCell::new(None);
     let shown = if mixed { MIXED.to_owned() } else { number_text(value) };
-    let was_cancelled = cancelled(ui, ui.next_auto_id());
+    let was_canceled = canceled(ui, ui.next_auto_id());
     let parse = |text: &str| {
-        if was_cancelled {
+        if was_canceled {
             return None;
         }
         typed.replace(Some(text.to_owned()));
@@ -95,7 +95,8 @@ fn prefixed_number(
     }
     let is_done = response.lost_focus() && !escaped;
     let finished = typed.take().filter(|text| is_done && *text != shown);
-    let mut answer = Answer { widget: response.id, value: (response.changed() && edited != value).then_some(edited) };
+    let mut answer =
+        FieldResponse { widget: response.id, value: (response.changed() && edited != value).then_some(edited) };
     if let Some(text) = finished {
         if mixed {
             // The number may be that of the node that is shown; the others get it all the same.
@@ -120,12 +121,12 @@ const PASSES_OF_LOSS: u64 = 2;
 
 fn cancel(ui: &Ui, widget: Id) {
     let pass = ui.ctx().cumulative_pass_nr();
-    ui.data_mut(|d| d.insert_temp(widget.with("cancelled"), pass));
+    ui.data_mut(|d| d.insert_temp(widget.with("canceled"), pass));
 }
 
-fn cancelled(ui: &Ui, widget: Id) -> bool {
+fn canceled(ui: &Ui, widget: Id) -> bool {
     let pass = ui.ctx().cumulative_pass_nr();
-    ui.data(|d| d.get_temp::<u64>(widget.with("cancelled"))).is_some_and(|before| pass <= before + PASSES_OF_LOSS)
+    ui.data(|d| d.get_temp::<u64>(widget.with("canceled"))).is_some_and(|before| pass <= before + PASSES_OF_LOSS)
 }
 
 /// As many digits as say the number: none behind the point for whole ones, four for most, more for small ones.
@@ -147,7 +148,7 @@ pub fn number_text(value: f64) -> String {
 }
 
 /// Why a field does not show what was typed into it, if it does not.
-fn refusal(name: &str, typed: &str, field: &Field<'_>) -> Option<String> {
+fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
     let Limits { hard: [least, most], unit, .. } = field.limits;
     let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
     match expression::evaluate(typed) {
@@ -191,8 +192,13 @@ pub fn take_refusal(ctx: &Context) -> Option<String> {
     ctx.data_mut(|d| d.remove_temp(refused()))
 }
 
-/// Three numbers side by side, marked in the axes' colours. Answers with the axis changed.
-pub fn vector(ui: &mut Ui, field: &Field<'_>, values: [f64; 3], mixed: [bool; 3]) -> Option<(usize, Answer)> {
+/// Three numbers side by side, marked in the axes' colors. Answers with the axis changed.
+pub fn vector(
+    ui: &mut Ui,
+    field: &NumberField<'_>,
+    values: [f64; 3],
+    mixed: [bool; 3],
+) -> Option<(usize, FieldResponse)> {
     let gap = 4.0;
     let width = ((ui.available_width() - 2.0 * gap) / 3.0).floor();
     let mut changed = None;
@@ -271,8 +277,8 @@ mod tests {
 
     #[test]
     fn what_becomes_of_a_number_is_said() {
-        let field = |limits, taken_as| Field { label: "", help: "", limits, default: None, taken_as };
-        let said = |typed, field: &Field<'_>| refusal("N", typed, field);
+        let field = |limits, taken_as| NumberField { label: "", help: "", limits, default: None, taken_as };
+        let said = |typed, field: &NumberField<'_>| refusal("N", typed, field);
         assert_eq!(said("5", &field(SIDES, None)), None);
         assert_eq!(said("5.4", &field(SIDES, None)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
         assert!(said("2", &field(SIDES, None)).unwrap().contains("is less than 3"));

@@ -11,9 +11,9 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
 use super::commands::{self, CommandId};
+use super::edit_session::EditSession;
 use super::messages::Message;
-use super::workbench::Workbench;
-use super::{fields, glyphs, selection, theme};
+use super::{icons, selection, theme, widgets};
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
 use crate::scene::{Node, NodeId, NodeKind, Scene};
@@ -69,10 +69,10 @@ impl Outliner {
     }
 
     /// Shows the panel; returns the commands chosen from its context menu.
-    pub fn show(&mut self, ui: &mut Ui, bench: &mut Workbench) -> Vec<CommandId> {
+    pub fn show(&mut self, ui: &mut Ui, session: &mut EditSession) -> Vec<CommandId> {
         self.search_field(ui);
-        let scene = bench.document.snapshot();
-        let reveal = self.follow_selection(bench, &scene);
+        let scene = session.document.snapshot();
+        let reveal = self.follow_selection(session, &scene);
         let requests = RefCell::new(Vec::new());
         let mut actions = Vec::new();
         let whole = ui.available_rect_before_wrap();
@@ -89,7 +89,7 @@ impl Outliner {
             let view = TreeView::new(ui.make_persistent_id("outliner"))
                 .indent_hint_style(IndentHintStyle::Line)
                 .row_layout(RowLayout::AlignedIcons)
-                .fallback_context_menu(|ui, ids| context_menu(ui, ids, bench.document.selection(), &requests))
+                .fallback_context_menu(|ui, ids| context_menu(ui, ids, session.document.selection(), &requests))
                 .max_width(tree_width(whole.width(), &scene))
                 .default_node_height(Some(theme::ROW_HEIGHT));
             let top = ui.cursor().min;
@@ -110,9 +110,9 @@ impl Outliner {
             }
         });
         for action in actions {
-            self.act(ui, bench, &scene, action);
+            self.act(ui, session, &scene, action);
         }
-        self.answer(bench, requests.into_inner())
+        self.answer(session, requests.into_inner())
     }
 
     fn search_field(&mut self, ui: &mut Ui) {
@@ -127,7 +127,7 @@ impl Outliner {
             if response.lost_focus() && ui.input(|i| i.key_pressed(Key::Escape)) {
                 self.search.clear();
             }
-            if clear > 0.0 && fields::icon_button(ui, ICON_CLOSE, "Clear the search", theme::WEAK).clicked() {
+            if clear > 0.0 && widgets::icon_button(ui, ICON_CLOSE, "Clear the search", theme::WEAK).clicked() {
                 self.search.clear();
             }
         });
@@ -135,8 +135,8 @@ impl Outliner {
     }
 
     /// Takes over the document's selection; returns the node that must be made visible.
-    fn follow_selection(&mut self, bench: &Workbench, scene: &Scene) -> Option<NodeId> {
-        let selection = bench.document.selection();
+    fn follow_selection(&mut self, session: &EditSession, scene: &Scene) -> Option<NodeId> {
+        let selection = session.document.selection();
         let shown: HashSet<_> = self.tree.selected().iter().copied().flatten().collect();
         if shown.len() != selection.len() || selection.iter().any(|id| !shown.contains(id)) {
             self.tree.set_selected(selection.iter().copied().map(Some).collect());
@@ -171,14 +171,14 @@ impl Outliner {
         Some(found)
     }
 
-    fn act(&mut self, ui: &mut Ui, bench: &mut Workbench, scene: &Scene, action: Action<RowId>) {
+    fn act(&mut self, ui: &mut Ui, session: &mut EditSession, scene: &Scene, action: Action<RowId>) {
         match action {
             // The tree answers a Shift click on the row where the range begins with an empty selection.
             Action::SetSelected(rows) if rows.is_empty() && ui.input(|i| i.modifiers.shift) => {}
             Action::SetSelected(rows) => {
                 let ids: Vec<_> = rows.into_iter().flatten().collect();
                 self.seen.clone_from(&ids);
-                bench.document.select(ids);
+                session.document.select(ids);
             }
             Action::Activate(activate) => {
                 if let Some(id) = activate.selected.into_iter().flatten().last() {
@@ -188,7 +188,7 @@ impl Outliner {
             Action::Drag(drag) if destination(scene, &drag).is_none() => drag.remove_drop_marker(ui),
             Action::Move(drag) => {
                 let Some((ids, parent, position)) = destination(scene, &drag) else { return };
-                move_rows(bench, ids, parent, position);
+                move_rows(session, ids, parent, position);
             }
             // Beside the rows: to the end of the top level.
             Action::DragExternal(drag) if self.empty_room.contains(drag.position) => {
@@ -198,31 +198,31 @@ impl Outliner {
             Action::MoveExternal(drag) if self.empty_room.contains(drag.position) => {
                 let ids: Vec<NodeId> = drag.source.into_iter().flatten().collect();
                 let position = scene.children(None).filter(|n| !ids.contains(&n.id)).count();
-                move_rows(bench, ids, None, position);
+                move_rows(session, ids, None, position);
             }
             _ => {}
         }
     }
 
-    fn answer(&mut self, bench: &mut Workbench, requests: Vec<Request>) -> Vec<CommandId> {
+    fn answer(&mut self, session: &mut EditSession, requests: Vec<Request>) -> Vec<CommandId> {
         let mut run = Vec::new();
         for request in requests {
             match request {
                 Request::Rename(id, name) => {
                     self.rename = None;
-                    let node = bench.document.scene().node(id).map(|n| Node::clone(n));
+                    let node = session.document.scene().node(id).map(|n| Node::clone(n));
                     let Some(node) = node.filter(|n| n.name != name) else { continue };
                     if name.trim().is_empty() {
                         let text = format!("A name needs a letter, so it stays “{}”.", node.name);
-                        bench.messages.push(Message::warning(text));
+                        session.messages.push(Message::warning(text));
                     } else {
-                        bench.apply(Edit::Replace(Node { name, ..node }));
+                        session.apply(Edit::Replace(Node { name, ..node }));
                     }
                 }
                 Request::EndRename => self.rename = None,
-                Request::Visible(widget, id) => bench.change(widget, &[id], |n| n.visible = !n.visible),
-                Request::Locked(widget, id) => bench.change(widget, &[id], |n| n.locked = !n.locked),
-                Request::Select(ids) => bench.document.select(ids),
+                Request::Visible(widget, id) => session.change(widget, &[id], |n| n.visible = !n.visible),
+                Request::Locked(widget, id) => session.change(widget, &[id], |n| n.locked = !n.locked),
+                Request::Select(ids) => session.document.select(ids),
                 Request::Run(command) => run.push(command),
             }
         }
@@ -231,9 +231,9 @@ impl Outliner {
 }
 
 /// Moves nodes, unless one of them is locked.
-fn move_rows(bench: &mut Workbench, ids: Vec<NodeId>, parent: RowId, position: usize) {
-    if !ids.is_empty() && !selection::refuse_locked(bench, &ids, "moved") {
-        bench.apply(Edit::Move { ids, parent, position });
+fn move_rows(session: &mut EditSession, ids: Vec<NodeId>, parent: RowId, position: usize) {
+    if !ids.is_empty() && !selection::refuse_locked(session, &ids, "moved") {
+        session.apply(Edit::Move { ids, parent, position });
     }
 }
 
@@ -283,8 +283,8 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
         requests.borrow_mut().push(Request::Select(ids));
     }
     ui.set_min_width(210.0);
-    let room = fields::room_beside(ui.ctx());
-    if let Some(chosen) = fields::scrolling(ui, room, commands::context_entries) {
+    let room = widgets::room_beside(ui.ctx());
+    if let Some(chosen) = widgets::scrolling(ui, room, commands::context_entries) {
         requests.borrow_mut().push(Request::Run(chosen));
         ui.close();
     }
@@ -361,9 +361,9 @@ impl Rows<'_> {
         let row = row
             .activatable(true)
             .icon(|ui| {
-                let rect = glyphs::centered(ui.max_rect(), 14.0);
+                let rect = icons::centered(ui.max_rect(), 14.0);
                 let painter = ui.painter().with_clip_rect(ui.clip_rect());
-                glyphs::paint_node(&painter, rect, node);
+                icons::paint_node(&painter, rect, node);
             })
             .label_ui(|ui| match rename.as_mut().filter(|r| r.id == node.id) {
                 Some(rename) => self.name_field(ui, rename),
@@ -405,8 +405,8 @@ impl Rows<'_> {
             state.cursor.set_char_range(Some(egui::text::CCursorRange::two(egui::text::CCursor::new(0), end)));
             state.store(ui.ctx(), response.id);
         } else if response.lost_focus() {
-            let cancelled = ui.input(|i| i.key_pressed(Key::Escape));
-            let request = if cancelled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
+            let canceled = ui.input(|i| i.key_pressed(Key::Escape));
+            let request = if canceled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
             self.requests.borrow_mut().push(request);
         }
     }

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::navigation::Side;
 use super::viewport::Projection;
-use super::{Editor, bounds, glyphs, theme};
+use super::{Editor, bounds, icons, theme};
 use crate::scene::{Node, NodeId, NodeKind};
 
 /// Boxes are painted for so many selected nodes at most.
@@ -22,10 +22,10 @@ fn needs_box(node: &Node) -> bool {
 
 /// The oriented boxes of the selected nodes that need them.
 pub fn selection_boxes(editor: &mut Editor, painter: &Painter, projection: &Projection) {
-    let selection = editor.bench.document.selection().to_vec();
+    let selection = editor.session.document.selection().to_vec();
     let active = selection.last().copied();
     for id in selection.into_iter().rev().take(MOST_BOXES) {
-        let scene = editor.bench.document.scene();
+        let scene = editor.session.document.scene();
         if !scene.node(id).is_some_and(|n| needs_box(n)) {
             continue;
         }
@@ -77,13 +77,13 @@ pub fn markers(editor: &Editor, projection: &Projection) -> Vec<Marker> {
 /// Paints the markers, with the direction in which the selected ones shine or look.
 pub fn paint_markers(editor: &Editor, painter: &Painter, projection: &Projection, markers: &[Marker]) {
     for marker in markers {
-        let scene = editor.bench.document.scene();
+        let scene = editor.session.document.scene();
         let Some(node) = scene.node(marker.id) else { continue };
-        let selected = editor.bench.document.selection().contains(&marker.id);
-        let color = glyphs::node_color(node);
+        let selected = editor.session.document.selection().contains(&marker.id);
+        let color = icons::node_color(node);
         if selected {
             let world = scene.world_from_local(marker.id);
-            let reach = projection.metres_per_point(world.translation) * 60.0;
+            let reach = projection.meters_per_point(world.translation) * 60.0;
             let ahead = world.translation + (world.matrix3 * DVec3::NEG_Z).normalize_or_zero() * reach;
             if let Some(tip) = projection.to_screen(ahead) {
                 painter.arrow(marker.at, tip - marker.at, Stroke::new(1.5, color.gamma_multiply(0.8)));
@@ -91,7 +91,7 @@ pub fn paint_markers(editor: &Editor, painter: &Painter, projection: &Projection
         }
         let ring = if selected { theme::ACCENT } else { Color32::from_black_alpha(0) };
         painter.circle(marker.at, 11.0, Color32::from_black_alpha(110), Stroke::new(1.5, ring));
-        glyphs::paint_node(painter, glyphs::centered(Rect::from_center_size(marker.at, vec2(14.0, 14.0)), 14.0), node);
+        icons::paint_node(painter, icons::centered(Rect::from_center_size(marker.at, vec2(14.0, 14.0)), 14.0), node);
     }
 }
 

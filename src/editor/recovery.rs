@@ -36,7 +36,7 @@ pub(super) struct Safekeeping {
     is_pictured: bool,
 }
 
-enum Choice {
+enum RecoveryChoice {
     Recover(usize),
     Discard(usize),
     Later,
@@ -61,7 +61,7 @@ impl Editor {
 
     /// The window is closed by the artist's wish: what has been given up is not kept. Otherwise it is.
     pub fn end_recovery(&mut self) {
-        let is_settled = self.wants_close() || !self.bench.document.is_changed();
+        let is_settled = self.wants_close() || !self.session.document.is_changed();
         if let Some(mut safekeeping) = self.safekeeping.take().filter(|_| is_settled) {
             safekeeping.recovery.forget();
         }
@@ -98,14 +98,14 @@ impl Editor {
 
     /// Keeps what has changed, and passes on what other threads have to say. Once a frame, at its end.
     pub(super) fn follow_recovery(&mut self, ctx: &Context, picture: &Picture) {
-        let is_changing = self.bench.is_changing();
+        let is_changing = self.session.is_changing();
         let is_covered = self.has_dialog();
         let Some(safekeeping) = &mut self.safekeeping else { return };
-        if let Some(after) = safekeeping.recovery.follow(&self.bench.document, is_changing) {
+        if let Some(after) = safekeeping.recovery.follow(&self.session.document, is_changing) {
             ctx.request_repaint_after(after);
         }
         let now = ctx.input(|i| i.time);
-        let revision = self.bench.document.revision();
+        let revision = self.session.document.revision();
         if safekeeping.seen != Some(revision) {
             safekeeping.seen = Some(revision);
             // Counted from the first change: an artist who never rests gets a picture, too.
@@ -138,17 +138,17 @@ impl Editor {
 
     /// Shows what can be got back.
     pub(super) fn show_recovery(&mut self, ctx: &Context) {
-        let may_open = !self.bench.document.is_changed();
+        let may_open = !self.session.document.is_changed();
         let Some(safekeeping) = self.safekeeping.as_mut().filter(|safekeeping| safekeeping.is_open) else { return };
         let Some(choice) = safekeeping.show(ctx, may_open) else { return };
         match choice {
-            Choice::Later => (safekeeping.is_open, safekeeping.confirming) = (false, None),
-            Choice::Discard(index) => {
+            RecoveryChoice::Later => (safekeeping.is_open, safekeeping.confirming) = (false, None),
+            RecoveryChoice::Discard(index) => {
                 let lost = safekeeping.lost.remove(index);
                 safekeeping.recovery.discard(lost);
                 (safekeeping.is_open, safekeeping.confirming) = (!safekeeping.lost.is_empty(), None);
             }
-            Choice::Recover(index) => self.recover(index),
+            RecoveryChoice::Recover(index) => self.recover(index),
         }
     }
 
@@ -186,7 +186,7 @@ impl Editor {
 }
 
 impl Safekeeping {
-    fn show(&mut self, ctx: &Context, may_open: bool) -> Option<Choice> {
+    fn show(&mut self, ctx: &Context, may_open: bool) -> Option<RecoveryChoice> {
         for lost in &self.lost {
             if let Some(picture) = lost.picture().filter(|_| !self.textures.contains_key(&lost.id())) {
                 let image = ColorImage::from_rgb(picture.size_px().map(|side| side as usize), picture.bytes());
@@ -215,20 +215,20 @@ impl Safekeeping {
             ui.add_space(6.0);
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if ui.add(Button::new("Decide later").min_size(vec2(110.0, 28.0))).clicked() {
-                    choice = Some(Choice::Later);
+                    choice = Some(RecoveryChoice::Later);
                 }
             });
         });
         if may_open && ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Enter)) {
-            choice = choice.or(Some(Choice::Recover(0)));
+            choice = choice.or(Some(RecoveryChoice::Recover(0)));
         }
         if response.should_close() {
-            choice = choice.or(Some(Choice::Later));
+            choice = choice.or(Some(RecoveryChoice::Later));
         }
         choice
     }
 
-    fn row(&mut self, ui: &mut Ui, index: usize, may_open: bool) -> Option<Choice> {
+    fn row(&mut self, ui: &mut Ui, index: usize, may_open: bool) -> Option<RecoveryChoice> {
         let lost = &self.lost[index];
         let (id, name) = (lost.id(), lost.name().to_owned());
         let mut choice = None;
@@ -247,7 +247,7 @@ impl Safekeeping {
                 let button = ui.add_enabled(may_open, Button::new(text).fill(theme::ACCENT).min_size(size));
                 ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("Recover {name}")));
                 if button.clicked() {
-                    choice = Some(Choice::Recover(index));
+                    choice = Some(RecoveryChoice::Recover(index));
                 }
                 let is_asked = self.confirming.as_deref() == Some(&*id);
                 let (text, color) = if is_asked { ("Really discard", theme::ERROR) } else { ("Discard", theme::TEXT) };
@@ -255,7 +255,7 @@ impl Safekeeping {
                 ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("{text} {name}")));
                 if button.clicked() {
                     match is_asked {
-                        true => choice = Some(Choice::Discard(index)),
+                        true => choice = Some(RecoveryChoice::Discard(index)),
                         false => self.confirming = Some(id.clone()),
                     }
                 }

@@ -2,15 +2,15 @@
 
 use std::collections::HashSet;
 
+use super::edit_session::EditSession;
 use super::messages::Message;
-use super::workbench::Workbench;
 use crate::document::Edit;
 use crate::scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
 
 /// The selected nodes that do not stand below another selected one, in the scene's order.
-pub fn roots(bench: &Workbench) -> Vec<NodeId> {
-    let scene = bench.document.scene();
-    let mut ids = bench.document.selection().to_vec();
+pub fn roots(session: &EditSession) -> Vec<NodeId> {
+    let scene = session.document.scene();
+    let mut ids = session.document.selection().to_vec();
     ids.sort_by_key(|id| scene.index_of(*id));
     let mut roots: Vec<NodeId> = Vec::new();
     for id in ids {
@@ -40,65 +40,65 @@ fn lock_in_the_way(scene: &Scene, id: NodeId) -> Option<&Node> {
 }
 
 /// Says that a locked node is in the way of what was wanted of some nodes; false, and nothing said, where none is.
-pub fn refuse_locked(bench: &mut Workbench, ids: &[NodeId], wanted: &str) -> bool {
-    let scene = bench.document.scene();
+pub fn refuse_locked(session: &mut EditSession, ids: &[NodeId], wanted: &str) -> bool {
+    let scene = session.document.scene();
     let Some(locked) = ids.iter().find_map(|id| holder_of_lock(scene, *id)) else { return false };
     let text = format!("“{}” is locked and cannot be {wanted}. Unlock it first.", locked.name);
-    bench.messages.push(Message::warning(text));
+    session.messages.push(Message::warning(text));
     true
 }
 
 /// Copies the selection and selects the copies.
-pub fn duplicate(bench: &mut Workbench) {
-    let added = bench.apply(Edit::Duplicate(roots(bench)));
+pub fn duplicate(session: &mut EditSession) {
+    let added = session.apply(Edit::Duplicate(roots(session)));
     if !added.is_empty() {
-        bench.document.select(added);
+        session.document.select(added);
     }
 }
 
-/// Removes the selection, but for what is locked or holds something that is; nothing is selected afterwards.
-pub fn delete(bench: &mut Workbench) {
-    let scene = bench.document.snapshot();
+/// Removes the selection, but for what is locked or holds something that is; nothing is selected afterward.
+pub fn delete(session: &mut EditSession) {
+    let scene = session.document.snapshot();
     let (locked, free): (Vec<_>, Vec<_>) =
-        roots(bench).into_iter().partition(|id| lock_in_the_way(&scene, *id).is_some());
+        roots(session).into_iter().partition(|id| lock_in_the_way(&scene, *id).is_some());
     if let Some(lock) = locked.first().and_then(|id| lock_in_the_way(&scene, *id)) {
         let others = if locked.len() > 1 { format!(" So are {} more.", locked.len() - 1) } else { String::new() };
         let text = format!("“{}” is locked and cannot be deleted. Unlock it first.{others}", lock.name);
-        bench.messages.push(Message::warning(text));
+        session.messages.push(Message::warning(text));
     }
     if !free.is_empty() {
-        bench.apply(Edit::Remove(free));
-        bench.document.select(Vec::new());
+        session.apply(Edit::Remove(free));
+        session.document.select(Vec::new());
     }
 }
 
 /// Makes the selection the operands of `operator`. One selected group only changes its operator,
 /// unless a `new` group is wanted.
-pub fn join(bench: &mut Workbench, operator: Operator, new: bool) {
-    let ids = roots(bench);
-    if refuse_locked(bench, &ids, "joined with others") {
+pub fn join(session: &mut EditSession, operator: Operator, new: bool) {
+    let ids = roots(session);
+    if refuse_locked(session, &ids, "joined with others") {
         return;
     }
-    let single = ids.first().filter(|_| ids.len() == 1).and_then(|id| bench.document.scene().node(*id).cloned());
+    let single = ids.first().filter(|_| ids.len() == 1).and_then(|id| session.document.scene().node(*id).cloned());
     if let (false, Some(NodeKind::Group(group))) = (new, single.as_ref().map(|n| &n.kind)) {
         let node = Node {
             kind: NodeKind::Group(Group { operator, ..*group }),
             ..Node::clone(single.as_ref().expect("matched above"))
         };
-        bench.apply(Edit::Replace(node));
+        session.apply(Edit::Replace(node));
         return;
     }
     let group = Group { operator, ..Group::UNION };
-    let added = bench.apply(Edit::Group { ids, group });
+    let added = session.apply(Edit::Group { ids, group });
     if !added.is_empty() {
-        bench.document.select(added);
+        session.document.select(added);
     }
 }
 
 /// Takes the children out of the selected groups and removes the groups.
-pub fn ungroup(bench: &mut Workbench) {
-    let scene = bench.document.snapshot();
-    let groups: Vec<_> = roots(bench)
+pub fn ungroup(session: &mut EditSession) {
+    let scene = session.document.snapshot();
+    let groups: Vec<_> = roots(session)
         .into_iter()
         .filter_map(|id| scene.node(id))
         .filter(|n| matches!(n.kind, NodeKind::Group(_)))
@@ -106,43 +106,43 @@ pub fn ungroup(bench: &mut Workbench) {
         .collect();
     let children = groups.iter().flat_map(|group| scene.children(Some(group.id)).map(|child| child.id));
     let touched: Vec<NodeId> = groups.iter().map(|group| group.id).chain(children).collect();
-    if groups.is_empty() || refuse_locked(bench, &touched, "taken out of its group") {
+    if groups.is_empty() || refuse_locked(session, &touched, "taken out of its group") {
         return;
     }
-    let freed = bench.together(|bench| {
+    let freed = session.together(|session| {
         let mut freed = Vec::new();
         for group in &groups {
             let children: Vec<NodeId> = scene.children(Some(group.id)).map(|n| n.id).collect();
-            let position = place(bench.document.scene(), group.id);
+            let position = place(session.document.scene(), group.id);
             freed.extend(children.iter().copied());
-            bench.apply(Edit::Move { ids: children, parent: group.parent, position });
-            bench.apply(Edit::Remove(vec![group.id]));
+            session.apply(Edit::Move { ids: children, parent: group.parent, position });
+            session.apply(Edit::Remove(vec![group.id]));
         }
         freed
     });
-    bench.document.select(freed);
+    session.document.select(freed);
 }
 
 /// Moves each of the selection one place up (−1) or down (+1) among its siblings.
-pub fn shift(bench: &mut Workbench, by: isize) {
-    let mut ids = roots(bench);
-    if refuse_locked(bench, &ids, "moved") {
+pub fn shift(session: &mut EditSession, by: isize) {
+    let mut ids = roots(session);
+    if refuse_locked(session, &ids, "moved") {
         return;
     }
     if by > 0 {
         ids.reverse();
     }
-    bench.together(|bench| {
+    session.together(|session| {
         let mut done = HashSet::new();
         for id in ids {
-            let scene = bench.document.scene();
+            let scene = session.document.scene();
             let Some(parent) = scene.node(id).map(|n| n.parent) else { continue };
             let siblings: Vec<NodeId> = scene.children(parent).map(|n| n.id).collect();
             let at = place(scene, id);
             let target = at.checked_add_signed(by).filter(|t| *t < siblings.len());
             // A block at the border stays together.
             if let Some(position) = target.filter(|t| !done.contains(&siblings[*t])) {
-                bench.apply(Edit::Move { ids: vec![id], parent, position });
+                session.apply(Edit::Move { ids: vec![id], parent, position });
             }
             done.insert(id);
         }
@@ -156,57 +156,57 @@ pub fn place(scene: &Scene, id: NodeId) -> usize {
 }
 
 /// Cuts the selection away, or joins it again: all as the active node.
-pub fn toggle_negative(bench: &mut Workbench) {
-    let ids: Vec<NodeId> = bench.document.selection().into();
-    if refuse_locked(bench, &ids, "cut away or joined again") {
+pub fn toggle_negative(session: &mut EditSession) {
+    let ids: Vec<NodeId> = session.document.selection().into();
+    if refuse_locked(session, &ids, "cut away or joined again") {
         return;
     }
-    let on = bench.selected().last().is_some_and(|n| !n.negative);
-    change_each(bench, |n| n.negative = on && n.has_field());
+    let on = session.selected().last().is_some_and(|n| !n.negative);
+    change_each(session, |n| n.negative = on && n.has_field());
 }
 
 /// Hides or shows the selection: all as the active node.
-pub fn toggle_visible(bench: &mut Workbench) {
-    let on = bench.selected().last().is_some_and(|n| !n.visible);
-    change_each(bench, |n| n.visible = on);
+pub fn toggle_visible(session: &mut EditSession) {
+    let on = session.selected().last().is_some_and(|n| !n.visible);
+    change_each(session, |n| n.visible = on);
 }
 
 /// Locks or unlocks the selection: all as the active node.
-pub fn toggle_locked(bench: &mut Workbench) {
-    let on = bench.selected().last().is_some_and(|n| !n.locked);
-    change_each(bench, |n| n.locked = on);
+pub fn toggle_locked(session: &mut EditSession) {
+    let on = session.selected().last().is_some_and(|n| !n.locked);
+    change_each(session, |n| n.locked = on);
 }
 
-fn change_each(bench: &mut Workbench, change: impl Fn(&mut Node)) {
-    let nodes = bench.selected();
-    bench.together(|bench| {
+fn change_each(session: &mut EditSession, change: impl Fn(&mut Node)) {
+    let nodes = session.selected();
+    session.together(|session| {
         for node in nodes {
             let mut node = Node::clone(&node);
             change(&mut node);
-            bench.apply(Edit::Replace(node));
+            session.apply(Edit::Replace(node));
         }
     });
 }
 
 /// Shows everything that is hidden.
-pub fn show_all(bench: &mut Workbench) {
-    let hidden: Vec<_> = bench.document.scene().nodes().iter().filter(|n| !n.visible).cloned().collect();
-    bench.together(|bench| {
+pub fn show_all(session: &mut EditSession) {
+    let hidden: Vec<_> = session.document.scene().nodes().iter().filter(|n| !n.visible).cloned().collect();
+    session.together(|session| {
         for node in hidden {
-            bench.apply(Edit::Replace(Node { visible: true, ..Node::clone(&node) }));
+            session.apply(Edit::Replace(Node { visible: true, ..Node::clone(&node) }));
         }
     });
 }
 
 /// Selects every node at the top that is not locked.
-pub fn select_all(bench: &mut Workbench) {
-    let ids = bench.document.scene().children(None).filter(|n| !n.locked).map(|n| n.id).collect();
-    bench.document.select(ids);
+pub fn select_all(session: &mut EditSession) {
+    let ids = session.document.scene().children(None).filter(|n| !n.locked).map(|n| n.id).collect();
+    session.document.select(ids);
 }
 
-/// Materials that nothing wears; the first is kept for new objects where nothing else would be left.
+/// Materials that nothing uses; the first is kept for new objects where nothing else would be left.
 pub fn unused_materials(scene: &Scene) -> Vec<MaterialId> {
-    let worn: HashSet<MaterialId> = scene
+    let used: HashSet<MaterialId> = scene
         .nodes()
         .iter()
         .filter_map(|n| match &n.kind {
@@ -215,6 +215,6 @@ pub fn unused_materials(scene: &Scene) -> Vec<MaterialId> {
             _ => None,
         })
         .collect();
-    let keep_first = usize::from(worn.is_empty());
-    scene.materials().iter().map(|m| m.id).filter(|id| !worn.contains(id)).skip(keep_first).collect()
+    let keep_first = usize::from(used.is_empty());
+    scene.materials().iter().map(|m| m.id).filter(|id| !used.contains(id)).skip(keep_first).collect()
 }

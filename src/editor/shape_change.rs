@@ -117,7 +117,7 @@ impl Room {
     }
 }
 
-/// The shape with every number rounded to a micrometre, so that the inspector shows tidy values.
+/// The shape with every number rounded to a micrometer, so that the inspector shows tidy values.
 fn rounded(mut shape: Shape) -> Shape {
     use ParamValue::{File, Flag, List, Scalar, Text, Vector};
     let tidy = |v: f64| (v * 1e6).round() / 1e6;

@@ -25,8 +25,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
 }
 
 fn counts(editor: &Editor, ui: &mut Ui) {
-    let nodes = editor.bench.document.scene().nodes().len();
-    let selected = editor.bench.document.selection().len();
+    let nodes = editor.session.document.scene().nodes().len();
+    let selected = editor.session.document.selection().len();
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
@@ -34,7 +34,7 @@ fn counts(editor: &Editor, ui: &mut Ui) {
 
 /// What is being read, a problem of the scene, or what the mouse does.
 fn left(editor: &mut Editor, ui: &mut Ui) {
-    if let Some(name) = editor.reading().next() {
+    if let Some(name) = editor.files_being_read().next() {
         ui.add(egui::Label::new(RichText::new(format!("Reading {name}…")).color(theme::WEAK)).truncate());
         return;
     }
@@ -52,12 +52,12 @@ fn left(editor: &mut Editor, ui: &mut Ui) {
         ui.label(super::messages::Severity::Warning.icon().size(14.0));
         let button = Button::new(RichText::new(text).color(theme::WARNING)).frame(false).truncate();
         if ui.add(button).on_hover_text("Selects the node").clicked() {
-            editor.bench.document.select(vec![node]);
+            editor.session.document.select(vec![node]);
         }
         return;
     }
     let help = ui.ctx().data_mut(|d| d.remove_temp::<String>(super::commands::hovered_help()));
-    let hint = help.unwrap_or_else(|| editor.viewport.hint(&editor.bench));
+    let hint = help.unwrap_or_else(|| editor.viewport.hint(&editor.session));
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
 }
 

@@ -5,8 +5,8 @@ use egui_material_icons::icons::ICON_VISIBILITY;
 
 use super::commands::{self, CommandId, Icon, Menu};
 use super::dialogs::Intent;
-use super::{Editor, fields, glyphs, legend, theme};
-use crate::flat::inspect::Look;
+use super::{Editor, icons, legend, theme, widgets};
+use crate::flat::debug_view::ViewMode;
 use crate::scene::ShapeKind;
 
 /// Shows the bar.
@@ -18,8 +18,8 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         for (name, menu) in [("File", Menu::File), ("Edit", Menu::Edit), ("Add", Menu::Add), ("View", Menu::View)] {
             ui.menu_button(name, |ui| {
                 ui.set_min_width(230.0);
-                let room = fields::room_below(ui);
-                fields::scrolling(ui, room, |ui| menu_content(editor, ui, menu, &mut chosen));
+                let room = widgets::room_below(ui);
+                widgets::scrolling(ui, room, |ui| menu_content(editor, ui, menu, &mut chosen));
             });
         }
     });
@@ -37,18 +37,18 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
         buttons(editor, ui, theme::LIGHT, &["Sun", "Point light", "Spot light"], &mut chosen);
         buttons(editor, ui, theme::MESH, &["Mesh…"], &mut chosen);
         divider(ui);
-        buttons(editor, ui, theme::GROUP, &["Unite", "Intersect", "Subtract", "Toggle negative", "Group"], &mut chosen);
+        buttons(editor, ui, theme::GROUP, &["Union", "Intersect", "Subtract", "Toggle subtract", "Group"], &mut chosen);
         divider(ui);
         buttons(editor, ui, theme::TEXT, &["Duplicate", "Delete"], &mut chosen);
         divider(ui);
         buttons(editor, ui, theme::TEXT, &["Frame all", "Frame selected"], &mut chosen);
         divider(ui);
-        let color = if editor.look == Look::Shaded { theme::TEXT } else { theme::ACCENT };
-        let name = legend::capitalised(editor.look.name());
+        let color = if editor.view_mode == ViewMode::Shaded { theme::TEXT } else { theme::ACCENT };
+        let name = legend::capitalized(editor.view_mode.name());
         let text = (ICON_VISIBILITY.rich_text().size(17.0).color(color), RichText::new(name).color(color));
-        let button = ui.menu_button(text, |ui| looks(editor, ui, &mut chosen)).response;
-        ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Picture shows"));
-        button.on_hover_text("What the picture shows");
+        let button = ui.menu_button(text, |ui| view_modes(editor, ui, &mut chosen)).response;
+        ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Viewport shading"));
+        button.on_hover_text("Viewport shading");
     });
     if let Some(command) = chosen {
         command.run(editor, &ui.ctx().clone());
@@ -64,16 +64,16 @@ fn menu_content(editor: &mut Editor, ui: &mut Ui, menu: Menu, chosen: &mut Optio
     }
     if menu == Menu::View {
         ui.separator();
-        ui.menu_button("Picture shows", |ui| looks(editor, ui, chosen));
+        ui.menu_button("Viewport shading", |ui| view_modes(editor, ui, chosen));
     }
 }
 
 /// The choice of what the picture shows.
-fn looks(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
+fn view_modes(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
     ui.set_min_width(190.0);
-    let room = fields::room_below(ui);
-    fields::scrolling(ui, room, |ui| {
-        *chosen = commands::menu_entries(ui, editor, Menu::Look).or(*chosen);
+    let room = widgets::room_below(ui);
+    widgets::scrolling(ui, room, |ui| {
+        *chosen = commands::menu_entries(ui, editor, Menu::ViewMode).or(*chosen);
         ui.separator();
         ui.menu_button("Debug", |ui| {
             ui.set_min_width(190.0);
@@ -105,8 +105,8 @@ fn buttons(editor: &Editor, ui: &mut Ui, color: Color32, names: &[&str], chosen:
         };
         let response = square(ui, id.enabled(editor), Button::new(text), name);
         let tooltip = match *name {
-            "Undo" => with_step(command.tooltip(ui.ctx()), editor.bench.document.undo_label()),
-            "Redo" => with_step(command.tooltip(ui.ctx()), editor.bench.document.redo_label()),
+            "Undo" => with_step(command.tooltip(ui.ctx()), editor.session.document.undo_label()),
+            "Redo" => with_step(command.tooltip(ui.ctx()), editor.session.document.redo_label()),
             _ => command.tooltip(ui.ctx()),
         };
         if response.on_hover_text(&tooltip).on_disabled_hover_text(tooltip).clicked() {
@@ -123,7 +123,7 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
 fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
     let response = square(ui, true, Button::new(""), &format!("Add {}", kind.label().to_lowercase()));
     let color = if response.hovered() { egui::Color32::WHITE } else { theme::OBJECT };
-    glyphs::paint_shape(ui.painter(), glyphs::centered(response.rect, 17.0), kind, color);
+    icons::paint_shape(ui.painter(), icons::centered(response.rect, 17.0), kind, color);
     response.on_hover_text(format!("Add: {}\n{}", kind.label(), kind.help()))
 }
 
@@ -146,10 +146,10 @@ fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     let mut intent = None;
     ui.add_enabled_ui(!editor.recent.paths().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
-            fields::scrolling(ui, fields::room_beside(&ui.ctx().clone()), |ui| {
+            widgets::scrolling(ui, widgets::room_beside(&ui.ctx().clone()), |ui| {
                 for path in editor.recent.paths() {
                     let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
-                    let name = fields::elided(&name, MOST_NAME);
+                    let name = widgets::elided(&name, MOST_NAME);
                     if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
                         intent = Some(Intent::Open(path.clone()));
                     }
@@ -159,7 +159,7 @@ fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     });
     ui.add_enabled_ui(!editor.examples.is_empty(), |ui| {
         ui.menu_button("Examples", |ui| {
-            fields::scrolling(ui, fields::room_beside(&ui.ctx().clone()), |ui| {
+            widgets::scrolling(ui, widgets::room_beside(&ui.ctx().clone()), |ui| {
                 intent = example_entries(editor, ui, false).or(intent.take());
                 if editor.examples.iter().any(|example| example.is_test) {
                     ui.separator();

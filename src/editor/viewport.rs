@@ -3,14 +3,14 @@
 use egui::{Color32, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2, vec2};
 use glam::{DVec2, DVec3};
 
+use super::edit_session::EditSession;
 use super::gizmo::{self, Arrows, Drag};
 use super::navigation::Navigation;
 use super::numbers::number_text;
 use super::overlay::{self, Compass, Marker};
 use super::picking::pick_node;
-use super::workbench::Workbench;
 use super::{Editor, Picture, legend, selection, theme};
-use crate::flat::inspect::Look;
+use crate::flat::debug_view::ViewMode;
 use crate::geometry::Camera;
 
 /// What the pointer is dragging.
@@ -62,8 +62,8 @@ impl Projection {
         (point.abs().max_element() < 1e5).then(|| self.rect.min + vec2(point.x as f32, point.y as f32))
     }
 
-    /// How many metres a point of the screen is wide at the depth of a point of the world.
-    pub fn metres_per_point(&self, p: DVec3) -> f64 {
+    /// How many meters a point of the screen is wide at the depth of a point of the world.
+    pub fn meters_per_point(&self, p: DVec3) -> f64 {
         let depth = (p - self.camera.position).dot(self.camera.rotation * DVec3::NEG_Z).max(0.0);
         self.camera.footprint(self.size_px.y) * depth * f64::from(self.pixels_per_point)
     }
@@ -96,21 +96,21 @@ impl Viewport {
     }
 
     /// What the mouse does now, in one line.
-    pub fn hint(&self, bench: &Workbench) -> String {
+    pub fn hint(&self, session: &EditSession) -> String {
         match &self.dragging {
             Some(Dragging::Orbit) => "Orbiting · Shift with the middle button pans".into(),
             Some(Dragging::Pan) => "Panning".into(),
             Some(Dragging::Zoom) => "Zooming · up is nearer".into(),
             Some(Dragging::Move(drag)) => {
                 let [x, y, z] = drag.offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
-                format!("Moving by {x}, {y}, {z} m · Ctrl: steps · Shift: precise · Esc: back")
+                format!("Moving by {x}, {y}, {z} m · Ctrl: snap · Shift: precise · Esc: cancel")
             }
-            None if bench.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
+            None if session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
             None if self.hovered => {
                 "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame"
                     .into()
             }
-            None => "Hover a field for help · Drag rows in the tree to reorder · F3: find a command".into(),
+            None => "Hover a field for help · Drag rows in the outliner to reorder · F3: find a command".into(),
         }
     }
 
@@ -180,12 +180,12 @@ fn start_drag(editor: &Editor, ui: &Ui, response: &Response, projection: &Projec
     let origin = ui.input(|i| i.pointer.press_origin())?;
     let handle = arrows(editor, projection).and_then(|a| a.handle_at(origin)).filter(|_| !modifiers.alt);
     let forward = editor.navigation.rotation * DVec3::NEG_Z;
-    let moving = handle.and_then(|h| Drag::begin(&editor.bench, h, &projection.ray(origin), forward));
+    let moving = handle.and_then(|h| Drag::begin(&editor.session, h, &projection.ray(origin), forward));
     Some(moving.map_or(if modifiers.shift { Dragging::Pan } else { Dragging::Orbit }, Dragging::Move))
 }
 
 fn arrows(editor: &Editor, projection: &Projection) -> Option<Arrows> {
-    Arrows::new(gizmo::pivot(&editor.bench)?, projection)
+    Arrows::new(gizmo::pivot(&editor.session)?, projection)
 }
 
 fn follow_drag(editor: &mut Editor, ui: &Ui, response: &Response) {
@@ -202,11 +202,11 @@ fn follow_drag(editor: &mut Editor, ui: &Ui, response: &Response) {
         Some(Dragging::Pan) => view.pan(delta, height),
         Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
         Some(Dragging::Move(drag)) => {
-            let (modifiers, cancelled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
-            if cancelled {
+            let (modifiers, canceled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
+            if canceled {
                 drag.offset = DVec3::ZERO;
-                drag.apply(&mut editor.bench, response.id);
-                editor.bench.finish();
+                drag.apply(&mut editor.session, response.id);
+                editor.session.finish();
                 editor.viewport.dragging = None;
                 return;
             }
@@ -214,7 +214,7 @@ fn follow_drag(editor: &mut Editor, ui: &Ui, response: &Response) {
             if let Some(pointer) = response.interact_pointer_pos() {
                 let forward = view.rotation * DVec3::NEG_Z;
                 drag.follow(&projection.ray(pointer), forward, modifiers.shift, snap);
-                drag.apply(&mut editor.bench, response.id);
+                drag.apply(&mut editor.session, response.id);
             }
         }
     }
@@ -244,9 +244,9 @@ fn click(editor: &mut Editor, ui: &Ui, response: &Response, projection: &Project
     let markers = overlay::markers(editor, projection);
     let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
     let hit = marker.or_else(|| pick_node(editor, &projection.ray(pointer)));
-    let scene = editor.bench.document.scene();
+    let scene = editor.session.document.scene();
     let hit = hit.filter(|id| selection::holder_of_lock(scene, *id).is_none());
-    let mut selection = editor.bench.document.selection().to_vec();
+    let mut selection = editor.session.document.selection().to_vec();
     let adding = ui.input(|i| i.modifiers.shift || i.modifiers.command);
     match hit {
         Some(id) if adding && selection.contains(&id) => selection.retain(|s| *s != id),
@@ -255,8 +255,8 @@ fn click(editor: &mut Editor, ui: &Ui, response: &Response, projection: &Project
         None if adding => {}
         None => selection.clear(),
     }
-    editor.bench.finish();
-    editor.bench.document.select(selection);
+    editor.session.finish();
+    editor.session.document.select(selection);
 }
 
 fn paint(editor: &mut Editor, ui: &Ui, response: &Response, picture: &Picture) {
@@ -284,9 +284,9 @@ fn paint(editor: &mut Editor, ui: &Ui, response: &Response, picture: &Picture) {
         let hovered = pointer.and_then(|p| arrows.handle_at(p)).filter(|_| editor.viewport.dragging.is_none());
         arrows.paint(&painter, dragged.or(hovered));
     }
-    if editor.look != Look::Shaded {
-        let span = editor.span();
-        legend::paint(&painter, rect, editor.look, &span);
+    if editor.view_mode != ViewMode::Shaded {
+        let depth_range = editor.depth_range();
+        legend::paint(&painter, rect, editor.view_mode, &depth_range);
     }
     let compass = Compass::new(rect, editor.navigation.rotation);
     compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));
@@ -296,11 +296,11 @@ fn paint(editor: &mut Editor, ui: &Ui, response: &Response, picture: &Picture) {
     }
 }
 
-/// Before the first picture: the sky's colour and a word.
+/// Before the first picture: the sky's color and a word.
 fn background(editor: &Editor, painter: &egui::Painter, rect: Rect) {
-    let horizon = editor.bench.document.scene().environment.horizon;
+    let horizon = editor.session.document.scene().environment.horizon;
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));
-    let text = "Preparing the picture…";
+    let text = "Preparing the viewport…";
     let font = egui::FontId::proportional(14.0);
     painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::WEAK);
 }

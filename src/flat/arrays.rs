@@ -1,5 +1,5 @@
 //! The arrays. `#[repr(C)]` types are read by the GPU as they stand; `shaders/common/scene.wgsl` is
-//! their twin, and a test compares the layouts.
+//! their counterpart, and a test compares the layouts.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
@@ -21,8 +21,8 @@ pub struct FlatNode {
     pub code: u32,
     /// Entries of this node and everything below it; 1 for a leaf.
     pub extent: u32,
-    /// Where its numbers start in [`FlatScene::numbers`].
-    pub numbers: u32,
+    /// Where its numbers start in [`FlatScene::params`].
+    pub params: u32,
     /// Index into [`FlatScene::materials`]; leaves only.
     pub material: u32,
 }
@@ -66,7 +66,7 @@ impl FlatNode {
         (self.code >> 16) & 0xff
     }
 
-    /// The kernel of its joint, as a number of [`crate::scene::BlendKernel::ALL`].
+    /// The kernel of its blend, as a number of [`crate::scene::BlendKernel::ALL`].
     pub fn kernel(&self) -> u32 {
         self.code >> 24
     }
@@ -99,7 +99,7 @@ pub enum Join {
     /// Only its material.
     Paint,
     /// What is in the operand and not in what stands so far: a difference whose operands are exchanged, see `stack`.
-    Remainder,
+    ReverseDifference,
 }
 
 impl Join {
@@ -116,7 +116,7 @@ impl Join {
         Self::Engrave,
         Self::Morph,
         Self::Paint,
-        Self::Remainder,
+        Self::ReverseDifference,
     ];
 
     /// How the later children of a group join.
@@ -136,7 +136,7 @@ impl Join {
     }
 
     /// Whether it needs more than a sum of shares: derivatives of any sign, or a material of its own.
-    pub fn is_further(self) -> bool {
+    pub fn is_extended(self) -> bool {
         self > Self::Difference
     }
 
@@ -151,27 +151,27 @@ impl Join {
     }
 }
 
-/// Kernels from this one on are the further ones: bevels, steps and columns.
-pub const FIRST_FURTHER_KERNEL: u32 = 3;
+/// Kernels from this one on are the extended ones: bevels, steps and columns.
+pub const FIRST_EXTENDED_KERNEL: u32 = 3;
 
-/// Numbers of an entry, four at a time. Both kinds begin with the joint, see [`super::twin::Joint`].
+/// Parameters of an entry, four at a time. Both kinds begin with the blend, see [`super::eval::BlendParams`].
 ///
 /// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
 /// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
 /// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
-/// behind all other rows of the component, so that they are no part of what a specialised kernel reads as uniform.
+/// behind all other rows of the component, so that they are no part of what a specialized kernel reads as uniform.
 /// A modifier with data has such a row behind its own.
 ///
-/// Group: `[support, slope, size, depth]`, centre of its bounds, half extent of its bounds. The field of the
-/// group at `p` is at least `slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies. A modifier has the same three, with its distance_scale behind the centre,
+/// Group: `[support, bound_slope, size, depth]`, center of its bounds, half extent of its bounds. The field of the
+/// group at `p` is at least `bound_slope` times the distance from `p` to these bounds; unbounded groups have
+/// slope 0 and finite dummies. A modifier has the same three, with its distance_scale behind the center,
 /// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
 /// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.
 ///
 /// Behind the rows of all entries of a component stand those of the materials of its leaves, [`MATERIAL_ROWS`] for each
 /// leaf in their order, once more: kernels that know the structure know where they are.
-pub type Row = [f32; 4];
+pub type ParamRow = [f32; 4];
 
 /// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
 pub const ROW_ALIGNMENT: usize = 16;
@@ -183,19 +183,19 @@ pub const MATERIAL_ROWS: usize = 2;
 pub const GROUP_ROWS: usize = 3;
 
 /// Where the row that says where a leaf's data are stands among its rows; `None` for a shape without data.
-pub fn data_row(kind: ShapeKind) -> Option<usize> {
+pub fn payload_row(kind: ShapeKind) -> Option<usize> {
     kind.has_data().then(|| LEAF_ROWS + kind.parameter_rows())
 }
 
-/// The data of the leaf whose rows `numbers` begins with; empty for most.
-pub fn leaf_data(kind: ShapeKind, numbers: &[Row]) -> &[Row] {
-    data_row(kind).map_or(&[], |row| data_at(numbers, row))
+/// The data of the leaf whose rows `params` begins with; empty for most.
+pub fn leaf_payload(kind: ShapeKind, params: &[ParamRow]) -> &[ParamRow] {
+    payload_row(kind).map_or(&[], |row| payload_at(params, row))
 }
 
 /// The data that the row at `row` says where to find.
-fn data_at(numbers: &[Row], row: usize) -> &[Row] {
-    let [count, offset, ..] = numbers[row].map(|v| v as usize);
-    &numbers[row + offset..][..count]
+fn payload_at(params: &[ParamRow], row: usize) -> &[ParamRow] {
+    let [count, offset, ..] = params[row].map(|v| v as usize);
+    &params[row + offset..][..count]
 }
 
 /// Rows of a modifier before its own.
@@ -203,7 +203,7 @@ pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
 
 /// Where the row that says where a modifier's data are stands among its own rows, the last of them; `None` for one without
 /// data.
-pub const fn modifier_data_row(kind: ModifierKind) -> Option<usize> {
+pub const fn modifier_payload_row(kind: ModifierKind) -> Option<usize> {
     match kind {
         ModifierKind::Displacement => Some(modifier_rows(kind) - 1),
         _ => None,
@@ -211,8 +211,8 @@ pub const fn modifier_data_row(kind: ModifierKind) -> Option<usize> {
 }
 
 /// The data of the modifier whose own rows `rows` begins with; empty for most.
-pub fn modifier_data(kind: ModifierKind, rows: &[Row]) -> &[Row] {
-    modifier_data_row(kind).map_or(&[], |row| data_at(rows, row))
+pub fn modifier_payload(kind: ModifierKind, rows: &[ParamRow]) -> &[ParamRow] {
+    modifier_payload_row(kind).map_or(&[], |row| payload_at(rows, row))
 }
 
 /// How many rows a modifier's own numbers take, and behind them where its data are.
@@ -237,7 +237,7 @@ pub struct FlatMaterial {
     pub albedo: [f32; 3],
     /// Strength of the highlight.
     pub specular: f32,
-    /// Linear emitted colour.
+    /// Linear emitted color.
     pub emission: [f32; 3],
     /// Blinn-Phong exponent.
     pub shininess: f32,
@@ -245,7 +245,7 @@ pub struct FlatMaterial {
 
 impl FlatMaterial {
     /// As rows: albedo and specular, emission and shininess.
-    pub fn rows(&self) -> [Row; MATERIAL_ROWS] {
+    pub fn rows(&self) -> [ParamRow; MATERIAL_ROWS] {
         let ([r, g, b], [red, green, blue]) = (self.albedo, self.emission);
         [[r, g, b, self.specular], [red, green, blue, self.shininess]]
     }
@@ -295,12 +295,12 @@ pub struct Component {
     pub first: u32,
     /// How many.
     pub count: u32,
-    /// Its first row in [`FlatScene::numbers`], a multiple of [`ROW_ALIGNMENT`].
-    pub numbers: u32,
+    /// Its first row in [`FlatScene::params`], a multiple of [`ROW_ALIGNMENT`].
+    pub params: u32,
     /// How many rows, data included.
-    pub rows: u32,
+    pub param_rows: u32,
     /// How many of the last of them are data of its leaves and modifiers.
-    pub data: u32,
+    pub payload_rows: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
     /// Around its surface, relative to `origin`; may be unbounded.
@@ -315,12 +315,12 @@ pub struct Component {
     /// Accumulators that an evaluator must be able to put aside.
     pub stack: u32,
     /// What its modifiers hold, in the order of their entries.
-    pub contents: Vec<Content>,
+    pub modifier_domains: Vec<ModifierDomain>,
     /// How often an entry may be evaluated for one point: 1 without repetition.
     pub copies: u32,
     /// What rounding to f32 took from local-from-component of each entry, zero for groups and runs; nothing for a component
     /// that is not [`LARGE`].
-    pub rest: Vec<[Row; 3]>,
+    pub rest: Vec<[ParamRow; 3]>,
 }
 
 impl Component {
@@ -328,7 +328,7 @@ impl Component {
     /// large, as it was before rounding. `None` for groups and runs.
     pub fn placing(&self, flat: &FlatScene, index: usize) -> Option<[[f64; 4]; 3]> {
         let node = &flat.nodes[index];
-        let rounded = flat.numbers[node.numbers as usize + node.placing_row()?..][..3].iter();
+        let rounded = flat.params[node.params as usize + node.placing_row()?..][..3].iter();
         let mut rows = [[0.0; 4]; 3];
         for (row, rounded) in rows.iter_mut().zip(rounded) {
             *row = rounded.map(f64::from);
@@ -343,21 +343,21 @@ impl Component {
 
     /// Whether it holds modifiers.
     pub fn is_modified(&self) -> bool {
-        !self.contents.is_empty()
+        !self.modifier_domains.is_empty()
     }
 }
 
 /// What a modifier holds, in its own space.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Content {
+pub struct ModifierDomain {
     /// The modifier's entry, counted from the component's first.
     pub entry: u32,
     /// Around the content's surface; may be unbounded.
     pub bounds: Aabb,
-    /// Its field is at least `slope` times the distance to this.
-    pub skip: Aabb,
-    /// See `skip`; 0 where nothing is known.
-    pub slope: f64,
+    /// Its field is at least `bound_slope` times the distance to this.
+    pub cull_box: Aabb,
+    /// See `cull_box`; 0 where nothing is known.
+    pub bound_slope: f64,
     /// How often it may be evaluated for one point of the component.
     pub copies: u32,
 }
@@ -378,11 +378,11 @@ pub struct Warning {
 pub struct FlatScene {
     /// The subtree-extent arrays of all components, one after the other.
     pub nodes: Vec<FlatNode>,
-    /// Numbers of the nodes.
-    pub numbers: Vec<Row>,
+    /// Parameters of the nodes.
+    pub params: Vec<ParamRow>,
     /// Which node each entry of `nodes` came from; stays on the CPU.
     pub ids: Vec<NodeId>,
-    /// Materials in use, then those of the scene that nothing wears are left out.
+    /// Materials in use, then those of the scene that nothing uses are left out.
     pub materials: Vec<FlatMaterial>,
     /// Where each of `materials` came from.
     pub material_ids: Vec<MaterialId>,
@@ -400,7 +400,7 @@ pub struct FlatScene {
     pub warnings: Vec<Warning>,
 }
 
-/// A component whose numbers reach beyond this, in metres, is large: rounding to f32 moves what is in it by more than 2 µm.
+/// A component whose numbers reach beyond this, in meters, is large: rounding to f32 moves what is in it by more than 2 µm.
 pub const LARGE: f64 = 64.0;
 /// Largest stack for which an evaluator exists, see [`Component::stack`].
 pub const MAX_STACK: u32 = 128;
@@ -422,6 +422,6 @@ pub const MAX_FLAT_STEPS: usize = 1 << 23;
 pub const MAX_FLAT_LEVELS: usize = 2_048;
 /// Most copies of one entry that are evaluated for one point, where repetitions stand within each other.
 pub const MAX_COPIES: usize = 1 << 14;
-/// Most entries of components that have pruned lists at once, the largest first: lists of small components take 12 KB and
+/// Most entries of components that have tapes at once, the largest first: tapes of small components take 12 KB and
 /// a tenth of a millisecond for each entry.
-pub const MAX_LISTED_ENTRIES: usize = 1 << 15;
+pub const MAX_CACHED_ENTRIES: usize = 1 << 15;

@@ -1,6 +1,6 @@
 //! Joins small components that are alike and near each other into larger ones.
 //!
-//! A component that is seen takes three dispatches however small it is. So where a scene has hundreds of them, neighbours
+//! A component that is seen takes three dispatches however small it is. So where a scene has hundreds of them, neighbors
 //! become one by hard union, whose field is the same. Only those of one kind are joined: then few kernels do for all, and
 //! none computes what only some of them hold.
 
@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use glam::DMat3;
 
 use super::arrays::Join;
-use super::enclosure::fold_bounds;
+use super::lower_bound::fold_bounds;
 use super::operands::{Operand, Value, group_of};
 use crate::geometry::Aabb;
 use crate::scene::Blend;
@@ -75,7 +75,7 @@ pub(super) fn united(folds: Vec<Vec<Operand<'_>>>) -> Vec<Operand<'_>> {
     folds.into_iter().enumerate().map(joined).collect()
 }
 
-/// What components that are joined have in common: shapes, nesting and joints, and what else decides about a kernel.
+/// What components that are joined have in common: shapes, nesting and blends, and what else decides about a kernel.
 #[derive(PartialEq, Eq, Hash)]
 struct Kind {
     shapes: u32,
@@ -95,11 +95,11 @@ impl Kind {
             let kernel = (operand.blend.radius > 0.0).then_some(operand.blend.kernel as u32);
             self.words.extend([operand.join as u32, kernel.map_or(0, |kernel| kernel + 1)]);
             let fits = match &operand.value {
-                Value::Leaf { local_from_world, distance_scale, body, .. } => {
+                Value::Leaf { local_from_world, distance_scale, prepared, .. } => {
                     self.shapes += 1;
                     let [is_moved, is_unscaled] = [local_from_world.matrix3 == DMat3::IDENTITY, *distance_scale == 1.0];
-                    self.words.extend([1 + body.kind as u32, u32::from(is_moved), u32::from(is_unscaled)]);
-                    self.shapes <= MOST_SHAPES_EACH && !body.kind.has_data() && !body.kind.is_iterated()
+                    self.words.extend([1 + prepared.kind as u32, u32::from(is_moved), u32::from(is_unscaled)]);
+                    self.shapes <= MOST_SHAPES_EACH && !prepared.kind.has_data() && !prepared.kind.is_iterated()
                 }
                 Value::Fold(inner) => {
                     self.words.push(0);
@@ -107,7 +107,7 @@ impl Kind {
                 }
                 Value::Modified { .. } => false,
             };
-            fits && !operand.join.is_further()
+            fits && !operand.join.is_extended()
         })
     }
 }
@@ -162,7 +162,7 @@ fn split(members: &mut [Member], most: usize, out: &mut impl FnMut(&[Member])) {
 mod tests {
     use glam::DVec3;
 
-    use crate::flat::{FlatScene, Flattener, flatten, flatten_whole, twin::field};
+    use crate::flat::{FlatScene, Flattener, eval::field, flatten, flatten_whole};
     use crate::gallery;
     use crate::geometry::Aabb;
     use crate::scene::{MaterialId, Modifier, Node, NodeKind, Object, Scene, Shape, ShapeKind};
@@ -171,7 +171,7 @@ mod tests {
         Node::new("object", NodeKind::Object(Object { shape: kind.default_shape(), material: MaterialId(1) }))
     }
 
-    /// A row of objects, `gap` metres from one to the next.
+    /// A row of objects, `gap` meters from one to the next.
     fn row(count: usize, gap: f64, node: impl Fn(usize) -> Node) -> Scene {
         let mut scene = Scene::new();
         for i in 0..count {
@@ -220,13 +220,13 @@ mod tests {
     #[test]
     fn what_is_far_off_large_slow_or_deformed_stays_alone() {
         let alone = |scene: &Scene| flatten(scene, 0.0).unwrap().components.iter().filter(|c| c.count == 1).count();
-        // A sphere of 1 m: 31 m from the middle of its neighbour, and too far.
+        // A sphere of 1 m: 31 m from the middle of its neighbor, and too far.
         assert_eq!(alone(&row(64, 30.0, |_| object(ShapeKind::Sphere))), 0);
         assert_eq!(alone(&row(64, 32.0, |_| object(ShapeKind::Sphere))), 64);
         assert_eq!(alone(&row(64, 3.0, |_| object(ShapeKind::Mandelbulb))), 64);
         assert_eq!(alone(&row(64, 3.0, |_| object(ShapeKind::Plane))), 64);
         let twisted = |_: usize| object(ShapeKind::Box).modified(Modifier::Twist { angle: 90.0 });
-        assert!(flatten(&row(64, 3.0, twisted), 0.0).unwrap().components.iter().all(|c| c.contents.len() == 1));
+        assert!(flatten(&row(64, 3.0, twisted), 0.0).unwrap().components.iter().all(|c| c.modifier_domains.len() == 1));
     }
 
     #[test]
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dragged_object_stays_with_its_neighbours_until_it_is_far_off_or_another_shape() {
+    fn a_dragged_object_stays_with_its_neighbors_until_it_is_far_off_or_another_shape() {
         let mut scene = gallery::crowd(300, false, 7);
         let mut flattener = Flattener::default();
         let before = flattener.flatten(&scene, 0.0).unwrap();
@@ -263,8 +263,8 @@ mod tests {
         };
         // All the way through the crowd.
         let near = edit(&|node| node.transform.translation = -node.transform.translation);
-        assert_eq!(near.ids, before.ids, "it stays with its neighbours");
-        assert_ne!(near.numbers, before.numbers);
+        assert_eq!(near.ids, before.ids, "it stays with its neighbors");
+        assert_ne!(near.params, before.params);
         let far = edit(&|node| node.transform.translation.x += 1e4);
         assert_ne!(far.ids, before.ids);
         let alone =

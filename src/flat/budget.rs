@@ -32,7 +32,7 @@ impl Cancel {
     }
 
     /// Whether somebody said stop.
-    pub fn is_cancelled(&self) -> bool {
+    pub fn is_canceled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
@@ -52,13 +52,13 @@ pub struct Usage {
 
 /// Most of each kind.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
+pub(super) struct FlattenLimits {
     pub entries: usize,
     pub rows: usize,
     pub steps: usize,
 }
 
-impl Default for Limits {
+impl Default for FlattenLimits {
     fn default() -> Self {
         Self { entries: MAX_FLAT_NODES, rows: MAX_FLAT_ROWS, steps: MAX_FLAT_STEPS }
     }
@@ -66,21 +66,21 @@ impl Default for Limits {
 
 /// What has been taken so far, and the first limit that was hit.
 pub(super) struct Budget {
-    pub limits: Limits,
-    used: Limits,
+    pub limits: FlattenLimits,
+    used: FlattenLimits,
     cancel: Cancel,
     /// The first limit that was hit.
     pub problem: Option<FlattenError>,
 }
 
 impl Budget {
-    pub fn new(limits: Limits, cancel: &Cancel) -> Self {
-        Self { limits, used: Limits { entries: 0, rows: 0, steps: 0 }, cancel: cancel.clone(), problem: None }
+    pub fn new(limits: FlattenLimits, cancel: &Cancel) -> Self {
+        Self { limits, used: FlattenLimits { entries: 0, rows: 0, steps: 0 }, cancel: cancel.clone(), problem: None }
     }
 
     /// Whether to go on: no limit was hit, and nobody said stop.
     pub fn is_open(&self) -> bool {
-        self.problem.is_none() && !self.cancel.is_cancelled()
+        self.problem.is_none() && !self.cancel.is_canceled()
     }
 
     /// Steps so far.

@@ -6,14 +6,14 @@ use std::rc::Rc;
 use glam::{DAffine3, DVec3};
 
 use super::arrays::{Join, MAX_STACK, Warning};
-use super::body::Body;
-use super::budget::{Budget, Cancel, Limits, STACK};
+use super::blends::has_own_radius;
+use super::budget::{Budget, Cancel, FlattenLimits, STACK};
 use super::cuts::{self, Cut};
-use super::enclosure::fold_bounds;
-use super::joints::has_own_radius;
 use super::leaf::leaf;
-use super::modify::{MAX_NEIGHBOURS, Refusal, Splines, modify};
+use super::lower_bound::fold_bounds;
+use super::modify::{MAX_NEIGHBORS, ModifierRefusal, Splines, modify};
 use super::operands::{Operand, Value, apart, begin_with, group_of, polar_copies, size_of_fold, united};
+use super::prepare::PreparedShape;
 use super::survey::{Survey, active};
 use crate::geometry::singular_values;
 use crate::scene::{Blend, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
@@ -43,7 +43,7 @@ fn is_plain_group(node: &Node) -> bool {
 /// The fold of the one component whose outermost node stands at `index`; nothing where it is not one, or where
 /// there is something to warn of.
 pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_>>> {
-    let limits = Limits::default();
+    let limits = FlattenLimits::default();
     let survey = Survey::new(scene, scene.subtree(index), &limits).ok().filter(|survey| !survey.is_deep())?;
     let node: &Node = &scene.nodes()[index];
     let parent = node.parent.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
@@ -55,14 +55,14 @@ pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_
     if is_one { parts.pop().map(begin_with) } else { None }
 }
 
-/// Collects the components; lights, meshes and cameras go to `bystander` with their world transform.
+/// Collects the components; lights, meshes and cameras go to `non_field` with their world transform.
 pub(super) fn collect<'a>(
     scene: &'a Scene,
     survey: &Survey,
     budget: Budget,
-    bystander: &mut dyn FnMut(&'a Node, &DAffine3),
+    non_field: &mut dyn FnMut(&'a Node, &DAffine3),
 ) -> Components<'a> {
-    let mut collector = Collector::new(scene, survey, budget, bystander);
+    let mut collector = Collector::new(scene, survey, budget, non_field);
     let (mut operands, mut cuts) = (Vec::new(), Vec::new());
     collector.split(0..scene.nodes().len(), DAffine3::IDENTITY, &mut operands, &mut cuts);
     let Collector { warnings, mut budget, .. } = collector;
@@ -88,14 +88,14 @@ pub(super) struct Collector<'a, 'b> {
     pub scene: &'a Scene,
     pub survey: &'b Survey,
     pub budget: Budget,
-    bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
+    non_field: &'b mut dyn FnMut(&'a Node, &DAffine3),
     warnings: Vec<Warning>,
     /// The same, to tell each only once.
     warned: HashSet<(NodeId, String)>,
-    /// Within a modifier, whose bystanders are known already.
+    /// Within a modifier, whose lights, cameras and meshes are known already.
     is_muted: bool,
     /// What shapes with data are evaluated with, by the node's index: it does not depend on where a copy stands.
-    drawn: HashMap<usize, Rc<Body>>,
+    drawn: HashMap<usize, Rc<PreparedShape>>,
     splines: Splines,
     /// Modifiers that can do nothing with their content, by the node's index and how many precede them.
     refused: HashSet<(usize, usize)>,
@@ -106,13 +106,13 @@ impl<'a, 'b> Collector<'a, 'b> {
         scene: &'a Scene,
         survey: &'b Survey,
         budget: Budget,
-        bystander: &'b mut dyn FnMut(&'a Node, &DAffine3),
+        non_field: &'b mut dyn FnMut(&'a Node, &DAffine3),
     ) -> Self {
         Self {
             scene,
             survey,
             budget,
-            bystander,
+            non_field,
             warnings: Vec::new(),
             warned: HashSet::new(),
             is_muted: false,
@@ -169,7 +169,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
         let world = *parent * node.transform.to_affine();
         if !node.has_field() || self.survey.is_nothing(index) {
-            self.bystanders(index, &world);
+            self.non_fields(index, &world);
             let is_operand = node.has_field() && !self.survey.is_folder(index);
             return if is_operand { Found::Nothing } else { Found::LeftOut };
         }
@@ -178,7 +178,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             self.content(index, &world, outermost)
         } else {
             // What is no field is not modified, and is there once.
-            self.bystanders(index, &world);
+            self.non_fields(index, &world);
             let was_muted = std::mem::replace(&mut self.is_muted, true);
             let operand = self.modified(index, &modifiers, &world, outermost);
             self.is_muted = was_muted;
@@ -222,31 +222,31 @@ impl<'a, 'b> Collector<'a, 'b> {
             return None;
         }
         let operand = leaf(node, outermost, world, object, self.drawn.get(&index).cloned());
-        let Value::Leaf { body, .. } = &operand.value else { unreachable!("made as a leaf") };
-        if object.shape.is_blank(&body.bounds) {
+        let Value::Leaf { prepared, .. } = &operand.value else { unreachable!("made as a leaf") };
+        if object.shape.is_blank(&prepared.bounds) {
             return None;
         }
-        if body.kind.has_data() {
-            self.drawn.entry(index).or_insert_with(|| body.clone());
+        if prepared.kind.has_data() {
+            self.drawn.entry(index).or_insert_with(|| prepared.clone());
         }
-        self.budget.take_rows(node, body.rows.len()).then_some(operand)
+        self.budget.take_rows(node, prepared.payload.len()).then_some(operand)
     }
 
     /// The lights, meshes and cameras of the subtree at `index`, whose own world transform is given.
-    fn bystanders(&mut self, index: usize, world: &DAffine3) {
+    fn non_fields(&mut self, index: usize, world: &DAffine3) {
         if self.is_muted {
             return;
         }
         let scene = self.scene;
         let node: &'a Node = &scene.nodes()[index];
         if !node.has_field() {
-            (self.bystander)(node, world);
+            (self.non_field)(node, world);
         }
         let survey = self.survey;
         for at in survey.children(index) {
             let child: &'a Node = &scene.nodes()[at];
             if child.visible {
-                self.bystanders(at, &(*world * child.transform.to_affine()));
+                self.non_fields(at, &(*world * child.transform.to_affine()));
             }
         }
     }
@@ -322,21 +322,21 @@ impl<'a, 'b> Collector<'a, 'b> {
             return self.modified(index, rest, world, outermost);
         }
         let content = begin_with(self.modified(index, rest, &DAffine3::IDENTITY, outermost)?);
-        let enclosure = fold_bounds(&content);
-        if enclosure.bounds.is_empty() || !self.budget.take_entries(outermost, 1) {
+        let lower_bound = fold_bounds(&content);
+        if lower_bound.bounds.is_empty() || !self.budget.take_entries(outermost, 1) {
             return None;
         }
-        let modified = match modify(last, &enclosure, &mut self.splines) {
+        let modified = match modify(last, &lower_bound, &mut self.splines) {
             Ok(modified) => modified,
-            Err(Refusal::Cannot(reason)) => {
+            Err(ModifierRefusal::Cannot(reason)) => {
                 self.warn(node, reason);
                 // Whether it can does not depend on where a copy stands: the content is not collected twice for each.
                 self.refused.insert((index, rest.len()));
                 return self.modified(index, rest, world, outermost);
             }
-            Err(Refusal::TooMany(copies)) => {
+            Err(ModifierRefusal::TooMany(copies)) => {
                 let what = "the number of copies that reach into each other and are evaluated at once";
-                self.budget.hit(node, what, copies, MAX_NEIGHBOURS as usize);
+                self.budget.hit(node, what, copies, MAX_NEIGHBORS as usize);
                 return None;
             }
         };
@@ -347,7 +347,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             self.warn(node, warning.clone());
         }
         let (least, greatest) = singular_values(&world.matrix3);
-        let skip = modified.skip.transformed(world);
+        let cull_box = modified.cull_box.transformed(world);
         let (entries, depth) = size_of_fold(&content);
         let operand = Operand {
             node,
@@ -356,8 +356,8 @@ impl<'a, 'b> Collector<'a, 'b> {
             blend: Blend::HARD,
             detail: [0.0; 2],
             bounds: modified.bounds.transformed(world),
-            skip,
-            slope: if skip.is_finite() { modified.slope * least / greatest } else { 0.0 },
+            cull_box,
+            bound_slope: if cull_box.is_finite() { modified.bound_slope * least / greatest } else { 0.0 },
             entries: entries.saturating_add(1),
             depth: depth + 1,
             value: Value::Modified {

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::arrays::Join;
 use super::budget::Budget;
-use super::enclosure::fold_bounds;
+use super::lower_bound::fold_bounds;
 use super::operands::Operand;
 use crate::geometry::Aabb;
 use crate::scene::Blend;

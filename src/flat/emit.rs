@@ -3,7 +3,7 @@
 use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
-use super::enclosure::{Enclosure, fold_bounds};
+use super::lower_bound::{LowerBound, fold_bounds};
 use super::operands::{Operand, Value};
 use super::stack::shallow;
 use crate::geometry::Aabb;
@@ -20,15 +20,15 @@ pub(super) fn emit(
     let operands = shallow.as_deref().unwrap_or(operands);
     let origin = origin_of(&bounds, operands);
     let first = flat.nodes.len();
-    let numbers = flat.numbers.len().next_multiple_of(ROW_ALIGNMENT);
-    flat.numbers.resize(numbers, [0.0; 4]);
+    let params = flat.params.len().next_multiple_of(ROW_ALIGNMENT);
+    flat.params.resize(params, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
     emit_materials(flat, first);
-    let data = flat.numbers.len();
+    let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
-    let mut contents = Vec::new();
+    let mut modifier_domains = Vec::new();
     let entries = || (first..).map(|at| (at - first, flat.nodes[at].is_run()));
-    collect_contents(operands, 1, &mut entries(), &mut contents);
+    collect_domains(operands, 1, &mut entries(), &mut modifier_domains);
     let mut rest = Vec::new();
     if reach(flat, first, &bounds) > LARGE {
         rest.resize(flat.nodes.len() - first, [[0.0; 4]; 3]);
@@ -37,15 +37,15 @@ pub(super) fn emit(
     Component {
         first: first as u32,
         count: (flat.nodes.len() - first) as u32,
-        numbers: numbers as u32,
-        rows: (flat.numbers.len() - numbers) as u32,
-        data: (flat.numbers.len() - data) as u32,
+        params: params as u32,
+        param_rows: (flat.params.len() - params) as u32,
+        payload_rows: (flat.params.len() - data) as u32,
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
         flush_extent: if can_cancel(operands) { extent(operands, origin) } else { 0.0 },
         stack,
-        contents,
+        modifier_domains,
         copies: operands.iter().map(copies).max().unwrap_or(1),
         rest,
     }
@@ -56,7 +56,7 @@ pub(super) fn emit(
 fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 0.0 };
     let farthest = |node: &FlatNode| {
-        let placing = &flat.numbers[node.numbers as usize + node.placing_row()?..][..3];
+        let placing = &flat.params[node.params as usize + node.placing_row()?..][..3];
         Some(placing.iter().fold(0.0_f64, |most, row| most.max(f64::from(row[3].abs()))))
     };
     flat.nodes[first..].iter().filter_map(farthest).fold(size, f64::max)
@@ -65,7 +65,7 @@ fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
 /// Appends the materials of the leaves from the entry `first` on.
 fn emit_materials(flat: &mut FlatScene, first: usize) {
     for node in flat.nodes[first..].iter().filter(|node| node.is_leaf()) {
-        flat.numbers.extend(flat.materials[node.material as usize].rows());
+        flat.params.extend(flat.materials[node.material as usize].rows());
     }
 }
 
@@ -96,10 +96,10 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
     }
 }
 
-/// See [`Component::half_space`]: what begins with a plane and is only cut afterwards stays below it.
+/// See [`Component::half_space`]: what begins with a plane and is only cut afterward stays below it.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
-    let Value::Leaf { local_from_world, body, .. } = &operands[0].value else { return None };
-    if body.kind != ShapeKind::Plane || !operands[1..].iter().all(|o| o.join.only_cuts()) {
+    let Value::Leaf { local_from_world, prepared, .. } = &operands[0].value else { return None };
+    if prepared.kind != ShapeKind::Plane || !operands[1..].iter().all(|o| o.join.only_cuts()) {
         return None;
     }
     // The plane's inside is local y < 0.
@@ -128,10 +128,10 @@ fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
             let bounds = operand.bounds.translated(-origin);
             bounds.min.abs().max(bounds.max.abs()).max_element()
         }
-        Value::Leaf { local_from_world, distance_scale, body, .. } => {
+        Value::Leaf { local_from_world, distance_scale, prepared, .. } => {
             let local = local_from_world.transform_point3(origin);
             // Where along a plane it is does not count.
-            let far = if body.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
+            let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
             far * distance_scale
         }
         Value::Fold(inner) => extent(inner, origin),
@@ -151,16 +151,16 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
         let (behind, data) = match &operand.value {
             Value::Fold(_) => (None, &[][..]),
             Value::Modified { kind, modified, .. } => {
-                (modifier_data_row(*kind).map(|row| MODIFIER_ROWS + row), &*modified.data)
+                (modifier_payload_row(*kind).map(|row| MODIFIER_ROWS + row), &*modified.data)
             }
-            Value::Leaf { body, .. } => (data_row(body.kind), &*body.rows),
+            Value::Leaf { prepared, .. } => (payload_row(prepared.kind), &*prepared.payload),
         };
         if let Some(behind) = behind {
-            let row = flat.nodes[at].numbers as usize + behind;
+            let row = flat.nodes[at].params as usize + behind;
             // Exact: there are far fewer rows than f32 can count.
-            let [count, offset] = [data.len(), flat.numbers.len() - row].map(|v| v as f32);
-            flat.numbers[row] = [count, offset, 0.0, 0.0];
-            flat.numbers.extend(data.iter().map(|row| row.map(|v| v as f32)));
+            let [count, offset] = [data.len(), flat.params.len() - row].map(|v| v as f32);
+            flat.params[row] = [count, offset, 0.0, 0.0];
+            flat.params.extend(data.iter().map(|row| row.map(|v| v as f32)));
         }
         if let Value::Fold(inner) | Value::Modified { content: inner, .. } = &operand.value {
             emit_data(flat, inner, entries);
@@ -170,21 +170,21 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
 
 /// Appends what modifiers hold; `entries` are those from here on, in the order in which they were written, and whether
 /// each is a run. What is there is evaluated up to `copies` times for one point.
-fn collect_contents(
+fn collect_domains(
     operands: &[Operand<'_>],
     copies: u32,
     entries: &mut impl Iterator<Item = (usize, bool)>,
-    out: &mut Vec<Content>,
+    out: &mut Vec<ModifierDomain>,
 ) {
     for operand in operands {
         let (entry, _) = entries.find(|(_, is_run)| !is_run).expect("all were written");
         match &operand.value {
-            Value::Fold(inner) => collect_contents(inner, copies, entries, out),
+            Value::Fold(inner) => collect_domains(inner, copies, entries, out),
             Value::Modified { content, modified, .. } => {
-                let Enclosure { bounds, skip, slope } = fold_bounds(content);
+                let LowerBound { bounds, cull_box, bound_slope } = fold_bounds(content);
                 let copies = copies.saturating_mul(modified.copies);
-                out.push(Content { entry: entry as u32, bounds, skip, slope, copies });
-                collect_contents(content, copies, entries, out);
+                out.push(ModifierDomain { entry: entry as u32, bounds, cull_box, bound_slope, copies });
+                collect_domains(content, copies, entries, out);
             }
             Value::Leaf { .. } => {}
         }
@@ -205,7 +205,7 @@ fn emit_fold(
     material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
 ) -> u32 {
     let alike = |a: &Operand<'_>, b: &Operand<'_>| {
-        let skippable = |o: &Operand<'_>| o.slope > 0.0 && o.join.is_skipped_far_off();
+        let skippable = |o: &Operand<'_>| o.bound_slope > 0.0 && o.join.is_skipped_far_off();
         a.join == b.join && skippable(a) && skippable(b)
     };
     let mut stack = 0;
@@ -229,14 +229,14 @@ fn emit_runs(
     let mut stack = 0;
     for run in row.chunks(row.len().div_ceil(RUN_LENGTH).max(RUN_LENGTH)) {
         let index = flat.nodes.len();
-        let numbers = flat.numbers.len() as u32;
+        let params = flat.params.len() as u32;
         let code = FlatNode::RUN | ((run[0].join as u32) << 16);
         flat.ids.push(run[0].node.id);
-        flat.nodes.push(FlatNode { code, extent: 0, numbers, material: 0 });
-        let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.skip)).translated(-origin);
-        let slope = run.iter().map(|o| o.slope).fold(f64::INFINITY, f64::min);
+        flat.nodes.push(FlatNode { code, extent: 0, params, material: 0 });
+        let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.cull_box)).translated(-origin);
+        let bound_slope = run.iter().map(|o| o.bound_slope).fold(f64::INFINITY, f64::min);
         let support = run.iter().map(|o| o.blend.support()).fold(0.0, f64::max);
-        flat.numbers.extend(bounding_rows([support as f32, 0.0, 0.0], slope, &bounds));
+        flat.params.extend(bounding_rows([support as f32, 0.0, 0.0], bound_slope, &bounds));
         stack = stack.max(if run.len() > RUN_LENGTH {
             emit_runs(flat, run, origin, material)
         } else {
@@ -248,15 +248,15 @@ fn emit_runs(
 }
 
 /// The rows of a group or run. Rounding to f32 must never make the bounds smaller or the slope greater.
-fn bounding_rows([support, size, depth]: [f32; 3], slope: f64, bounds: &Aabb) -> [Row; GROUP_ROWS] {
-    if slope <= 0.0 {
+fn bounding_rows([support, size, depth]: [f32; 3], bound_slope: f64, bounds: &Aabb) -> [ParamRow; GROUP_ROWS] {
+    if bound_slope <= 0.0 {
         return [[support, 0.0, size, depth], [0.0; 4], [0.0; 4]];
     }
     let (center, half) = (bounds.center(), bounds.half());
     let half = (half + (half + center.abs()) * 1e-6).as_vec3();
     let center = center.as_vec3();
-    let slope = (slope * (1.0 - 1e-6)) as f32;
-    [[support, slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
+    let bound_slope = (bound_slope * (1.0 - 1e-6)) as f32;
+    [[support, bound_slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
 }
 
 /// Local from component, before rounding.
@@ -266,7 +266,7 @@ fn exact_placing(local_from_world: &DAffine3, origin: DVec3) -> [[f64; 4]; 3] {
 }
 
 /// Local from component.
-fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [Row; 3] {
+fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [ParamRow; 3] {
     exact_placing(local_from_world, origin).map(|row| row.map(|v| v as f32))
 }
 
@@ -276,7 +276,7 @@ fn collect_rest(
     operands: &[Operand<'_>],
     origin: DVec3,
     entries: &mut impl Iterator<Item = (usize, bool)>,
-    out: &mut [[Row; 3]],
+    out: &mut [[ParamRow; 3]],
 ) {
     for operand in operands {
         let (entry, _) = entries.find(|(_, is_run)| !is_run).expect("all were written");
@@ -303,39 +303,39 @@ fn emit_operand(
     material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
 ) -> u32 {
     let index = flat.nodes.len();
-    let numbers = flat.numbers.len() as u32;
+    let params = flat.params.len() as u32;
     let kernel = BlendKernel::ALL.iter().position(|k| *k == operand.blend.kernel).expect("ALL holds every kernel");
     let code = |what: u32| what | ((operand.join as u32) << 16) | ((kernel as u32) << 24);
-    let joint = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
+    let blend_params = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
     flat.ids.push(operand.node.id);
     match &operand.value {
-        Value::Leaf { local_from_world, distance_scale, body, material: id } => {
+        Value::Leaf { local_from_world, distance_scale, prepared, material: id } => {
             let material = material(flat, *id);
-            flat.nodes.push(FlatNode { code: code(body.kind as u32), extent: 1, numbers, material });
-            flat.numbers.push([joint[0], *distance_scale as f32, joint[1], joint[2]]);
-            flat.numbers.extend(placing_rows(local_from_world, origin));
-            let packed = body.parameters.map(|v| v as f32);
-            let rows = body.kind.parameter_rows();
-            flat.numbers.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
+            flat.nodes.push(FlatNode { code: code(prepared.kind as u32), extent: 1, params, material });
+            flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
+            flat.params.extend(placing_rows(local_from_world, origin));
+            let packed = prepared.parameters.map(|v| v as f32);
+            let rows = prepared.kind.parameter_rows();
+            flat.params.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
             // Where its data are, once they are written.
-            flat.numbers.extend(data_row(body.kind).map(|_| [0.0; 4]));
+            flat.params.extend(payload_row(prepared.kind).map(|_| [0.0; 4]));
             0
         }
         Value::Fold(inner) => {
-            flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, numbers, material: 0 });
-            flat.numbers.extend(bounding_rows(joint, operand.slope, &operand.skip.translated(-origin)));
+            flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, params, material: 0 });
+            flat.params.extend(bounding_rows(blend_params, operand.bound_slope, &operand.cull_box.translated(-origin)));
             let stack = emit_fold(flat, inner, origin, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }
         Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
             let marker = FlatNode::MODIFIER + *kind as u32;
-            flat.nodes.push(FlatNode { code: code(marker), extent: 0, numbers, material: 0 });
-            let mut bounding = bounding_rows(joint, operand.slope, &operand.skip.translated(-origin));
+            flat.nodes.push(FlatNode { code: code(marker), extent: 0, params, material: 0 });
+            let mut bounding = bounding_rows(blend_params, operand.bound_slope, &operand.cull_box.translated(-origin));
             bounding[1][3] = *distance_scale as f32;
-            flat.numbers.extend(bounding);
-            flat.numbers.extend(placing_rows(local_from_world, origin));
-            flat.numbers.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
+            flat.params.extend(bounding);
+            flat.params.extend(placing_rows(local_from_world, origin));
+            flat.params.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
             let stack = emit_fold(flat, content, DVec3::ZERO, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1

@@ -14,10 +14,10 @@ use thiserror::Error;
 
 use super::arrays::*;
 use super::batch::{batched, united};
-use super::budget::{BYTES, Budget, Cancel, LEVELS, Limits, ROWS, STACK, Usage};
+use super::budget::{BYTES, Budget, Cancel, FlattenLimits, LEVELS, ROWS, STACK, Usage};
 use super::collect::{Components, collect};
 use super::emit::emit;
-use super::enclosure::fold_bounds;
+use super::lower_bound::fold_bounds;
 use super::operands::{Operand, size_of_fold};
 use super::survey::Survey;
 use super::usage::usage;
@@ -63,13 +63,13 @@ pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     Ok(flat)
 }
 
-/// The same with how much of each limit is used; nothing where it was cancelled.
+/// The same with how much of each limit is used; nothing where it was canceled.
 pub fn flatten_until(
     scene: &Scene,
     time: f64,
     cancel: &Cancel,
 ) -> Result<Option<(FlatScene, Vec<Usage>)>, FlattenError> {
-    let made = flatten_within(scene, time, Limits::default(), cancel)?;
+    let made = flatten_within(scene, time, FlattenLimits::default(), cancel)?;
     Ok(made.map(|Made { flat, steps, .. }| {
         let usage = usage(&flat, steps);
         (flat, usage)
@@ -81,11 +81,11 @@ pub fn flatten_until(
 pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     let mut flat = flatten(scene, time)?;
     flat.nodes.clear();
-    flat.numbers.clear();
+    flat.params.clear();
     flat.ids.clear();
     flat.components.clear();
     let index = flat.material_ids.iter().enumerate().map(|(i, id)| (*id, i as u32)).collect();
-    let limits = Limits::default();
+    let limits = FlattenLimits::default();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     on_a_stack(scene, &survey, || {
         let mut materials = Materials { scene, index };
@@ -98,13 +98,13 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     })
 }
 
-/// The same, and whether something is cut away from several components; nothing where it was cancelled.
+/// The same, and whether something is cut away from several components; nothing where it was canceled.
 pub(super) fn flatten_with_cuts(
     scene: &Scene,
     time: f64,
     cancel: &Cancel,
 ) -> Result<Option<(FlatScene, bool)>, FlattenError> {
-    let made = flatten_within(scene, time, Limits::default(), cancel)?;
+    let made = flatten_within(scene, time, FlattenLimits::default(), cancel)?;
     Ok(made.map(|Made { flat, has_cuts, .. }| (flat, has_cuts)))
 }
 
@@ -115,7 +115,12 @@ struct Made {
     steps: usize,
 }
 
-fn flatten_within(scene: &Scene, time: f64, limits: Limits, cancel: &Cancel) -> Result<Option<Made>, FlattenError> {
+fn flatten_within(
+    scene: &Scene,
+    time: f64,
+    limits: FlattenLimits,
+    cancel: &Cancel,
+) -> Result<Option<Made>, FlattenError> {
     debug_assert!(time.is_finite(), "time is checked at the border");
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
@@ -143,19 +148,19 @@ fn on_a_stack<T: Send>(
 fn flatten_surveyed(
     scene: &Scene,
     survey: &Survey,
-    limits: Limits,
+    limits: FlattenLimits,
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
     let mut flat = FlatScene {
         nodes: Vec::with_capacity(scene.nodes().len()),
-        numbers: Vec::with_capacity(scene.nodes().len() * 6),
+        params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
         environment: scene.environment,
         ..FlatScene::default()
     };
     let mut materials = Materials { scene, index: HashMap::new() };
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
-        add_bystander(&mut flat, &mut materials, node, world_from_local);
+        add_non_field(&mut flat, &mut materials, node, world_from_local);
     });
     let Components { operands, warnings, has_cuts, budget } = components;
     flat.warnings = warnings;
@@ -163,7 +168,7 @@ fn flatten_surveyed(
     if let Some(problem) = budget.problem {
         return Err(problem);
     }
-    if cancel.is_cancelled() {
+    if cancel.is_canceled() {
         return Ok(None);
     }
     let components = batched(operands);
@@ -172,7 +177,7 @@ fn flatten_surveyed(
     }
     for operands in &components {
         add_component(&mut flat, &mut materials, operands, limits.rows)?;
-        if cancel.is_cancelled() {
+        if cancel.is_canceled() {
             return Ok(None);
         }
     }
@@ -201,7 +206,7 @@ impl Materials<'_> {
     }
 }
 
-fn add_bystander(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Node, world_from_local: &DAffine3) {
+fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Node, world_from_local: &DAffine3) {
     let forward = (world_from_local.matrix3 * DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z);
     match &node.kind {
         NodeKind::Light(light) => flat.lights.push(FlatLight {
@@ -270,7 +275,7 @@ fn add_component(
     let limits = [
         (TOGETHER, flat.nodes.len() - start, MAX_COMPONENT_NODES),
         ("the number of shapes and groups", flat.nodes.len(), MAX_FLAT_NODES),
-        (ROWS, flat.numbers.len(), most_rows),
+        (ROWS, flat.params.len(), most_rows),
         (BYTES, flat.bytes(), MAX_FLAT_BYTES),
         (COPIES, copies, MAX_COPIES),
     ];
@@ -286,7 +291,7 @@ mod tests {
     use crate::scene::{Attachment, Axis, Modifier, Object, ShapeKind};
 
     fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
-        flatten_within(scene, 0.0, Limits { rows, ..Limits::default() }, &Cancel::default())
+        flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())
     }
 
     /// Sixty-four copies of a plate that is displaced by an image of 900 pixels; the name of the plate's node.
@@ -304,7 +309,7 @@ mod tests {
     #[test]
     fn too_many_rows_are_refused_with_the_node_before_they_are_made() {
         let (scene, id) = copies();
-        let rows = flatten(&scene, 0.0).unwrap().numbers.len();
+        let rows = flatten(&scene, 0.0).unwrap().params.len();
         assert!(rows > 64 * 900);
         assert!(flatten_in_rows(&scene, rows).is_ok());
         let refused = |most| flatten_in_rows(&scene, most).err().expect("too many rows");

@@ -1,11 +1,11 @@
-//! The children of a group, joined one after the other; see [`crate::scene::Remainder`] for those that are empty.
+//! The children of a group, joined one after the other; see [`crate::scene::EmptyOperandResult`] for those that are empty.
 
 use glam::DAffine3;
 
+use super::blends::Joiner;
 use super::collect::{Collector, Found};
-use super::joints::Joiner;
 use super::operands::{Operand, begin_with};
-use crate::scene::{Group, Node, Operator, Remainder};
+use crate::scene::{EmptyOperandResult, Group, Node, Operator};
 
 /// What stands so far.
 enum Stand<'a> {
@@ -90,20 +90,20 @@ impl<'a> Folding<'_, 'a> {
                 }
                 Stand::Nothing
             }
-            (Stand::Nothing, Some(operand)) if operator.with_nothing(share, false) == Remainder::Second => {
+            (Stand::Nothing, Some(operand)) if operator.with_nothing(share, false) == EmptyOperandResult::Second => {
                 self.begin(node, operand)
             }
             (Stand::Nothing, operand) => {
                 self.is_lost |= operand.is_some();
                 Stand::Nothing
             }
-            (Stand::Operands(_), None) if operator.with_nothing(share, true) == Remainder::Nothing => {
+            (Stand::Operands(_), None) if operator.with_nothing(share, true) == EmptyOperandResult::Nothing => {
                 (self.empty, self.is_lost) = (self.empty.or(Some(node)), true);
                 Stand::Nothing
             }
             (stand @ Stand::Operands(_), None) => stand,
             (Stand::Operands(mut fold), Some(mut operand)) => {
-                self.joiner.set_joint(node, &mut operand);
+                self.joiner.set_blend(node, &mut operand);
                 self.joiner.join(node, operand, &mut fold, &mut collector.budget);
                 Stand::Operands(fold)
             }

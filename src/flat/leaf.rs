@@ -5,8 +5,8 @@ use std::rc::Rc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::Join;
-use super::body::Body;
 use super::operands::{Operand, Value};
+use super::prepare::PreparedShape;
 use crate::geometry::singular_values;
 use crate::scene::{Blend, Node, Object, Shape};
 
@@ -17,16 +17,16 @@ pub(super) fn leaf<'a>(
     outermost: &'a Node,
     world_from_local: &DAffine3,
     object: &Object,
-    drawn: Option<Rc<Body>>,
+    drawn: Option<Rc<PreparedShape>>,
 ) -> Operand<'a> {
     let Object { shape, material } = object;
-    let (shape, mut world_from_local, least, greatest) = normalise(shape, world_from_local);
+    let (shape, mut world_from_local, least, greatest) = normalize(shape, world_from_local);
     if least == 1.0 && matches!(shape, Shape::Sphere { .. }) {
         // A ball looks the same from every side: without a rotation its kernel is shorter.
         world_from_local.matrix3 = DMat3::IDENTITY;
     }
-    let body = drawn.unwrap_or_else(|| Rc::new(Body::new(&shape)));
-    let bounds = body.bounds.transformed(&world_from_local);
+    let prepared = drawn.unwrap_or_else(|| Rc::new(PreparedShape::new(&shape)));
+    let bounds = prepared.bounds.transformed(&world_from_local);
     Operand {
         node,
         outermost,
@@ -34,14 +34,14 @@ pub(super) fn leaf<'a>(
         blend: Blend::HARD,
         detail: [0.0; 2],
         bounds,
-        skip: bounds,
-        slope: if bounds.is_finite() { least / greatest } else { 0.0 },
+        cull_box: bounds,
+        bound_slope: if bounds.is_finite() { least / greatest } else { 0.0 },
         entries: 1,
         depth: 0,
         value: Value::Leaf {
             local_from_world: world_from_local.inverse(),
             distance_scale: least,
-            body,
+            prepared,
             material: *material,
         },
     }
@@ -49,7 +49,7 @@ pub(super) fn leaf<'a>(
 
 /// Takes the scale out of the transform and into the shape where the shape can hold it. Returns the
 /// least and greatest stretch of what remains: 1 and 1 in that case.
-fn normalise(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f64, f64) {
+fn normalize(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f64, f64) {
     let m = &world_from_local.matrix3;
     let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
     let skew = (m.x_axis.dot(m.y_axis).abs() / (scale.x * scale.y))

@@ -10,7 +10,7 @@ use crate::mesh::{MeshHit, TriangleMesh};
 pub type Meshes = [Option<Arc<TriangleMesh>>];
 
 /// The first triangle on the ray between `near` and `far`: the mesh's index, and the hit with `t`
-/// along the ray in metres and everything else in the mesh's own space.
+/// along the ray in meters and everything else in the mesh's own space.
 pub fn trace_meshes(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<(usize, MeshHit)> {
     let mut nearest: Option<(usize, MeshHit)> = None;
     for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {

@@ -1,71 +1,65 @@
-//! The scene at one moment as arrays, exactly as the GPU reads them, and the CPU twin that evaluates
+//! The scene at one moment as arrays, exactly as the GPU reads them, and the CPU evaluator that evaluates
 //! the same arrays in f64.
 //!
 //! | module | what it does |
 //! |---|---|
 //! | `batch` | small components joined by place |
-//! | `body` | shape → the numbers that it is evaluated with |
+//! | `prepare` | shape → the parameters that it is evaluated with |
 //! | `budget`, `survey`, `usage` | what flattening may take, counted before it is done |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
-//! | `twin` | the field over the arrays, in f64, with exact derivatives: the truth |
+//! | `eval` | the field over the arrays, in f64, with exact derivatives: the reference |
 //! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
-//! | `trace` | rays against the twin, with certainty instead of a step limit |
-//! | `shade` | light on surfaces, twin of `shaders/light` |
-//! | `truth` | the whole picture by `twin`, `trace` and `shade` |
+//! | `reference` | the reference renderer: a whole picture in f64, and how wrong another one is |
 //! | `pick` | which node a ray hits |
-//! | `prune` | which entries of a large component matter where |
+//! | `tape` | which entries of a large component matter where |
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
-//! | `inspect` | ways to look at a picture other than lit, their colours |
-//! | `compare` | how wrong a picture is, against the truth |
+//! | `debug_view` | what a picture can show instead of light, and its colors |
 
 mod arrays;
 mod batch;
-mod body;
+mod blends;
 mod budget;
-mod buffers;
 mod collect;
-pub mod compare;
 mod cuts;
+pub mod debug_view;
 mod emit;
-mod enclosure;
+pub mod eval;
 mod flatten;
 mod fold;
-pub mod inspect;
-mod joints;
+mod gbuffer;
 mod leaf;
+mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
 mod modify;
 mod moved;
 mod operands;
 pub mod pick;
-mod prune;
+mod prepare;
+pub mod reference;
 mod reflatten;
-pub mod shade;
 mod stack;
 mod survey;
-pub mod trace;
-pub mod truth;
-pub mod twin;
+mod tape;
 pub mod unflattened;
 mod usage;
 pub mod view;
 
 pub use arrays::*;
-pub use body::Body;
 pub use budget::{Cancel, Usage};
-pub use buffers::*;
-pub use compare::Accuracy;
 pub use flatten::{FlattenError, flatten, flatten_until, flatten_whole};
-pub use modify::{MAX_NEIGHBOURS, REPEAT_REACH, is_copying};
-pub use moved::move_rows;
-pub use prune::*;
+pub use gbuffer::*;
+pub use modify::{MAX_NEIGHBORS, REPEAT_REACH, is_copying};
+pub use moved::move_params;
+pub use prepare::PreparedShape;
+pub use reference::accuracy::Accuracy;
+pub use reference::shade::{GpuLight, gpu_lights};
 pub use reflatten::Flattener;
-pub use shade::{GpuLight, gpu_lights};
 pub use survey::is_quick;
+pub use tape::*;

@@ -1,8 +1,8 @@
 //! What modifiers do to bounds and steps, and their numbers as the evaluators read them.
 //!
 //! A deformation stretches space: its field is divided by the largest stretch (its Lipschitz constant), which is
-//! known only near the content. So every deformation has an enclosure with a margin m: at a distance d from it
-//! the field is max(d, min(g, 2m − d)), g being the divided field. That never grows faster than 1 per metre,
+//! known only near the content. So every deformation has a bound with a margin m: at a distance d from it
+//! the field is max(d, min(g, 2m − d)), g being the divided field. That never grows faster than 1 per meter,
 //! has the sign of g within, and far away is simply d.
 
 use std::collections::HashMap;
@@ -11,17 +11,17 @@ use std::rc::Rc;
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::arrays::modifier_rows;
-use super::body::spline;
-use super::enclosure::Enclosure;
+use super::lower_bound::LowerBound;
+use super::prepare::spline;
 use crate::geometry::Aabb;
 use crate::scene::{Axis, Heights, Modifier, ModifierKind};
 
 /// Why a modifier does nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Refusal {
+pub(super) enum ModifierRefusal {
     /// It makes no sense here; the artist is told why.
     Cannot(String),
-    /// So many copies would have to be evaluated for one point, more than [`MAX_NEIGHBOURS`].
+    /// So many copies would have to be evaluated for one point, more than [`MAX_NEIGHBORS`].
     TooMany(usize),
 }
 
@@ -34,10 +34,10 @@ pub(super) struct Modified {
     pub data: Rc<[[f64; 4]]>,
     /// Around the result, in the node's own space.
     pub bounds: Aabb,
-    /// The field is at least `slope` times the distance to this.
-    pub skip: Aabb,
-    /// See `skip`.
-    pub slope: f64,
+    /// The field is at least `bound_slope` times the distance to this.
+    pub cull_box: Aabb,
+    /// See `cull_box`.
+    pub bound_slope: f64,
     /// How often the content may be evaluated for one point.
     pub copies: u32,
     /// What the artist should know.
@@ -50,30 +50,34 @@ pub(super) type Splines = HashMap<*const Modifier, (Rc<[[f64; 4]]>, f64)>;
 /// Copies without end reach so many cells in each direction: what f32 can still count and place.
 pub const REPEAT_REACH: f64 = 1e6;
 /// Most copies that are evaluated for one point.
-pub const MAX_NEIGHBOURS: u32 = 64;
-/// More cells to one side are not counted, so that those of three axes can be multiplied; far more than [`MAX_NEIGHBOURS`].
+pub const MAX_NEIGHBORS: u32 = 64;
+/// More cells to one side are not counted, so that those of three axes can be multiplied; far more than [`MAX_NEIGHBORS`].
 const MOST_SIDEWAYS: u32 = 1 << 16;
-/// Margin around an enclosure relative to its size.
+/// Margin around a bound relative to its size.
 const MARGIN: f64 = 0.1;
-/// The least margin, in metres.
+/// The least margin, in meters.
 const LEAST_MARGIN: f64 = 1e-6;
 /// Stands for no end: far beyond any camera, its square still fits f32.
 const ENDLESS: f64 = 1e18;
 /// A bend uses at most this share of a full turn on each side.
 const MOST_BENT: f64 = 0.95 * std::f64::consts::PI;
-/// What lies towards the centre of a bend fills at most this share of its radius.
-const MOST_INWARDS: f64 = 0.9;
+/// What lies toward the center of a bend fills at most this share of its radius.
+const MOST_INWARD: f64 = 0.9;
 /// A taper narrows at most to this share.
 const NARROWEST: f64 = 0.05;
 
 /// What a modifier makes of its content; an error says why it can do nothing.
-pub(super) fn modify(modifier: &Modifier, content: &Enclosure, splines: &mut Splines) -> Result<Modified, Refusal> {
+pub(super) fn modify(
+    modifier: &Modifier,
+    content: &LowerBound,
+    splines: &mut Splines,
+) -> Result<Modified, ModifierRefusal> {
     let same = Modified {
         rows: Vec::new(),
         data: Rc::default(),
         bounds: content.bounds,
-        skip: content.skip,
-        slope: content.slope,
+        cull_box: content.cull_box,
+        bound_slope: content.bound_slope,
         copies: 1,
         warning: None,
     };
@@ -93,7 +97,7 @@ pub(super) fn modify(modifier: &Modifier, content: &Enclosure, splines: &mut Spl
             let half = DVec3::from(length) * 0.5;
             let grown = |b: Aabb| Aabb::new(b.min - half, b.max + half);
             let rows = vec![half.extend(0.0).to_array()];
-            Modified { rows, bounds: grown(same.bounds), skip: grown(same.skip), ..same }
+            Modified { rows, bounds: grown(same.bounds), cull_box: grown(same.cull_box), ..same }
         }
         Modifier::Round { radius } => grown(same, radius, vec![[radius, 0.0, 0.0, 0.0]]),
         Modifier::Onion { thickness, walls, spacing } => {
@@ -110,8 +114,8 @@ pub(super) fn modify(modifier: &Modifier, content: &Enclosure, splines: &mut Spl
             let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
             // Each layer has half the height and half the size of the one before: the same steepness.
             let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
-            let numbers = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
-            grown(same, amplitude, vec![numbers, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
+            let params = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
+            grown(same, amplitude, vec![params, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
         }
         Modifier::Displacement { ref image, height, tile, axis } => {
             let image = image.content().expect("idle without an image");
@@ -124,8 +128,8 @@ pub(super) fn modify(modifier: &Modifier, content: &Enclosure, splines: &mut Spl
         }
     };
     modified.rows.resize(modifier_rows(modifier.kind()), [0.0; 4]);
-    if !modified.skip.is_finite() {
-        modified.slope = 0.0;
+    if !modified.cull_box.is_finite() {
+        modified.bound_slope = 0.0;
     }
     Ok(modified)
 }
@@ -153,19 +157,19 @@ pub(super) fn is_idle(modifier: &Modifier) -> bool {
 const NOISE_SLOPE: f64 = 3.464_101_615_137_755;
 
 /// The bounds of content that must have an end to be `deformed`.
-fn bounded(content: &Enclosure, deformed: &str) -> Result<Aabb, Refusal> {
+fn bounded(content: &LowerBound, deformed: &str) -> Result<Aabb, ModifierRefusal> {
     if content.bounds.is_finite() {
         return Ok(content.bounds);
     }
-    Err(Refusal::Cannot(format!("has no end, so it cannot be {deformed}")))
+    Err(ModifierRefusal::Cannot(format!("has no end, so it cannot be {deformed}")))
 }
 
 fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
-    let reach = if same.slope > 0.0 { by / same.slope } else { 0.0 };
-    Modified { rows, bounds: same.bounds.expanded(by), skip: same.skip.expanded(reach), ..same }
+    let reach = if same.bound_slope > 0.0 { by / same.bound_slope } else { 0.0 };
+    Modified { rows, bounds: same.bounds.expanded(by), cull_box: same.cull_box.expanded(reach), ..same }
 }
 
-/// Where the surface is moved outwards by h, the field is f − h; its slope is at most 1 and that of the heights.
+/// Where the surface is moved outward by h, the field is f − h; its slope is at most 1 and that of the heights.
 fn displacement(
     image: &Heights,
     (data, steepest): (Rc<[[f64; 4]]>, f64),
@@ -185,10 +189,10 @@ fn displacement(
     Modified { data, ..grown(same, greatest.max(0.0), rows) }
 }
 
-/// A deformation whose field is at least the distance to its enclosure along some axis: of three numbers at right
+/// A deformation whose field is at least the distance to its bound along some axis: of three numbers at right
 /// angles the largest is at least 1/√3 of their length.
 fn enclosed(same: Modified, bounds: Aabb, rows: Vec<[f64; 4]>) -> Modified {
-    Modified { rows, bounds, skip: bounds, slope: 1.0 / 3.0_f64.sqrt(), ..same }
+    Modified { rows, bounds, cull_box: bounds, bound_slope: 1.0 / 3.0_f64.sqrt(), ..same }
 }
 
 /// Farthest distance of a box from the Y axis.
@@ -196,7 +200,7 @@ fn radius_of(b: &Aabb) -> f64 {
     b.min.x.abs().max(b.max.x.abs()).hypot(b.min.z.abs().max(b.max.z.abs()))
 }
 
-/// Largest stretch of a twist by `slope` radians at right angles to the axis for each metre along it (the larger
+/// Largest stretch of a twist by `bound_slope` radians at right angles to the axis for each meter along it (the larger
 /// singular value of a shear).
 fn shear(slope: f64) -> f64 {
     0.5 * (slope + (slope * slope + 4.0).sqrt())
@@ -214,14 +218,14 @@ fn twist(angle: f64, content: Aabb, same: Modified) -> Modified {
 fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
     let sign = angle.signum();
     let reach = content.min.x.abs().max(content.max.x.abs());
-    // Towards the centre of the arc, and away from it.
+    // Toward the center of the arc, and away from it.
     let [low, high] = if sign > 0.0 { [content.min.y, content.max.y] } else { [-content.max.y, -content.min.y] };
-    let inwards = if high > 0.0 { MOST_INWARDS / high } else { f64::INFINITY };
+    let inward = if high > 0.0 { MOST_INWARD / high } else { f64::INFINITY };
     let around = if reach > 0.0 { MOST_BENT / reach } else { f64::INFINITY };
-    let curvature = angle.abs().min(inwards).min(around);
+    let curvature = angle.abs().min(inward).min(around);
     let warning = (curvature < angle.abs()).then(|| {
         let degrees = (curvature.to_degrees() * 100.0).round() / 100.0;
-        if inwards < around {
+        if inward < around {
             format!("is bent by {degrees}°/m only: its inner side would fold over")
         } else {
             format!("is bent by {degrees}°/m only: its ends would meet")
@@ -280,8 +284,8 @@ fn taper(change: f64, content: Aabb, same: Modified) -> Modified {
     let sum = a * a + b * b + 1.0;
     let stretch = (0.5 * (sum + (sum * sum - 4.0 * a * a).max(0.0).sqrt())).sqrt().max(1.0);
     // What lies on one side of the axis is nearest to it where it is narrow.
-    let far = |v: f64, outwards: bool| if (v >= 0.0) == outwards { v * widest } else { v * narrowest };
-    let corner = |v: DVec3, outwards| DVec3::new(far(v.x, outwards), v.y, far(v.z, outwards));
+    let far = |v: f64, outward: bool| if (v >= 0.0) == outward { v * widest } else { v * narrowest };
+    let corner = |v: DVec3, outward| DVec3::new(far(v.x, outward), v.y, far(v.z, outward));
     let bounds = Aabb::new(corner(content.min, false), corner(content.max, true));
     let rows = vec![
         [used, 1.0 / stretch, margin, 0.0],
@@ -311,26 +315,26 @@ fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [
     let flag = |i: usize| (1 << i) + if child[i] < 0.0 { 8 << i } else { 0 };
     let flags = f64::from((0..3).filter(|i| mirrored[*i]).map(flag).sum::<i32>());
     let inverse = rotation.transpose();
-    let (center, half) = finite_box(&same.skip);
+    let (center, half) = finite_box(&same.cull_box);
     let rows = vec![
         offset.extend(scale).to_array(),
         inverse.row(0).extend(f64::from(count)).to_array(),
         inverse.row(1).extend(flags).to_array(),
         inverse.row(2).extend(0.0).to_array(),
-        center.extend(same.slope).to_array(),
+        center.extend(same.bound_slope).to_array(),
         half.extend(0.0).to_array(),
     ];
-    Modified { rows, bounds: all_levels(same.bounds), skip: all_levels(same.skip), copies: count, ..same }
+    Modified { rows, bounds: all_levels(same.bounds), cull_box: all_levels(same.cull_box), copies: count, ..same }
 }
 
-/// Centre and half extent with numbers in the place of no end.
+/// Center and half extent with numbers in the place of no end.
 fn finite_box(bounds: &Aabb) -> (DVec3, DVec3) {
     let limit = DVec3::splat(ENDLESS);
     let b = Aabb::new(bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
     (b.center(), b.half())
 }
 
-/// Along one axis: first and last cell, middle and half extent of the content in its cell, how many neighbours
+/// Along one axis: first and last cell, middle and half extent of the content in its cell, how many neighbors
 /// are evaluated.
 struct Cells {
     first: f64,
@@ -341,20 +345,20 @@ struct Cells {
 }
 
 /// How many cells around a point are evaluated where content reaches `half` from the middle of cells `spacing`
-/// apart: one where it keeps clear of the walls, two (the cell and its nearer neighbour) up to 7/8 of a cell, and so
+/// apart: one where it keeps clear of the walls, two (the cell and its nearer neighbor) up to 7/8 of a cell, and so
 /// on. What is left out is farther away than an eighth of a cell.
 fn candidates(half: f64, spacing: f64) -> u32 {
     let reach = half / spacing;
     if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).clamp(1, MOST_SIDEWAYS) }
 }
 
-fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Modified, Refusal> {
+fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<Modified, ModifierRefusal> {
     let Modifier::Repeat { counts, spacing, mut offset, turn, mirrored, carve_from, carve_to } = *modifier else {
         unreachable!("called for repeats only")
     };
     let turn = turn.to_radians();
     // The box that the field is known to grow away from holds the surface too.
-    let held = if content.slope > 0.0 { content.skip.union(&content.bounds) } else { content.bounds };
+    let held = if content.bound_slope > 0.0 { content.cull_box.union(&content.bounds) } else { content.bounds };
     let (mut center, mut half) = finite_box(&held);
     if turn != 0.0 {
         let radius = radius_of(&held);
@@ -372,7 +376,7 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
         };
         if counts[i] != 1 && half[i] >= ENDLESS {
             let axis = ["X", "Y", "Z"][i];
-            return Err(Refusal::Cannot(format!("has no end along {axis}, so it cannot be repeated along it")));
+            return Err(ModifierRefusal::Cannot(format!("has no end along {axis}, so it cannot be repeated along it")));
         }
         let mut candidates = if counts[i] == 1 { 1 } else { candidates(half[i], spacing[i]) };
         if counts[i] > 1 {
@@ -386,8 +390,8 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
     }
     offset[0] = if counts[0] != 1 && counts[1] != 1 { offset[0] } else { 0.0 };
     let copies = axes.iter().map(|a| u64::from(a.candidates)).product::<u64>();
-    if copies > u64::from(MAX_NEIGHBOURS) {
-        return Err(Refusal::TooMany(copies as usize));
+    if copies > u64::from(MAX_NEIGHBORS) {
+        return Err(ModifierRefusal::TooMany(copies as usize));
     }
     let all = |box_: &Aabb| repeated_bounds(box_, &axes, counts, spacing, offset);
     let in_cell = Aabb::from_center_half(center, half);
@@ -399,7 +403,7 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
         DVec3::from(spacing).extend(turn).to_array(),
         each(&|a| a.first).extend(flags).to_array(),
         each(&|a| a.last).extend(code).to_array(),
-        each(&|a| a.middle).extend(content.slope.min(1.0)).to_array(),
+        each(&|a| a.middle).extend(content.bound_slope.min(1.0)).to_array(),
         each(&|a| a.half).extend(0.0).to_array(),
         DVec3::from(offset).extend(0.0).to_array(),
         DVec3::from(carve_from.map(f64::from)).extend(0.0).to_array(),
@@ -407,8 +411,8 @@ fn repeat(modifier: &Modifier, content: &Enclosure, same: Modified) -> Result<Mo
         bounds.min.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
         bounds.max.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
     ];
-    let slope = content.slope.min(1.0);
-    Ok(Modified { rows, bounds, skip: bounds, slope, copies: copies as u32, ..same })
+    let bound_slope = content.bound_slope.min(1.0);
+    Ok(Modified { rows, bounds, cull_box: bounds, bound_slope, copies: copies as u32, ..same })
 }
 
 fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64; 3], offset: [f64; 3]) -> Aabb {

@@ -6,17 +6,17 @@
 
 use glam::DVec3;
 
-use super::arrays::{Component, FlatNode, FlatScene, MODIFIER_ROWS, Row};
+use super::arrays::{Component, FlatNode, FlatScene, MODIFIER_ROWS, ParamRow};
 use crate::scene::ModifierKind;
 
-/// Writes the rows of `component` among `numbers`, which are those of `flat`, anew: relative to the point that is `shift`
+/// Writes the rows of `component` among `params`, which are those of `flat`, anew: relative to the point that is `shift`
 /// from its origin.
-pub fn move_rows(flat: &FlatScene, component: &Component, shift: DVec3, numbers: &mut [Row]) {
+pub fn move_params(flat: &FlatScene, component: &Component, shift: DVec3, params: &mut [ParamRow]) {
     let mut at = component.first as usize;
     let end = at + component.count as usize;
     while at < end {
         let node = &flat.nodes[at];
-        let rows = &mut numbers[node.numbers as usize..];
+        let rows = &mut params[node.params as usize..];
         if let (Some(first), Some(placing)) = (node.placing_row(), component.placing(flat, at)) {
             let mut local = DVec3::from_array(placing.map(|[x, y, z, w]| x * shift.x + y * shift.y + z * shift.z + w));
             if node.modifier() == Some(ModifierKind::Repeat) {
@@ -44,7 +44,7 @@ fn step(node: &FlatNode) -> usize {
 
 /// Counts the cells of a repetition from one near `local`, a point in its space; `rows` are its own, see
 /// `shaders/mod/repeat.wgsl`. Returns where that cell stands.
-fn move_repeat(local: DVec3, rows: &mut [Row]) -> DVec3 {
+fn move_repeat(local: DVec3, rows: &mut [ParamRow]) -> DVec3 {
     let of = |row: usize| DVec3::from_slice(&rows[row].map(f64::from));
     let (spacing, turn, flags) = (of(0), rows[0][3], rows[1][3] as u32);
     let (first, last, middle, offset) = (of(1), of(2), of(3), of(5));

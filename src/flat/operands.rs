@@ -5,9 +5,9 @@ use std::rc::Rc;
 use glam::{DAffine3, DVec3};
 
 use super::arrays::Join;
-use super::body::Body;
-use super::enclosure::{Enclosure, fold_bounds};
+use super::lower_bound::{LowerBound, fold_bounds};
 use super::modify::Modified;
+use super::prepare::PreparedShape;
 use crate::geometry::Aabb;
 use crate::scene::{Blend, MaterialId, ModifierKind, Node};
 
@@ -20,16 +20,16 @@ pub(super) struct Operand<'a> {
     pub outermost: &'a Node,
     /// How it joins what precedes it.
     pub join: Join,
-    /// How round the joint is, in metres.
+    /// How round the blend is, in meters.
     pub blend: Blend,
-    /// What else the join needs, see [`super::twin::Joint`]: size and depth.
+    /// What else the join needs, see [`super::eval::BlendParams`]: size and depth.
     pub detail: [f64; 2],
     /// Around its surface, in the world.
     pub bounds: Aabb,
-    /// Its field is at least `slope` times the distance to `skip`.
-    pub skip: Aabb,
-    /// See `skip`.
-    pub slope: f64,
+    /// Its field is at least `bound_slope` times the distance to `cull_box`.
+    pub cull_box: Aabb,
+    /// See `cull_box`.
+    pub bound_slope: f64,
     /// Shapes, modifiers and groups in it.
     pub entries: usize,
     /// How deep groups and modifiers are nested in it, itself counted; 0 for a shape.
@@ -42,7 +42,7 @@ pub(super) struct Operand<'a> {
 #[derive(Clone)]
 pub(super) enum Value<'a> {
     /// A shape: local-from-world, factor on its local distance, what it is evaluated with.
-    Leaf { local_from_world: DAffine3, distance_scale: f64, body: Rc<Body>, material: MaterialId },
+    Leaf { local_from_world: DAffine3, distance_scale: f64, prepared: Rc<PreparedShape>, material: MaterialId },
     /// A fold of its own; never of one operand.
     Fold(Rc<Vec<Operand<'a>>>),
     /// A fold in the local space of a modifier: local-from-world, factor on its local distance, the modifier.
@@ -57,7 +57,7 @@ pub(super) enum Value<'a> {
 
 /// A fold as one operand, named after its first one.
 pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
-    let Enclosure { bounds, skip, slope } = fold_bounds(&fold);
+    let LowerBound { bounds, cull_box, bound_slope } = fold_bounds(&fold);
     let Operand { node, outermost, .. } = fold[0];
     let (entries, depth) = size_of_fold(&fold);
     Operand {
@@ -67,8 +67,8 @@ pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
         blend: Blend::HARD,
         detail: [0.0; 2],
         bounds,
-        skip,
-        slope,
+        cull_box,
+        bound_slope,
         entries: entries.saturating_add(1),
         depth: depth + 1,
         value: Value::Fold(Rc::new(fold)),

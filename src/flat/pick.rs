@@ -2,7 +2,7 @@
 
 use super::FlatScene;
 use super::mesh_rays::{Meshes, trace_meshes};
-use super::trace::trace;
+use super::reference::trace::trace;
 use crate::geometry::Ray;
 use crate::scene::NodeId;
 

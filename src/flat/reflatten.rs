@@ -7,8 +7,8 @@ use super::batch::{may_be_joined, united};
 use super::budget::Cancel;
 use super::collect::{component_of, is_opened};
 use super::emit::emit;
-use super::enclosure::fold_bounds;
 use super::flatten::{FlattenError, flatten_with_cuts};
+use super::lower_bound::fold_bounds;
 use super::operands::Operand;
 use crate::scene::{Material, Node, NodeKind, Scene};
 
@@ -52,7 +52,7 @@ impl Flattener {
         Some(flat)
     }
 
-    /// The same as [`Flattener::flatten`]; nothing where it was cancelled.
+    /// The same as [`Flattener::flatten`]; nothing where it was canceled.
     ///
     /// # Errors
     /// As there.
@@ -129,17 +129,20 @@ impl Last {
             found.unwrap_or(0) as u32
         });
         flat.materials = scratch.materials;
-        if !known || (new.count, new.rows, new.data, new.stack) != (old.count, old.rows, old.data, old.stack) {
+        if !known
+            || (new.count, new.param_rows, new.payload_rows, new.stack)
+                != (old.count, old.param_rows, old.payload_rows, old.stack)
+        {
             return false;
         }
         for node in &mut scratch.nodes {
-            node.numbers += old.numbers;
+            node.params += old.params;
         }
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
         flat.nodes[range(old.first, old.count)].copy_from_slice(&scratch.nodes);
         flat.ids[range(old.first, old.count)].copy_from_slice(&scratch.ids);
-        flat.numbers[range(old.numbers, old.rows)].copy_from_slice(&scratch.numbers);
-        flat.components[at] = Component { first: old.first, numbers: old.numbers, ..new };
+        flat.params[range(old.params, old.param_rows)].copy_from_slice(&scratch.params);
+        flat.components[at] = Component { first: old.first, params: old.params, ..new };
         true
     }
 }
@@ -171,7 +174,7 @@ impl Last {
 
 /// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
 fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
-    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.joining, n.apart.clone());
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.blend_override, n.apart.clone());
     let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
     let kinds = match (&old.kind, &new.kind) {
         (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,

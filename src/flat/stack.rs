@@ -50,15 +50,15 @@ fn deepest(fold: &[Operand<'_>]) -> Option<usize> {
 fn mirrored(join: Join) -> Option<Join> {
     match join {
         Join::Union | Join::Intersection | Join::Xor => Some(join),
-        Join::Difference => Some(Join::Remainder),
-        Join::Remainder => Some(Join::Difference),
+        Join::Difference => Some(Join::ReverseDifference),
+        Join::ReverseDifference => Some(Join::Difference),
         Join::First | Join::Pipe | Join::Groove | Join::Tongue | Join::Engrave | Join::Morph | Join::Paint => None,
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use crate::flat::twin::field;
+    use crate::flat::eval::field;
     use crate::flat::{FlatScene, flatten};
     use crate::scene::{Blend, Group, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};
 
@@ -106,7 +106,7 @@ mod tests {
 
     /// The value by the definition of the operators, in the artist's order.
     fn by_hand(scene: &Scene, operators: &[Operator], wide: bool, depth: usize, p: glam::DVec3) -> f64 {
-        use crate::flat::twin::{Joint, op_difference, op_intersection, op_union, op_xor};
+        use crate::flat::eval::{BlendParams, op_difference, op_intersection, op_union, op_xor};
         let balls: Vec<f64> = scene
             .nodes()
             .iter()
@@ -121,12 +121,12 @@ mod tests {
         let mut inner = balls[depth * each];
         for i in (0..depth).rev() {
             let blend = Blend { radius: if i % 3 == 0 { 0.1 } else { 0.0 }, ..Blend::HARD };
-            let joint = Joint::blend(blend.support());
+            let blend_params = BlendParams::blend(blend.support());
             let join = |a: f64, b: f64| match operators[i % operators.len()] {
-                Operator::Union => op_union(a, b, &joint, 0).value,
-                Operator::Intersection => op_intersection(a, b, &joint, 0).value,
-                Operator::Difference => op_difference(a, b, &joint, 0).value,
-                _ => op_xor(a, b, &joint, 0).value,
+                Operator::Union => op_union(a, b, &blend_params, 0).value,
+                Operator::Intersection => op_intersection(a, b, &blend_params, 0).value,
+                Operator::Difference => op_difference(a, b, &blend_params, 0).value,
+                _ => op_xor(a, b, &blend_params, 0).value,
             };
             let first = balls[i * each];
             let so_far = if wide { join(first, balls[i * each + 1]) } else { first };

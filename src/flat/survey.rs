@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::arrays::{MAX_FLAT_LEVELS, MAX_STACK};
-use super::budget::{ENTRIES, LEVELS, Limits, STACK, STEPS};
+use super::budget::{ENTRIES, FlattenLimits, LEVELS, STACK, STEPS};
 use super::flatten::FlattenError;
 use super::modify::is_idle;
 use crate::scene::{Modifier, Node, NodeKind, Object, Scene, Shape};
@@ -31,7 +31,7 @@ pub fn is_quick(scene: &Scene) -> bool {
     };
     let displaces = |node: &Node| active(node).any(|modifier| matches!(modifier, Modifier::Displacement { .. }));
     let drawn = scene.nodes().iter().filter(|node| is_drawn(node) || displaces(node)).count();
-    let survey = Survey::new(scene, 0..scene.nodes().len(), &Limits::default());
+    let survey = Survey::new(scene, 0..scene.nodes().len(), &FlattenLimits::default());
     survey.map_or(true, |survey| survey.entries.max(scene.nodes().len() / 4) + DRAWN * drawn <= QUICK)
 }
 
@@ -58,7 +58,7 @@ struct Counts {
     is_thickened: bool,
     /// Whether objects stand in the subtree, hidden or not; and whether lights, cameras or meshes do.
     has_object: bool,
-    has_bystander: bool,
+    has_non_field: bool,
     /// Shapes and modifiers after copying; 0 where the subtree is hidden or certainly empty.
     entries: usize,
     /// Visits of nodes, copies included.
@@ -74,7 +74,7 @@ impl Survey {
     ///
     /// # Errors
     /// They take more than is allowed; the error names the innermost node for which that is so.
-    pub fn new(scene: &Scene, range: Range<usize>, limits: &Limits) -> Result<Self, FlattenError> {
+    pub fn new(scene: &Scene, range: Range<usize>, limits: &FlattenLimits) -> Result<Self, FlattenError> {
         let mut survey =
             Self { start: range.start, nodes: vec![Counts::default(); range.len()], levels: 0, entries: 0 };
         survey.nest(scene, &range);
@@ -130,7 +130,7 @@ impl Survey {
 
     /// Whether the group at `index` only keeps lights, cameras and meshes together: it is no operand.
     pub fn is_folder(&self, index: usize) -> bool {
-        !self.at(index).has_object && self.at(index).has_bystander
+        !self.at(index).has_object && self.at(index).has_non_field
     }
 
     /// Where each subtree ends, and what is thickened from above.
@@ -166,12 +166,12 @@ impl Survey {
                 counts.has_object = true;
                 counts.entries = usize::from(!is_nothing(object, counts.is_thickened));
             }
-            NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => counts.has_bystander = true,
+            NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => counts.has_non_field = true,
             NodeKind::Group(_) => {
                 for child in self.children(index) {
                     let child = self.at(child);
                     counts.has_object |= child.has_object;
-                    counts.has_bystander |= child.has_bystander;
+                    counts.has_non_field |= child.has_non_field;
                     counts.entries = counts.entries.saturating_add(child.entries);
                     counts.steps = counts.steps.saturating_add(child.steps);
                     counts.levels = counts.levels.max(1 + child.levels);
@@ -191,7 +191,7 @@ impl Survey {
         self.nodes[index - self.start] = counts;
     }
 
-    fn check(&self, node: &Node, index: usize, limits: &Limits) -> Result<(), FlattenError> {
+    fn check(&self, node: &Node, index: usize, limits: &FlattenLimits) -> Result<(), FlattenError> {
         let counts = self.at(index);
         within(node, LEVELS, counts.levels, MAX_FLAT_LEVELS)?;
         within(node, STACK, counts.deformed, MAX_STACK as usize)?;
@@ -222,7 +222,7 @@ impl Counts {
     }
 }
 
-/// Whether an object is certainly empty, see [`crate::scene::Remainder`].
+/// Whether an object is certainly empty, see [`crate::scene::EmptyOperandResult`].
 fn is_nothing(object: &Object, is_thickened: bool) -> bool {
     match &object.shape {
         Shape::Text { text, .. } => text.chars().all(char::is_whitespace),

@@ -7,7 +7,7 @@ impl FlatScene {
     /// Bytes of the arrays.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.nodes)
-            + size_of_val(&*self.numbers)
+            + size_of_val(&*self.params)
             + size_of_val(&*self.ids)
             + size_of_val(&*self.components)
     }
@@ -23,7 +23,7 @@ pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
     let (largest, largest_node) = most(&|component| component.count as usize);
     let (stack, stack_node) = most(&|component| component.stack as usize);
     let (copies, copies_node) = most(&|component| component.copies as usize);
-    let (_, rows_node) = most(&|component| component.rows as usize);
+    let (_, rows_node) = most(&|component| component.param_rows as usize);
     let row = |name, used, limit, node| Usage { name, used, limit, node };
     vec![
         row("entries", flat.nodes.len(), MAX_FLAT_NODES, largest_node),
@@ -31,7 +31,7 @@ pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
         row("components", flat.components.len(), MAX_COMPONENTS, None),
         row("copies evaluated for one point", copies, MAX_COPIES, copies_node),
         row("stack", stack, MAX_STACK as usize, stack_node),
-        row("rows", flat.numbers.len(), MAX_FLAT_ROWS, rows_node),
+        row("rows", flat.params.len(), MAX_FLAT_ROWS, rows_node),
         row("bytes", flat.bytes(), MAX_FLAT_BYTES, rows_node),
         row("steps", steps, MAX_FLAT_STEPS, largest_node),
     ]

@@ -44,7 +44,7 @@ static FONTS: LazyLock<[Face; 2]> = LazyLock::new(|| {
         .map(|bytes| Face::built_in(bytes).expect("a font that comes with a library is whole"))
 });
 
-/// The outlines of a text in the XY plane, for a font of height 1, its middle at the origin; lines are centred. Closed
+/// The outlines of a text in the XY plane, for a font of height 1, its middle at the origin; lines are centered. Closed
 /// curves around what is solid that do not cross each other; empty for a text without ink. Letters that the font does not
 /// have are those of the fonts that come with the program. Made once for each text.
 pub fn text_curve(text: &str, face: Option<&Face>) -> Outlines {

@@ -1,37 +1,37 @@
 //! Union, intersection and difference of the same box and sphere: hard behind, blended in front.
 
-use super::stage::{Stage, blended, cuboid, cylinder, group, object, sphere, turn_y, v};
+use super::scene_builder::{SceneBuilder, blended, cuboid, cylinder, group, object, sphere, turn_y, v};
 use crate::scene::{BlendKernel, MaterialId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.05, 0.10, 0.16], [0.16, 0.215, 0.26], [0.28, 0.30, 0.34]);
-    let cube = stage.glossy("Teal", [0.030, 0.29, 0.31], 0.3, 60.0);
-    let ball = stage.glossy("Coral", [0.82, 0.17, 0.085], 0.3, 60.0);
-    let plinth = stage.matt("Plaster", [0.47, 0.45, 0.42]);
+    let mut builder = SceneBuilder::new([0.05, 0.10, 0.16], [0.16, 0.215, 0.26], [0.28, 0.30, 0.34]);
+    let cube = builder.glossy("Teal", [0.030, 0.29, 0.31], 0.3, 60.0);
+    let ball = builder.glossy("Coral", [0.82, 0.17, 0.085], 0.3, 60.0);
+    let plinth = builder.matte("Plaster", [0.47, 0.45, 0.42]);
 
-    let stand = stage.add(None, blended("Stand", Operator::Union, BlendKernel::Circular, 0.06));
-    stage.add(stand, object("Lower step", cuboid(5.6, 0.3, 3.7, 0.08), plinth).at(v(0.0, -0.15, 0.0)));
-    stage.add(stand, object("Upper step", cuboid(5.6, 0.62, 1.75, 0.08), plinth).at(v(0.0, 0.31, -0.975)));
+    let stand = builder.add(None, blended("Stand", Operator::Union, BlendKernel::Circular, 0.06));
+    builder.add(stand, object("Lower step", cuboid(5.6, 0.3, 3.7, 0.08), plinth).at(v(0.0, -0.15, 0.0)));
+    builder.add(stand, object("Upper step", cuboid(5.6, 0.62, 1.75, 0.08), plinth).at(v(0.0, 0.31, -0.975)));
     for (column, operator) in Operator::SETS[..3].iter().copied().enumerate() {
         let x = (column as f64 - 1.0) * 1.75;
         let hard = group(operator.label(), operator);
         let smooth =
             blended(&format!("Blended {}", operator.label().to_lowercase()), operator, BlendKernel::Circular, 0.09);
         for (node, y, z, turn) in [(hard, 0.62, -0.95, 34.0), (smooth, 0.0, 0.9, 34.0)] {
-            stage.add(None, object("Disc", cylinder(0.62, 0.08, 0.03), plinth).at(v(x, y + 0.04, z)));
-            let node = stage.add(None, node.at(v(x, y + 0.74, z)).rotated(turn_y(turn)));
-            add_operands(&mut stage, node, [cube, ball]);
+            builder.add(None, object("Disc", cylinder(0.62, 0.08, 0.03), plinth).at(v(x, y + 0.04, z)));
+            let node = builder.add(None, node.at(v(x, y + 0.74, z)).rotated(turn_y(turn)));
+            add_operands(&mut builder, node, [cube, ball]);
         }
     }
-    stage.sun("Key", [-0.6, 0.85, 0.75], [1.0, 0.95, 0.87], 0.95);
-    stage.sun("Fill", [0.9, 0.3, 0.5], [0.70, 0.82, 1.0], 0.28);
-    stage.sun("Rim", [0.5, 0.6, -0.9], [1.0, 0.97, 0.92], 0.5);
-    stage.camera([0.0, 4.1, 7.4], [0.0, 0.42, 0.0], 34.0);
-    stage.finish()
+    builder.sun("Key", [-0.6, 0.85, 0.75], [1.0, 0.95, 0.87], 0.95);
+    builder.sun("Fill", [0.9, 0.3, 0.5], [0.70, 0.82, 1.0], 0.28);
+    builder.sun("Rim", [0.5, 0.6, -0.9], [1.0, 0.97, 0.92], 0.5);
+    builder.camera([0.0, 4.1, 7.4], [0.0, 0.42, 0.0], 34.0);
+    builder.finish()
 }
 
 /// The sphere reaches past the faces of the box, but not to its edges.
-fn add_operands(stage: &mut Stage, group: crate::scene::NodeId, [cube, ball]: [MaterialId; 2]) {
-    stage.add(group, object("Box", cuboid(0.92, 0.92, 0.92, 0.0), cube));
-    stage.add(group, object("Sphere", sphere(0.56), ball));
+fn add_operands(builder: &mut SceneBuilder, group: crate::scene::NodeId, [cube, ball]: [MaterialId; 2]) {
+    builder.add(group, object("Box", cuboid(0.92, 0.92, 0.92, 0.0), cube));
+    builder.add(group, object("Sphere", sphere(0.56), ball));
 }

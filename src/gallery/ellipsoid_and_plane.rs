@@ -2,20 +2,20 @@
 
 use glam::DVec3;
 
-use super::stage::{Stage, blended, ellipsoid, object, turn_x, turn_y, turn_z, v};
+use super::scene_builder::{SceneBuilder, blended, ellipsoid, object, turn_x, turn_y, turn_z, v};
 use crate::scene::{BlendKernel, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.10, 0.25, 0.52], [0.55, 0.60, 0.66], [0.30, 0.33, 0.40]);
-    let sand = stage.matt("Sand", [0.72, 0.50, 0.31]);
-    let ink = stage.glossy("Ink", [0.016, 0.075, 0.17], 0.7, 90.0);
-    let shell = stage.glossy("Shell", [0.84, 0.76, 0.66], 0.35, 50.0);
-    let rust = stage.glossy("Rust", [0.52, 0.12, 0.045], 0.25, 40.0);
+    let mut builder = SceneBuilder::new([0.10, 0.25, 0.52], [0.55, 0.60, 0.66], [0.30, 0.33, 0.40]);
+    let sand = builder.matte("Sand", [0.72, 0.50, 0.31]);
+    let ink = builder.glossy("Ink", [0.016, 0.075, 0.17], 0.7, 90.0);
+    let shell = builder.glossy("Shell", [0.84, 0.76, 0.66], 0.35, 50.0);
+    let rust = builder.glossy("Rust", [0.52, 0.12, 0.045], 0.25, 40.0);
 
-    let beach = stage.add(None, blended("Beach", Operator::Union, BlendKernel::Circular, 0.5));
-    stage.add(beach, object("Ground", Shape::Plane {}, sand));
+    let beach = builder.add(None, blended("Beach", Operator::Union, BlendKernel::Circular, 0.5));
+    builder.add(beach, object("Ground", Shape::Plane {}, sand));
     let whale = object("Ellipsoid", ellipsoid(1.9, 0.72, 0.95), ink);
-    stage.add(beach, whale.at(v(0.0, 0.62, 0.0)).rotated(turn_y(24.0) * turn_z(15.0)));
+    builder.add(beach, whale.at(v(0.0, 0.62, 0.0)).rotated(turn_y(24.0) * turn_z(15.0)));
 
     let pebbles: [(f64, f64, [f64; 3], f64, _); 6] = [
         (-1.9, 1.3, [0.42, 0.13, 0.30], 20.0, shell),
@@ -27,13 +27,13 @@ pub(super) fn scene() -> Scene {
     ];
     for (x, z, radii, turn, material) in pebbles {
         let pebble = object("Pebble", Shape::Ellipsoid { radii }, material);
-        stage.add(None, pebble.at(DVec3::new(x, radii[1] * 0.72, z)).rotated(turn_y(turn) * turn_x(6.0)));
+        builder.add(None, pebble.at(DVec3::new(x, radii[1] * 0.72, z)).rotated(turn_y(turn) * turn_x(6.0)));
     }
     let leaf = object("Needle", ellipsoid(0.045, 1.0, 0.045), rust);
-    stage.add(None, leaf.at(v(-1.05, 1.05, -0.85)).rotated(turn_z(9.0) * turn_x(-12.0)));
+    builder.add(None, leaf.at(v(-1.05, 1.05, -0.85)).rotated(turn_z(9.0) * turn_x(-12.0)));
 
-    stage.sun("Evening sun", [-0.9, 0.62, 0.45], [1.0, 0.85, 0.66], 1.0);
-    stage.sun("Sky", [0.3, 1.0, -0.5], [0.55, 0.72, 1.0], 0.28);
-    stage.camera([-0.45, 1.6, 7.4], [0.1, 0.62, 0.0], 44.0);
-    stage.finish()
+    builder.sun("Evening sun", [-0.9, 0.62, 0.45], [1.0, 0.85, 0.66], 1.0);
+    builder.sun("Sky", [0.3, 1.0, -0.5], [0.55, 0.72, 1.0], 0.28);
+    builder.camera([-0.45, 1.6, 7.4], [0.1, 0.62, 0.0], 44.0);
+    builder.finish()
 }

@@ -1,20 +1,20 @@
 //! The fractals on their stands: a Mandelbulb, a Menger sponge, a Julia set, a Kleinian set, and a tree that is a group
 //! repeated by recursion.
 
-use super::stage::{Stage, blended, capsule, cylinder, object, torus, turn_x, turn_y, v};
+use super::scene_builder::{SceneBuilder, blended, capsule, cylinder, object, torus, turn_x, turn_y, v};
 use crate::scene::{BlendKernel, Modifier, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.012, 0.016, 0.03], [0.07, 0.08, 0.11], [0.24, 0.26, 0.31]);
-    let copper = stage.glossy("Copper", [0.62, 0.24, 0.11], 0.55, 60.0);
-    let jade = stage.glossy("Jade", [0.10, 0.36, 0.24], 0.5, 60.0);
-    let ivory = stage.glossy("Ivory", [0.70, 0.64, 0.52], 0.3, 40.0);
-    let glaze = stage.glossy("Glaze", [0.10, 0.28, 0.60], 0.5, 60.0);
-    let coral = stage.glossy("Coral", [0.50, 0.13, 0.16], 0.3, 40.0);
-    let floor = stage.glossy("Floor", [0.055, 0.06, 0.075], 0.25, 30.0);
-    let stone = stage.glossy("Stands", [0.17, 0.175, 0.19], 0.2, 30.0);
+    let mut builder = SceneBuilder::new([0.012, 0.016, 0.03], [0.07, 0.08, 0.11], [0.24, 0.26, 0.31]);
+    let copper = builder.glossy("Copper", [0.62, 0.24, 0.11], 0.55, 60.0);
+    let jade = builder.glossy("Jade", [0.10, 0.36, 0.24], 0.5, 60.0);
+    let ivory = builder.glossy("Ivory", [0.70, 0.64, 0.52], 0.3, 40.0);
+    let glaze = builder.glossy("Glaze", [0.10, 0.28, 0.60], 0.5, 60.0);
+    let coral = builder.glossy("Coral", [0.50, 0.13, 0.16], 0.3, 40.0);
+    let floor = builder.glossy("Floor", [0.055, 0.06, 0.075], 0.25, 30.0);
+    let stone = builder.glossy("Stands", [0.17, 0.175, 0.19], 0.2, 30.0);
 
-    stage.add(None, object("Floor", Shape::Plane {}, floor));
+    builder.add(None, object("Floor", Shape::Plane {}, floor));
     for ([x, z], radius, height) in [
         ([0.0, -1.0], 0.8, 0.9),
         ([-1.85, -0.9], 0.66, 0.5),
@@ -22,14 +22,14 @@ pub(super) fn scene() -> Scene {
         ([-0.9, 1.05], 0.62, 0.24),
         ([0.98, 1.05], 0.66, 0.24),
     ] {
-        stage.add(None, object("Stand", cylinder(radius, height, 0.03), stone).at(v(x, 0.5 * height, z)));
+        builder.add(None, object("Stand", cylinder(radius, height, 0.03), stone).at(v(x, 0.5 * height, z)));
     }
     let bulb = Shape::Mandelbulb { radius: 1.0, power: 8.0, iterations: 3.0 };
-    stage.add(None, object("Mandelbulb", bulb, copper).at(v(0.0, 1.86, -1.0)).rotated(turn_y(12.0) * turn_x(22.0)));
+    builder.add(None, object("Mandelbulb", bulb, copper).at(v(0.0, 1.86, -1.0)).rotated(turn_y(12.0) * turn_x(22.0)));
     let sponge = Shape::MengerSponge { size: 0.9, iterations: 3.0 };
-    stage.add(None, object("Menger sponge", sponge, ivory).at(v(-1.85, 0.95, -0.9)).rotated(turn_y(30.0)));
+    builder.add(None, object("Menger sponge", sponge, ivory).at(v(-1.85, 0.95, -0.9)).rotated(turn_y(30.0)));
     let julia = Shape::Julia { radius: 0.86, constant: [-0.2, 0.8, 0.0], fourth: 0.0, iterations: 7.0 };
-    stage.add(None, object("Julia set", julia, jade).at(v(-0.9, 0.84, 1.05)).rotated(turn_y(-60.0)));
+    builder.add(None, object("Julia set", julia, jade).at(v(-0.9, 0.84, 1.05)).rotated(turn_y(-60.0)));
     let kleinian = Shape::Kleinian {
         radius: 0.66,
         reach: 2.0,
@@ -38,7 +38,7 @@ pub(super) fn scene() -> Scene {
         thickness: 0.06,
         iterations: 4.0,
     };
-    stage.add(None, object("Kleinian set", kleinian, glaze).at(v(0.98, 0.86, 1.05)).rotated(turn_y(-12.0)));
+    builder.add(None, object("Kleinian set", kleinian, glaze).at(v(0.98, 0.86, 1.05)).rotated(turn_y(-12.0)));
 
     let recursion = Modifier::Recursion {
         count: 7,
@@ -48,13 +48,13 @@ pub(super) fn scene() -> Scene {
         mirrored: [true, false, false],
     };
     let tree = blended("Tree", Operator::Union, BlendKernel::Circular, 0.05);
-    let tree = stage.add(None, tree.at(v(1.75, 0.5, -0.9)).rotated(turn_y(60.0)).modified(recursion));
-    stage.add(tree, object("Branch", capsule([0.0; 3], [0.0, 0.48, 0.0], 0.06), coral));
-    stage.add(tree, object("Ring", torus(0.1, 0.03), coral).at(v(0.0, 0.34, 0.0)));
+    let tree = builder.add(None, tree.at(v(1.75, 0.5, -0.9)).rotated(turn_y(60.0)).modified(recursion));
+    builder.add(tree, object("Branch", capsule([0.0; 3], [0.0, 0.48, 0.0], 0.06), coral));
+    builder.add(tree, object("Ring", torus(0.1, 0.03), coral).at(v(0.0, 0.34, 0.0)));
 
-    stage.sun("Key", [-0.6, 0.8, 0.75], [1.0, 0.94, 0.84], 1.0);
-    stage.sun("Fill", [0.9, 0.35, 0.55], [0.55, 0.72, 1.0], 0.4);
-    stage.sun("Rim", [0.2, 0.55, -1.0], [1.0, 0.85, 0.7], 0.5);
-    stage.camera([0.0, 4.1, 8.6], [0.0, 0.95, 0.0], 29.0);
-    stage.finish()
+    builder.sun("Key", [-0.6, 0.8, 0.75], [1.0, 0.94, 0.84], 1.0);
+    builder.sun("Fill", [0.9, 0.35, 0.55], [0.55, 0.72, 1.0], 0.4);
+    builder.sun("Rim", [0.2, 0.55, -1.0], [1.0, 0.85, 0.7], 0.5);
+    builder.camera([0.0, 4.1, 8.6], [0.0, 0.95, 0.0], 29.0);
+    builder.finish()
 }

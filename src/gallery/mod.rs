@@ -16,9 +16,9 @@ mod mesh_and_fields;
 mod modifiers;
 mod operators;
 mod random_groups;
+mod scene_builder;
 mod shapes;
 mod showcase;
-mod stage;
 
 use std::path::{Path, PathBuf};
 

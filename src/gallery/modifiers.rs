@@ -1,6 +1,8 @@
 //! The sheet of all modifiers: one on each stand, in the order of their list, row by row from the left.
 
-use super::stage::{Stage, blended, capsule, cuboid, cylinder, group, object, sphere, torus, turn_x, turn_z, v};
+use super::scene_builder::{
+    SceneBuilder, blended, capsule, cuboid, cylinder, group, object, sphere, torus, turn_x, turn_z, v,
+};
 use crate::scene::{Attachment, Axis, BlendKernel, MaterialId, Modifier, ModifierKind, NodeId, Operator, Scene, Shape};
 
 /// Stands in a row.
@@ -9,33 +11,33 @@ const COLUMNS: usize = 4;
 const SPACING: f64 = 1.9;
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.30, 0.36, 0.42], [0.52, 0.54, 0.55], [0.34, 0.36, 0.40]);
-    let clay = stage.glossy("Clay", [0.62, 0.24, 0.13], 0.25, 40.0);
-    let slate = stage.glossy("Slate", [0.10, 0.22, 0.32], 0.3, 50.0);
-    let floor = stage.matt("Floor", [0.20, 0.21, 0.22]);
-    let stand_material = stage.matt("Stands", [0.42, 0.41, 0.40]);
-    stage.add(None, object("Floor", Shape::Plane {}, floor));
+    let mut builder = SceneBuilder::new([0.30, 0.36, 0.42], [0.52, 0.54, 0.55], [0.34, 0.36, 0.40]);
+    let clay = builder.glossy("Clay", [0.62, 0.24, 0.13], 0.25, 40.0);
+    let slate = builder.glossy("Slate", [0.10, 0.22, 0.32], 0.3, 50.0);
+    let floor = builder.matte("Floor", [0.20, 0.21, 0.22]);
+    let stand_material = builder.matte("Stands", [0.42, 0.41, 0.40]);
+    builder.add(None, object("Floor", Shape::Plane {}, floor));
     for (index, kind) in ModifierKind::ALL.iter().enumerate() {
         let (column, row) = (index % COLUMNS, index / COLUMNS);
         let at = v((column as f64 - 1.5) * SPACING, 0.0, (row as f64 - 1.5) * SPACING);
-        stage.add(None, object("Stand", cylinder(0.8, 0.06, 0.02), stand_material).at(at + v(0.0, 0.03, 0.0)));
-        let stand = stage.add(None, group(kind.label(), Operator::Union).at(at + v(0.0, 0.06, 0.0)));
-        add(&mut stage, stand, *kind, [clay, slate]);
+        builder.add(None, object("Stand", cylinder(0.8, 0.06, 0.02), stand_material).at(at + v(0.0, 0.03, 0.0)));
+        let stand = builder.add(None, group(kind.label(), Operator::Union).at(at + v(0.0, 0.06, 0.0)));
+        add(&mut builder, stand, *kind, [clay, slate]);
     }
-    stage.sun("Key", [-0.5, 1.0, 0.7], [1.0, 0.95, 0.88], 0.95);
-    stage.sun("Fill", [0.9, 0.5, 0.4], [0.75, 0.85, 1.0], 0.3);
-    stage.camera([0.0, 9.6, 11.9], [0.0, 0.2, 0.4], 32.0);
-    stage.finish()
+    builder.sun("Key", [-0.5, 1.0, 0.7], [1.0, 0.95, 0.88], 0.95);
+    builder.sun("Fill", [0.9, 0.5, 0.4], [0.75, 0.85, 1.0], 0.3);
+    builder.camera([0.0, 9.6, 11.9], [0.0, 0.2, 0.4], 32.0);
+    builder.finish()
 }
 
-fn add(stage: &mut Stage, stand: NodeId, kind: ModifierKind, [clay, slate]: [MaterialId; 2]) {
-    let mut put = |node| stage.add(stand, node);
+fn add(builder: &mut SceneBuilder, stand: NodeId, kind: ModifierKind, [clay, slate]: [MaterialId; 2]) {
+    let mut put = |node| builder.add(stand, node);
     match kind {
         ModifierKind::Mirror => {
             let modifier = Modifier::Mirror { axes: [true, false, false], blend: 0.12 };
             let half = put(blended("Half", Operator::Union, BlendKernel::Circular, 0.06).modified(modifier));
-            stage.add(half, object("Arm", capsule([0.12, 0.2, 0.0], [0.5, 0.75, 0.0], 0.1), clay));
-            stage.add(half, object("Foot", sphere(0.19), slate).at(v(0.16, 0.19, 0.0)));
+            builder.add(half, object("Arm", capsule([0.12, 0.2, 0.0], [0.5, 0.75, 0.0], 0.1), clay));
+            builder.add(half, object("Foot", sphere(0.19), slate).at(v(0.16, 0.19, 0.0)));
         }
         ModifierKind::Repeat => {
             let modifier = Modifier::Repeat {
@@ -70,9 +72,9 @@ fn add(stage: &mut Stage, stand: NodeId, kind: ModifierKind, [clay, slate]: [Mat
         ModifierKind::Bend => {
             let node = group("Bow", Operator::Union).at(v(0.0, 0.75, 0.0)).modified(Modifier::Bend { angle: -110.0 });
             let bow = put(node);
-            stage.add(bow, object("Rod", cuboid(1.6, 0.16, 0.16, 0.03), clay));
+            builder.add(bow, object("Rod", cuboid(1.6, 0.16, 0.16, 0.03), clay));
             for x in [-0.6, -0.2, 0.2, 0.6] {
-                stage.add(bow, object("Ring", torus(0.15, 0.04), slate).at(v(x, 0.0, 0.0)).rotated(turn_z(90.0)));
+                builder.add(bow, object("Ring", torus(0.15, 0.04), slate).at(v(x, 0.0, 0.0)).rotated(turn_z(90.0)));
             }
         }
         ModifierKind::Taper => {
@@ -93,8 +95,8 @@ fn add(stage: &mut Stage, stand: NodeId, kind: ModifierKind, [clay, slate]: [Mat
         ModifierKind::Onion => {
             let onion = Modifier::Onion { thickness: 0.04, walls: 3, spacing: 0.12 };
             let cut = put(group("Cut open", Operator::Difference).at(v(0.0, 0.52, 0.0)));
-            stage.add(cut, object("Ball", sphere(0.48), clay).modified(onion));
-            stage.add(cut, object("Knife", cuboid(1.2, 1.2, 1.2, 0.0), slate).at(v(0.6, 0.6, 0.6)));
+            builder.add(cut, object("Ball", sphere(0.48), clay).modified(onion));
+            builder.add(cut, object("Knife", cuboid(1.2, 1.2, 1.2, 0.0), slate).at(v(0.6, 0.6, 0.6)));
         }
         ModifierKind::Waves => {
             let waves = Modifier::Waves { amplitude: 0.05, length: 0.3, phase: 0.0 };

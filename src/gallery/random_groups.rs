@@ -2,12 +2,12 @@
 
 use glam::{DQuat, DVec3};
 
-use super::stage::{Stage, blended, cuboid, group, object, sphere, torus};
+use super::scene_builder::{SceneBuilder, blended, cuboid, group, object, sphere, torus};
 use crate::scene::{BlendKernel, Operator, Scene};
 
 /// Leaves of one group.
 const GROUP_LEAVES: usize = 8;
-/// Distance between the places of neighbouring groups, in metres.
+/// Distance between the places of neighboring groups, in meters.
 const SPACING: f64 = 1.5;
 
 /// A scene of `leaves / 8` groups, each of eight shapes (sphere, rounded box, torus) in a blended
@@ -15,7 +15,7 @@ const SPACING: f64 = 1.5;
 /// machine.
 pub fn random(leaves: usize, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
-    let mut stage = Stage::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
+    let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
     let palette = [
         ("Coral", [0.80, 0.16, 0.085]),
         ("Amber", [0.84, 0.42, 0.045]),
@@ -26,10 +26,10 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
         ("Indigo", [0.070, 0.085, 0.42]),
         ("Plum", [0.34, 0.055, 0.25]),
     ];
-    let materials = palette.map(|(name, albedo)| stage.glossy(name, albedo, 0.3, 50.0));
+    let materials = palette.map(|(name, albedo)| builder.glossy(name, albedo, 0.3, 50.0));
     let groups = leaves.div_ceil(GROUP_LEAVES);
     let cells = cells(groups);
-    let all = stage.add(None, group("All", Operator::Union));
+    let all = builder.add(None, group("All", Operator::Union));
     for index in 0..groups {
         let cell = [index % cells[0], index / cells[0] % cells[1], index / cells[0] / cells[1]];
         let place: [f64; 3] = std::array::from_fn(|axis| {
@@ -40,7 +40,7 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
         let kernel = kernels[random.below(kernels.len())];
         let radius = random.between(0.08, 0.22);
         let node = blended(&format!("Group {}", index + 1), Operator::Union, kernel, radius);
-        let id = stage.add(all, node.at(place.into()));
+        let id = builder.add(all, node.at(place.into()));
         let tints = [random.below(palette.len()), random.below(palette.len())];
         for _ in 0..GROUP_LEAVES.min(leaves - index * GROUP_LEAVES) {
             let (name, shape) = match random.below(3) {
@@ -53,11 +53,11 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
             };
             let material = materials[tints[random.below(2)]];
             let place = DVec3::from([0; 3].map(|_| random.between(-0.44, 0.44)));
-            stage.add(id, object(name, shape, material).at(place).rotated(random.rotation()));
+            builder.add(id, object(name, shape, material).at(place).rotated(random.rotation()));
         }
     }
-    light_and_frame(&mut stage, cells);
-    stage.finish()
+    light_and_frame(&mut builder, cells);
+    builder.finish()
 }
 
 /// How many places along each axis: as even as powers of two allow, widest along X.
@@ -72,18 +72,18 @@ fn cells(groups: usize) -> [usize; 3] {
     cells
 }
 
-fn light_and_frame(stage: &mut Stage, cells: [usize; 3]) {
-    overview(stage, DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.85)));
+fn light_and_frame(builder: &mut SceneBuilder, cells: [usize; 3]) {
+    overview(builder, DVec3::from(cells.map(|c| (c as f64 - 1.0) * 0.5 * SPACING + 0.85)));
 }
 
 /// Three lights, and a camera that sees a box of this half extent around the origin.
-pub(super) fn overview(stage: &mut Stage, half: DVec3) {
-    stage.sun("Key", [-0.6, 0.8, 0.8], [1.0, 0.95, 0.88], 1.0);
-    stage.sun("Fill", [1.0, 0.2, 0.4], [0.65, 0.80, 1.0], 0.32);
-    stage.sun("Rim", [0.3, 0.5, -1.0], [1.0, 0.9, 0.8], 0.6);
+pub(super) fn overview(builder: &mut SceneBuilder, half: DVec3) {
+    builder.sun("Key", [-0.6, 0.8, 0.8], [1.0, 0.95, 0.88], 1.0);
+    builder.sun("Fill", [1.0, 0.2, 0.4], [0.65, 0.80, 1.0], 0.32);
+    builder.sun("Rim", [0.3, 0.5, -1.0], [1.0, 0.9, 0.8], 0.6);
     let direction = DVec3::new(-0.42, 0.38, 1.0).normalize();
     let position = direction * half.length() * 2.55;
-    stage.camera(position.to_array(), [0.0; 3], 36.0);
+    builder.camera(position.to_array(), [0.0; 3], 36.0);
 }
 
 /// SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).

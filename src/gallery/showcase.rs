@@ -2,60 +2,60 @@
 
 use glam::DVec3;
 
-use super::stage::{
-    Stage, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus, turn_x,
-    turn_y, turn_z, v,
+use super::scene_builder::{
+    SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus,
+    turn_x, turn_y, turn_z, v,
 };
 use crate::scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene, Shape};
 
-/// The planet's centre and radius.
+/// The planet's center and radius.
 const PLANET: (DVec3, f64) = (DVec3::new(0.0, -3.3, 0.0), 2.6);
 
 pub(super) fn scene() -> Scene {
-    let mut stage = Stage::new([0.008, 0.012, 0.05], [0.050, 0.018, 0.085], [0.19, 0.19, 0.28]);
-    planet(&mut stage);
-    crystals(&mut stage);
-    smoke(&mut stage);
-    rocket(&mut stage);
-    sky(&mut stage);
+    let mut builder = SceneBuilder::new([0.008, 0.012, 0.05], [0.050, 0.018, 0.085], [0.19, 0.19, 0.28]);
+    planet(&mut builder);
+    crystals(&mut builder);
+    smoke(&mut builder);
+    rocket(&mut builder);
+    sky(&mut builder);
 
-    stage.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 0.92);
-    stage.sun("Planet light", [0.9, 0.15, 0.15], [0.45, 0.50, 1.0], 0.45);
-    stage.sun("Back light", [0.35, 0.35, -1.0], [0.75, 0.60, 1.0], 0.8);
+    builder.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 0.92);
+    builder.sun("Planet light", [0.9, 0.15, 0.15], [0.45, 0.50, 1.0], 0.45);
+    builder.sun("Back light", [0.35, 0.35, -1.0], [0.75, 0.60, 1.0], 0.8);
     let falloff = Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.1, range: 6.0 };
-    stage.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.36, 0.08], 1.7, falloff);
-    stage.camera([-0.7, 1.55, 7.7], [0.12, 0.68, 0.0], 41.0);
-    stage.finish()
+    builder.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.36, 0.08], 1.7, falloff);
+    builder.camera([-0.7, 1.55, 7.7], [0.12, 0.68, 0.0], 41.0);
+    builder.finish()
 }
 
-/// A point on the planet's ground: `tilt` degrees from the top, towards `heading` degrees around it.
+/// A point on the planet's ground: `tilt` degrees from the top, toward `heading` degrees around it.
 fn on_planet(tilt: f64, heading: f64, height: f64) -> DVec3 {
     let (radians, around) = (tilt.to_radians(), heading.to_radians());
     let out = v(radians.sin() * around.sin(), radians.cos(), radians.sin() * around.cos());
     PLANET.0 + out * (PLANET.1 + height)
 }
 
-fn planet(stage: &mut Stage) {
-    let soil = stage.matt("Soil", [0.30, 0.17, 0.42]);
-    let crater = stage.matt("Crater", [0.115, 0.055, 0.23]);
-    let planet = stage.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.11));
-    stage.add(planet, object("Ball", sphere(PLANET.1), soil).at(PLANET.0));
+fn planet(builder: &mut SceneBuilder) {
+    let soil = builder.matte("Soil", [0.30, 0.17, 0.42]);
+    let crater = builder.matte("Crater", [0.115, 0.055, 0.23]);
+    let planet = builder.add(None, blended("Planet", Operator::Union, BlendKernel::Quadratic, 0.11));
+    builder.add(planet, object("Ball", sphere(PLANET.1), soil).at(PLANET.0));
     for (tilt, heading, radius) in
         [(26.0, 200.0, 0.42), (31.0, -38.0, 0.34), (14.0, 78.0, 0.17), (43.0, -75.0, 0.30), (40.0, 150.0, 0.3)]
     {
-        stage.add(planet, object("Hill", sphere(radius), soil).at(on_planet(tilt, heading, -radius * 0.45)));
+        builder.add(planet, object("Hill", sphere(radius), soil).at(on_planet(tilt, heading, -radius * 0.45)));
     }
     for (tilt, heading, radius) in
         [(33.0, 22.0, 0.36), (22.0, -78.0, 0.25), (36.0, 68.0, 0.28), (45.0, -20.0, 0.30), (49.0, 47.0, 0.22)]
     {
         let hole = object("Crater", sphere(radius), crater).negative();
-        stage.add(planet, hole.at(on_planet(tilt, heading, radius * 0.45)));
+        builder.add(planet, hole.at(on_planet(tilt, heading, radius * 0.45)));
     }
 }
 
-fn crystals(stage: &mut Stage) {
-    let crystal = stage.glass("Crystal", [0.04, 0.50, 0.52], [0.9, 80.0], [0.0, 0.10, 0.11]);
-    let cluster = stage.add(None, group("Crystals", Operator::Union));
+fn crystals(builder: &mut SceneBuilder) {
+    let crystal = builder.glass("Crystal", [0.04, 0.50, 0.52], [0.9, 80.0], [0.0, 0.10, 0.11]);
+    let cluster = builder.add(None, group("Crystals", Operator::Union));
     for (tilt, heading, size, lean) in [
         (24.0, 52.0, 0.30, -14.0),
         (27.5, 61.0, 0.19, 12.0),
@@ -65,14 +65,14 @@ fn crystals(stage: &mut Stage) {
     ] {
         let place = on_planet(tilt, heading, size * 0.42);
         let octahedron = object("Crystal", Shape::Octahedron { radius: size }, crystal);
-        stage.add(cluster, octahedron.at(place).rotated(turn_z(lean) * turn_y(heading)).scaled(v(0.5, 1.15, 0.5)));
+        builder.add(cluster, octahedron.at(place).rotated(turn_z(lean) * turn_y(heading)).scaled(v(0.5, 1.15, 0.5)));
     }
 }
 
-fn smoke(stage: &mut Stage) {
-    let smoke = stage.matt("Smoke", [0.62, 0.55, 0.58]);
-    let cloud = stage.add(None, blended("Smoke", Operator::Union, BlendKernel::Quadratic, 0.22));
-    stage.add(cloud, object("Column", round_cone(0.30, 0.13, 0.75), smoke).at(v(-0.02, -0.30, 0.0)));
+fn smoke(builder: &mut SceneBuilder) {
+    let smoke = builder.matte("Smoke", [0.62, 0.55, 0.58]);
+    let cloud = builder.add(None, blended("Smoke", Operator::Union, BlendKernel::Quadratic, 0.22));
+    builder.add(cloud, object("Column", round_cone(0.30, 0.13, 0.75), smoke).at(v(-0.02, -0.30, 0.0)));
     let puffs = [
         [-0.42, -0.56, 0.22, 0.34],
         [0.40, -0.58, 0.26, 0.31],
@@ -89,78 +89,78 @@ fn smoke(stage: &mut Stage) {
         [-0.18, -0.12, 0.10, 0.17],
     ];
     for [x, y, z, radius] in puffs {
-        stage.add(cloud, object("Puff", sphere(radius), smoke).at(v(x, y, z)));
+        builder.add(cloud, object("Puff", sphere(radius), smoke).at(v(x, y, z)));
     }
 }
 
-fn rocket(stage: &mut Stage) {
-    let white = stage.glossy("Enamel", [0.80, 0.78, 0.74], 0.5, 70.0);
-    let red = stage.glossy("Red", [0.74, 0.055, 0.045], 0.5, 70.0);
-    let steel = stage.glossy("Steel", [0.12, 0.125, 0.15], 0.7, 50.0);
-    let brass = stage.glossy("Brass", [0.72, 0.45, 0.13], 0.8, 60.0);
-    let glass = stage.glass("Glass", [0.02, 0.15, 0.26], [1.0, 120.0], [0.02, 0.09, 0.13]);
+fn rocket(builder: &mut SceneBuilder) {
+    let white = builder.glossy("Enamel", [0.80, 0.78, 0.74], 0.5, 70.0);
+    let red = builder.glossy("Red", [0.74, 0.055, 0.045], 0.5, 70.0);
+    let steel = builder.glossy("Steel", [0.12, 0.125, 0.15], 0.7, 50.0);
+    let brass = builder.glossy("Brass", [0.72, 0.45, 0.13], 0.8, 60.0);
+    let glass = builder.glass("Glass", [0.02, 0.15, 0.26], [1.0, 120.0], [0.02, 0.09, 0.13]);
 
-    let rocket =
-        stage.add(None, group("Rocket", Operator::Union).at(v(0.12, 1.62, 0.0)).rotated(turn_z(-9.0) * turn_y(-14.0)));
-    let body = stage.add(rocket, blended("Body and fins", Operator::Union, BlendKernel::Circular, 0.10));
-    let hull = stage.add(body, blended("Hull", Operator::Intersection, BlendKernel::Circular, 0.04));
-    stage.add(hull, object("Shape", ellipsoid(0.50, 1.32, 0.50), white));
-    stage.add(hull, object("Cut", cuboid(2.0, 2.4, 2.0, 0.0), white).at(v(0.0, 0.26, 0.0)));
+    let rocket = builder
+        .add(None, group("Rocket", Operator::Union).at(v(0.12, 1.62, 0.0)).rotated(turn_z(-9.0) * turn_y(-14.0)));
+    let body = builder.add(rocket, blended("Body and fins", Operator::Union, BlendKernel::Circular, 0.10));
+    let hull = builder.add(body, blended("Hull", Operator::Intersection, BlendKernel::Circular, 0.04));
+    builder.add(hull, object("Shape", ellipsoid(0.50, 1.32, 0.50), white));
+    builder.add(hull, object("Cut", cuboid(2.0, 2.4, 2.0, 0.0), white).at(v(0.0, 0.26, 0.0)));
     for heading in [0.0, 120.0, 240.0] {
-        fin(stage, body, heading + 60.0, red);
+        fin(builder, body, heading + 60.0, red);
     }
-    let nose = stage.add(rocket, group("Nose", Operator::Intersection));
-    stage.add(nose, object("Shape", ellipsoid(0.512, 1.335, 0.512), red));
-    stage.add(nose, object("Cut", cuboid(2.0, 1.0, 2.0, 0.0), red).at(v(0.0, 1.22, 0.0)));
-    stage.add(rocket, object("Needle", capsule([0.0, 1.25, 0.0], [0.0, 1.56, 0.0], 0.018), steel));
-    stage.add(rocket, object("Knob", sphere(0.05), brass).at(v(0.0, 1.58, 0.0)));
-    let band = stage.add(rocket, group("Band", Operator::Intersection));
-    stage.add(band, object("Shape", ellipsoid(0.515, 1.335, 0.515), brass));
-    stage.add(band, object("Slab", cylinder(0.7, 0.045, 0.0), brass).at(v(0.0, 0.72, 0.0)));
+    let nose = builder.add(rocket, group("Nose", Operator::Intersection));
+    builder.add(nose, object("Shape", ellipsoid(0.512, 1.335, 0.512), red));
+    builder.add(nose, object("Cut", cuboid(2.0, 1.0, 2.0, 0.0), red).at(v(0.0, 1.22, 0.0)));
+    builder.add(rocket, object("Needle", capsule([0.0, 1.25, 0.0], [0.0, 1.56, 0.0], 0.018), steel));
+    builder.add(rocket, object("Knob", sphere(0.05), brass).at(v(0.0, 1.58, 0.0)));
+    let band = builder.add(rocket, group("Band", Operator::Intersection));
+    builder.add(band, object("Shape", ellipsoid(0.515, 1.335, 0.515), brass));
+    builder.add(band, object("Slab", cylinder(0.7, 0.045, 0.0), brass).at(v(0.0, 0.72, 0.0)));
 
-    window(stage, rocket, v(0.0, 0.30, 0.475), 0.19, [brass, glass]);
-    window(stage, rocket, v(0.0, -0.23, 0.49), 0.11, [brass, glass]);
+    window(builder, rocket, v(0.0, 0.30, 0.475), 0.19, [brass, glass]);
+    window(builder, rocket, v(0.0, -0.23, 0.49), 0.11, [brass, glass]);
 
     let nozzle =
-        stage.add(rocket, blended("Nozzle", Operator::Union, BlendKernel::Circular, 0.02).at(v(0.0, -1.05, 0.0)));
-    stage.add(nozzle, object("Bell", cone(0.27, 0.19, 0.24), steel));
-    stage.add(nozzle, object("Inside", cone(0.235, 0.14, 0.24), steel).at(v(0.0, -0.03, 0.0)).negative());
-    flame(stage, rocket);
+        builder.add(rocket, blended("Nozzle", Operator::Union, BlendKernel::Circular, 0.02).at(v(0.0, -1.05, 0.0)));
+    builder.add(nozzle, object("Bell", cone(0.27, 0.19, 0.24), steel));
+    builder.add(nozzle, object("Inside", cone(0.235, 0.14, 0.24), steel).at(v(0.0, -0.03, 0.0)).negative());
+    flame(builder, rocket);
 }
 
 /// A fin that sweeps out and down, as seen from `heading` degrees around the hull.
-fn fin(stage: &mut Stage, body: NodeId, heading: f64, red: MaterialId) {
+fn fin(builder: &mut SceneBuilder, body: NodeId, heading: f64, red: MaterialId) {
     let fin =
-        stage.add(body, blended("Fin", Operator::Difference, BlendKernel::Circular, 0.03).rotated(turn_y(heading)));
+        builder.add(body, blended("Fin", Operator::Difference, BlendKernel::Circular, 0.03).rotated(turn_y(heading)));
     let blade = object("Blade", ellipsoid(0.085, 0.62, 0.46), red);
-    stage.add(fin, blade.at(v(0.0, -0.83, 0.45)).rotated(turn_x(-24.0)));
-    stage.add(fin, object("Cut", ellipsoid(0.5, 0.52, 0.42), red).at(v(0.0, -1.42, 0.26)));
+    builder.add(fin, blade.at(v(0.0, -0.83, 0.45)).rotated(turn_x(-24.0)));
+    builder.add(fin, object("Cut", ellipsoid(0.5, 0.52, 0.42), red).at(v(0.0, -1.42, 0.26)));
 }
 
-fn window(stage: &mut Stage, rocket: NodeId, at: DVec3, radius: f64, [brass, glass]: [MaterialId; 2]) {
-    let window = stage.add(rocket, group("Window", Operator::Union).at(at).rotated(turn_x(90.0)));
-    stage.add(window, object("Ring", torus(radius, radius * 0.2), brass));
-    stage.add(window, object("Pane", ellipsoid(radius, radius * 0.32, radius), glass));
+fn window(builder: &mut SceneBuilder, rocket: NodeId, at: DVec3, radius: f64, [brass, glass]: [MaterialId; 2]) {
+    let window = builder.add(rocket, group("Window", Operator::Union).at(at).rotated(turn_x(90.0)));
+    builder.add(window, object("Ring", torus(radius, radius * 0.2), brass));
+    builder.add(window, object("Pane", ellipsoid(radius, radius * 0.32, radius), glass));
 }
 
-fn flame(stage: &mut Stage, rocket: NodeId) {
-    let outer = stage.glowing("Flame", [0.5, 0.12, 0.02], [0.85, 0.22, 0.025]);
-    let inner = stage.glowing("Flame core", [0.6, 0.4, 0.1], [1.0, 0.72, 0.22]);
-    let flame = stage.add(rocket, blended("Flame", Operator::Union, BlendKernel::Cubic, 0.05).at(v(0.0, -1.42, 0.0)));
-    stage.add(flame, object("Mantle", round_cone(0.05, 0.17, 0.42), outer));
-    stage.add(flame, object("Core", round_cone(0.03, 0.13, 0.2), inner).at(v(0.0, 0.16, 0.04)));
+fn flame(builder: &mut SceneBuilder, rocket: NodeId) {
+    let outer = builder.glowing("Flame", [0.5, 0.12, 0.02], [0.85, 0.22, 0.025]);
+    let inner = builder.glowing("Flame core", [0.6, 0.4, 0.1], [1.0, 0.72, 0.22]);
+    let flame = builder.add(rocket, blended("Flame", Operator::Union, BlendKernel::Cubic, 0.05).at(v(0.0, -1.42, 0.0)));
+    builder.add(flame, object("Mantle", round_cone(0.05, 0.17, 0.42), outer));
+    builder.add(flame, object("Core", round_cone(0.03, 0.13, 0.2), inner).at(v(0.0, 0.16, 0.04)));
 }
 
 /// A ringed moon and stars.
-fn sky(stage: &mut Stage) {
-    let moon = stage.glossy("Moon", [0.83, 0.50, 0.24], 0.15, 20.0);
-    let ring = stage.glossy("Ring", [0.66, 0.56, 0.62], 0.2, 20.0);
-    let star = stage.glowing("Star", [0.4, 0.4, 0.4], [0.80, 0.76, 0.62]);
-    let saturn = stage
+fn sky(builder: &mut SceneBuilder) {
+    let moon = builder.glossy("Moon", [0.83, 0.50, 0.24], 0.15, 20.0);
+    let ring = builder.glossy("Ring", [0.66, 0.56, 0.62], 0.2, 20.0);
+    let star = builder.glowing("Star", [0.4, 0.4, 0.4], [0.80, 0.76, 0.62]);
+    let saturn = builder
         .add(None, group("Ringed moon", Operator::Union).at(v(3.1, 3.35, -4.2)).rotated(turn_z(-22.0) * turn_x(20.0)));
-    stage.add(saturn, object("Ball", sphere(0.62), moon));
-    stage.add(saturn, object("Ring", torus(1.0, 0.14), ring).scaled(v(1.0, 0.16, 1.0)));
-    let stars = stage.add(None, group("Stars", Operator::Union));
+    builder.add(saturn, object("Ball", sphere(0.62), moon));
+    builder.add(saturn, object("Ring", torus(1.0, 0.14), ring).scaled(v(1.0, 0.16, 1.0)));
+    let stars = builder.add(None, group("Stars", Operator::Union));
     let places = [
         [-4.2, 4.1, -5.0, 0.050],
         [-3.0, 2.6, -6.0, 0.036],
@@ -177,6 +177,6 @@ fn sky(stage: &mut Stage) {
         [0.2, 5.2, -6.0, 0.036],
     ];
     for [x, y, z, radius] in places {
-        stage.add(stars, object("Star", Shape::Octahedron { radius }, star).at(v(x, y, z)).rotated(turn_y(15.0)));
+        builder.add(stars, object("Star", Shape::Octahedron { radius }, star).at(v(x, y, z)).rotated(turn_y(15.0)));
     }
 }

@@ -24,7 +24,7 @@ impl Aabb {
         Self { min, max }
     }
 
-    /// The box of the given centre that reaches `half` in each direction.
+    /// The box of the given center that reaches `half` in each direction.
     pub fn from_center_half(center: DVec3, half: DVec3) -> Self {
         Self { min: center - half, max: center + half }
     }

@@ -11,11 +11,11 @@ use super::Aabb;
 /// A piece of a circle, or of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArcPiece {
-    /// Its middle, in metres.
+    /// Its middle, in meters.
     pub middle: DVec3,
     /// Unit direction in the middle.
     pub tangent: DVec3,
-    /// Towards the centre, one over the radius long; zero where it is straight. At right angles to the tangent.
+    /// Toward the center, one over the radius long; zero where it is straight. At right angles to the tangent.
     pub bend: DVec3,
     /// λ at its end; at its start it is the negative of that.
     pub reach: f64,
@@ -81,7 +81,7 @@ impl ArcPiece {
         (self.tangent * (1.0 - square) + self.bend * (2.0 * lambda)) / (1.0 + square)
     }
 
-    /// Its length, in metres.
+    /// Its length, in meters.
     pub fn length(&self) -> f64 {
         2.0 * self.way(self.reach)
     }
@@ -138,9 +138,9 @@ fn roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     [over(q, a), over(c, q)]
 }
 
-/// A smooth curve through points: between two neighbours two arcs that meet with one direction (a biarc). At a point the
+/// A smooth curve through points: between two neighbors two arcs that meet with one direction (a biarc). At a point the
 /// curve has the direction from the point before it to the one after it (Catmull-Rom). One list of arcs for each pair of
-/// neighbours; coinciding points have one without length between them.
+/// neighbors; coinciding points have one without length between them.
 pub fn smooth_curve(points: &[DVec3], closed: bool) -> Vec<Vec<ArcPiece>> {
     let count = points.len();
     let spans = if closed { count } else { count.saturating_sub(1) };

@@ -172,7 +172,7 @@ impl Arrangement {
         1
     }
 
-    /// The pieces between neighbouring vertices, those that coincide as one; and whether that changed anything.
+    /// The pieces between neighboring vertices, those that coincide as one; and whether that changed anything.
     fn edges(&mut self) -> (Vec<Edge>, bool) {
         let mut edges: Vec<Edge> = Vec::with_capacity(self.cuts.len());
         let mut known: HashMap<[usize; 2], Vec<usize>> = HashMap::new();

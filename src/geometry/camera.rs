@@ -61,7 +61,7 @@ impl Camera {
     }
 
     /// The ray through a point of the picture; `pixel` in pixels from the upper left corner (pixel
-    /// centres at .5), `size` the picture's size in pixels.
+    /// centers at .5), `size` the picture's size in pixels.
     pub fn ray(&self, pixel: DVec2, size: DVec2) -> Ray {
         let t = self.tan_half_fov();
         let ndc = DVec2::new(2.0 * pixel.x / size.x - 1.0, 1.0 - 2.0 * pixel.y / size.y);

@@ -1,6 +1,6 @@
 //! Points, arcs, boxes, rays, transforms and cameras. Knows nothing of scenes.
 //!
-//! Conventions, for the whole program: right-handed, +Y up, metres, radians inside and degrees at
+//! Conventions, for the whole program: right-handed, +Y up, meters, radians inside and degrees at
 //! the border (files, inspector). Matrices are named `target_from_source`.
 
 mod aabb;

@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 use std::cell::Cell;
 
-use super::error::Refusal;
+use super::error::LoadRefusal;
 use super::limits::{MAX_ACCESSOR_COUNT, MAX_ENTRIES_READ};
 use super::schema::{Accessor, Root, Whole};
 
 /// The type of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Component {
+pub(super) enum ComponentType {
     I8,
     U8,
     I16,
@@ -18,7 +18,7 @@ pub(super) enum Component {
     F32,
 }
 
-impl Component {
+impl ComponentType {
     /// By the code that files hold.
     pub fn of(code: Whole) -> Option<Self> {
         Some(match code.0 {
@@ -48,12 +48,12 @@ impl Component {
 
 /// How many numbers make an entry. Matrices are more than rows of numbers: theirs may be padded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
+pub(super) enum ElementShape {
     Vector(usize),
     Matrix(usize),
 }
 
-impl Shape {
+impl ElementShape {
     /// By the name that files hold.
     pub fn of(name: &str) -> Option<Self> {
         Some(match name {
@@ -81,22 +81,22 @@ pub(super) struct Source<'a> {
 struct Layout<'a> {
     bytes: &'a [u8],
     stride: usize,
-    component: Component,
+    component: ComponentType,
     normalized: bool,
 }
 
 impl Layout<'_> {
-    /// Component `c` of element `i` as a number; normalised integers as shares (specification, 3.6.2.2).
+    /// Component `c` of element `i` as a number; normalized integers as shares (specification, 3.6.2.2).
     fn float(&self, i: usize, c: usize) -> f32 {
         let at = i * self.stride + c * self.component.size();
         let b = |k: usize| self.bytes[at + k];
         let (value, greatest) = match self.component {
-            Component::F32 => return f32::from_le_bytes([b(0), b(1), b(2), b(3)]),
-            Component::I8 => (f32::from(b(0) as i8), 127.0),
-            Component::U8 => (f32::from(b(0)), 255.0),
-            Component::I16 => (f32::from(i16::from_le_bytes([b(0), b(1)])), 32_767.0),
-            Component::U16 => (f32::from(u16::from_le_bytes([b(0), b(1)])), 65_535.0),
-            Component::U32 => (u32::from_le_bytes([b(0), b(1), b(2), b(3)]) as f32, 4_294_967_295.0),
+            ComponentType::F32 => return f32::from_le_bytes([b(0), b(1), b(2), b(3)]),
+            ComponentType::I8 => (f32::from(b(0) as i8), 127.0),
+            ComponentType::U8 => (f32::from(b(0)), 255.0),
+            ComponentType::I16 => (f32::from(i16::from_le_bytes([b(0), b(1)])), 32_767.0),
+            ComponentType::U16 => (f32::from(u16::from_le_bytes([b(0), b(1)])), 65_535.0),
+            ComponentType::U32 => (u32::from_le_bytes([b(0), b(1), b(2), b(3)]) as f32, 4_294_967_295.0),
         };
         if self.normalized { (value / greatest).max(-1.0) } else { value }
     }
@@ -105,9 +105,9 @@ impl Layout<'_> {
     fn index(&self, i: usize) -> Option<u32> {
         let b = |k: usize| self.bytes[i * self.stride + k];
         match self.component {
-            Component::U8 => Some(u32::from(b(0))),
-            Component::U16 => Some(u32::from(u16::from_le_bytes([b(0), b(1)]))),
-            Component::U32 => Some(u32::from_le_bytes([b(0), b(1), b(2), b(3)])),
+            ComponentType::U8 => Some(u32::from(b(0))),
+            ComponentType::U16 => Some(u32::from(u16::from_le_bytes([b(0), b(1)]))),
+            ComponentType::U32 => Some(u32::from_le_bytes([b(0), b(1), b(2), b(3)])),
             _ => None,
         }
     }
@@ -115,45 +115,47 @@ impl Layout<'_> {
 
 impl<'a> Source<'a> {
     /// The bytes of a buffer view.
-    pub fn view(&self, index: Whole) -> Result<&'a [u8], Refusal> {
+    pub fn view(&self, index: Whole) -> Result<&'a [u8], LoadRefusal> {
         let place = format!("bufferViews[{}]", index.0);
-        let view = self.root.buffer_views.get(index.index()).ok_or_else(|| Refusal::at(&place, "is missing"))?;
-        let bytes = self.buffers.get(view.buffer.index()).ok_or_else(|| Refusal::at(&place, "has no buffer"))?;
+        let view = self.root.buffer_views.get(index.index()).ok_or_else(|| LoadRefusal::at(&place, "is missing"))?;
+        let bytes = self.buffers.get(view.buffer.index()).ok_or_else(|| LoadRefusal::at(&place, "has no buffer"))?;
         let range = usize::try_from(view.byte_offset.0).ok().and_then(|start| {
             let end = start.checked_add(usize::try_from(view.byte_length.0).ok()?)?;
             bytes.get(start..end)
         });
-        range.ok_or_else(|| Refusal::at(place, format!("reaches past the {} bytes of its buffer", bytes.len())))
+        range.ok_or_else(|| LoadRefusal::at(place, format!("reaches past the {} bytes of its buffer", bytes.len())))
     }
 
     /// Vectors of `N` components, or of fewer, down to `least`, which are filled up with ones.
-    pub fn floats<const N: usize>(&self, index: Whole, least: usize, user: &str) -> Result<Vec<[f32; N]>, Refusal> {
+    pub fn floats<const N: usize>(&self, index: Whole, least: usize, user: &str) -> Result<Vec<[f32; N]>, LoadRefusal> {
         let (accessor, component, shape) = self.accessor(index, user)?;
         let width = match shape {
-            Shape::Matrix(_) => return Err(Refusal::at(user, "is made of matrices")),
-            Shape::Vector(width) if width > N || width < least => {
-                return Err(Refusal::at(user, format!("has {width} components in each entry, not {N}")));
+            ElementShape::Matrix(_) => return Err(LoadRefusal::at(user, "is made of matrices")),
+            ElementShape::Vector(width) if width > N || width < least => {
+                return Err(LoadRefusal::at(user, format!("has {width} components in each entry, not {N}")));
             }
-            Shape::Vector(width) => width,
+            ElementShape::Vector(width) => width,
         };
         self.entries(accessor, component, width, user)
     }
 
     /// Matrices of 4 × 4, column by column.
-    pub fn matrices(&self, index: Whole, user: &str) -> Result<Vec<[f32; 16]>, Refusal> {
+    pub fn matrices(&self, index: Whole, user: &str) -> Result<Vec<[f32; 16]>, LoadRefusal> {
         match self.accessor(index, user)? {
-            (accessor, component @ Component::F32, Shape::Matrix(16)) => self.entries(accessor, component, 16, user),
-            _ => Err(Refusal::at(user, "is not made of 4 × 4 matrices of floats")),
+            (accessor, component @ ComponentType::F32, ElementShape::Matrix(16)) => {
+                self.entries(accessor, component, 16, user)
+            }
+            _ => Err(LoadRefusal::at(user, "is not made of 4 × 4 matrices of floats")),
         }
     }
 
     fn entries<const N: usize>(
         &self,
         accessor: &'a Accessor,
-        component: Component,
+        component: ComponentType,
         width: usize,
         user: &str,
-    ) -> Result<Vec<[f32; N]>, Refusal> {
+    ) -> Result<Vec<[f32; N]>, LoadRefusal> {
         let read =
             |layout: &Layout<'_>, i: usize| std::array::from_fn(|c| if c < width { layout.float(i, c) } else { 1.0 });
         let base = self.base(accessor, component, width, user)?;
@@ -185,13 +187,13 @@ impl<'a> Source<'a> {
     }
 
     /// Vertex numbers.
-    pub fn indices(&self, index: Whole, user: &str) -> Result<Vec<u32>, Refusal> {
+    pub fn indices(&self, index: Whole, user: &str) -> Result<Vec<u32>, LoadRefusal> {
         let (accessor, component, shape) = self.accessor(index, user)?;
-        if shape != Shape::Vector(1) || !component.is_index() {
-            return Err(Refusal::at(user, "are not unsigned whole numbers"));
+        if shape != ElementShape::Vector(1) || !component.is_index() {
+            return Err(LoadRefusal::at(user, "are not unsigned whole numbers"));
         }
         if self.is_zero(index) {
-            return Err(Refusal::at(user, "have no data"));
+            return Err(LoadRefusal::at(user, "have no data"));
         }
         let mut out = vec![0; accessor.count.0 as usize];
         if let Some(base) = self.base(accessor, component, 1, user)? {
@@ -208,25 +210,26 @@ impl<'a> Source<'a> {
     }
 
     /// The accessor with its component type and the shape of its entries; its count is within limits.
-    fn accessor(&self, index: Whole, user: &str) -> Result<(&'a Accessor, Component, Shape), Refusal> {
-        let wrong = |reason: &str| Refusal::at(user, reason);
+    fn accessor(&self, index: Whole, user: &str) -> Result<(&'a Accessor, ComponentType, ElementShape), LoadRefusal> {
+        let wrong = |reason: &str| LoadRefusal::at(user, reason);
         let missing = || wrong("names an accessor that is missing");
         let accessor = self.root.accessors.get(index.index()).ok_or_else(missing)?;
-        let component = Component::of(accessor.component_type).ok_or_else(|| wrong("has an unknown component type"))?;
-        let shape = Shape::of(&accessor.kind).ok_or_else(|| wrong("has an unknown type"))?;
+        let component =
+            ComponentType::of(accessor.component_type).ok_or_else(|| wrong("has an unknown component type"))?;
+        let shape = ElementShape::of(&accessor.kind).ok_or_else(|| wrong("has an unknown type"))?;
         if accessor.count.0 == 0 || accessor.count.0 > MAX_ACCESSOR_COUNT as u64 {
             let count = accessor.count.0;
-            return Err(Refusal::at(user, format!("has {count} entries; 1 to {MAX_ACCESSOR_COUNT} are allowed")));
+            return Err(LoadRefusal::at(user, format!("has {count} entries; 1 to {MAX_ACCESSOR_COUNT} are allowed")));
         }
         self.charge(accessor.count.0, user)?;
         Ok((accessor, component, shape))
     }
 
     /// Counts entries that are read or made up. A file may ask for the same ones again and again.
-    pub fn charge(&self, entries: u64, user: &str) -> Result<(), Refusal> {
+    pub fn charge(&self, entries: u64, user: &str) -> Result<(), LoadRefusal> {
         self.entries_read.set(self.entries_read.get().saturating_add(entries));
         if self.entries_read.get() > MAX_ENTRIES_READ {
-            return Err(Refusal::at(user, format!("makes more than {MAX_ENTRIES_READ} entries to read")));
+            return Err(LoadRefusal::at(user, format!("makes more than {MAX_ENTRIES_READ} entries to read")));
         }
         Ok(())
     }
@@ -235,10 +238,10 @@ impl<'a> Source<'a> {
     fn base(
         &self,
         accessor: &Accessor,
-        component: Component,
+        component: ComponentType,
         width: usize,
         user: &str,
-    ) -> Result<Option<Layout<'a>>, Refusal> {
+    ) -> Result<Option<Layout<'a>>, LoadRefusal> {
         let Some(view) = accessor.buffer_view else { return Ok(None) };
         let offset = accessor.byte_offset.0;
         let mut layout = self.layout(view, offset, accessor.count.0, component, width, user)?;
@@ -250,18 +253,18 @@ impl<'a> Source<'a> {
     fn overlay(
         &self,
         accessor: &Accessor,
-        component: Component,
+        component: ComponentType,
         width: usize,
         user: &str,
-    ) -> Result<Option<Overlay<'a>>, Refusal> {
+    ) -> Result<Option<Overlay<'a>>, LoadRefusal> {
         let Some(sparse) = &accessor.sparse else { return Ok(None) };
         let user = format!("{user}.sparse");
         let count = sparse.count.0;
         if count == 0 || count > accessor.count.0 {
-            return Err(Refusal::at(user, format!("replaces {count} of {} entries", accessor.count.0)));
+            return Err(LoadRefusal::at(user, format!("replaces {count} of {} entries", accessor.count.0)));
         }
-        let Some(index_type) = Component::of(sparse.indices.component_type).filter(|c| c.is_index()) else {
-            return Err(Refusal::at(user, "has indices of an unknown type"));
+        let Some(index_type) = ComponentType::of(sparse.indices.component_type).filter(|c| c.is_index()) else {
+            return Err(LoadRefusal::at(user, "has indices of an unknown type"));
         };
         let indices =
             self.layout(sparse.indices.buffer_view, sparse.indices.byte_offset.0, count, index_type, 1, &user)?;
@@ -272,7 +275,7 @@ impl<'a> Source<'a> {
         for i in 0..count as usize {
             match indices.index(i) {
                 Some(target) if u64::from(target) < accessor.count.0 => targets.push(target as usize),
-                _ => return Err(Refusal::at(user, format!("replaces an entry that is missing, by index {i}"))),
+                _ => return Err(LoadRefusal::at(user, format!("replaces an entry that is missing, by index {i}"))),
             }
         }
         Ok(Some(Overlay { targets, values }))
@@ -283,17 +286,17 @@ impl<'a> Source<'a> {
         view: Whole,
         offset: u64,
         count: u64,
-        component: Component,
+        component: ComponentType,
         width: usize,
         user: &str,
-    ) -> Result<Layout<'a>, Refusal> {
+    ) -> Result<Layout<'a>, LoadRefusal> {
         let all = self.view(view)?;
         let size = component.size() * width;
         let stride = self.root.buffer_views.get(view.index()).and_then(|v| v.byte_stride);
         // 0 stands for tightly packed in files of some exporters, as it did in version 1.
         let stride = stride.filter(|stride| stride.0 > 0).map_or(size as u64, |stride| stride.0);
         if stride < size as u64 {
-            return Err(Refusal::at(user, format!("has a stride of {stride} bytes for entries of {size}")));
+            return Err(LoadRefusal::at(user, format!("has a stride of {stride} bytes for entries of {size}")));
         }
         let needed = (count - 1).saturating_mul(stride).saturating_add(size as u64);
         let range = usize::try_from(offset).ok().and_then(|start| {
@@ -302,7 +305,7 @@ impl<'a> Source<'a> {
         });
         let bytes = range.ok_or_else(|| {
             let reason = format!("needs {needed} bytes from byte {offset}, but its view has {}", all.len());
-            Refusal::at(user, reason)
+            LoadRefusal::at(user, reason)
         })?;
         Ok(Layout { bytes, stride: stride as usize, component, normalized: false })
     }

@@ -1,6 +1,6 @@
 //! The JSON of a glTF file: taken out of its container, parsed, its references checked.
 
-use super::error::{Refusal, name};
+use super::error::{LoadRefusal, name};
 use super::limits::{MAX_JSON_COMMAS, MAX_JSON_OBJECTS};
 use super::references::check_references;
 use super::schema::{Asset, Root, Versioned};
@@ -8,7 +8,7 @@ use super::schema::{Asset, Root, Versioned};
 /// A checked document and the binary chunk of its container.
 ///
 /// Invariant: every index that the document holds is in range.
-pub(super) struct Document<'a> {
+pub(super) struct GltfDocument<'a> {
     pub root: Root,
     pub binary_chunk: Option<&'a [u8]>,
 }
@@ -18,9 +18,9 @@ pub(super) const SUPPORTED: &[&str] =
     &["KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"];
 
 /// Parses a .gltf or .glb file.
-pub(super) fn read_document(bytes: &[u8]) -> Result<Document<'_>, Refusal> {
+pub(super) fn read_document(bytes: &[u8]) -> Result<GltfDocument<'_>, LoadRefusal> {
     let (text, binary_chunk) = if bytes.starts_with(MAGIC) { split_container(bytes)? } else { (bytes, None) };
-    Ok(Document { root: parse(text)?, binary_chunk })
+    Ok(GltfDocument { root: parse(text)?, binary_chunk })
 }
 
 const MAGIC: &[u8] = b"glTF";
@@ -28,8 +28,8 @@ const HEADER_BYTES: usize = 12;
 const CHUNK_HEADER_BYTES: usize = 8;
 
 /// The JSON chunk and the binary chunk of a container (glTF 2.0 specification, section 4.4).
-fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Refusal> {
-    let refuse = |reason: String| Refusal::at("container", reason);
+fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadRefusal> {
+    let refuse = |reason: String| LoadRefusal::at("container", reason);
     let word = |at: usize| {
         let word = bytes.get(at..at + 4).and_then(|b| b.try_into().ok()).map(u32::from_le_bytes);
         word.ok_or_else(|| refuse("ends within a header".into()))
@@ -61,22 +61,25 @@ fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Refusal> {
     Ok((text.ok_or_else(|| refuse("has no JSON chunk".into()))?, binary))
 }
 
-fn parse(text: &[u8]) -> Result<Root, Refusal> {
+fn parse(text: &[u8]) -> Result<Root, LoadRefusal> {
     // Byte order marks are not allowed, and are written by some editors.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     check_amount(text)?;
     let versioned: Versioned =
-        serde_json::from_slice(text).map_err(|e| Refusal::at("", format!("is not glTF JSON: {e}")))?;
+        serde_json::from_slice(text).map_err(|e| LoadRefusal::at("", format!("is not glTF JSON: {e}")))?;
     check_version(versioned.asset.as_ref())?;
     let mut json = serde_json::Deserializer::from_slice(text);
     let root: Root = serde_path_to_error::deserialize(&mut json).map_err(|error| {
         let place = error.path().to_string();
-        Refusal::at(if place == "." { String::new() } else { place }, format!("is not glTF JSON: {}", error.inner()))
+        LoadRefusal::at(
+            if place == "." { String::new() } else { place },
+            format!("is not glTF JSON: {}", error.inner()),
+        )
     })?;
     for (i, extension) in root.extensions_required.iter().enumerate() {
         if !SUPPORTED.contains(&extension.as_str()) {
             let reason = format!("the file needs {}, which is not supported", name(extension));
-            return Err(Refusal::at(format!("extensionsRequired[{i}]"), reason));
+            return Err(LoadRefusal::at(format!("extensionsRequired[{i}]"), reason));
         }
     }
     check_references(&root)?;
@@ -84,7 +87,7 @@ fn parse(text: &[u8]) -> Result<Root, Refusal> {
 }
 
 /// Refuses text whose objects would take much more memory than the text. Brackets within strings count too.
-fn check_amount(text: &[u8]) -> Result<(), Refusal> {
+fn check_amount(text: &[u8]) -> Result<(), LoadRefusal> {
     let (mut objects, mut commas) = (0, 0);
     for byte in text {
         match byte {
@@ -94,25 +97,25 @@ fn check_amount(text: &[u8]) -> Result<(), Refusal> {
         }
     }
     if objects > MAX_JSON_OBJECTS {
-        return Err(Refusal::at("", format!("holds {objects} objects, more than {MAX_JSON_OBJECTS}")));
+        return Err(LoadRefusal::at("", format!("holds {objects} objects, more than {MAX_JSON_OBJECTS}")));
     }
     if commas > MAX_JSON_COMMAS {
-        return Err(Refusal::at("", format!("holds {commas} values, more than {MAX_JSON_COMMAS}")));
+        return Err(LoadRefusal::at("", format!("holds {commas} values, more than {MAX_JSON_COMMAS}")));
     }
     Ok(())
 }
 
 /// Before anything else is read: files of version 1 are made otherwise, and would be refused for a wrong reason.
-fn check_version(asset: Option<&Asset>) -> Result<(), Refusal> {
+fn check_version(asset: Option<&Asset>) -> Result<(), LoadRefusal> {
     let Some(version) = asset.and_then(|asset| asset.version.as_deref()) else {
-        return Err(Refusal::at("", "has no asset.version, so it is no glTF file"));
+        return Err(LoadRefusal::at("", "has no asset.version, so it is no glTF file"));
     };
     let needed = asset.and_then(|asset| asset.min_version.as_deref()).unwrap_or(version);
     if !version.starts_with("2.") {
-        return Err(Refusal::at("asset.version", format!("is {}; files of glTF 2 are read", name(version))));
+        return Err(LoadRefusal::at("asset.version", format!("is {}; files of glTF 2 are read", name(version))));
     }
     if !needed.starts_with("2.") || (needed != "2.0" && needed != version) {
-        return Err(Refusal::at("asset.minVersion", format!("is {}; files of glTF 2.0 are read", name(needed))));
+        return Err(LoadRefusal::at("asset.minVersion", format!("is {}; files of glTF 2.0 are read", name(needed))));
     }
     Ok(())
 }

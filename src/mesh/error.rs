@@ -26,12 +26,12 @@ impl MeshError {
 
 /// A refusal before the file's name is known: place and reason.
 #[derive(Debug)]
-pub(super) struct Refusal {
+pub(super) struct LoadRefusal {
     place: String,
     reason: String,
 }
 
-impl Refusal {
+impl LoadRefusal {
     /// A refusal of the thing at `place`.
     pub fn at(place: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { place: place.into(), reason: reason.into() }

@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
-use super::error::Refusal;
+use super::error::LoadRefusal;
 use super::limits::MAX_NODES;
-use super::schema::{Node, Root};
+use super::schema::{GltfNode, Root};
 
 /// The nodes of a document, at rest: animations are not played.
 pub(super) struct Forest {
@@ -15,9 +15,9 @@ pub(super) struct Forest {
 }
 
 /// Walks the hierarchy. The default scene is shown; without one the first; without any, every tree.
-pub(super) fn walk(root: &Root) -> Result<Forest, Refusal> {
+pub(super) fn walk(root: &Root) -> Result<Forest, LoadRefusal> {
     if root.nodes.len() > MAX_NODES {
-        return Err(Refusal::at("nodes", format!("has {} entries, more than {MAX_NODES}", root.nodes.len())));
+        return Err(LoadRefusal::at("nodes", format!("has {} entries, more than {MAX_NODES}", root.nodes.len())));
     }
     let (parents, order) = check_forest(root)?;
     // Joints of skins may stand outside of the scene, so every node has a place.
@@ -29,7 +29,7 @@ pub(super) fn walk(root: &Root) -> Result<Forest, Refusal> {
     }
     let shown = shown_nodes(root, &parents)?;
     match shown.iter().find(|index| !world_from_node[**index].is_finite()) {
-        Some(index) => Err(Refusal::at(format!("nodes[{index}]"), "stands infinitely far away")),
+        Some(index) => Err(LoadRefusal::at(format!("nodes[{index}]"), "stands infinitely far away")),
         None => Ok(Forest { world_from_node, shown }),
     }
 }
@@ -39,7 +39,7 @@ pub(super) fn shown_scene(root: &Root) -> usize {
     root.scene.map_or(0, |scene| scene.index())
 }
 
-fn shown_nodes(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Refusal> {
+fn shown_nodes(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, LoadRefusal> {
     let scene = shown_scene(root);
     let tops: Vec<usize> = match root.scenes.get(scene) {
         Some(scene) => scene.nodes.iter().map(|n| n.index()).collect(),
@@ -50,7 +50,7 @@ fn shown_nodes(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Ref
     let mut open: Vec<usize> = tops.iter().rev().copied().collect();
     while let Some(index) = open.pop() {
         if std::mem::replace(&mut seen[index], true) {
-            return Err(Refusal::at(format!("scenes[{scene}].nodes"), format!("shows node {index} twice")));
+            return Err(LoadRefusal::at(format!("scenes[{scene}].nodes"), format!("shows node {index} twice")));
         }
         let node = &root.nodes[index];
         if node.mesh.is_some() {
@@ -63,13 +63,13 @@ fn shown_nodes(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Ref
 
 /// The parent of each node, and all nodes with parents before children. Refuses nodes with two parents and nodes
 /// that are their own ancestors, so that a walk from the top ends.
-fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), Refusal> {
+fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), LoadRefusal> {
     let mut parents = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
         for (c, child) in node.children.iter().enumerate() {
             if let Some(other) = parents[child.index()].replace(index) {
                 let reason = format!("is node {}, which is a child of node {other} already", child.0);
-                return Err(Refusal::at(format!("nodes[{index}].children[{c}]"), reason));
+                return Err(LoadRefusal::at(format!("nodes[{index}].children[{c}]"), reason));
             }
         }
     }
@@ -84,7 +84,7 @@ fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), Refusal
         next += 1;
     }
     match reached.iter().position(|r| !r) {
-        Some(index) => Err(Refusal::at(format!("nodes[{index}]"), "is its own ancestor, or below one that is")),
+        Some(index) => Err(LoadRefusal::at(format!("nodes[{index}]"), "is its own ancestor, or below one that is")),
         None => Ok((parents, order)),
     }
 }
@@ -92,8 +92,8 @@ fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), Refusal
 /// Exporters that compute in f32 leave so much in the last row of a matrix that should be 0 0 0 1.
 const ROUNDING: f64 = 1e-5;
 
-fn local_transform(node: &Node, place: &str) -> Result<DAffine3, Refusal> {
-    let refuse = |field: &str, reason: &str| Err(Refusal::at(format!("{place}.{field}"), reason));
+fn local_transform(node: &GltfNode, place: &str) -> Result<DAffine3, LoadRefusal> {
+    let refuse = |field: &str, reason: &str| Err(LoadRefusal::at(format!("{place}.{field}"), reason));
     if let Some(m) = &node.matrix {
         if m.iter().any(|v| !v.is_finite()) {
             return refuse("matrix", "holds a number that is not finite");

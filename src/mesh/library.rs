@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::limits::MAX_TEXTURE_BYTES;
 use super::load::parse_within;
-use super::resolve::{Reader, Stamp, inside, read_file};
+use super::resolve::{MeshFileStamp, Reader, inside, read_file};
 use super::{MeshError, TriangleMesh};
 
 /// A mesh, or why there is none.
@@ -25,7 +25,7 @@ pub struct MeshLibrary {
 struct Loaded {
     result: MeshResult,
     /// The files that it was made from, as they were.
-    files: Vec<Stamp>,
+    files: Vec<MeshFileStamp>,
 }
 
 /// A mesh of a library with the files that it was made from: enough to read it again on another thread.
@@ -33,7 +33,7 @@ struct Loaded {
 pub struct MeshSource {
     folder: Option<PathBuf>,
     path: String,
-    files: Vec<Stamp>,
+    files: Vec<MeshFileStamp>,
     /// Bytes that its textures may take.
     texture_budget: u64,
 }
@@ -47,7 +47,7 @@ pub struct Reread {
 
 /// What came of a mesh that was read again.
 #[derive(Clone, Debug)]
-pub enum Replaced {
+pub enum ReloadOutcome {
     /// It stands for the old one.
     Fresh(Arc<TriangleMesh>),
     /// It cannot be used, and the old one stays.
@@ -105,7 +105,7 @@ impl MeshLibrary {
         sources.collect()
     }
 
-    fn source(&self, path: String, files: Vec<Stamp>) -> MeshSource {
+    fn source(&self, path: String, files: Vec<MeshFileStamp>) -> MeshSource {
         let others = self.loaded.iter().filter(|(other, _)| **other != path);
         let taken: u64 =
             others.filter_map(|(_, loaded)| loaded.result.as_ref().ok()).map(|mesh| texture_bytes(mesh)).sum();
@@ -114,25 +114,25 @@ impl MeshLibrary {
     }
 
     /// Puts a mesh that was read again in the place of the old one, unless it is broken and the old one is not.
-    pub fn replace(&mut self, fresh: Reread) -> Replaced {
+    pub fn replace(&mut self, fresh: Reread) -> ReloadOutcome {
         let Reread { source, result } = fresh;
         let Some(loaded) = self.loaded.get_mut(&source.path).filter(|_| self.folder == source.folder) else {
-            return Replaced::Unwanted;
+            return ReloadOutcome::Unwanted;
         };
         self.revision += 1;
         // Of the broken one, too, so that it is not read again until it changes again.
         loaded.files = source.files;
         match (&loaded.result, &result) {
-            (Ok(_), Err(error)) => Replaced::Kept(error.clone()),
+            (Ok(_), Err(error)) => ReloadOutcome::Kept(error.clone()),
             (Err(_), Err(error)) => {
                 let error = error.clone();
                 loaded.result = result;
-                Replaced::Broken(error)
+                ReloadOutcome::Broken(error)
             }
             (_, Ok(mesh)) => {
                 let mesh = mesh.clone();
                 loaded.result = result;
-                Replaced::Fresh(mesh)
+                ReloadOutcome::Fresh(mesh)
             }
         }
     }
@@ -145,12 +145,12 @@ impl MeshSource {
     }
 
     /// The files as they are now; the same as before where nothing has changed.
-    pub(super) fn look(&self) -> Vec<Stamp> {
-        self.files.iter().map(Stamp::again).collect()
+    pub(super) fn look(&self) -> Vec<MeshFileStamp> {
+        self.files.iter().map(MeshFileStamp::again).collect()
     }
 
     /// The files as they were when they were read.
-    pub(super) fn files(&self) -> &[Stamp] {
+    pub(super) fn files(&self) -> &[MeshFileStamp] {
         &self.files
     }
 
@@ -162,13 +162,13 @@ impl MeshSource {
         Reread { source: self, result: result.map(Arc::new).map_err(Arc::new) }
     }
 
-    fn read_into(&self, files: &mut Vec<Stamp>) -> Result<TriangleMesh, MeshError> {
+    fn read_into(&self, files: &mut Vec<MeshFileStamp>) -> Result<TriangleMesh, MeshError> {
         let refuse = |reason: String| MeshError::new(&self.path, "", &reason);
         let Some(folder) = &self.folder else {
             return Err(refuse("the scene has no folder to look in until it is saved".into()));
         };
         // Before it is read: what changes meanwhile is seen later.
-        files.push(Stamp::of(&folder.join(&self.path)));
+        files.push(MeshFileStamp::of(&folder.join(&self.path)));
         let file = inside(folder, &self.path).map_err(refuse)?;
         let bytes = read_file(&file).map_err(refuse)?;
         // What the glTF names must lie beside it or below, as for any glTF.

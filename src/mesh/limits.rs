@@ -28,7 +28,7 @@ pub const MAX_ENTRIES_READ: u64 = 4 * (MAX_ACCESSOR_COUNT as u64);
 pub const MAX_ATTRIBUTES: usize = 4 << 20;
 /// Most joints of a skin.
 pub const MAX_JOINTS: usize = 16_384;
-/// Farthest a coordinate may lie from the origin, in metres.
+/// Farthest a coordinate may lie from the origin, in meters.
 pub const MAX_COORDINATE: f64 = 1e9;
 /// Most warnings about one file; the last says how many there would be more.
 pub const MAX_WARNINGS: usize = 24;

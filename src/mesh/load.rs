@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use super::accessor::Source;
-use super::document::{Document, read_document};
-use super::error::Refusal;
+use super::document::{GltfDocument, read_document};
+use super::error::LoadRefusal;
 use super::forest::walk;
 use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES, MAX_TEXTURE_BYTES};
 use super::pose::{Pose, morph_weights};
@@ -21,7 +21,7 @@ use super::{MeshError, TriangleMesh};
 /// # Errors
 /// File, place and reason, for everything that is missing, broken, unsafe or too large.
 pub fn load(path: &Path) -> Result<TriangleMesh, MeshError> {
-    let bytes = read_file(path).map_err(|reason| Refusal::at("", reason).of(path))?;
+    let bytes = read_file(path).map_err(|reason| LoadRefusal::at("", reason).of(path))?;
     parse(&bytes, path, Some(path.parent().unwrap_or(Path::new("."))))
 }
 
@@ -43,7 +43,7 @@ pub(super) fn parse_within(
 ) -> Result<TriangleMesh, MeshError> {
     let read = || {
         if bytes.len() as u64 > MAX_FILE_BYTES {
-            return Err(Refusal::at("", format!("has more than {MAX_FILE_BYTES} bytes")));
+            return Err(LoadRefusal::at("", format!("has more than {MAX_FILE_BYTES} bytes")));
         }
         let document = read_document(bytes)?;
         let buffers = read_buffers(&document, reader)?;
@@ -52,11 +52,11 @@ pub(super) fn parse_within(
     };
     // No way into a panic is known, but image decoders and this code meet files that nobody has seen.
     catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(Refusal::at("", "is broken in a way that cannot be named")))
+        .unwrap_or_else(|_| Err(LoadRefusal::at("", "is broken in a way that cannot be named")))
         .map_err(|refusal| refusal.of(file))
 }
 
-fn read_buffers<'a>(document: &Document<'a>, reader: &Reader<'_>) -> Result<Vec<Cow<'a, [u8]>>, Refusal> {
+fn read_buffers<'a>(document: &GltfDocument<'a>, reader: &Reader<'_>) -> Result<Vec<Cow<'a, [u8]>>, LoadRefusal> {
     let mut total = 0;
     let mut buffers = Vec::with_capacity(document.root.buffers.len());
     for (i, buffer) in document.root.buffers.iter().enumerate() {
@@ -66,10 +66,10 @@ fn read_buffers<'a>(document: &Document<'a>, reader: &Reader<'_>) -> Result<Vec<
             (None, Some(chunk)) if i == 0 => Ok(Cow::Borrowed(chunk)),
             (None, _) => Err("has no data".to_owned()),
         };
-        let mut bytes = bytes.map_err(|reason| Refusal::at(format!("{place}.uri"), reason))?;
+        let mut bytes = bytes.map_err(|reason| LoadRefusal::at(format!("{place}.uri"), reason))?;
         if (bytes.len() as u64) < buffer.byte_length.0 {
             let reason = format!("says {} bytes, but has {}", buffer.byte_length.0, bytes.len());
-            return Err(Refusal::at(format!("{place}.byteLength"), reason));
+            return Err(LoadRefusal::at(format!("{place}.byteLength"), reason));
         }
         // What lies behind the stated length is padding, and not to be read.
         match &mut bytes {
@@ -78,14 +78,14 @@ fn read_buffers<'a>(document: &Document<'a>, reader: &Reader<'_>) -> Result<Vec<
         }
         total += bytes.len() as u64;
         if total > MAX_BUFFER_BYTES {
-            return Err(Refusal::at(place, format!("makes the buffers larger than {MAX_BUFFER_BYTES} bytes")));
+            return Err(LoadRefusal::at(place, format!("makes the buffers larger than {MAX_BUFFER_BYTES} bytes")));
         }
         buffers.push(bytes);
     }
     Ok(buffers)
 }
 
-fn write_out<'a>(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Result<TriangleMesh, Refusal> {
+fn write_out<'a>(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Result<TriangleMesh, LoadRefusal> {
     let root = source.root;
     let forest = walk(root)?;
     let mut writer = Writer::new(source, surfaces);
@@ -98,5 +98,5 @@ fn write_out<'a>(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Result<Trian
         writer.add(mesh, &pose, morph_weights(root, node), &format!("meshes[{number}]"))?;
     }
     let mesh = writer.finish();
-    if mesh.indices.is_empty() { Err(Refusal::at("", "shows no triangles")) } else { Ok(mesh) }
+    if mesh.indices.is_empty() { Err(LoadRefusal::at("", "shows no triangles")) } else { Ok(mesh) }
 }

@@ -30,9 +30,9 @@ mod watch;
 
 pub use bvh::{Bvh, BvhNode};
 pub use error::MeshError;
-pub use library::{MeshLibrary, MeshResult, MeshSource, Replaced, Reread};
+pub use library::{MeshLibrary, MeshResult, MeshSource, ReloadOutcome, Reread};
 pub use load::{load, parse};
 pub use surface::Surface;
 pub use texture::{Sampler, Texture, Wrap};
-pub use triangle_mesh::{MeshHit, Part, TriangleMesh};
+pub use triangle_mesh::{MeshHit, MeshPart, TriangleMesh};
 pub use watch::Watcher;

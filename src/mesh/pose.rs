@@ -4,9 +4,9 @@
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 use super::accessor::Source;
-use super::error::Refusal;
+use super::error::LoadRefusal;
 use super::limits::MAX_JOINTS;
-use super::schema::{Node, Primitive, Root, Skin};
+use super::schema::{GltfNode, Primitive, Root, Skin};
 
 /// What places the vertices of a mesh in the file's space.
 pub(super) enum Pose {
@@ -23,11 +23,11 @@ pub(super) enum Pose {
 
 impl Pose {
     /// Of the mesh at a node.
-    pub fn of(source: &Source<'_>, world_from_node: &[DAffine3], node: usize) -> Result<Self, Refusal> {
+    pub fn of(source: &Source<'_>, world_from_node: &[DAffine3], node: usize) -> Result<Self, LoadRefusal> {
         let root: &Root = source.root;
         let Some(skin) = root.nodes[node].skin else { return Ok(Self::Rigid(world_from_node[node])) };
         let place = format!("skins[{}]", skin.0);
-        let Some(entry) = root.skins.get(skin.index()) else { return Err(Refusal::at(place, "is missing")) };
+        let Some(entry) = root.skins.get(skin.index()) else { return Err(LoadRefusal::at(place, "is missing")) };
         let joints = joints(source, world_from_node, entry, &place)?;
         Ok(Self::Skinned { joints, world_from_node: world_from_node[node] })
     }
@@ -38,10 +38,10 @@ fn joints(
     world_from_node: &[DAffine3],
     skin: &Skin,
     place: &str,
-) -> Result<Vec<DAffine3>, Refusal> {
+) -> Result<Vec<DAffine3>, LoadRefusal> {
     if skin.joints.is_empty() || skin.joints.len() > MAX_JOINTS {
         let count = skin.joints.len();
-        return Err(Refusal::at(
+        return Err(LoadRefusal::at(
             format!("{place}.joints"),
             format!("has {count} entries; 1 to {MAX_JOINTS} are allowed"),
         ));
@@ -54,7 +54,7 @@ fn joints(
     let inverse = source.matrices(accessor, &user)?;
     if inverse.len() < skin.joints.len() {
         let reason = format!("has {} entries for {} joints", inverse.len(), skin.joints.len());
-        return Err(Refusal::at(user, reason));
+        return Err(LoadRefusal::at(user, reason));
     }
     let bound = places.zip(&inverse).map(|(place, m)| {
         let m = DMat4::from_cols_array(&m.map(f64::from));
@@ -63,7 +63,7 @@ fn joints(
     });
     let bound: Vec<_> = bound.collect();
     match bound.iter().position(|m| !m.is_finite()) {
-        Some(joint) => Err(Refusal::at(user, format!("is not finite for joint {joint}"))),
+        Some(joint) => Err(LoadRefusal::at(user, format!("is not finite for joint {joint}"))),
         None => Ok(bound),
     }
 }
@@ -91,13 +91,13 @@ impl<'a> Vertices<'a> {
         pose: &'a Pose,
         morph: &[f64],
         place: &str,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, LoadRefusal> {
         let at = |name: &str| format!("{place}.attributes.{name}");
         let Some(accessor) = primitive.attributes.get("POSITION") else {
-            return Err(Refusal::at(at("POSITION"), "is missing"));
+            return Err(LoadRefusal::at(at("POSITION"), "is missing"));
         };
         if source.is_zero(*accessor) {
-            return Err(Refusal::at(at("POSITION"), "lacks data: its accessor names no buffer view"));
+            return Err(LoadRefusal::at(at("POSITION"), "lacks data: its accessor names no buffer view"));
         }
         let positions = source.floats::<3>(*accessor, 3, &at("POSITION"))?;
         let count = positions.len();
@@ -107,7 +107,7 @@ impl<'a> Vertices<'a> {
                 same_count(source.count(*accessor), count, &at("NORMAL"))?;
                 let normals = source.floats::<3>(*accessor, 3, &at("NORMAL"))?;
                 if let Some(i) = normals.iter().position(|n| n.iter().any(|c| !c.is_finite())) {
-                    return Err(Refusal::at(at("NORMAL"), format!("is not finite at vertex {i}")));
+                    return Err(LoadRefusal::at(at("NORMAL"), format!("is not finite at vertex {i}")));
                 }
                 Some(normals)
             }
@@ -121,7 +121,13 @@ impl<'a> Vertices<'a> {
     }
 
     /// Adds the morph targets. Those whose weight is 0 are not even read.
-    fn morph(&mut self, source: &Source<'_>, primitive: &Primitive, morph: &[f64], place: &str) -> Result<(), Refusal> {
+    fn morph(
+        &mut self,
+        source: &Source<'_>,
+        primitive: &Primitive,
+        morph: &[f64],
+        place: &str,
+    ) -> Result<(), LoadRefusal> {
         for (t, (target, weight)) in primitive.targets.iter().zip(morph).enumerate() {
             for (name, values) in [("POSITION", Some(&mut self.positions)), ("NORMAL", self.normals.as_mut())] {
                 let (Some(accessor), Some(values)) = (target.get(name), values) else { continue };
@@ -134,7 +140,7 @@ impl<'a> Vertices<'a> {
                     *value = [0, 1, 2].map(|c| (f64::from(value[c]) + weight * f64::from(offset[c])) as f32);
                 }
                 if let Some(i) = values.iter().position(|v| v.iter().any(|c| !c.is_finite())) {
-                    return Err(Refusal::at(user, format!("is not finite at vertex {i}")));
+                    return Err(LoadRefusal::at(user, format!("is not finite at vertex {i}")));
                 }
             }
         }
@@ -147,7 +153,7 @@ impl<'a> Vertices<'a> {
         primitive: &Primitive,
         joint_count: usize,
         place: &str,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), LoadRefusal> {
         let count = self.positions.len();
         for set in 0.. {
             let names = [format!("JOINTS_{set}"), format!("WEIGHTS_{set}")];
@@ -162,12 +168,12 @@ impl<'a> Vertices<'a> {
             let (joints, weights) = (read(*joints, &users[0])?, read(*weights, &users[1])?);
             for (i, (joints, weights)) in joints.iter().zip(&weights).enumerate() {
                 if weights.iter().any(|w| !w.is_finite() || *w < 0.0) {
-                    return Err(Refusal::at(&users[1], format!("is no share at vertex {i}")));
+                    return Err(LoadRefusal::at(&users[1], format!("is no share at vertex {i}")));
                 }
                 let names_joint = |joint: f32| joint >= 0.0 && joint.fract() == 0.0 && (joint as usize) < joint_count;
                 // Where the weight is 0 the joint does not matter, and many exporters leave anything there.
                 if joints.iter().zip(weights).any(|(joint, weight)| *weight > 0.0 && !names_joint(*joint)) {
-                    return Err(Refusal::at(&users[0], format!("names a joint that is missing at vertex {i}")));
+                    return Err(LoadRefusal::at(&users[0], format!("names a joint that is missing at vertex {i}")));
                 }
             }
             self.influences.push(Influences { joints, weights });
@@ -193,7 +199,7 @@ impl<'a> Vertices<'a> {
                 }
             }
         }
-        // Weights should sum to 1; what quantization leaves of that would scale the vertex towards the origin.
+        // Weights should sum to 1; what quantization leaves of that would scale the vertex toward the origin.
         if total > 0.0 {
             DAffine3 { matrix3: matrix3 * (1.0 / total), translation: translation / total }
         } else {
@@ -220,17 +226,17 @@ impl<'a> Vertices<'a> {
 }
 
 /// The weights of the morph targets of the mesh at a node, at rest.
-pub(super) fn morph_weights<'a>(root: &'a Root, node: &'a Node) -> &'a [f64] {
+pub(super) fn morph_weights<'a>(root: &'a Root, node: &'a GltfNode) -> &'a [f64] {
     let of_mesh = || node.mesh.and_then(|mesh| root.meshes.get(mesh.index())?.weights.as_deref());
     node.weights.as_deref().or_else(of_mesh).unwrap_or(&[])
 }
 
 /// Refuses an attribute whose entries are not as many as the vertices.
-pub(super) fn same_count(count: u64, vertices: usize, place: &str) -> Result<(), Refusal> {
+pub(super) fn same_count(count: u64, vertices: usize, place: &str) -> Result<(), LoadRefusal> {
     if count == vertices as u64 {
         return Ok(());
     }
-    Err(Refusal::at(place, format!("has {count} entries for {vertices} vertices")))
+    Err(LoadRefusal::at(place, format!("has {count} entries for {vertices} vertices")))
 }
 
 /// What carries normals along with `m`: the inverse transpose times the determinant's magnitude, which

@@ -9,13 +9,13 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::accessor::Source;
-use super::error::Refusal;
+use super::error::LoadRefusal;
 use super::limits::{MAX_ATTRIBUTES, MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use super::pose::{Pose, Vertices, same_count};
 use super::remarks::Remarks;
-use super::schema::{Mesh, Primitive, Whole};
+use super::schema::{GltfMesh, Primitive, Whole};
 use super::surface::{Surface, Surfaces};
-use super::{Part, TriangleMesh};
+use super::{MeshPart, TriangleMesh};
 use crate::geometry::Aabb;
 
 /// Writes meshes into one, one after the other.
@@ -77,14 +77,14 @@ impl<'a> Writer<'a> {
     }
 
     /// Adds a mesh as it stands in the file's space. Points and lines have no surface and are left out.
-    pub fn add(&mut self, mesh: &Mesh, pose: &Pose, morph: &[f64], place: &str) -> Result<(), Refusal> {
+    pub fn add(&mut self, mesh: &GltfMesh, pose: &Pose, morph: &[f64], place: &str) -> Result<(), LoadRefusal> {
         for group in self.groups(mesh, place)? {
             self.add_group(&group, pose, morph)?;
         }
         Ok(())
     }
 
-    fn groups<'p>(&mut self, mesh: &'p Mesh, place: &str) -> Result<Vec<Group<'p>>, Refusal> {
+    fn groups<'p>(&mut self, mesh: &'p GltfMesh, place: &str) -> Result<Vec<Group<'p>>, LoadRefusal> {
         let mut groups: Vec<Group<'_>> = Vec::new();
         let mut known: HashMap<Key, usize> = HashMap::new();
         let mut found = 0;
@@ -92,7 +92,7 @@ impl<'a> Writer<'a> {
             let of_targets: usize = primitive.targets.iter().map(|target| 1 + target.len()).sum();
             self.attributes += 1 + primitive.attributes.len() + of_targets;
             if self.attributes > MAX_ATTRIBUTES {
-                return Err(Refusal::at(place, format!("makes more than {MAX_ATTRIBUTES} attributes to look at")));
+                return Err(LoadRefusal::at(place, format!("makes more than {MAX_ATTRIBUTES} attributes to look at")));
             }
             let mode = primitive.mode.map_or(TRIANGLES, |mode| mode.0);
             if !matches!(mode, TRIANGLES | STRIP | FAN) {
@@ -118,12 +118,12 @@ impl<'a> Writer<'a> {
     }
 
     /// Corners of each triangle, all of them among the vertices; those with a repeated corner are left out.
-    fn triangles(&self, primitive: &Primitive, mode: u64, place: &str) -> Result<Vec<[u32; 3]>, Refusal> {
+    fn triangles(&self, primitive: &Primitive, mode: u64, place: &str) -> Result<Vec<[u32; 3]>, LoadRefusal> {
         let user = format!("{place}.indices");
         let vertices = primitive.attributes.get("POSITION").map_or(0, |accessor| self.source.count(*accessor));
         if vertices == 0 || vertices > MAX_VERTICES as u64 {
             let reason = format!("has {vertices} entries; 1 to {MAX_VERTICES} are allowed");
-            return Err(Refusal::at(format!("{place}.attributes.POSITION"), reason));
+            return Err(LoadRefusal::at(format!("{place}.attributes.POSITION"), reason));
         }
         let corners = match primitive.indices {
             Some(accessor) => self.source.indices(accessor, &user)?,
@@ -134,10 +134,10 @@ impl<'a> Writer<'a> {
         };
         if let Some(i) = corners.iter().position(|c| u64::from(*c) >= vertices) {
             let reason = format!("names vertex {} at entry {i}, but there are {vertices}", corners[i]);
-            return Err(Refusal::at(user, reason));
+            return Err(LoadRefusal::at(user, reason));
         }
         if corners.len() < 3 || (mode == TRIANGLES && corners.len() % 3 != 0) {
-            return Err(Refusal::at(user, format!("has {} entries, which does not make triangles", corners.len())));
+            return Err(LoadRefusal::at(user, format!("has {} entries, which does not make triangles", corners.len())));
         }
         let count = if mode == TRIANGLES { corners.len() / 3 } else { corners.len() - 2 };
         self.reserve(0, count, place)?;
@@ -152,7 +152,7 @@ impl<'a> Writer<'a> {
         Ok(triangles)
     }
 
-    fn add_group(&mut self, group: &Group<'_>, pose: &Pose, morph: &[f64]) -> Result<(), Refusal> {
+    fn add_group(&mut self, group: &Group<'_>, pose: &Pose, morph: &[f64]) -> Result<(), LoadRefusal> {
         let place = &group.place;
         let vertices = Vertices::read(self.source, group.primitive, pose, morph, place)?;
         let colors = self.colors(group.primitive, vertices.positions.len(), place)?;
@@ -228,29 +228,34 @@ impl<'a> Writer<'a> {
         match self.mesh.parts.last_mut() {
             _ if end == first_index => {}
             Some(last) if last.surface == surface && last.origin == origin => last.indices.end = end,
-            _ => self.mesh.parts.push(Part { indices: first_index..end, origin, surface }),
+            _ => self.mesh.parts.push(MeshPart { indices: first_index..end, origin, surface }),
         }
     }
 
     /// Refuses what would make the mesh too large.
-    fn reserve(&self, vertices: usize, triangles: usize, place: &str) -> Result<(), Refusal> {
+    fn reserve(&self, vertices: usize, triangles: usize, place: &str) -> Result<(), LoadRefusal> {
         if self.mesh.positions.len() + vertices > MAX_VERTICES {
-            return Err(Refusal::at(place, format!("makes the mesh larger than {MAX_VERTICES} vertices")));
+            return Err(LoadRefusal::at(place, format!("makes the mesh larger than {MAX_VERTICES} vertices")));
         }
         if self.mesh.triangle_count() + triangles > MAX_TRIANGLES {
-            return Err(Refusal::at(place, format!("makes the mesh larger than {MAX_TRIANGLES} triangles")));
+            return Err(LoadRefusal::at(place, format!("makes the mesh larger than {MAX_TRIANGLES} triangles")));
         }
         Ok(())
     }
 
-    fn colors(&self, primitive: &Primitive, vertices: usize, place: &str) -> Result<Option<Vec<[f32; 4]>>, Refusal> {
+    fn colors(
+        &self,
+        primitive: &Primitive,
+        vertices: usize,
+        place: &str,
+    ) -> Result<Option<Vec<[f32; 4]>>, LoadRefusal> {
         let Some(accessor) = primitive.attributes.get("COLOR_0") else { return Ok(None) };
         let place = format!("{place}.attributes.COLOR_0");
         same_count(self.source.count(*accessor), vertices, &place)?;
         let mut colors = self.source.floats::<4>(*accessor, 3, &place)?;
         for (i, color) in colors.iter_mut().enumerate() {
             if color.iter().any(|c| !c.is_finite()) {
-                return Err(Refusal::at(place, format!("is not finite at vertex {i}")));
+                return Err(LoadRefusal::at(place, format!("is not finite at vertex {i}")));
             }
             *color = color.map(|c| c.clamp(0.0, 1.0));
         }
@@ -258,7 +263,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The texture coordinates, where a texture needs them.
-    fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, Refusal> {
+    fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, LoadRefusal> {
         if group.runs.iter().all(|run| run.surface.texture.is_none()) {
             return Ok(None);
         }
@@ -268,7 +273,7 @@ impl<'a> Writer<'a> {
         same_count(self.source.count(*accessor), vertices, &place)?;
         let uvs = self.source.floats::<2>(*accessor, 2, &place)?;
         match uvs.iter().position(|uv| uv.iter().any(|c| !c.is_finite())) {
-            Some(i) => Err(Refusal::at(place, format!("is not finite at vertex {i}"))),
+            Some(i) => Err(LoadRefusal::at(place, format!("is not finite at vertex {i}"))),
             None => Ok(Some(uvs)),
         }
     }
@@ -318,13 +323,13 @@ impl Used {
 }
 
 /// The box around the vertices that are used.
-fn bounds(vertices: &Vertices<'_>, used: &Used, place: &str) -> Result<Aabb, Refusal> {
+fn bounds(vertices: &Vertices<'_>, used: &Used, place: &str) -> Result<Aabb, LoadRefusal> {
     let mut bounds = Aabb::EMPTY;
     for v in &used.list {
         let world = vertices.world(*v as usize);
         if !world.is_finite() || world.abs().max_element() > MAX_COORDINATE {
             let place = format!("{place}.attributes.POSITION");
-            return Err(Refusal::at(place, format!("puts vertex {v} at {world}, too far away")));
+            return Err(LoadRefusal::at(place, format!("puts vertex {v} at {world}, too far away")));
         }
         bounds = bounds.union(&Aabb { min: world, max: world });
     }

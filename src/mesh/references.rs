@@ -1,11 +1,11 @@
 //! Whether everything that a document names is there, so that no later step has to ask.
 
-use super::accessor::{Component, Shape};
-use super::error::Refusal;
+use super::accessor::{ComponentType, ElementShape};
+use super::error::LoadRefusal;
 use super::schema::{Accessor, Primitive, Root, Whole};
 
 /// Refuses the first reference that leads nowhere, and codes that glTF does not know.
-pub(super) fn check_references(root: &Root) -> Result<(), Refusal> {
+pub(super) fn check_references(root: &Root) -> Result<(), LoadRefusal> {
     for (i, accessor) in root.accessors.iter().enumerate() {
         check_accessor(root, accessor, &format!("accessors[{i}]"))?;
     }
@@ -41,7 +41,7 @@ pub(super) fn check_references(root: &Root) -> Result<(), Refusal> {
     check_surfaces(root)
 }
 
-fn check_surfaces(root: &Root) -> Result<(), Refusal> {
+fn check_surfaces(root: &Root) -> Result<(), LoadRefusal> {
     for (i, image) in root.images.iter().enumerate() {
         check("bufferView", image.buffer_view, root.buffer_views.len(), || format!("images[{i}].bufferView"))?;
     }
@@ -62,30 +62,30 @@ fn check_surfaces(root: &Root) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn check_accessor(root: &Root, accessor: &Accessor, place: &str) -> Result<(), Refusal> {
+fn check_accessor(root: &Root, accessor: &Accessor, place: &str) -> Result<(), LoadRefusal> {
     let views = root.buffer_views.len();
     check("bufferView", accessor.buffer_view, views, || format!("{place}.bufferView"))?;
-    let wrong = |field: &str| Err(Refusal::at(format!("{place}.{field}"), "has a value that glTF does not allow"));
-    if Component::of(accessor.component_type).is_none() {
+    let wrong = |field: &str| Err(LoadRefusal::at(format!("{place}.{field}"), "has a value that glTF does not allow"));
+    if ComponentType::of(accessor.component_type).is_none() {
         return wrong("componentType");
     }
-    if Shape::of(&accessor.kind).is_none() {
+    if ElementShape::of(&accessor.kind).is_none() {
         return wrong("type");
     }
     if let Some(sparse) = &accessor.sparse {
         check("bufferView", Some(sparse.indices.buffer_view), views, || format!("{place}.sparse.indices.bufferView"))?;
         check("bufferView", Some(sparse.values.buffer_view), views, || format!("{place}.sparse.values.bufferView"))?;
-        if !Component::of(sparse.indices.component_type).is_some_and(Component::is_index) {
+        if !ComponentType::of(sparse.indices.component_type).is_some_and(ComponentType::is_index) {
             return wrong("sparse.indices.componentType");
         }
     }
     Ok(())
 }
 
-fn check_primitive(root: &Root, primitive: &Primitive, place: &str) -> Result<(), Refusal> {
+fn check_primitive(root: &Root, primitive: &Primitive, place: &str) -> Result<(), LoadRefusal> {
     let accessors = root.accessors.len();
     if !primitive.attributes.contains_key("POSITION") {
-        return Err(Refusal::at(format!("{place}.attributes.POSITION"), "is missing"));
+        return Err(LoadRefusal::at(format!("{place}.attributes.POSITION"), "is missing"));
     }
     for (name, accessor) in &primitive.attributes {
         check("accessor", Some(*accessor), accessors, || format!("{place}.attributes.{name}"))?;
@@ -98,15 +98,15 @@ fn check_primitive(root: &Root, primitive: &Primitive, place: &str) -> Result<()
     check("accessor", primitive.indices, accessors, || format!("{place}.indices"))?;
     check("material", primitive.material, root.materials.len(), || format!("{place}.material"))?;
     if primitive.mode.is_some_and(|mode| mode.0 > 6) {
-        return Err(Refusal::at(format!("{place}.mode"), "has a value that glTF does not allow"));
+        return Err(LoadRefusal::at(format!("{place}.mode"), "has a value that glTF does not allow"));
     }
     Ok(())
 }
 
-fn check(kind: &str, index: Option<Whole>, count: usize, place: impl Fn() -> String) -> Result<(), Refusal> {
+fn check(kind: &str, index: Option<Whole>, count: usize, place: impl Fn() -> String) -> Result<(), LoadRefusal> {
     match index {
         Some(index) if index.index() >= count => {
-            Err(Refusal::at(place(), format!("names {kind} {}, which is missing", index.0)))
+            Err(LoadRefusal::at(place(), format!("names {kind} {}, which is missing", index.0)))
         }
         _ => Ok(()),
     }

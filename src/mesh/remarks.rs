@@ -6,7 +6,7 @@ use super::document::SUPPORTED;
 use super::error::{LONGEST_TEXT, name, shown};
 use super::forest::shown_scene;
 use super::limits::MAX_WARNINGS;
-use super::schema::{Material, Root};
+use super::schema::{GltfMaterial, Root};
 
 /// Extensions that change nothing that could be seen, or whose plain data stand beside.
 const WITHOUT_EFFECT: &[&str] = &[
@@ -72,7 +72,7 @@ impl Remarks {
     }
 
     /// Says what of a material that is used is not drawn.
-    pub fn material(&mut self, index: usize, material: &Material) {
+    pub fn material(&mut self, index: usize, material: &GltfMaterial) {
         let pbr = &material.pbr_metallic_roughness;
         let emits = material.emissive_factor.is_some_and(|factor| factor.iter().any(|c| *c > 0.0));
         let things = [
@@ -117,7 +117,7 @@ impl Remarks {
 /// What the lack of an extension does to the picture; `None`: nothing.
 fn effect(extension: &str) -> Option<&'static str> {
     Some(match extension {
-        "KHR_materials_pbrSpecularGlossiness" => "only its diffuse colour is drawn",
+        "KHR_materials_pbrSpecularGlossiness" => "only its diffuse color is drawn",
         "KHR_lights_punctual" => "the lights of the file are not used",
         "KHR_materials_variants" => "only the first variant is drawn",
         "EXT_mesh_gpu_instancing" => "not supported: each instanced mesh is drawn once",

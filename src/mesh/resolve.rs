@@ -11,13 +11,13 @@ use super::limits::MAX_FILE_BYTES;
 
 /// A file as it was at some moment: what changes when it is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Stamp {
+pub(super) struct MeshFileStamp {
     path: PathBuf,
     /// When it was written and how long it was; `None` where there was no file.
     state: Option<(Option<SystemTime>, u64)>,
 }
 
-impl Stamp {
+impl MeshFileStamp {
     /// Of the file as it is now.
     pub fn of(path: &Path) -> Self {
         let state = path.metadata().ok().map(|metadata| (metadata.modified().ok(), metadata.len()));
@@ -35,7 +35,7 @@ impl Stamp {
 pub(super) struct Reader<'a> {
     /// The folder of the glTF file; `None`: it stands in none, and can name no other file.
     folder: Option<&'a Path>,
-    files: RefCell<Vec<Stamp>>,
+    files: RefCell<Vec<MeshFileStamp>>,
 }
 
 impl<'a> Reader<'a> {
@@ -44,7 +44,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The files that were asked for.
-    pub fn into_files(self) -> Vec<Stamp> {
+    pub fn into_files(self) -> Vec<MeshFileStamp> {
         self.files.into_inner()
     }
 
@@ -63,8 +63,9 @@ impl<'a> Reader<'a> {
         let path = percent_decoded(uri)?;
         let file = inside(folder, &path);
         // Before it is read: what changes meanwhile is seen later.
-        let stamp =
-            file.as_ref().map_or_else(|_| Stamp { path: folder.join(&path), state: None }, |file| Stamp::of(file));
+        let stamp = file
+            .as_ref()
+            .map_or_else(|_| MeshFileStamp { path: folder.join(&path), state: None }, |file| MeshFileStamp::of(file));
         self.files.borrow_mut().push(stamp);
         read_file(&file?)
     }

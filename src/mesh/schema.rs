@@ -73,25 +73,25 @@ pub(super) struct Root {
     pub extensions_required: Vec<String>,
     pub scene: Option<Whole>,
     #[serde(default)]
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<GltfScene>,
     #[serde(default)]
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<GltfNode>,
     #[serde(default)]
-    pub meshes: Vec<Mesh>,
+    pub meshes: Vec<GltfMesh>,
     #[serde(default)]
     pub accessors: Vec<Accessor>,
     #[serde(default)]
-    pub buffer_views: Vec<View>,
+    pub buffer_views: Vec<GltfBufferView>,
     #[serde(default)]
     pub buffers: Vec<Buffer>,
     #[serde(default)]
     pub images: Vec<Image>,
     #[serde(default)]
-    pub textures: Vec<Texture>,
+    pub textures: Vec<GltfTexture>,
     #[serde(default)]
-    pub samplers: Vec<Sampler>,
+    pub samplers: Vec<GltfSampler>,
     #[serde(default)]
-    pub materials: Vec<Material>,
+    pub materials: Vec<GltfMaterial>,
     #[serde(default)]
     pub skins: Vec<Skin>,
     /// Only how many.
@@ -103,14 +103,14 @@ pub(super) struct Root {
 }
 
 #[derive(Debug, serde::Deserialize)]
-pub(super) struct Scene {
+pub(super) struct GltfScene {
     pub name: Option<String>,
     #[serde(default)]
     pub nodes: Vec<Whole>,
 }
 
 #[derive(Debug, serde::Deserialize)]
-pub(super) struct Node {
+pub(super) struct GltfNode {
     pub mesh: Option<Whole>,
     pub skin: Option<Whole>,
     #[serde(default)]
@@ -123,7 +123,7 @@ pub(super) struct Node {
 }
 
 #[derive(Debug, serde::Deserialize)]
-pub(super) struct Mesh {
+pub(super) struct GltfMesh {
     #[serde(default)]
     pub primitives: Vec<Primitive>,
     pub weights: Option<Vec<f64>>,
@@ -184,7 +184,7 @@ pub(super) struct SparseValues {
 
 #[derive(Debug, serde::Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct View {
+pub(super) struct GltfBufferView {
     pub buffer: Whole,
     #[serde(default)]
     pub byte_offset: Whole,
@@ -207,7 +207,7 @@ pub(super) struct Image {
 }
 
 #[derive(Debug, serde::Deserialize)]
-pub(super) struct Texture {
+pub(super) struct GltfTexture {
     pub source: Option<Whole>,
     pub sampler: Option<Whole>,
     /// Where else the image may be; only the names matter.
@@ -217,7 +217,7 @@ pub(super) struct Texture {
 
 #[derive(Debug, serde::Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Sampler {
+pub(super) struct GltfSampler {
     pub mag_filter: Option<Whole>,
     pub min_filter: Option<Whole>,
     pub wrap_s: Option<Whole>,
@@ -226,7 +226,7 @@ pub(super) struct Sampler {
 
 #[derive(Debug, serde::Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Material {
+pub(super) struct GltfMaterial {
     pub name: Option<String>,
     #[serde(default)]
     pub pbr_metallic_roughness: Pbr,

@@ -5,16 +5,16 @@ use std::collections::HashMap;
 use glam::DVec2;
 
 use super::accessor::Source;
-use super::error::{Refusal, name};
+use super::error::{LoadRefusal, name};
 use super::remarks::Remarks;
 use super::resolve::Reader;
-use super::schema::{Material, Primitive, TextureInfo, Whole};
+use super::schema::{GltfMaterial, Primitive, TextureInfo, Whole};
 use super::texture::{Sampler, Texture, Wrap, decode};
 
 /// What a run of triangles looks like.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear factor of the vertices' colours, and of their opacity.
+    /// Linear factor of the vertices' colors, and of their opacity.
     pub color: [f32; 4],
     /// Where the opacity is less, there is no surface; `None`: it is everywhere.
     pub alpha_cutoff: Option<f32>,
@@ -113,22 +113,22 @@ impl<'a> Surfaces<'a> {
         number.map(|number| (number, sampler))
     }
 
-    fn decode(&mut self, index: Whole) -> Result<Texture, Refusal> {
+    fn decode(&mut self, index: Whole) -> Result<Texture, LoadRefusal> {
         let place = format!("images[{}]", index.0);
         let Some(image) = self.source.root.images.get(index.index()) else {
-            return Err(Refusal::at(place, "is missing"));
+            return Err(LoadRefusal::at(place, "is missing"));
         };
         let decoded = match (image.buffer_view, &image.uri) {
             (Some(view), _) => decode(self.source.view(view)?, self.budget),
             (None, Some(uri)) => self.reader.uri(uri).and_then(|bytes| decode(&bytes, self.budget)),
             (None, None) => Err("has no data".into()),
         };
-        decoded.map_err(|reason| Refusal::at(place, reason))
+        decoded.map_err(|reason| LoadRefusal::at(place, reason))
     }
 }
 
-/// The base colour of a material. That of older files is called diffuse, and counts where it is given.
-fn base_color(material: &Material) -> ([f64; 4], Option<&TextureInfo>) {
+/// The base color of a material. That of older files is called diffuse, and counts where it is given.
+fn base_color(material: &GltfMaterial) -> ([f64; 4], Option<&TextureInfo>) {
     match &material.extensions.specular_glossiness {
         Some(older) => (older.diffuse_factor.unwrap_or([1.0; 4]), older.diffuse_texture.as_ref()),
         None => {

@@ -1,4 +1,4 @@
-//! Base colour textures: decoded within a budget, and looked up as a renderer does.
+//! Base color textures: decoded within a budget, and looked up as a renderer does.
 
 use std::io::Cursor;
 
@@ -32,7 +32,7 @@ pub enum Wrap {
     Repeat,
     /// The texture again, each time turned round.
     Mirror,
-    /// The colour of the edge.
+    /// The color of the edge.
     Clamp,
 }
 

@@ -17,19 +17,19 @@ use crate::geometry::{Aabb, Ray};
 /// every number is finite; normals have unit length. Counter-clockwise triangles face the viewer.
 #[derive(Debug)]
 pub struct TriangleMesh {
-    /// Places of the vertices, in metres, relative to the origin of the part that they belong to.
+    /// Places of the vertices, in meters, relative to the origin of the part that they belong to.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals of the vertices.
     pub normals: Vec<[f32; 3]>,
-    /// Linear colours of the vertices with their opacity, to be multiplied with that of the part.
+    /// Linear colors of the vertices with their opacity, to be multiplied with that of the part.
     pub colors: Vec<[f32; 4]>,
     /// Texture coordinates of the vertices; the origin is the upper left corner.
     pub uvs: Vec<[f32; 2]>,
     /// Three vertices per triangle.
     pub indices: Vec<u32>,
     /// Runs of triangles that look alike and stand near each other.
-    pub parts: Vec<Part>,
-    /// Base colour textures.
+    pub parts: Vec<MeshPart>,
+    /// Base color textures.
     pub textures: Vec<Texture>,
     /// The smallest box around all triangles.
     pub bounds: Aabb,
@@ -41,7 +41,7 @@ pub struct TriangleMesh {
 
 /// A run of triangles that look alike and stand near each other.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct MeshPart {
     /// Which of [`TriangleMesh::indices`].
     pub indices: Range<u32>,
     /// What its positions are relative to: 0 unless they lie so far away that f32 would change their shape.
@@ -76,7 +76,7 @@ impl TriangleMesh {
     }
 
     /// The part that a triangle belongs to.
-    pub fn part(&self, triangle: u32) -> &Part {
+    pub fn part(&self, triangle: u32) -> &MeshPart {
         let after = self.parts.partition_point(|part| part.indices.start <= 3 * triangle);
         &self.parts[after - 1]
     }
@@ -91,7 +91,7 @@ impl TriangleMesh {
         Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
     }
 
-    /// Colour and opacity at a point of a triangle: of vertices, part and texture together. `decode` makes linear
+    /// Color and opacity at a point of a triangle: of vertices, part and texture together. `decode` makes linear
     /// numbers of a texture's bytes.
     pub fn color(&self, triangle: u32, weights: [f64; 3], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let Surface { color, texture, sampler, .. } = self.part(triangle).surface;
@@ -115,7 +115,7 @@ impl TriangleMesh {
         self.bvh.get_or_init(|| Bvh::build(self.triangle_count(), |triangle| self.corners(triangle)))
     }
 
-    /// The normal of the triangle itself, outwards; not of unit length, zero where the triangle has no area.
+    /// The normal of the triangle itself, outward; not of unit length, zero where the triangle has no area.
     pub fn face_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 use super::library::{MeshSource, Reread};
-use super::resolve::Stamp;
+use super::resolve::MeshFileStamp;
 
 /// How often the files are looked at.
 const PERIOD: Duration = Duration::from_secs(1);
@@ -55,7 +55,7 @@ impl Watcher {
 struct Watched {
     source: MeshSource,
     /// Its files as they were seen last, if they have changed since they were read.
-    changed: Option<Vec<Stamp>>,
+    changed: Option<Vec<MeshFileStamp>>,
 }
 
 fn run(orders: &Receiver<Order>, news: &Sender<Reread>, wake: impl Fn()) {

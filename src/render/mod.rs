@@ -3,40 +3,31 @@
 //! | lives as long as | types |
 //! |---|---|
 //! | the device | [`Gpu`], `Layouts`, the pipelines of passes without fields |
-//! | a structure or form | [`Kernels`]: the interpreter, and specialised kernels as they become ready |
-//! | the scene | `Mirror` buffers: nodes, numbers, materials; meshes by their own life |
+//! | a structure or template | [`PipelineCache`]: the interpreter, and specialized pipelines as they become ready |
+//! | the scene | `SyncedBuffer` buffers: nodes, numbers, materials; meshes by their own life |
 //! | the picture's size | `Targets` |
-//! | the frame | [`Frame`]: the pieces of work that are still to be done; view, components, lights |
+//! | the frame | [`Frame`]: the dispatches that are still to be done; view, components, lights |
 //!
-//! The frame, in order: mesh (clears, then triangles), farthest (only with meshes), cone and
-//! trace (each component, front to back), surface, shade, inspect (only where a look is asked for), overlay. See `schedule` for how it is cut into dispatches.
+//! The frame, in order: mesh (clears, then triangles), hiz (only with meshes), cone and
+//! trace (each component, front to back), surface, shade, debug_view (only where a view mode is asked for), overlay. See `frame::plan` for how it is cut into dispatches.
 
-mod adapter;
-mod buffers;
-pub mod driver;
+mod frame;
 mod gpu;
-pub mod kernel;
-mod kernels;
-mod keys;
-mod layouts;
-mod list_texture;
-mod pace;
 mod passes;
-pub mod probe;
-mod readback;
+mod pipelines;
 mod renderer;
-pub mod schedule;
-pub mod standpoint;
-mod targets;
-pub mod uniforms;
-mod warm;
+mod resources;
+pub mod wgsl;
 
-pub use adapter::{AdapterChoice, AdapterSummary, adapters};
+pub use frame::cost_model::coarse_size;
+pub use frame::{plan, standpoint};
+pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
-pub use kernels::{Kernels, Method};
-pub use pace::coarse_size;
-pub use passes::inspect::Inspect;
+pub use gpu::{driver, probe};
+pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
-pub use renderer::{Counts, Frame, PixelCounts, RenderError, Renderer, Slot, Spread, Took};
-pub use targets::BACKGROUND;
+pub use pipelines::cache::{EvalStrategy, PipelineCache};
+pub use renderer::{Counts, Distribution, Frame, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
+pub use resources::targets::BACKGROUND;
+pub use resources::uniforms;

@@ -1,4 +1,4 @@
-//! The renderer: takes a flat scene and a camera, delivers a picture, in pieces that can be waited for.
+//! The renderer: takes a flat scene and a camera, delivers a picture, in dispatches that can be waited for.
 
 mod choice;
 mod frame;
@@ -14,34 +14,34 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use super::buffers::{Mirror, RowTexture};
-use super::gpu::{Gpu, GpuError};
-use super::kernel::{MAX_KERNEL_ROWS, Options, ShaderError, Skipping};
-use super::kernels::{Kernels, Method};
-use super::layouts::{Layouts, NUMBERS_FORMAT};
-use super::list_texture::ListTexture;
-use super::pace::Pace;
-use super::passes::farthest::FarthestPass;
-use super::passes::inspect::InspectPass;
+use super::passes::debug_view::DebugViewPass;
+use super::passes::hiz::HizPass;
 use super::passes::mesh::MeshPass;
 use super::passes::overlay::{OverlayPass, OverlaySettings};
 use super::passes::shade::ShadePass;
-use super::schedule::{Evaluation, Plan, TooLong, plan};
-use super::standpoint::Standpoints;
-use super::targets::{Target, Targets};
-use super::uniforms::UNIFORM_STRIDE;
-use crate::flat::inspect::Look;
-use crate::flat::{Cancel, FlatScene, Pruner, Row};
+use crate::flat::debug_view::ViewMode;
+use crate::flat::{Cancel, FlatScene, ParamRow, TapeCache};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
+use crate::render::frame::cost_model::CostModel;
+use crate::render::frame::plan::{EvaluationCost, FramePlan, TooLong, plan};
+use crate::render::frame::standpoint::Standpoints;
+use crate::render::gpu::{Gpu, GpuError};
+use crate::render::pipelines::cache::{EvalStrategy, PipelineCache};
+use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT};
+use crate::render::resources::tape_texture::TapeTexture;
+use crate::render::resources::targets::{Target, Targets};
+use crate::render::resources::uniforms::UNIFORM_STRIDE;
+use crate::render::wgsl::{MAX_PIPELINE_ROWS, Options, ShaderError, SkipMode};
 use crate::scene::NodeId;
 
 use choice::Chosen;
 pub use frame::Frame;
 pub use measure::Counts;
-pub use pixel_counts::{PixelCounts, Spread, Took};
+pub use pixel_counts::{Distribution, PixelCounts, TraceCounts};
 use unfinished::GoingOn;
-use upload::{Groups, form_windows};
+use upload::{Groups, template_windows};
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -60,10 +60,10 @@ pub enum RenderError {
     Counts(u32, u32),
     /// What is to be done is more than one buffer of the device lists: most of it for this node.
     #[error("a picture of {0} by {1} pixels takes too many steps for this device, most of them for node {2}")]
-    Work(u32, u32, NodeId),
+    TooManyDispatches(u32, u32, NodeId),
     /// The caller asked to stop.
-    #[error("cancelled")]
-    Cancelled,
+    #[error("canceled")]
+    Canceled,
 }
 
 /// What a frame is expected to take that cannot be drawn yet.
@@ -79,7 +79,7 @@ pub enum Slot {
 }
 
 /// Targets of a picture with the bind groups that lead to them; remade when its size changes or a
-/// buffer or kernel is replaced.
+/// buffer or pipeline is replaced.
 #[derive(Debug)]
 struct SlotState {
     targets: Targets,
@@ -93,49 +93,49 @@ struct SlotState {
 pub struct Renderer {
     gpu: Gpu,
     layouts: Layouts,
-    kernels: Kernels,
-    method: Method,
-    farthest: FarthestPass,
+    pipelines: PipelineCache,
+    strategy: EvalStrategy,
+    hiz: HizPass,
     shade: ShadePass,
     mesh: MeshPass,
     overlay: OverlayPass,
     /// Built where somebody looks.
-    inspect: Option<InspectPass>,
-    nodes: Mirror,
-    /// For the windows of specialised kernels.
-    rows: Mirror,
-    /// For those of kernels for forms.
-    form_rows: Mirror,
-    /// The same numbers once more, for kernels that walk.
-    numbers: RowTexture,
-    lists: ListTexture,
-    pruner: Pruner,
+    debug_view: Option<DebugViewPass>,
+    nodes: SyncedBuffer,
+    /// For the windows of specialized pipelines.
+    rows: SyncedBuffer,
+    /// For those of pipelines for templates.
+    template_rows: SyncedBuffer,
+    /// The same numbers once more, for pipelines that walk.
+    params: DataTexture,
+    tapes: TapeTexture,
+    tape_cache: TapeCache,
     cancel: Cancel,
-    components: Mirror,
-    materials: Mirror,
-    view: Mirror,
-    lights: Mirror,
-    mesh_emissions: Mirror,
-    work: Mirror,
-    quads: Mirror,
-    quad_counts: Mirror,
-    rays: Mirror,
-    ray_counts: Mirror,
-    nothing: Mirror,
-    march_counts: Mirror,
-    /// Whether kernels count.
+    components: SyncedBuffer,
+    materials: SyncedBuffer,
+    view: SyncedBuffer,
+    lights: SyncedBuffer,
+    mesh_emissions: SyncedBuffer,
+    dispatch_params: SyncedBuffer,
+    subtiles: SyncedBuffer,
+    subtile_counts: SyncedBuffer,
+    rays: SyncedBuffer,
+    ray_counts: SyncedBuffer,
+    nothing: SyncedBuffer,
+    march_counts: SyncedBuffer,
+    /// Whether pipelines count.
     counting: bool,
     slots: [Option<SlotState>; 2],
-    pace: Pace,
+    cost_model: CostModel,
 }
 
-/// Bytes of a kernel's window on the rows of its component. As much room is kept behind the last row, so
+/// Bytes of a pipeline's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.
-pub(super) const KERNEL_WINDOW: usize = MAX_KERNEL_ROWS as usize * size_of::<Row>();
-/// Bytes of a quad in a list.
-const QUAD_BYTES: usize = 12;
-/// Words of a list of quads, and of a list of what its rays leave: see `shaders/common/quads.wgsl`.
-const QUAD_COUNTS: usize = 5;
+pub(super) const PIPELINE_WINDOW: usize = MAX_PIPELINE_ROWS as usize * size_of::<ParamRow>();
+/// Bytes of a subtile in a list.
+const SUBTILE_BYTES: usize = 12;
+/// Words of a list of subtiles, and of a list of what its rays leave: see `shaders/common/subtiles.wgsl`.
+const SUBTILE_COUNTS: usize = 5;
 const RAY_COUNTS: usize = 7;
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
@@ -146,47 +146,47 @@ impl Renderer {
         Self::with_options(gpu, Self::options(gpu))
     }
 
-    /// What kernels do on this device when nobody asks for something else.
+    /// What pipelines do on this device when nobody asks for something else.
     pub fn options(gpu: &Gpu) -> Options {
-        let skipping = if gpu.is_software() { Skipping::Selects } else { Skipping::Branches };
-        Options { skipping, ..Options::default() }
+        let skip_mode = if gpu.is_software() { SkipMode::Selects } else { SkipMode::Branches };
+        Options { skip_mode, ..Options::default() }
     }
 
-    /// The same with kernels of these options.
+    /// The same with pipelines of these options.
     pub fn with_options(gpu: &Gpu, options: Options) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let storage = |label| Mirror::storage(device, label);
+        let storage = |label| SyncedBuffer::storage(device, label);
         let renderer = Self {
-            kernels: Kernels::new(gpu, &layouts, options)?,
-            method: Method::Auto,
-            farthest: FarthestPass::new(device, &layouts)?,
+            pipelines: PipelineCache::new(gpu, &layouts, options)?,
+            strategy: EvalStrategy::Auto,
+            hiz: HizPass::new(device, &layouts)?,
             shade: ShadePass::new(device, &layouts)?,
             mesh: MeshPass::new(device, &layouts)?,
             overlay: OverlayPass::new(device, &layouts)?,
-            inspect: None,
+            debug_view: None,
             nodes: storage("nodes"),
-            rows: Mirror::uniform(device, "rows"),
-            form_rows: Mirror::uniform(device, "rows of forms"),
-            numbers: RowTexture::new(device, "numbers", NUMBERS_FORMAT),
-            lists: ListTexture::new(device),
-            pruner: Pruner::default(),
+            rows: SyncedBuffer::uniform(device, "rows"),
+            template_rows: SyncedBuffer::uniform(device, "rows of templates"),
+            params: DataTexture::new(device, "params", PARAMS_FORMAT),
+            tapes: TapeTexture::new(device),
+            tape_cache: TapeCache::default(),
             cancel: Cancel::default(),
-            components: Mirror::uniform(device, "components"),
+            components: SyncedBuffer::uniform(device, "components"),
             materials: storage("materials"),
-            view: Mirror::uniform(device, "view"),
+            view: SyncedBuffer::uniform(device, "view"),
             lights: storage("lights"),
             mesh_emissions: storage("mesh emissions"),
-            work: Mirror::uniform(device, "work"),
-            quads: storage("quads"),
-            quad_counts: Mirror::indirect(device, "quad counts"),
+            dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
+            subtiles: storage("subtiles"),
+            subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
             rays: storage("rays"),
             nothing: storage("nothing"),
-            ray_counts: Mirror::indirect(device, "ray counts"),
-            march_counts: Mirror::read_back(device, "march counts"),
+            ray_counts: SyncedBuffer::indirect(device, "ray counts"),
+            march_counts: SyncedBuffer::read_back(device, "march counts"),
             counting: options.counting,
             slots: [None, None],
-            pace: Pace::new(gpu.is_software()),
+            cost_model: CostModel::new(gpu.is_software()),
             layouts,
             gpu: gpu.clone(),
         };
@@ -195,43 +195,43 @@ impl Renderer {
     }
 
     /// Chooses how components are evaluated from now on.
-    pub fn set_method(&mut self, method: Method) {
-        self.method = method;
+    pub fn set_strategy(&mut self, strategy: EvalStrategy) {
+        self.strategy = strategy;
     }
 
-    /// What prepares a picture stops where this says so, with [`RenderError::Cancelled`].
+    /// What prepares a picture stops where this says so, with [`RenderError::Canceled`].
     pub fn set_cancel(&mut self, cancel: &Cancel) {
         self.cancel = cancel.clone();
-        self.pruner.set_cancel(cancel);
+        self.tape_cache.set_cancel(cancel);
     }
 
     fn check_cancel(&self) -> Result<(), RenderError> {
-        if self.cancel.is_cancelled() { Err(RenderError::Cancelled) } else { Ok(()) }
+        if self.cancel.is_canceled() { Err(RenderError::Canceled) } else { Ok(()) }
     }
 
-    /// How many kernels are being built.
-    pub fn kernels_building(&self) -> usize {
-        self.kernels.building()
+    /// How many pipelines are being built.
+    pub fn pipelines_building(&self) -> usize {
+        self.pipelines.building()
     }
 
-    /// How many kernels could not be built.
-    pub fn kernels_failed(&self) -> usize {
-        self.kernels.failed()
+    /// How many pipelines could not be built.
+    pub fn pipelines_failed(&self) -> usize {
+        self.pipelines.failed()
     }
 
-    /// Whether kernels or pruned lists are being made: pictures are right without them, and faster with them.
+    /// Whether pipelines or tapes are being made: pictures are right without them, and faster with them.
     pub fn is_preparing(&self) -> bool {
-        self.kernels.building() > 0 || self.pruner.building() > 0
+        self.pipelines.building() > 0 || self.tape_cache.building() > 0
     }
 
-    /// The pruned lists.
-    pub fn pruner(&mut self) -> &mut Pruner {
-        &mut self.pruner
+    /// The tapes.
+    pub fn tape_cache(&mut self) -> &mut TapeCache {
+        &mut self.tape_cache
     }
 
-    /// The kernels.
-    pub fn kernels(&mut self) -> &mut Kernels {
-        &mut self.kernels
+    /// The pipelines.
+    pub fn pipelines(&mut self) -> &mut PipelineCache {
+        &mut self.pipelines
     }
 
     /// The device.
@@ -241,43 +241,45 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        let buffers =
-            [&self.nodes, &self.rows, &self.form_rows, &self.components, &self.materials].map(Mirror::uploaded);
-        buffers.iter().sum::<u64>() + self.numbers.uploaded() + self.lists.uploaded()
+        let buffers = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials]
+            .map(SyncedBuffer::uploaded);
+        buffers.iter().sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
     }
 
-    /// How long a whole frame is expected to take. While lists are being made it may be more than can be drawn at all.
+    /// How long a whole frame is expected to take. While tapes are being made it may be more than can be drawn at all.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
         let Chosen { evaluations, .. } = self.choose(flat, camera)?;
         match self.plan(flat, camera, size, &evaluations) {
-            Err(RenderError::Work(..)) if self.pruner.building() > 0 => Ok(LONGEST),
-            plan => Ok(Duration::from_secs_f64(self.pace.seconds_of_frame(plan?.effort()).min(LONGEST.as_secs_f64()))),
+            Err(RenderError::TooManyDispatches(..)) if self.tape_cache.building() > 0 => Ok(LONGEST),
+            plan => {
+                Ok(Duration::from_secs_f64(self.cost_model.seconds_of_frame(plan?.cost()).min(LONGEST.as_secs_f64())))
+            }
         }
     }
 
-    /// The work of a frame, no more than the device holds. A component of a thousand leaves that is walked without lists on
+    /// The dispatches of a frame, no more than the device holds. A component of a thousand leaves that is walked without tapes on
     /// a driver that ends loops early makes it long.
     fn plan(
         &self,
         flat: &FlatScene,
         camera: &Camera,
         size: [u32; 2],
-        evaluations: &[Evaluation],
-    ) -> Result<Plan, RenderError> {
+        evaluations: &[EvaluationCost],
+    ) -> Result<FramePlan, RenderError> {
         let refused = |TooLong { component }| {
-            RenderError::Work(size[0], size[1], flat.ids[flat.components[component].first as usize])
+            RenderError::TooManyDispatches(size[0], size[1], flat.ids[flat.components[component].first as usize])
         };
-        plan(flat, camera, size, evaluations, &self.pace, self.most_pieces()).map_err(refused)
+        plan(flat, camera, size, evaluations, &self.cost_model, self.max_dispatches()).map_err(refused)
     }
 
-    /// How many pieces of work the device can be told of.
-    fn most_pieces(&self) -> usize {
+    /// How many dispatches the device can be told of.
+    fn max_dispatches(&self) -> usize {
         // Buffers grow by powers of two.
         let bytes = self.gpu.device.limits().max_buffer_size.checked_ilog2().map_or(0, |bits| 1_usize << bits);
         bytes / UNIFORM_STRIDE
     }
 
-    /// Uploads what has changed and lists the work. `meshes` stands beside `flat.meshes`.
+    /// Uploads what has changed and plans the dispatches. `meshes` stands beside `flat.meshes`.
     pub fn begin(
         &mut self,
         slot: Slot,
@@ -302,9 +304,9 @@ impl Renderer {
             self.slots[slot as usize] = Some(SlotState { targets, enlarged: None, groups: None });
         }
         let standpoints = Standpoints::new(flat, camera, size);
-        let (form_rows, forms) = form_windows(flat, &standpoints.numbers, &keys);
-        let forms_are_new = self.form_rows.set(&self.gpu.device, &self.gpu.queue, &forms);
-        if self.upload(flat, &standpoints, &trees, camera, size, &plan) || forms_are_new {
+        let (template_rows, templates) = template_windows(flat, &standpoints.params, &keys);
+        let templates_are_new = self.template_rows.set(&self.gpu.device, &self.gpu.queue, &templates);
+        if self.upload(flat, &standpoints, &trees, camera, size, &plan) || templates_are_new {
             for state in self.slots.iter_mut().flatten() {
                 state.groups = None;
             }
@@ -325,21 +327,21 @@ impl Renderer {
             self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, size, camera.position);
         }
         let mut frame = Frame {
-            pace: self.pace,
-            seconds: self.pace.seconds(plan.effort()),
+            cost_model: self.cost_model,
+            seconds: self.cost_model.seconds(plan.cost()),
             plan,
             keys,
             choices,
             next: 0,
             seconds_done: 0.0,
             measured: Some(Duration::ZERO),
-            rounds_at_once: 0,
+            relaunches_at_once: 0,
             slot,
             overlay,
-            look: Look::Shaded,
+            view_mode: ViewMode::Shaded,
             going_on: GoingOn::default(),
-            form_rows,
-            rows: flat.components.iter().map(|c| c.numbers * size_of::<Row>() as u32).collect(),
+            template_rows,
+            rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
         };
         if slot == Slot::Preview {
@@ -350,36 +352,36 @@ impl Renderer {
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
-    /// dispatches of about [`super::schedule::DISPATCH_TARGET`]. Waits for the device, and learns its pace.
+    /// dispatches of about [`crate::render::frame::plan::DISPATCH_TARGET`]. Waits for the device, and updates the cost model.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
         // What others have submitted before, the painting of a window above all, is none of this frame's time.
         self.gpu.wait()?;
         let start = Instant::now();
-        if self.kernels.collect() {
-            self.kernels.refresh(&frame.keys, &mut frame.choices);
+        if self.pipelines.collect() {
+            self.pipelines.refresh(&frame.keys, &mut frame.choices);
         }
         loop {
-            let (pieces, effort, rounds) = frame.next_batch(&self.pace);
+            let (dispatches, cost, relaunches) = frame.next_batch(&self.cost_model);
             let submitted = Instant::now();
-            frame.seconds_done += frame.pace.seconds(effort);
-            self.submit(frame, pieces.clone());
+            frame.seconds_done += frame.cost_model.seconds(cost);
+            self.submit(frame, dispatches.clone());
             self.gpu.wait()?;
-            let took = submitted.elapsed();
-            // The first dispatch of a kernel may include its compilation, and a later round marches an unknown
-            // few of its rays: neither says that the pace is slow.
-            let foreseen = rounds == 0 || took.as_secs_f64() < self.pace.seconds(effort);
-            let is_typical = !frame.uses_fresh_kernel(pieces.clone());
+            let elapsed = submitted.elapsed();
+            // The first dispatch of a pipeline may include its compilation, and a later relaunch marches an unknown
+            // few of its rays: neither says that the device is slow.
+            let foreseen = relaunches == 0 || elapsed.as_secs_f64() < self.cost_model.seconds(cost);
+            let is_typical = !frame.uses_fresh_pipelines(dispatches.clone());
             if is_typical && foreseen {
-                self.pace.learn(effort, took);
+                self.cost_model.learn(cost, elapsed);
             }
-            frame.measured = frame.measured.filter(|_| is_typical).map(|before| before + took);
-            frame.learn_rounds(rounds, took);
-            frame.next = pieces.end;
+            frame.measured = frame.measured.filter(|_| is_typical).map(|before| before + elapsed);
+            frame.learn_relaunches(relaunches, elapsed);
+            frame.next = dispatches.end;
             if frame.is_done() {
                 self.go_on(frame)?;
             }
-            if let (true, Some(took)) = (frame.is_done(), frame.measured) {
-                self.pace.learn_frame(frame.plan.effort(), took);
+            if let (true, Some(elapsed)) = (frame.is_done(), frame.measured) {
+                self.cost_model.learn_frame(frame.plan.cost(), elapsed);
             }
             if frame.is_done() || start.elapsed() >= budget {
                 return Ok(());
@@ -405,13 +407,13 @@ impl Renderer {
 mod tests {
     use super::*;
     use crate::flat::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
-    use crate::render::buffers::RowTexture;
-    use crate::render::kernel::plain_source;
-    use crate::render::schedule::{QUADS, TILE};
+    use crate::render::frame::plan::{SUBTILES, TILE};
+    use crate::render::resources::buffers::DataTexture;
+    use crate::render::wgsl::assemble_plain;
 
     /// The value of a constant in a shader.
     fn constant(file: &str, name: &str) -> u32 {
-        let text = plain_source(file).unwrap_or_else(|error| panic!("{error}"));
+        let text = assemble_plain(file).unwrap_or_else(|error| panic!("{error}"));
         let start = format!("const {name}: u32 = ");
         let line =
             text.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{file}: no {name}"));
@@ -422,33 +424,33 @@ mod tests {
 
     #[test]
     fn shaders_have_the_same_constants() {
-        let twins = [
-            ("common/quads.wgsl", "QUAD_COUNTS", QUAD_COUNTS as u32),
-            ("common/quads.wgsl", "RAY_COUNTS", RAY_COUNTS as u32),
-            ("common/quads.wgsl", "QUAD", TILE / QUADS),
-            ("common/work.wgsl", "TILE", TILE),
-            ("common/depth.wgsl", "NO_OWNER", NO_LEAF),
+        let counterparts = [
+            ("common/subtiles.wgsl", "SUBTILE_COUNTS", SUBTILE_COUNTS as u32),
+            ("common/subtiles.wgsl", "RAY_COUNTS", RAY_COUNTS as u32),
+            ("common/subtiles.wgsl", "SUBTILE", TILE / SUBTILES),
+            ("common/dispatch.wgsl", "TILE", TILE),
+            ("common/depth.wgsl", "VISIBILITY_NONE", NO_LEAF),
             ("common/depth.wgsl", "MESH_BIT", MESH_BIT),
             ("common/scene.wgsl", "LEAF_ROWS", LEAF_ROWS as u32),
             ("common/scene.wgsl", "MODIFIER_ROWS", MODIFIER_ROWS as u32),
             ("common/scene.wgsl", "GROUP", FlatNode::GROUP),
             ("common/scene.wgsl", "RUN", FlatNode::RUN),
             ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
-            ("common/scene.wgsl", "LINE", RowTexture::LINE as u32),
+            ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
             ("common/counts.wgsl", "COMPONENT_COUNTS", pixel_counts::COMPONENT_COUNTS as u32),
             ("common/counts.wgsl", "PIXEL_COUNTS", pixel_counts::PIXEL_COUNTS as u32),
         ];
-        for (file, name, ours) in twins {
+        for (file, name, ours) in counterparts {
             assert_eq!(constant(file, name), ours, "{file}: {name}");
         }
     }
 
     #[test]
-    fn quads_have_room() {
-        let text = plain_source("trace.wgsl").unwrap_or_else(|error| panic!("{error}"));
+    fn subtiles_have_room() {
+        let text = assemble_plain("trace.wgsl").unwrap_or_else(|error| panic!("{error}"));
         let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{error}"));
-        let (_, quad) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Quad")).expect("a quad");
-        let naga::TypeInner::Struct { span, .. } = quad.inner else { panic!("{quad:?}") };
-        assert_eq!(span as usize, QUAD_BYTES);
+        let (_, subtile) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Subtile")).expect("a subtile");
+        let naga::TypeInner::Struct { span, .. } = subtile.inner else { panic!("{subtile:?}") };
+        assert_eq!(span as usize, SUBTILE_BYTES);
     }
 }

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Axis {
     /// To the right.
     X,
-    /// Upwards.
+    /// Upward.
     Y,
-    /// Towards who looks from the front.
+    /// Toward who looks from the front.
     Z,
 }
 

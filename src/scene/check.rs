@@ -9,8 +9,8 @@ use super::limits::{
     RANGE, SCALE, SHININESS, STEPS, THICKNESS, UNIT,
 };
 use super::{
-    Attenuation, CameraNode, Environment, Group, Joining, Light, LightKind, List, MAX_MODIFIERS, Material, MeshNode,
-    Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
+    Attenuation, BlendOverride, CameraNode, Environment, Group, Light, LightKind, List, MAX_MODIFIERS, Material,
+    MeshNode, Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
 };
 use crate::geometry::Transform;
 
@@ -46,7 +46,7 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     if node.negative && !node.has_field() {
         return Err(Fault::new("negative", "only objects and groups can be negative"));
     }
-    if let Joining::Radius(radius) = node.joining {
+    if let BlendOverride::Radius(radius) = node.blend_override {
         number("joining.radius", radius, &BLEND_RADIUS)?;
     }
     if node.apart.len() > MAX_APART {
@@ -92,7 +92,7 @@ const UNIT_TOLERANCE: f64 = 1e-3;
 /// Up to here the length counts as 1 and the numbers are left as they are, so that a file keeps its bytes.
 const UNIT_EXACT: f64 = 1e-12;
 
-/// The unit quaternion that is meant: nearly unit ones are normalised, exact ones left alone.
+/// The unit quaternion that is meant: nearly unit ones are normalized, exact ones left alone.
 /// Anything else comes back as it is, for [`node`] to refuse.
 pub fn settled_rotation(rotation: DQuat) -> DQuat {
     let off = (rotation.length() - 1.0).abs();
@@ -231,7 +231,7 @@ fn light(light: &Light) -> Result<(), Fault> {
     vector("color", light.color, &INTENSITY)?;
     number("intensity", light.intensity, &INTENSITY)?;
     match &light.light {
-        LightKind::Directional {} => Ok(()),
+        LightKind::Sun {} => Ok(()),
         LightKind::Point { attenuation: a } => attenuation(a).map_err(|f| f.below("light.attenuation")),
         LightKind::Spot { attenuation: a, inner, outer } => {
             attenuation(a).map_err(|f| f.below("light.attenuation"))?;

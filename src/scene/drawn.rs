@@ -1,4 +1,4 @@
-//! What is drawn point by point: the curve of a tube, the outline of a profile.
+//! What is drawn point by point: the curve of a tube, the curve of a profile.
 
 use std::f64::consts::TAU;
 use std::ops::Deref;
@@ -12,7 +12,7 @@ use super::attachment::Attachment;
 use crate::font::{Face, text_curve};
 use crate::geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
 
-/// Smaller letters are no letters, in metres.
+/// Smaller letters are no letters, in meters.
 const LEAST_TEXT: f64 = 1e-6;
 
 /// Points of a curve in space: x, y, z, radius. Copies share them.
@@ -20,7 +20,7 @@ const LEAST_TEXT: f64 = 1e-6;
 #[serde(transparent)]
 pub struct Points(Arc<Vec<[f64; 4]>>);
 
-/// Corners of an outline in the XY plane. Copies share them.
+/// Corners of a profile in the XY plane. Copies share them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Corners(Arc<Vec<[f64; 2]>>);
@@ -45,12 +45,12 @@ impl Corners {
         Self(Arc::new(corners.into()))
     }
 
-    /// A star of so many tips, one of them upwards; the radii are those of the tips and of the notches, in metres.
+    /// A star of so many tips, one of them upward; the radii are those of the tips and of the notches, in meters.
     pub fn star(tips: u32, outer: f64, inner: f64) -> Self {
         let corner = |i: u32| {
             let (s, c) = (TAU * f64::from(i) / f64::from(2 * tips)).sin_cos();
             let r = if i.is_multiple_of(2) { outer } else { inner };
-            // To a micrometre, so that a file shows tidy numbers.
+            // To a micrometer, so that a file shows tidy numbers.
             [-r * s, r * c].map(|v| (v * 1e6).round() / 1e6 + 0.0)
         };
         Self::new((0..2 * tips).map(corner).collect::<Vec<_>>())
@@ -80,13 +80,13 @@ impl Deref for Corners {
     }
 }
 
-/// The curve of a tube as arcs, those between two neighbours together.
+/// The curve of a tube as arcs, those between two neighbors together.
 pub fn tube_curve(points: &[[f64; 4]], closed: bool) -> Vec<Vec<ArcPiece>> {
     let places: Vec<DVec3> = points.iter().map(|[x, y, z, _]| DVec3::new(*x, *y, *z)).collect();
     smooth_curve(&places, closed)
 }
 
-/// The outline of a profile as arcs.
+/// A profile as arcs.
 pub fn profile_curve(corners: &[[f64; 2]], smooth: bool) -> Vec<ArcPiece> {
     let places: Vec<DVec3> = corners.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();
     let spans = if smooth { smooth_curve(&places, true) } else { straight_curve(&places) };
@@ -107,8 +107,8 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
     })
 }
 
-/// The outlines of a text whose font is `size` metres high; nothing where [`text_fault`] finds something.
-pub fn text_outline(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
+/// The profiles of a text whose font is `size` meters high; nothing where [`text_fault`] finds something.
+pub fn text_profile(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
     // Without a size, or without ink, a point is left.
     if size < LEAST_TEXT {
         return Vec::new();
@@ -129,11 +129,11 @@ pub(super) fn text_fault(text: &str, font: &Attachment<Face>) -> Option<String> 
 
 /// A box around a text; flat along Z.
 pub(super) fn text_bounds(text: &str, font: &Attachment<Face>, size: f64) -> Aabb {
-    let arcs = text_outline(text, font, size);
+    let arcs = text_profile(text, font, size);
     if arcs.is_empty() { Aabb::from_points([DVec3::ZERO]) } else { around(&arcs) }
 }
 
-/// A box around an outline; flat along Z.
+/// A box around a profile; flat along Z.
 pub(super) fn profile_bounds(corners: &[[f64; 2]], smooth: bool) -> Aabb {
     around(&profile_curve(corners, smooth))
 }

@@ -9,7 +9,7 @@ use crate::geometry::Aabb;
 
 /// What `a` joined with `b` is where at least one of the two is the empty set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remainder {
+pub enum EmptyOperandResult {
     /// The empty set.
     Nothing,
     /// `a`, as it is.
@@ -23,14 +23,14 @@ impl Operator {
     /// `share` is that of [`super::Group::share`].
     ///
     /// A morph is (1 − share) a + share b: infinite wherever the empty set has any share in it.
-    pub fn with_nothing(self, share: f64, is_first: bool) -> Remainder {
+    pub fn with_nothing(self, share: f64, is_first: bool) -> EmptyOperandResult {
         match (self, is_first) {
-            (Self::Union | Self::Xor, false) => Remainder::Second,
-            (Self::Intersection | Self::Pipe, _) => Remainder::Nothing,
-            (Self::Morph, true) if share == 0.0 => Remainder::First,
-            (Self::Morph, false) if share == 1.0 => Remainder::Second,
-            (Self::Morph, _) | (_, false) => Remainder::Nothing,
-            (_, true) => Remainder::First,
+            (Self::Union | Self::Xor, false) => EmptyOperandResult::Second,
+            (Self::Intersection | Self::Pipe, _) => EmptyOperandResult::Nothing,
+            (Self::Morph, true) if share == 0.0 => EmptyOperandResult::First,
+            (Self::Morph, false) if share == 1.0 => EmptyOperandResult::Second,
+            (Self::Morph, _) | (_, false) => EmptyOperandResult::Nothing,
+            (_, true) => EmptyOperandResult::First,
         }
     }
 
@@ -102,9 +102,15 @@ mod tests {
                         let (a, b) = if is_first { (there, FAR) } else { (FAR, there) };
                         let value = join(operator, a, b, share);
                         match operator.with_nothing(share, is_first) {
-                            Remainder::Nothing => assert!(value > 1e9, "{operator:?} {share} {is_first}: {value}"),
-                            Remainder::First => assert!(is_first && value == there, "{operator:?} {share}: {value}"),
-                            Remainder::Second => assert!(!is_first && value == there, "{operator:?} {share}: {value}"),
+                            EmptyOperandResult::Nothing => {
+                                assert!(value > 1e9, "{operator:?} {share} {is_first}: {value}")
+                            }
+                            EmptyOperandResult::First => {
+                                assert!(is_first && value == there, "{operator:?} {share}: {value}")
+                            }
+                            EmptyOperandResult::Second => {
+                                assert!(!is_first && value == there, "{operator:?} {share}: {value}")
+                            }
                         }
                     }
                 }

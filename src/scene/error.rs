@@ -19,7 +19,7 @@ pub enum SceneError {
     /// No material has this id.
     #[error("there is no material {0}")]
     NoMaterial(MaterialId),
-    /// Something still wears the material.
+    /// Something still uses the material.
     #[error("material {0} is still used by node {1}")]
     MaterialInUse(MaterialId, NodeId),
     /// A limit of [`super::limits`].

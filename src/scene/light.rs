@@ -1,4 +1,4 @@
-//! Lights and surroundings. A light shines along its node's local −Z.
+//! Lights and the world. A light shines along its node's local −Z.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub struct Attenuation {
     /// Constant term.
     pub constant: f64,
-    /// Per metre.
+    /// Per meter.
     pub linear: f64,
-    /// Per square metre.
+    /// Per square meter.
     pub quadratic: f64,
-    /// Nothing is lit beyond this distance, in metres.
+    /// Nothing is lit beyond this distance, in meters.
     pub range: f64,
 }
 
@@ -29,7 +29,8 @@ impl Default for Attenuation {
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum LightKind {
     /// Parallel light, like the sun's.
-    Directional {},
+    #[serde(rename = "directional")]
+    Sun {},
     /// From a point into every direction.
     Point {
         /// Weakening with distance.
@@ -50,22 +51,22 @@ pub enum LightKind {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Light {
-    /// Linear colour.
+    /// Linear color.
     pub color: [f64; 3],
-    /// Factor on the colour.
+    /// Factor on the color.
     pub intensity: f64,
-    /// Directional, point or spot.
+    /// Sun, point or spot.
     pub light: LightKind,
 }
 
 impl Light {
-    /// White, directional, of intensity 2.
+    /// White, of intensity 2.
     pub fn sun() -> Self {
-        Self { color: [1.0; 3], intensity: 2.0, light: LightKind::Directional {} }
+        Self { color: [1.0; 3], intensity: 2.0, light: LightKind::Sun {} }
     }
 }
 
-/// What surrounds the scene. Colours are linear.
+/// What surrounds the scene. Colors are linear.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Environment {

@@ -43,7 +43,7 @@ pub const MAX_ENTRY_VALUES: usize = 65_536;
 
 /// Fewest and most points of a curve.
 pub const POINTS: [usize; 2] = [2, 256];
-/// Fewest and most corners of an outline.
+/// Fewest and most corners of a profile.
 pub const CORNERS: [usize; 2] = [3, 256];
 
 /// Largest file that a shape or modifier keeps in the scene, in bytes.
@@ -80,13 +80,13 @@ pub const TURN: Limits = Limits { soft: [-180.0, 180.0], hard: [-3600.0, 3600.0]
 pub const COUNT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
 /// Blend radius.
 pub const BLEND_RADIUS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
-/// Steps and columns of a joint.
+/// Steps and columns of a blend.
 pub const STEPS: Limits = Limits { soft: [1.0, 12.0], hard: [1.0, 64.0], unit: "" };
 /// Most siblings that a node names as not to be blended with.
 pub const MAX_APART: usize = 64;
 /// Shares and reflectances.
 pub const UNIT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
-/// Light intensities and emitted colours.
+/// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 1e6], unit: "" };
 /// Blinn-Phong exponent.
 pub const SHININESS: Limits = Limits { soft: [1.0, 256.0], hard: [1.0, 1e4], unit: "" };
@@ -124,13 +124,13 @@ pub const SPACING: Limits = Limits { soft: [0.01, 5.0], hard: [1e-6, 1e6], unit:
 pub const COPIES: Limits = Limits { soft: [0.0, 16.0], hard: [0.0, 1e6], unit: "" };
 /// Angles in degrees.
 pub const ANGLE: Limits = Limits { soft: [-180.0, 180.0], hard: [-1e4, 1e4], unit: "°" };
-/// Angles per length, in degrees per metre.
+/// Angles per length, in degrees per meter.
 pub const CURVATURE: Limits = Limits { soft: [-360.0, 360.0], hard: [-3.6e4, 3.6e4], unit: "°/m" };
 /// Change of width per height.
 pub const TAPER: Limits = Limits { soft: [-1.0, 1.0], hard: [-1e3, 1e3], unit: "/m" };
 /// How far a displacement moves the surface.
 pub const AMPLITUDE: Limits = Limits { soft: [0.0, 0.5], hard: [0.0, 1e6], unit: "m" };
-/// The same, outwards or inwards.
-pub const RELIEF: Limits = Limits { soft: [-0.5, 0.5], hard: [-1e6, 1e6], unit: "m" };
+/// The same, outward or inward.
+pub const DISPLACEMENT: Limits = Limits { soft: [-0.5, 0.5], hard: [-1e6, 1e6], unit: "m" };
 /// Width of what is repeated side by side.
 pub const TILE: Limits = Limits { soft: [0.1, 5.0], hard: [1e-4, 1e6], unit: "m" };

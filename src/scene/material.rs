@@ -1,4 +1,4 @@
-//! Materials: shared by id, so that one edit changes every object that wears it.
+//! Materials: shared by id, so that one edit changes every object that uses it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -22,7 +22,7 @@ impl std::fmt::Display for MaterialId {
     }
 }
 
-/// Lambert diffuse with a Blinn-Phong highlight. Colours are linear Rec. 709.
+/// Lambert diffuse with a Blinn-Phong highlight. Colors are linear Rec. 709.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -36,12 +36,12 @@ pub struct Material {
     pub specular: f64,
     /// Blinn-Phong exponent, from 1.
     pub shininess: f64,
-    /// Emitted colour.
+    /// Emitted color.
     pub emission: [f64; 3],
 }
 
 impl Material {
-    /// A matt plastic of the given colour.
+    /// A matte plastic of the given color.
     pub fn new(id: MaterialId, name: impl Into<String>, albedo: [f64; 3]) -> Self {
         Self { id, name: name.into(), albedo, specular: 0.25, shininess: 48.0, emission: [0.0; 3] }
     }

@@ -3,7 +3,7 @@
 //! from it.
 //!
 //! To add one: an entry here, what it does to bounds and steps in `flat/modify.rs`, how many rows it has in
-//! `flat/arrays.rs`, `mod_name_…` in `flat/twin/modifier.rs` and in `shaders/mod/`.
+//! `flat/arrays.rs`, `mod_name_…` in `flat/eval/modifier.rs` and in `shaders/mod/`.
 
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -12,7 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::attachment::{Attached, Attachment};
 use super::heights::Heights;
 use super::limits::{
-    AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, COUNT, CURVATURE, POSITION, RELIEF, SIZE, SPACING, TAPER, THICKNESS, TILE,
+    AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, COUNT, CURVATURE, DISPLACEMENT, POSITION, SIZE, SPACING, TAPER, THICKNESS,
+    TILE,
 };
 use super::{Axis, Limits, whole};
 
@@ -188,7 +189,7 @@ modifiers! {
         blend: f64 = 0.0, BLEND_RADIUS;
     }
     /// Copies at equal distances along X, Y and Z. Exact for any content, also where it reaches into other cells.
-    Repeat = "Repeat" {
+    Repeat = "Array" {
         /// How many along each axis: 1 is no repetition, 0 is without end in both directions.
         counts: [u32; 3] = [3, 1, 1], COPIES;
         /// From one copy to the next, along each axis.
@@ -206,7 +207,7 @@ modifiers! {
         carve_to: [u32; 3] = [0; 3], COPIES;
     }
     /// Copies around the Y axis.
-    Polar = "Polar repeat" {
+    Polar = "Radial array" {
         /// How many all around.
         count: u32 = 6, AROUND;
         /// How far the content is moved out along X first.
@@ -227,19 +228,19 @@ modifiers! {
         /// Each copy stands on both sides of the plane at right angles to the axis; what crosses the plane is cut there.
         mirrored: [bool; 3] = [true, false, false], POSITION;
     }
-    /// Turned around the Y axis, more with every metre of height.
+    /// Turned around the Y axis, more with every meter of height.
     Twist = "Twist" {
-        /// By how much for each metre.
+        /// By how much for each meter.
         angle: f64 = 90.0, CURVATURE;
     }
-    /// What lies along X is bent to an arc towards Y; lengths along the X axis stay.
+    /// What lies along X is bent to an arc toward Y; lengths along the X axis stay.
     Bend = "Bend" {
-        /// By how much for each metre along X; negative bends down.
+        /// By how much for each meter along X; negative bends down.
         angle: f64 = 45.0, CURVATURE;
     }
     /// Wider or narrower in X and Z with height.
     Taper = "Taper" {
-        /// How much of the width at the origin is added for each metre of height.
+        /// How much of the width at the origin is added for each meter of height.
         change: f64 = -0.4, TAPER;
     }
     /// Cut open at the origin and drawn apart, along each axis.
@@ -249,20 +250,20 @@ modifiers! {
     }
     /// Grown by a radius, its edges rounded with it.
     Round = "Round" {
-        /// How far the surface moves outwards.
+        /// How far the surface moves outward.
         radius: f64 = 0.1, THICKNESS;
     }
     /// Hollow: only a wall around the surface stays, or several within each other.
-    Onion = "Onion" {
+    Onion = "Shell (solidify)" {
         /// Of the wall.
         thickness: f64 = 0.05, THICKNESS;
-        /// How many walls, inwards from the surface.
+        /// How many walls, inward from the surface.
         walls: u32 = 1, WALLS;
         /// Between the middles of two walls.
         spacing: f64 = 0.2, SPACING;
     }
     /// The surface is moved in and out by waves along X, Y and Z.
-    Waves = "Waves" {
+    Waves = "Wave" {
         /// How far at most.
         amplitude: f64 = 0.05, AMPLITUDE;
         /// From one wave to the next.
@@ -282,12 +283,12 @@ modifiers! {
         seed: u32 = 1, SEED;
     }
     /// The surface is moved in and out by an image, which is repeated without end, every other time mirrored.
-    Displacement = "Image displacement" {
+    Displacement = "Displace (image)" {
         /// Its pixels are heights; an image larger than 256 pixels is made smaller. Nothing happens without one.
         #[serde(default)]
         image: Attachment<Heights> = Attachment::NONE, COUNT;
-        /// How far what is white moves outwards, or inwards where it is negative; what is black stays.
-        height: f64 = 0.1, RELIEF;
+        /// How far what is white moves outward, or inward where it is negative; what is black stays.
+        height: f64 = 0.1, DISPLACEMENT;
         /// Width of the image.
         tile: f64 = 1.0, TILE;
         /// The image is seen upright from where this axis points to, its middle at the origin.

@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::{Blend, Joining, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
+use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
 use crate::geometry::Transform;
 
 /// Stable identity of a node; never reused within a document.
@@ -41,7 +41,7 @@ pub struct Node {
     /// Cut away from what precedes it in its group instead of joined; objects and groups only.
     pub negative: bool,
     /// How it blends with its siblings; objects and groups only.
-    pub joining: Joining,
+    pub blend_override: BlendOverride,
     /// Siblings with which it does not blend, nor they with it; what is no sibling does not count. Objects and
     /// groups only.
     pub apart: Vec<NodeId>,
@@ -63,7 +63,7 @@ impl Node {
             visible: true,
             locked: false,
             negative: false,
-            joining: Joining::Inherit,
+            blend_override: BlendOverride::Inherit,
             apart: Vec::new(),
             transform: Transform::IDENTITY,
             modifiers: Vec::new(),
@@ -114,7 +114,7 @@ pub enum NodeKind {
     Group(Group),
     /// A shape with a material.
     Object(Object),
-    /// Triangles from a glTF file, rasterised.
+    /// Triangles from a glTF file, rasterized.
     Mesh(MeshNode),
     /// A light.
     Light(Light),
@@ -128,12 +128,12 @@ pub enum NodeKind {
 pub struct Group {
     /// How each later child joins what precedes it.
     pub operator: Operator,
-    /// How round the joints are, those of negative children too.
+    /// How round the blends are, those of negative children too.
     pub blend: Blend,
-    /// Full width of grooves and tongues, diameter of pipes, in metres.
+    /// Full width of grooves and tongues, diameter of pipes, in meters.
     #[serde(default = "usual_width", skip_serializing_if = "is_usual_width")]
     pub width: f64,
-    /// Depth of grooves and engravings, height of tongues, in metres.
+    /// Depth of grooves and engravings, height of tongues, in meters.
     #[serde(default = "usual_depth", skip_serializing_if = "is_usual_depth")]
     pub depth: f64,
     /// How far a morph has come, from 0, the first child, to 1, the next.
@@ -201,8 +201,8 @@ pub struct MeshNode {
 pub struct CameraNode {
     /// Full vertical angle of view, in degrees.
     pub fov_y: f64,
-    /// Nearest distance seen, in metres: from the eye along the ray of each pixel, as depth is, not along the view axis.
+    /// Nearest distance seen, in meters: from the eye along the ray of each pixel, as depth is, not along the view axis.
     pub near: f64,
-    /// Farthest distance seen, in metres, along the ray of each pixel.
+    /// Farthest distance seen, in meters, along the ray of each pixel.
     pub far: f64,
 }

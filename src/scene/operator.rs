@@ -29,7 +29,7 @@ pub enum Operator {
     Engrave,
     /// Between a and b: the share of b's field, the rest of a's.
     Morph,
-    /// a, wearing the material of b where it is in b.
+    /// a, with the material of b where it is in b.
     Paint,
 }
 
@@ -56,13 +56,13 @@ impl Operator {
             Self::Union => "Union",
             Self::Intersection => "Intersection",
             Self::Difference => "Difference",
-            Self::Xor => "Exclusive or",
+            Self::Xor => "Exclude (XOR)",
             Self::Pipe => "Pipe",
             Self::Groove => "Groove",
-            Self::Tongue => "Tongue",
+            Self::Tongue => "Ridge",
             Self::Engrave => "Engrave",
             Self::Morph => "Morph",
-            Self::Paint => "Paint",
+            Self::Paint => "Color projection",
         }
     }
 
@@ -75,19 +75,19 @@ impl Operator {
             Self::Xor => "What is in one child but not in the next",
             Self::Pipe => "A tube along the curve where the surfaces meet",
             Self::Groove => "The first child with a groove along the surface of each later one",
-            Self::Tongue => "The first child with a tongue along the surface of each later one",
+            Self::Tongue => "The first child with a ridge along the surface of each later one",
             Self::Engrave => "The first child with a V cut along the surface of each later one",
             Self::Morph => "Between the first child and the next",
-            Self::Paint => "The shape of the first child in the colours of the later ones",
+            Self::Paint => "The shape of the first child in the colors of the later ones",
         }
     }
 
-    /// Whether its joints have a kernel and a radius; for [`Operator::Paint`] the radius is that of the soft edge.
+    /// Whether its blends have a kernel and a radius; for [`Operator::Paint`] the radius is that of the soft edge.
     pub fn has_radius(self) -> bool {
         !matches!(self, Self::Pipe | Self::Morph)
     }
 
-    /// Whether its joints have a kernel.
+    /// Whether its blends have a kernel.
     pub fn has_kernel(self) -> bool {
         self.has_radius() && self != Self::Paint
     }
@@ -108,20 +108,22 @@ impl Operator {
     }
 }
 
-/// The curve with which a blend rounds or cuts the joint. All are convex combinations of the operands, so the
+/// The curve with which a blend rounds or cuts the edge. All are convex combinations of the operands, so the
 /// field stays safe to step by, and all give the same greatest thickening at equal radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BlendKernel {
-    /// A circular arc: at a right-angled joint, a fillet whose radius is the blend radius.
+    /// A circular arc: at a right-angled corner, a fillet whose radius is the blend radius.
     Circular,
     /// A parabola: softer ends, a little wider.
     Quadratic,
     /// A cubic: curvature without a jump, widest.
     Cubic,
-    /// A flat bevel with softened ends. Of all smooth joints of one thickening it adds the least volume but for 4 %:
-    /// a joint's profile is convex and leaves the middle at 45°, so that it never lies below the bevel.
-    Lean,
+    /// A flat bevel with softened ends. Of all smooth blends of one thickening it adds the least volume but for 4 %:
+    /// a blend's profile is convex and leaves the middle at 45°, so that it never lies below the bevel.
+    /// Earlier files call it `lean`.
+    #[serde(alias = "lean")]
+    SmoothChamfer,
     /// A flat bevel of 45° that touches the fillet of the same radius in its middle.
     Chamfer,
     /// Steps, whose edges lie on the bevel.
@@ -133,10 +135,10 @@ pub enum BlendKernel {
 impl BlendKernel {
     /// Every kernel, in the order of the user interface.
     pub const ALL: [Self; 7] =
-        [Self::Circular, Self::Quadratic, Self::Cubic, Self::Lean, Self::Chamfer, Self::Stairs, Self::Columns];
+        [Self::Circular, Self::Quadratic, Self::Cubic, Self::SmoothChamfer, Self::Chamfer, Self::Stairs, Self::Columns];
 
-    /// Thickening at a joint of equal distances, per blend radius, for every kernel: 1 − 1/√2, what a
-    /// fillet of radius 1 adds at the middle of a right-angled joint. For steps and columns the greatest.
+    /// Thickening at a blend of equal distances, per blend radius, for every kernel: 1 − 1/√2, what a
+    /// fillet of radius 1 adds at the middle of a right-angled corner. For steps and columns the greatest.
     pub const THICKENING: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
     /// Name for people.
@@ -145,20 +147,20 @@ impl BlendKernel {
             Self::Circular => "Circular",
             Self::Quadratic => "Quadratic",
             Self::Cubic => "Cubic",
-            Self::Lean => "Lean",
+            Self::SmoothChamfer => "Minimal",
             Self::Chamfer => "Chamfer",
-            Self::Stairs => "Stairs",
+            Self::Stairs => "Steps",
             Self::Columns => "Columns",
         }
     }
 
-    /// What the joint looks like, for people.
+    /// What the blend looks like, for people.
     pub fn help(self) -> &'static str {
         match self {
             Self::Circular => "A fillet with a round section",
             Self::Quadratic => "Softer ends, a little wider",
             Self::Cubic => "The softest and widest",
-            Self::Lean => "A smooth bevel that adds the least volume",
+            Self::SmoothChamfer => "A smooth bevel that adds the least volume",
             Self::Chamfer => "A flat bevel of 45°",
             Self::Stairs => "Steps whose edges lie on the bevel",
             Self::Columns => "Round columns that touch the bevel",
@@ -170,14 +172,14 @@ impl BlendKernel {
         matches!(self, Self::Stairs | Self::Columns)
     }
 
-    /// Whether the joint is smooth: its derivative has no jump.
+    /// Whether the blend is smooth: its derivative has no jump.
     pub fn is_smooth(self) -> bool {
-        matches!(self, Self::Circular | Self::Quadratic | Self::Cubic | Self::Lean)
+        matches!(self, Self::Circular | Self::Quadratic | Self::Cubic | Self::SmoothChamfer)
     }
 
     /// Support per blend radius: where the operands' distances differ by more than this times the
     /// radius, the blend is exactly the hard operator. Thickening times 1/(1 − 1/√2), 4 and 6 (the
-    /// normalisation of Quilez, "smooth minimum", 2013–2024); for the lean kernel 8/3, for the bevel 2; for m
+    /// normalization of Quilez, "smooth minimum", 2013–2024); for the smooth chamfer 8/3, for the bevel 2; for m
     /// steps 2m/(m + 1), for m columns 2m/(m + √2 − 1), so that edges and fronts lie on the bevel.
     pub fn support(self, steps: u32) -> f64 {
         let m = f64::from(steps);
@@ -186,7 +188,7 @@ impl BlendKernel {
                 Self::Circular => return 1.0,
                 Self::Quadratic => 4.0,
                 Self::Cubic => 6.0,
-                Self::Lean => 8.0 / 3.0,
+                Self::SmoothChamfer => 8.0 / 3.0,
                 Self::Chamfer => 2.0,
                 Self::Stairs => 2.0 * m / (m + 1.0),
                 Self::Columns => 2.0 * m / (m + std::f64::consts::SQRT_2 - 1.0),
@@ -198,9 +200,10 @@ impl BlendKernel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RadiusUnit {
-    /// Metres.
+    /// Meters.
     #[default]
-    Metres,
+    #[serde(rename = "metres")]
+    Meters,
     /// The size of the operands: of what joins and of what stands so far, the lesser of the largest half extents
     /// of their bounds in the world. What has no end does not count; 1 m where neither has one.
     Size,
@@ -208,13 +211,13 @@ pub enum RadiusUnit {
 
 impl RadiusUnit {
     /// Every unit, in the order of the user interface.
-    pub const ALL: [Self; 2] = [Self::Metres, Self::Size];
+    pub const ALL: [Self; 2] = [Self::Meters, Self::Size];
 
     /// Name for people.
     pub fn label(self) -> &'static str {
         match self {
-            Self::Metres => "Metres",
-            Self::Size => "Share of the size",
+            Self::Meters => "Absolute",
+            Self::Size => "Relative",
         }
     }
 }
@@ -238,34 +241,34 @@ pub struct Blend {
 impl Blend {
     /// No blend.
     pub const HARD: Self =
-        Self { kernel: BlendKernel::Circular, radius: 0.0, unit: RadiusUnit::Metres, steps: few_steps() };
+        Self { kernel: BlendKernel::Circular, radius: 0.0, unit: RadiusUnit::Meters, steps: few_steps() };
 
-    /// A blend with a radius in metres.
+    /// A blend with a radius in meters.
     pub const fn new(kernel: BlendKernel, radius: f64) -> Self {
         Self { kernel, radius, ..Self::HARD }
     }
 
-    /// How far apart two distances may be and still blend. The radius must be in metres.
+    /// How far apart two distances may be and still blend. The radius must be in meters.
     pub fn support(&self) -> f64 {
         self.kernel.support(self.steps) * self.radius
     }
 
-    /// The most that the blend can add to or take from the hard operator's value. The radius must be in metres.
+    /// The most that the blend can add to or take from the hard operator's value. The radius must be in meters.
     pub fn thickening(&self) -> f64 {
         BlendKernel::THICKENING * self.radius
     }
 
-    /// The same in metres, between operands of this size, see [`RadiusUnit::Size`].
-    pub fn in_metres(self, size: f64) -> Self {
+    /// The same in meters, between operands of this size, see [`RadiusUnit::Size`].
+    pub fn in_meters(self, size: f64) -> Self {
         let factor = if self.unit == RadiusUnit::Size { size } else { 1.0 };
-        Self { radius: self.radius * factor, unit: RadiusUnit::Metres, ..self }
+        Self { radius: self.radius * factor, unit: RadiusUnit::Meters, ..self }
     }
 }
 
 /// How a node blends with its siblings; it counts inside of groups.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Joining {
+pub enum BlendOverride {
     /// As its group says.
     #[default]
     Inherit,

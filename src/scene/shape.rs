@@ -1,8 +1,8 @@
 //! Shapes, each with its named parameters. The table below is the only list of them: the enum, the
 //! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
-//! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/twin/sdf/`, `sdf_name` in
-//! `shaders/sdf/`. `src/README.md` shows one. One `with data` is evaluated from numbers that `flat::Body` makes of its
+//! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/eval/sdf/`, `sdf_name` in
+//! `shaders/sdf/`. `src/README.md` shows one. One `with data` is evaluated from numbers that `flat::PreparedShape` makes of its
 //! parameters.
 
 use schemars::JsonSchema;
@@ -34,7 +34,7 @@ const DATA_PARAMETER_ROWS: usize = 2;
 shapes! {
     /// A ball.
     Sphere = sdf_sphere, "Sphere" {
-        /// Distance from the centre to the surface.
+        /// Distance from the center to the surface.
         radius: f64 = 0.5, SIZE;
     }
     /// A ball stretched along its axes; exact distance.
@@ -42,7 +42,7 @@ shapes! {
         /// Half axes along X, Y and Z.
         radii: [f64; 3] = [0.7, 0.4, 0.5], SIZE;
     }
-    /// A cuboid, its edges rounded inwards so that its size stays.
+    /// A cuboid, its edges rounded inward so that its size stays.
     Box = sdf_box, "Box" {
         /// Edge lengths.
         size: [f64; 3] = [1.0; 3], SIZE;
@@ -63,7 +63,7 @@ shapes! {
         /// Of the tube.
         minor_radius: f64 = 0.15, SIZE;
     }
-    /// A cylinder along the Y axis, its edges rounded inwards.
+    /// A cylinder along the Y axis, its edges rounded inward.
     Cylinder = sdf_cylinder, "Cylinder" {
         /// From the axis to the side.
         radius: f64 = 0.5, SIZE;
@@ -73,7 +73,7 @@ shapes! {
         rounding: f64 = 0.0, THICKNESS;
     }
     /// A cone along the Y axis, cut flat at both ends.
-    CappedCone = sdf_capped_cone, "Capped cone" {
+    CappedCone = sdf_capped_cone, "Truncated cone" {
         /// Radius of the lower cap.
         bottom_radius: f64 = 0.5, SIZE;
         /// Radius of the upper cap.
@@ -83,11 +83,11 @@ shapes! {
     }
     /// The hull of two balls on the Y axis.
     RoundCone = sdf_round_cone, "Round cone" {
-        /// Radius of the lower ball, whose centre is the lower end.
+        /// Radius of the lower ball, whose center is the lower end.
         bottom_radius: f64 = 0.4, SIZE;
         /// Radius of the upper ball.
         top_radius: f64 = 0.2, SIZE;
-        /// Between the centres of the balls; the origin is half-way.
+        /// Between the centers of the balls; the origin is half-way.
         height: f64 = 0.8, SIZE;
     }
     /// Everything within a distance of a segment.
@@ -110,7 +110,7 @@ shapes! {
     }
     /// A regular octahedron with its corners on the axes.
     Octahedron = sdf_octahedron, "Octahedron" {
-        /// From the centre to a corner.
+        /// From the center to a corner.
         radius: f64 = 0.6, SIZE;
     }
     /// A ring of which only an arc is left, with round ends.
@@ -123,7 +123,7 @@ shapes! {
         half_angle: Degrees = Degrees(120.0), ARC;
     }
     /// A link of a chain: a ring around the Y axis, pulled apart along X.
-    Link = sdf_link, "Link" {
+    Link = sdf_link, "Chain link" {
         /// Of the straight part.
         length: f64 = 0.5, SIZE;
         /// From the middle of a bend to the middle of the tube.
@@ -131,7 +131,7 @@ shapes! {
         /// Of the tube.
         minor_radius: f64 = 0.1, SIZE;
     }
-    /// A cone that opens downwards from its tip at the origin; has no end.
+    /// A cone that opens downward from its tip at the origin; has no end.
     Cone = sdf_cone, "Infinite cone" {
         /// Between the axis and the side.
         half_angle: Degrees = Degrees(30.0), CONE;
@@ -143,14 +143,14 @@ shapes! {
     }
     /// A prism along the Y axis over an isosceles triangle.
     TriangularPrism = sdf_triangular_prism, "Triangular prism" {
-        /// Of the side along X, which lies towards -Z.
+        /// Of the side along X, which lies toward -Z.
         width: f64 = 1.0, SIZE;
         /// From that side to the corner, along Z.
         depth: f64 = 0.87, SIZE;
         /// From cap to cap.
         height: f64 = 0.6, SIZE;
     }
-    /// A prism along the Y axis over a regular polygon, its edges rounded inwards.
+    /// A prism along the Y axis over a regular polygon, its edges rounded inward.
     Prism = sdf_prism, "Prism" {
         /// Of the polygon; a whole number.
         sides: Sides = Sides(5.0), SIDES;
@@ -168,7 +168,7 @@ shapes! {
         /// From the square to the tip; the origin is half-way.
         height: f64 = 0.9, SIZE;
     }
-    /// A prism along the Y axis over a rhombus with its corners on X and Z, its edges rounded inwards.
+    /// A prism along the Y axis over a rhombus with its corners on X and Z, its edges rounded inward.
     Rhombus = sdf_rhombus, "Rhombus" {
         /// From corner to corner along X.
         width: f64 = 1.2, SIZE;
@@ -180,17 +180,17 @@ shapes! {
         rounding: f64 = 0.06, THICKNESS;
     }
     /// A ball cut flat; what is above the cut stays.
-    CutSphere = sdf_cut_sphere, "Cut sphere" {
+    CutSphere = sdf_cut_sphere, "Dome" {
         /// Of the ball.
         radius: f64 = 0.6, SIZE;
-        /// Height of the cut over the ball's centre, within the ball.
+        /// Height of the cut over the ball's center, within the ball.
         cut: f64 = -0.1, POSITION;
     }
     /// A bowl: the skin of a ball, cut open above, with a round rim.
-    HollowCutSphere = sdf_hollow_cut_sphere, "Hollow cut sphere" {
+    HollowCutSphere = sdf_hollow_cut_sphere, "Bowl" {
         /// Of the ball, to the middle of the skin.
         radius: f64 = 0.55, SIZE;
-        /// Height of the cut over the ball's centre, within the ball.
+        /// Height of the cut over the ball's center, within the ball.
         cut: f64 = 0.15, POSITION;
         /// Of the skin.
         thickness: f64 = 0.1, THICKNESS;
@@ -201,7 +201,7 @@ shapes! {
         radius: f64 = 0.6, SIZE;
         /// Of the ball that is cut out; never takes all.
         cut_radius: f64 = 0.45, SIZE;
-        /// Between the centres, along Y.
+        /// Between the centers, along Y.
         distance: f64 = 0.7, SIZE;
     }
     /// The part of a ball within an angle around the Y axis.
@@ -212,7 +212,7 @@ shapes! {
         half_angle: Degrees = Degrees(35.0), SECTOR;
     }
     /// A spindle along the Y axis: an arc turned about its chord.
-    Vesica = sdf_vesica, "Vesica" {
+    Vesica = sdf_vesica, "Spindle" {
         /// From tip to tip.
         height: f64 = 1.3, SIZE;
         /// Where it is thickest; at most the height takes effect.
@@ -220,7 +220,7 @@ shapes! {
     }
     /// A triangle in the XZ plane, with a thickness and round edges.
     Triangle = sdf_triangle, "Triangle" {
-        /// Of the side along X, which lies towards -Z.
+        /// Of the side along X, which lies toward -Z.
         width: f64 = 1.1, SIZE;
         /// From that side to the corner, along Z.
         depth: f64 = 1.0, SIZE;
@@ -235,12 +235,12 @@ shapes! {
         width: f64 = 1.0, SIZE;
         /// Between these sides, along Z.
         depth: f64 = 0.8, SIZE;
-        /// How far the side towards +Z is shifted against the other, along X.
+        /// How far the side toward +Z is shifted against the other, along X.
         skew: f64 = 0.2, POSITION;
         /// From face to face.
         thickness: f64 = 0.08, THICKNESS;
     }
-    /// A prism along the Y axis over a star, its edges rounded inwards.
+    /// A prism along the Y axis over a star, its edges rounded inward.
     Star = sdf_star, "Star" {
         /// Points of the star, one of them on X; a whole number.
         points: Sides = Sides(5.0), SIDES;
@@ -259,7 +259,7 @@ shapes! {
         sides: Sides = Sides(6.0), SIDES;
         /// From the axis to the middle of the polygon.
         major_radius: f64 = 0.5, SIZE;
-        /// From the middle of the polygon to the middle of a side; one of them faces outwards.
+        /// From the middle of the polygon to the middle of a side; one of them faces outward.
         minor_radius: f64 = 0.14, SIZE;
     }
     /// A cube with square holes, in each of its parts again.
@@ -305,7 +305,7 @@ shapes! {
         iterations: f64 = 2.0, SQUARES;
     }
     /// A round tube along a smooth curve through points; its ends are balls.
-    Tube = sdf_tube with data, "Tube" {
+    Tube = sdf_tube with data, "Curve tube" {
         /// Points of the curve, each with a radius.
         points: Points = Points::new([[-0.6, -0.2, 0.0, 0.0], [-0.2, 0.25, 0.15, 0.0], [0.2, -0.25, -0.15, 0.0], [0.6, 0.2, 0.0, 0.0]]), POSITION;
         /// Added to the radius of each point.
@@ -313,24 +313,24 @@ shapes! {
         /// Whether the curve returns to its first point.
         closed: bool = false, COUNT;
     }
-    /// A drawn outline in the XY plane, as thick as its depth along Z.
+    /// A drawn profile in the XY plane, as thick as its depth along Z.
     Extrusion = sdf_extrusion with data, "Extrusion" {
-        /// Corners of the outline; the last is joined to the first.
+        /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::star(5, 0.6, 0.28), POSITION;
-        /// Whether the outline is a smooth curve through the corners.
+        /// Whether the profile is a smooth curve through the corners.
         smooth: bool = false, COUNT;
         /// From face to face.
         depth: f64 = 0.3, SIZE;
-        /// Radius of the edges of the faces, inwards.
+        /// Radius of the edges of the faces, inward.
         rounding: f64 = 0.0, THICKNESS;
     }
-    /// A drawn outline in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
-    Revolution = sdf_revolution with data, "Revolution" {
-        /// Corners of the outline; the last is joined to the first.
+    /// A drawn profile in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
+    Revolution = sdf_revolution with data, "Lathe" {
+        /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::vase(), POSITION;
-        /// Whether the outline is a smooth curve through the corners.
+        /// Whether the profile is a smooth curve through the corners.
         smooth: bool = false, COUNT;
-        /// How far the outline is moved away from the axis.
+        /// How far the profile is moved away from the axis.
         offset: f64 = 0.0, POSITION;
     }
     /// A text of solid letters in the XY plane, as thick as its depth along Z.
@@ -343,7 +343,7 @@ shapes! {
         size: f64 = 0.6, SIZE;
         /// From face to face.
         depth: f64 = 0.15, SIZE;
-        /// Radius of the edges of the faces, inwards.
+        /// Radius of the edges of the faces, inward.
         rounding: f64 = 0.0, THICKNESS;
     }
     /// Hills: fractal noise over a rectangle, solid down to a flat bottom.

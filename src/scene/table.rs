@@ -87,7 +87,7 @@ impl Scene {
         let depths = nest(nodes.iter().map(|n| &**n), None, 0)?;
         let materials: HashSet<MaterialId> = self.materials.iter().map(|m| m.id).collect();
         for node in &nodes {
-            if let Some(id) = worn_by(node).filter(|id| !materials.contains(id)) {
+            if let Some(id) = material_of(node).filter(|id| !materials.contains(id)) {
                 return Err(SceneError::NoMaterial(id));
             }
             self.next_id = self.next_id.max(node.id.0 + 1);
@@ -292,10 +292,10 @@ impl Scene {
         Ok(())
     }
 
-    /// Takes out a material that nothing wears.
+    /// Takes out a material that nothing uses.
     pub fn remove_material(&mut self, id: MaterialId) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == id).ok_or(SceneError::NoMaterial(id))?;
-        if let Some(node) = self.nodes.iter().find(|n| worn_by(n) == Some(id)) {
+        if let Some(node) = self.nodes.iter().find(|n| material_of(n) == Some(id)) {
             return Err(SceneError::MaterialInUse(id, node.id));
         }
         self.materials.remove(at);
@@ -310,7 +310,7 @@ impl Scene {
     }
 
     fn check_material(&self, node: &Node) -> Result<(), SceneError> {
-        match worn_by(node) {
+        match material_of(node) {
             Some(id) if self.material(id).is_none() => Err(SceneError::NoMaterial(id)),
             _ => Ok(()),
         }
@@ -399,7 +399,7 @@ fn nest<'a>(
 }
 
 /// The material that a node refers to.
-fn worn_by(node: &Node) -> Option<MaterialId> {
+fn material_of(node: &Node) -> Option<MaterialId> {
     match &node.kind {
         NodeKind::Object(object) => Some(object.material),
         NodeKind::Mesh(mesh) => mesh.material,

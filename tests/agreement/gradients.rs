@@ -1,11 +1,11 @@
-//! The GPU's gradients and materials are the CPU twin's: for every operator with every kernel, by every evaluator. Normals
-//! are these gradients, and the weights of joints make them; shapes have a test of their own beside `render::kernel::dual`.
+//! The GPU's gradients and materials are the CPU evaluator's: for every operator with every kernel, by every evaluator. Normals
+//! are these gradients, and the weights of blends make them; shapes have a test of their own beside `render::wgsl::dual`.
 
 use glam::{DVec3, Vec3Swizzles as _};
-use isolith::flat::twin::{SurfacePoint, surface};
+use isolith::flat::eval::{SurfacePoint, surface};
 use isolith::flat::{Component, FlatScene, flatten};
-use isolith::render::kernel::{Evaluator, Features, Options, Skipping, Structure};
 use isolith::render::probe::{self, ProbedSurface};
+use isolith::render::wgsl::{Evaluator, OpSet, Options, SkipMode, Structure};
 use isolith::scene::{
     Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape,
 };
@@ -15,9 +15,9 @@ use crate::gpu::shared;
 
 /// Points at random places, and as many on the surface.
 const POINTS: usize = 600;
-/// How far gradients, and colours, may be from each other.
+/// How far gradients, and colors, may be from each other.
 const TOLERANCE: f64 = 2e-3;
-/// Around a point, in metres: where the gradient turns by more than [`KINK`] within it, rounding decides.
+/// Around a point, in meters: where the gradient turns by more than [`KINK`] within it, rounding decides.
 const NEAR: f64 = 2e-5;
 const KINK: f64 = 5e-3;
 
@@ -33,7 +33,7 @@ fn scene(group: Group) -> Scene {
     let object = |i: u64, shape, at: [f64; 3]| {
         Node::new("", NodeKind::Object(Object { shape, material: MaterialId(i + 2) })).at(at.into())
     };
-    let top = add(None, Node::new("Joint", NodeKind::Group(group)));
+    let top = add(None, Node::new("Blend", NodeKind::Group(group)));
     add(Some(top), object(0, Shape::Box { size: [0.9, 0.6, 0.8], rounding: 0.05 }, [0.0; 3]));
     add(Some(top), object(1, Shape::Sphere { radius: 0.42 }, [0.1, 0.33, 0.16]));
     let inner = add(Some(top), Node::new("Inner", NodeKind::Group(group)).at([-0.3, 0.05, 0.1].into()));
@@ -73,7 +73,7 @@ fn difference(found: &SurfacePoint, albedo: DVec3) -> f64 {
     (found.material.albedo - albedo).length()
 }
 
-/// The first disagreement between the twin and what was found.
+/// The first disagreement between the CPU evaluator and what was found.
 fn compare(flat: &FlatScene, component: &Component, points: &[DVec3], found: &[ProbedSurface]) -> Result<(), String> {
     assert_eq!(points.len(), found.len());
     for (p, gpu) in points.iter().zip(found) {
@@ -114,14 +114,14 @@ fn gradients_of_every_operator_agree() {
             on_surface.len()
         );
         let all = [on_surface.clone(), anywhere].concat();
-        let features = Features::of(&flat);
-        // Where no surface is near, pruned lists hold a bound and no gradient.
+        let ops = OpSet::of(&flat);
+        // Where no surface is near, tapes hold a bound and no gradient.
         for (evaluator, points) in [
-            (Evaluator::Interpreted(features.clone()), &all),
-            (Evaluator::Pruned(features), &on_surface),
-            (Evaluator::Specialised(Structure::of(&flat, component).expect("it is small")), &all),
+            (Evaluator::Interpreter(ops.clone()), &all),
+            (Evaluator::Tape(ops), &on_surface),
+            (Evaluator::StraightLine(Structure::of(&flat, component).expect("it is small")), &all),
         ] {
-            let options = Options { skipping: Skipping::Selects, ..Options::default() };
+            let options = Options { skip_mode: SkipMode::Selects, ..Options::default() };
             let found = probe::surface(&shared().gpu, &flat, 0, points, &evaluator, options).unwrap();
             compare(&flat, component, points, &found).unwrap_or_else(|fault| panic!("{name}, {evaluator:?}: {fault}"));
         }

@@ -8,23 +8,23 @@ mod narrow;
 use std::path::Path;
 
 use glam::{DQuat, DVec2, DVec3};
-use isolith::flat::Buffers;
-use isolith::flat::truth::truth;
+use isolith::flat::GBuffer;
+use isolith::flat::reference::image::render_reference;
 use isolith::geometry::Camera;
-use isolith::render::Method;
+use isolith::render::EvalStrategy;
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
 
-use crate::gpu::{Subject, shared};
+use crate::gpu::{BenchScene, shared};
 use hand::Seen;
 
 /// Every way to evaluate a component.
-const METHODS: [Method; 3] = [Method::Interpreted, Method::Pruned, Method::Specialised];
+const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
 /// A scene of `tests/cases`, by its name without ending, seen by its own camera.
-fn case(name: &str) -> Subject {
+fn case(name: &str) -> BenchScene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(format!("{name}.json"));
     let scene = file::load(&path).unwrap_or_else(|error| panic!("{error}"));
-    Subject::new(name, &scene, path.parent().map(Path::to_path_buf))
+    BenchScene::new(name, &scene, path.parent().map(Path::to_path_buf))
 }
 
 /// An object of the first material.
@@ -41,13 +41,13 @@ fn scene_of(nodes: impl IntoIterator<Item = Node>) -> Scene {
     scene
 }
 
-/// A picture of the subject on the shared device.
-fn draw(subject: &Subject, size: [u32; 2], method: Method) -> Buffers {
+/// A picture of the bench_scene on the shared device.
+fn draw(bench_scene: &BenchScene, size: [u32; 2], strategy: EvalStrategy) -> GBuffer {
     let renderer = &mut shared().renderer;
-    renderer.set_method(method);
-    let picture = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
-    let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", subject.name));
-    assert!(unfinished.is_empty(), "{}: {unfinished:?}", subject.name);
+    renderer.set_strategy(strategy);
+    let picture = renderer.render(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &mut |_| true);
+    let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{}: {error}", bench_scene.name));
+    assert!(unfinished.is_empty(), "{}: {unfinished:?}", bench_scene.name);
     buffers
 }
 
@@ -68,7 +68,7 @@ fn looking(target: DVec3, distance: f64, degrees: f64, [width, height]: [u32; 2]
 /// Depth may be off by 0.05 footprints, where the ray meets the surface at an angle by what 0.02 footprints to the side come
 /// to besides, and by four roundings of f32, in which depth is stored. Rays that pass an outline by less than 0.02 footprints
 /// may be on either side of it.
-fn faults(picture: &Buffers, camera: &Camera, seen: &dyn Fn(&isolith::geometry::Ray) -> Seen) -> (Vec<String>, usize) {
+fn faults(picture: &GBuffer, camera: &Camera, seen: &dyn Fn(&isolith::geometry::Ray) -> Seen) -> (Vec<String>, usize) {
     let size = DVec2::new(picture.width.into(), picture.height.into());
     let footprint = camera.footprint(size.y);
     let (mut wrong, mut hits) = (Vec::new(), 0);
@@ -102,22 +102,22 @@ fn faults(picture: &Buffers, camera: &Camera, seen: &dyn Fn(&isolith::geometry::
     (wrong, hits)
 }
 
-/// Draws the subject by the methods and compares each picture with what `seen` says.
+/// Draws the bench_scene by the methods and compares each picture with what `seen` says.
 fn check(
-    subject: &Subject,
+    bench_scene: &BenchScene,
     size: [u32; 2],
-    methods: &[Method],
+    strategies: &[EvalStrategy],
     seen: &dyn Fn(&isolith::geometry::Ray) -> Seen,
 ) -> Vec<String> {
     let pixels = (size[0] * size[1]) as usize;
     let mut all = Vec::new();
-    for method in methods {
-        let (wrong, hits) = faults(&draw(subject, size, *method), &subject.camera, seen);
-        assert!(hits > pixels / 200, "{}: only {hits} of {pixels} pixels show something", subject.name);
+    for strategy in strategies {
+        let (wrong, hits) = faults(&draw(bench_scene, size, *strategy), &bench_scene.camera, seen);
+        assert!(hits > pixels / 200, "{}: only {hits} of {pixels} pixels show something", bench_scene.name);
         if let Some(first) = wrong.first() {
             let middle = &wrong[wrong.len() / 2];
-            let name = &subject.name;
-            all.push(format!("{name}, {size:?}, {method:?}: {} of {hits} wrong: {first}; {middle}", wrong.len()));
+            let name = &bench_scene.name;
+            all.push(format!("{name}, {size:?}, {strategy:?}: {} of {hits} wrong: {first}; {middle}", wrong.len()));
         }
     }
     all
@@ -126,17 +126,17 @@ fn check(
 /// Draws a case by all methods and compares each with the reference: no pixel but those whose ray passes an edge within
 /// rounding may show another thing, or be off by more than a footprint.
 fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
-    let subject = case(name);
-    let right = truth(&subject.flat, &subject.meshes, &subject.camera, size, &|_| ());
+    let bench_scene = case(name);
+    let right = render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &|_| ());
     let right = right.unwrap_or_else(|error| panic!("{name}: {error}"));
     let mut all = Vec::new();
-    for method in METHODS {
-        let picture = draw(&subject, size, method);
+    for strategy in STRATEGIES {
+        let picture = draw(&bench_scene, size, strategy);
         let shown = picture.depth.iter().filter(|d| d.is_finite()).count();
         assert!(shown > picture.depth.len() / 200, "{name}: {shown} pixels show something");
-        let accuracy = isolith::flat::Accuracy::against(&picture, &subject.flat, &right);
+        let accuracy = isolith::flat::Accuracy::against(&picture, &bench_scene.flat, &right);
         if accuracy.wrong > 0 || !accuracy.faults().is_empty() {
-            all.push(format!("{name}, {method:?}: {accuracy:?}"));
+            all.push(format!("{name}, {strategy:?}: {accuracy:?}"));
         }
     }
     all

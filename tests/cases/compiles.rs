@@ -5,27 +5,27 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use isolith::flat::flatten;
-use isolith::flat::truth::truth;
-use isolith::render::Method;
-use isolith::render::kernel::lists_are_cheaper;
+use isolith::flat::reference::image::render_reference;
+use isolith::render::EvalStrategy;
+use isolith::render::wgsl::tapes_are_cheaper;
 use isolith::scene::{ShapeKind, file};
 
-use crate::gpu::{Subject, scenes};
+use crate::gpu::{BenchScene, scenes};
 
 fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/numerics").join(name)
 }
 
-/// Every component of the scene, and whether the window draws it by lists.
+/// Every component of the scene, and whether the window draws it by tapes.
 fn listed(flat: &isolith::flat::FlatScene) -> Vec<bool> {
     let leaves = flat.nodes.iter().filter(|node| node.is_leaf());
     let kinds: BTreeSet<ShapeKind> = leaves.map(|node| ShapeKind::ALL[(node.code & 0xffff) as usize]).collect();
-    flat.components.iter().map(|component| lists_are_cheaper(flat, component, &kinds)).collect()
+    flat.components.iter().map(|component| tapes_are_cheaper(flat, component, &kinds)).collect()
 }
 
-/// By straight-line code these 60 blended tubes take nine times as long as by lists.
+/// By straight-line code these 60 blended tubes take nine times as long as by tapes.
 #[test]
-fn a_blend_of_many_dear_leaves_is_drawn_by_lists() {
+fn a_blend_of_many_dear_leaves_is_drawn_by_tapes() {
     let scene = file::load(&case("auto_is_slow_60_tube.json")).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(listed(&flatten(&scene, 0.0).expect("within the limits")), [true]);
 }
@@ -39,23 +39,28 @@ fn small_groups_are_drawn_by_straight_line_code() {
     }
 }
 
-/// A hundred groups, each the second child of the one before: what a walk puts aside is compiled into its kernel.
+/// A hundred groups, each the second child of the one before: what a walk puts aside is compiled into its pipeline.
 #[test]
 fn deep_nests_are_drawn_right_and_put_little_aside() {
     let scene = file::load(&case("deep_nest_100_alternating.json")).unwrap_or_else(|error| panic!("{error}"));
-    let subject = Subject::new("deep nest", &scene, None);
-    assert!(subject.flat.components.iter().all(|component| component.stack <= 8), "{:?}", subject.flat.components[0]);
+    let bench_scene = BenchScene::new("deep nest", &scene, None);
+    assert!(
+        bench_scene.flat.components.iter().all(|component| component.stack <= 8),
+        "{:?}",
+        bench_scene.flat.components[0]
+    );
     const SIDE: u32 = 64;
-    let meant = truth(&subject.flat, &subject.meshes, &subject.camera, [SIDE, SIDE], &|_| {}).expect("traced");
-    // Lists tell less of the field away from the surface, so rays pass skins that are a fraction of a pixel thick here.
-    for (method, most) in [(Method::Interpreted, 0), (Method::Specialised, 0), (Method::Pruned, 8)] {
-        let drawn = subject.render(SIDE, method);
+    let meant = render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], &|_| {})
+        .expect("traced");
+    // Tapes tell less of the field away from the surface, so rays pass skins that are a fraction of a pixel thick here.
+    for (strategy, most) in [(EvalStrategy::Interpreter, 0), (EvalStrategy::StraightLine, 0), (EvalStrategy::Tape, 8)] {
+        let drawn = bench_scene.render(SIDE, strategy);
         let differ = |i: &usize| {
             let (a, b) = (drawn.depth[*i], meant.buffers.depth[*i]);
             a.is_finite() != b.is_finite() || a.is_finite() && (a - b).abs() > 1e-3 * b
         };
         let wrong = (0..drawn.depth.len()).filter(differ).count();
-        assert!(wrong <= most, "{method:?}: {wrong}");
+        assert!(wrong <= most, "{strategy:?}: {wrong}");
     }
 }
 

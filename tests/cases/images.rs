@@ -56,14 +56,14 @@ fn read(name: &str, bytes: Vec<u8>) -> Heights {
     file.content().expect("it holds heights").clone()
 }
 
-/// Grey levels of four quarters, 16 by 16 pixels.
+/// Gray levels of four quarters, 16 by 16 pixels.
 const LEVELS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 fn level(x: usize, y: usize) -> f64 {
     LEVELS[2 * (y / 8) + x / 8]
 }
 
-fn grey() -> Vec<u8> {
+fn gray() -> Vec<u8> {
     (0..256).map(|i| (255.0 * level(i % 16, i / 16)).round() as u8).collect()
 }
 
@@ -103,12 +103,12 @@ fn photos_are_turned_as_they_are_to_be_shown() {
         let mut png = Vec::new();
         let mut encoder = PngEncoder::new(&mut png);
         encoder.set_exif_metadata(exif(orientation)).expect("PNG has a place for it");
-        encoder.write_image(&grey(), 16, 16, ExtendedColorType::L8).expect("memory takes all");
+        encoder.write_image(&gray(), 16, 16, ExtendedColorType::L8).expect("memory takes all");
         assert_quarters(&read("x.png", png), expected, &format!("PNG, orientation {orientation}"));
         let mut jpeg = Vec::new();
         let mut encoder = JpegEncoder::new_with_quality(&mut jpeg, 100);
         encoder.set_exif_metadata(exif(orientation)).expect("JPEG has a place for it");
-        encoder.write_image(&grey(), 16, 16, ExtendedColorType::L8).expect("memory takes all");
+        encoder.write_image(&gray(), 16, 16, ExtendedColorType::L8).expect("memory takes all");
         assert_quarters(&read("x.jpg", jpeg), expected, &format!("JPEG, orientation {orientation}"));
     }
 }
@@ -154,7 +154,7 @@ fn every_kind_of_pixel_is_a_height() {
     assert!((quarters(&read("16.png", png(16, 0, &[], &lines(&deep))))[0] - 0.2).abs() < 1e-5);
     // What is hidden by alpha has a height all the same.
     let faint = |x, y| [flat(x, y), vec![7]].concat();
-    assert_quarters(&read("la.png", png(8, 4, &[], &lines(&faint))), LEVELS, "grey and alpha");
+    assert_quarters(&read("la.png", png(8, 4, &[], &lines(&faint))), LEVELS, "gray and alpha");
     let color = |x, y| flat(x, y).repeat(3);
     assert_quarters(&read("rgb.png", png(8, 2, &[], &lines(&color))), LEVELS, "color");
     let palette: Vec<u8> = LEVELS.iter().flat_map(|v| [(255.0 * v) as u8; 3]).collect();

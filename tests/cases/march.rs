@@ -4,31 +4,32 @@ use std::path::Path;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use glam::{DQuat, DVec3};
-use isolith::flat::compare::GRAZING_ANGLE;
-use isolith::flat::truth::{Truth, truth};
-use isolith::flat::{Buffers, Warning};
+use isolith::flat::reference::accuracy::GRAZING_ANGLE;
+use isolith::flat::reference::image::{ReferenceImage, render_reference};
+use isolith::flat::{GBuffer, Warning};
 use isolith::geometry::Camera;
-use isolith::render::kernel::{Options, Skipping};
-use isolith::render::{Method, Renderer};
+use isolith::render::wgsl::{Options, SkipMode};
+use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{
     Attachment, Blend, BlendKernel, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene,
     Shape, file,
 };
 
-use crate::gpu::{Subject, shared};
+use crate::gpu::{BenchScene, shared};
 
-/// By lists, by specialised kernels, by what the window picks of them.
-const METHODS: [Method; 4] = [Method::Interpreted, Method::Pruned, Method::Specialised, Method::Auto];
+/// By tapes, by specialized pipelines, by what the window picks of them.
+const STRATEGIES: [EvalStrategy; 4] =
+    [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine, EvalStrategy::Auto];
 
-/// Renderers with the kernels of this device, and with those that skip by branches, as graphics cards get them. Lists are
+/// Renderers with the pipelines of this device, and with those that skip by branches, as graphics cards get them. Tapes are
 /// made for components of any size.
 fn renderers() -> MutexGuard<'static, [Renderer; 2]> {
     static RENDERERS: LazyLock<Mutex<[Renderer; 2]>> = LazyLock::new(|| {
         let gpu = shared().gpu.clone();
-        let branches = Options { skipping: Skipping::Branches, ..Options::default() };
+        let branches = Options { skip_mode: SkipMode::Branches, ..Options::default() };
         Mutex::new([Renderer::options(&gpu), branches].map(|options| {
             let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
-            renderer.pruner().prune_all();
+            renderer.tape_cache().build_all();
             renderer
         }))
     });
@@ -55,61 +56,67 @@ const NOTHING: Found = Found { hit_or_miss: 0, grazing: 0, near: 0, other_surfac
 /// See [`Found::near`].
 const NEAR: f64 = 1e-3;
 
-fn found(picture: &Buffers, truth: &Truth, footprint: f64) -> Found {
+fn found(picture: &GBuffer, reference: &ReferenceImage, footprint: f64) -> Found {
     let mut found = NOTHING;
-    for (i, right) in truth.buffers.depth.iter().enumerate() {
+    for (i, right) in reference.buffers.depth.iter().enumerate() {
         let (depth, right) = (f64::from(picture.depth[i]), f64::from(*right));
         if depth.is_finite() != right.is_finite() {
             found.hit_or_miss += 1;
-            let margin = f64::from(truth.margin[i]);
+            let margin = f64::from(reference.margin[i]);
             found.grazing += usize::from(margin <= GRAZING_ANGLE / footprint);
             found.near += usize::from(margin <= NEAR);
         } else if right.is_finite() {
             found.other_surface += usize::from((depth - right).abs() > footprint * right);
-            let [a, b] = [picture, &truth.buffers].map(|buffers| glam::Vec3::from(buffers.normal[i]));
+            let [a, b] = [picture, &reference.buffers].map(|buffers| glam::Vec3::from(buffers.normal[i]));
             found.turned += usize::from(a.dot(b) < 0.0);
         }
     }
     found
 }
 
-fn case(folder: &str, name: &str) -> Subject {
+fn case(folder: &str, name: &str) -> BenchScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(folder);
     let scene = file::load(&folder.join(format!("{name}.json"))).unwrap_or_else(|error| panic!("{error}"));
-    Subject::new(name, &scene, Some(folder))
+    BenchScene::new(name, &scene, Some(folder))
 }
 
-fn reference(subject: &Subject, size: [u32; 2]) -> Truth {
-    truth(&subject.flat, &subject.meshes, &subject.camera, size, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
+fn reference(bench_scene: &BenchScene, size: [u32; 2]) -> ReferenceImage {
+    render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &|_| ())
+        .unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn draw(renderer: &mut Renderer, subject: &Subject, size: [u32; 2], method: Method) -> (Buffers, Vec<Warning>) {
-    renderer.set_method(method);
-    let picture = renderer.render(&subject.flat, &subject.meshes, &subject.camera, size, &mut |_| true);
-    picture.unwrap_or_else(|error| panic!("{}: {error}", subject.name))
+fn draw(
+    renderer: &mut Renderer,
+    bench_scene: &BenchScene,
+    size: [u32; 2],
+    strategy: EvalStrategy,
+) -> (GBuffer, Vec<Warning>) {
+    renderer.set_strategy(strategy);
+    let picture = renderer.render(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &mut |_| true);
+    picture.unwrap_or_else(|error| panic!("{}: {error}", bench_scene.name))
 }
 
-/// Draws the subject by every method, and by branching kernels too where `branching` says so; what is found against `right`
+/// Draws the bench_scene by every method, and by branching pipelines too where `branching` says so; what is found against `right`
 /// must be `allowed` by each.
-fn compare(subject: &Subject, right: &Truth, branching: bool, is_allowed: impl Fn(&Found) -> bool) {
+fn compare(bench_scene: &BenchScene, right: &ReferenceImage, branching: bool, is_allowed: impl Fn(&Found) -> bool) {
     let size = [right.buffers.width, right.buffers.height];
-    let footprint = subject.camera.footprint(f64::from(size[1]));
+    let footprint = bench_scene.camera.footprint(f64::from(size[1]));
     let mut faults = Vec::new();
     for renderer in renderers().iter_mut().take(if branching { 2 } else { 1 }) {
-        for method in METHODS {
-            let (picture, unfinished) = draw(renderer, subject, size, method);
+        for strategy in STRATEGIES {
+            let (picture, unfinished) = draw(renderer, bench_scene, size, strategy);
             let found = found(&picture, right, footprint);
             if !is_allowed(&found) || !unfinished.is_empty() {
-                faults.push(format!("{}, {method:?}: {found:?}, {unfinished:?}", subject.name));
+                faults.push(format!("{}, {strategy:?}: {found:?}, {unfinished:?}", bench_scene.name));
             }
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Every pixel as in the reference, by all methods and kernels.
-fn is_right(subject: &Subject, side: u32) {
-    compare(subject, &reference(subject, [side; 2]), true, |found| *found == NOTHING);
+/// Every pixel as in the reference, by all methods and pipelines.
+fn is_right(bench_scene: &BenchScene, side: u32) {
+    compare(bench_scene, &reference(bench_scene, [side; 2]), true, |found| *found == NOTHING);
 }
 
 fn object(shape: Shape) -> Node {
@@ -140,10 +147,10 @@ fn scene(top: Node, parts: impl IntoIterator<Item = Node>) -> Scene {
 }
 
 /// Seen from above and from the side.
-fn seen(name: &str, scene: &Scene, target: DVec3) -> Subject {
-    let mut subject = Subject::new(name, scene, None);
-    subject.camera = Camera::looking_at(target + turn() * DVec3::new(0.9, 3.1, 1.7), target, 0.75);
-    subject
+fn seen(name: &str, scene: &Scene, target: DVec3) -> BenchScene {
+    let mut bench_scene = BenchScene::new(name, scene, None);
+    bench_scene.camera = Camera::looking_at(target + turn() * DVec3::new(0.9, 3.1, 1.7), target, 0.75);
+    bench_scene
 }
 
 #[test]
@@ -165,9 +172,9 @@ fn is_open(name: &str, target: DVec3, made: impl Fn(f64) -> Scene) {
     let is_allowed =
         |found: &Found| found.hit_or_miss == found.near && found.near <= 1 && found.other_surface + found.turned == 0;
     compare(&flush, &right, true, is_allowed);
-    // Closed by a skin of a millimetre it is told.
+    // Closed by a skin of a millimeter it is told.
     let closed = seen(name, &made(-OUT), target);
-    let (picture, _) = draw(&mut renderers()[0], &closed, [96; 2], Method::Interpreted);
+    let (picture, _) = draw(&mut renderers()[0], &closed, [96; 2], EvalStrategy::Interpreter);
     let found = found(&picture, &right, flush.camera.footprint(96.0));
     assert!(found.other_surface > 50, "{name}: {found:?}");
 }
@@ -218,15 +225,15 @@ fn what_is_taken_from_itself_is_nothing() {
 
 #[test]
 fn what_has_no_thickness_is_nothing() {
-    let mut subject = case("numerics", "zero_sizes");
-    is_right(&subject, 128);
+    let mut bench_scene = case("numerics", "zero_sizes");
+    is_right(&bench_scene, 128);
     let shell = object(Shape::Sphere { radius: 0.7 });
     let shell = |thickness| {
         let onion = Modifier::Onion { thickness, walls: 1, spacing: 0.2 };
         seen("shell", &scene(group(Operator::Union, 0.0), [shell.clone().modified(onion)]), DVec3::ZERO)
     };
-    subject = shell(0.0);
-    is_right(&subject, 64);
+    bench_scene = shell(0.0);
+    is_right(&bench_scene, 64);
     // A thin one is there.
     is_right(&shell(1e-4), 64);
 }
@@ -234,22 +241,22 @@ fn what_has_no_thickness_is_nothing() {
 /// Whether a thing is seen must not depend on how large the picture is.
 #[test]
 fn thin_sheets_are_seen_in_small_pictures_too() {
-    let subject = case("thin-sheet", "sheet");
+    let bench_scene = case("thin-sheet", "sheet");
     for (size, hits) in [([64, 48], Some(676)), ([320, 240], None), ([9, 7], None)] {
-        let right = reference(&subject, size);
+        let right = reference(&bench_scene, size);
         let seen = right.buffers.depth.iter().filter(|depth| depth.is_finite()).count();
         assert!(hits.is_none_or(|hits| seen == hits) && seen > 0, "{seen} hits");
-        compare(&subject, &right, true, |found| *found == NOTHING);
+        compare(&bench_scene, &right, true, |found| *found == NOTHING);
     }
 }
 
 /// A thing of one shape, turned by so many degrees, seen from so far.
-fn alone(shape: Shape, degrees: f64, distance: f64) -> Subject {
+fn alone(shape: Shape, degrees: f64, distance: f64) -> BenchScene {
     let axis = DVec3::new(0.9, 0.1, 0.3).normalize();
     let node = object(shape).rotated(DQuat::from_axis_angle(axis, degrees.to_radians()));
-    let mut subject = Subject::new("alone", &scene(group(Operator::Union, 0.0), [node]), None);
-    subject.camera = Camera::looking_at(DVec3::Z * distance, DVec3::ZERO, 0.7);
-    subject
+    let mut bench_scene = BenchScene::new("alone", &scene(group(Operator::Union, 0.0), [node]), None);
+    bench_scene.camera = Camera::looking_at(DVec3::Z * distance, DVec3::ZERO, 0.7);
+    bench_scene
 }
 
 #[test]
@@ -270,31 +277,31 @@ fn thin_things_are_seen_from_the_side_that_is_entered() {
 
 #[test]
 fn what_is_pressed_flat_keeps_its_pixels() {
-    let subject = case("numerics", "scale_torus_y_1e_4");
+    let bench_scene = case("numerics", "scale_torus_y_1e_4");
     // It ends in edges as sharp as f32 can tell.
     let is_allowed = |found: &Found| {
         found.hit_or_miss == found.grazing && found.grazing <= 4 && found.other_surface + found.turned == 0
     };
-    compare(&subject, &reference(&subject, [256; 2]), true, is_allowed);
+    compare(&bench_scene, &reference(&bench_scene, [256; 2]), true, is_allowed);
 }
 
 /// A turn is 1.5 cm high, a pixel 1 cm wide: where a ray meets it hangs on the rounding of its angle, but it enters there.
 #[test]
 fn what_is_twisted_a_hundred_times_faces_the_eye() {
-    let subject = case("numerics", "twist_100_turns");
+    let bench_scene = case("numerics", "twist_100_turns");
     // As measured; none of these pixels is one in which the reference is sure within a thousandth of a footprint.
     let is_allowed =
         |found: &Found| found.hit_or_miss <= found.near.min(3) && found.other_surface <= 13 && found.turned == 0;
-    compare(&subject, &reference(&subject, [256; 2]), false, is_allowed);
+    compare(&bench_scene, &reference(&bench_scene, [256; 2]), false, is_allowed);
 }
 
 /// A wall faces the eye; one that is entered from inside, at the near plane, has the normal that its field has there.
 #[test]
 fn an_eye_in_a_solid_sees_what_the_reference_sees() {
-    let mut subject = alone(Shape::Sphere { radius: 1.0 }, 0.0, 0.4);
-    is_right(&subject, 32);
-    subject.camera.near = 0.3;
-    is_right(&subject, 32);
+    let mut bench_scene = alone(Shape::Sphere { radius: 1.0 }, 0.0, 0.4);
+    is_right(&bench_scene, 32);
+    bench_scene.camera.near = 0.3;
+    is_right(&bench_scene, 32);
 }
 
 /// The row in the middle of an odd number of rows looks along the upper face: the field is 0 there and never negative, so
@@ -306,12 +313,12 @@ fn rays_along_a_face_pass_it() {
 }
 
 /// A heightmap with one white pixel: as steep as that is, all of it is stepped.
-fn one_white_pixel() -> Subject {
+fn one_white_pixel() -> BenchScene {
     let image = Attachment::drawn("white.png", [256, 256], |x, y| if (x, y) == (160, 104) { 255 } else { 0 });
     let land = object(Shape::Heightmap { image, size: [20.0, 0.5, 20.0], height: 15.0 });
-    let mut subject = Subject::new("one white pixel", &scene(group(Operator::Union, 0.0), [land]), None);
-    subject.camera = Camera::looking_at(DVec3::new(0.0, 1.5, 14.0), DVec3::ZERO, 0.7);
-    subject
+    let mut bench_scene = BenchScene::new("one white pixel", &scene(group(Operator::Union, 0.0), [land]), None);
+    bench_scene.camera = Camera::looking_at(DVec3::new(0.0, 1.5, 14.0), DVec3::ZERO, 0.7);
+    bench_scene
 }
 
 #[test]
@@ -332,9 +339,9 @@ fn rays_that_are_given_up_are_counted_and_reported() {
     let long = cuboid([1.0, 1.0, 1e5]).at(DVec3::new(0.0, -0.5, -5e4 - 1.0));
     let ball = object(Shape::Sphere { radius: 30.0 }).at(DVec3::Z * -2e5);
     let made = scene(group(Operator::Union, 0.0), [long, ball]);
-    let mut subject = Subject::new("long", &made, None);
-    subject.camera = Camera { fov_y: 0.02, ..Camera::looking_at(DVec3::Z, DVec3::ZERO, 0.02) };
-    let (_, warnings) = draw(&mut renderers()[0], &subject, [3, 2047], Method::Specialised);
+    let mut bench_scene = BenchScene::new("long", &made, None);
+    bench_scene.camera = Camera { fov_y: 0.02, ..Camera::looking_at(DVec3::Z, DVec3::ZERO, 0.02) };
+    let (_, warnings) = draw(&mut renderers()[0], &bench_scene, [3, 2047], EvalStrategy::StraightLine);
     let [warning] = &warnings[..] else { panic!("{warnings:?}") };
     assert_eq!(warning.node, made.nodes()[1].id);
     assert!(warning.reason.starts_with("3 rays did not come to an end"), "{}", warning.reason);

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 use isolith::flat::pick::pick;
-use isolith::flat::truth::truth;
-use isolith::flat::{Buffers, NO_LEAF, Warning, flatten};
+use isolith::flat::reference::image::render_reference;
+use isolith::flat::{GBuffer, NO_LEAF, Warning, flatten};
 use isolith::mesh::{MeshLibrary, parse};
-use isolith::render::Method;
+use isolith::render::EvalStrategy;
 use isolith::scene::file;
 use serde_json::{Value, json};
 
-use crate::gpu::Subject;
+use crate::gpu::BenchScene;
 
 /// Pixels along a side of the pictures.
 const SIDE: u32 = 64;
@@ -22,29 +22,29 @@ fn folder() -> PathBuf {
 }
 
 /// A case of the folder, seen through its camera, with its warnings.
-fn case(name: &str) -> (Subject, Vec<Warning>) {
+fn case(name: &str) -> (BenchScene, Vec<Warning>) {
     let scene = file::load(&folder().join(format!("{name}.json"))).unwrap_or_else(|error| panic!("{error}"));
     let flat = flatten(&scene, 0.0).unwrap();
     let (meshes, warnings) = flat.load_meshes(&mut MeshLibrary::new(Some(folder())));
     let camera = flat.cameras[0].camera;
-    (Subject { name: name.into(), flat, meshes, camera }, warnings)
+    (BenchScene { name: name.into(), flat, meshes, camera }, warnings)
 }
 
 /// The picture by the device, after it was compared with the reference: the same pixels hit, in nearly the same place
-/// and colour, but for one at an edge.
-fn picture(subject: &Subject) -> Buffers {
-    let drawn = subject.render(SIDE, Method::Interpreted);
-    let different = differing(&drawn, &reference(subject));
-    assert!(different <= 1, "{}: {different} pixels differ from the reference", subject.name);
+/// and color, but for one at an edge.
+fn picture(bench_scene: &BenchScene) -> GBuffer {
+    let drawn = bench_scene.render(SIDE, EvalStrategy::Interpreter);
+    let different = differing(&drawn, &reference(bench_scene));
+    assert!(different <= 1, "{}: {different} pixels differ from the reference", bench_scene.name);
     drawn
 }
 
-fn reference(subject: &Subject) -> Buffers {
-    truth(&subject.flat, &subject.meshes, &subject.camera, [SIDE; 2], &|_| ()).unwrap().buffers
+fn reference(bench_scene: &BenchScene) -> GBuffer {
+    render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE; 2], &|_| ()).unwrap().buffers
 }
 
-/// How many pixels differ in what is hit, where, or in colour.
-fn differing(drawn: &Buffers, right: &Buffers) -> usize {
+/// How many pixels differ in what is hit, where, or in color.
+fn differing(drawn: &GBuffer, right: &GBuffer) -> usize {
     let differs = |i: &usize| {
         let i = *i;
         let color = (0..3).map(|c| drawn.color[i][c].abs_diff(right.color[i][c])).max();
@@ -54,15 +54,15 @@ fn differing(drawn: &Buffers, right: &Buffers) -> usize {
     (0..drawn.leaf.len()).filter(differs).count()
 }
 
-fn hits(picture: &Buffers) -> usize {
+fn hits(picture: &GBuffer) -> usize {
     picture.leaf.iter().filter(|leaf| **leaf != NO_LEAF).count()
 }
 
-/// The colour where the camera sees a point, each channel as on or off: light and highlights leave a full one at 225.
+/// The color where the camera sees a point, each channel as on or off: light and highlights leave a full one at 225.
 /// `None` where nothing is drawn.
-fn color_at(subject: &Subject, picture: &Buffers, point: DVec3) -> Option<[u8; 3]> {
-    let local = point - subject.camera.position;
-    let half = (subject.camera.fov_y * 0.5).tan() * -local.z;
+fn color_at(bench_scene: &BenchScene, picture: &GBuffer, point: DVec3) -> Option<[u8; 3]> {
+    let local = point - bench_scene.camera.position;
+    let half = (bench_scene.camera.fov_y * 0.5).tan() * -local.z;
     let at = (DVec2::new(local.x, -local.y) / half * 0.5 + 0.5) * f64::from(SIDE);
     let i = at.y as usize * SIDE as usize + at.x as usize;
     let [r, g, b, _] = picture.color[i];
@@ -77,15 +77,15 @@ fn color_at(subject: &Subject, picture: &Buffers, point: DVec3) -> Option<[u8; 3
     }))
 }
 
-/// How many pixels a square of 2 m, 5 m away, takes: 64 / (5 · tan 20°) = 35.2 along each side, in which lie the centres
+/// How many pixels a square of 2 m, 5 m away, takes: 64 / (5 · tan 20°) = 35.2 along each side, in which lie the centers
 /// of 36.
 const SQUARE: usize = 36 * 36;
 
 #[test]
 fn what_says_nothing_of_the_shape_does_not_hide_it() {
     for name in ["feature-id", "matrix-w", "texture-without-source", "zero-morph-target", "hash"] {
-        let (subject, warnings) = case(name);
-        let picture = picture(&subject);
+        let (bench_scene, warnings) = case(name);
+        let picture = picture(&bench_scene);
         assert_eq!(hits(&picture), SQUARE, "{name}");
         let said: Vec<_> = warnings.iter().map(|w| w.reason.as_str()).collect();
         match name {
@@ -106,17 +106,17 @@ const GREEN: Option<[u8; 3]> = Some([0, 255, 0]);
 const BLUE: Option<[u8; 3]> = Some([0, 0, 255]);
 const WHITE: Option<[u8; 3]> = Some([255, 255, 255]);
 
-/// The colours at four points of the square: upper left, upper right, lower left, lower right.
+/// The colors at four points of the square: upper left, upper right, lower left, lower right.
 fn quarters(name: &str, offset: f64) -> [Option<[u8; 3]>; 4] {
-    let (subject, warnings) = case(name);
+    let (bench_scene, warnings) = case(name);
     assert!(warnings.is_empty(), "{name}: {warnings:?}");
-    let picture = picture(&subject);
+    let picture = picture(&bench_scene);
     let points = [[-offset, offset], [offset, offset], [-offset, -offset], [offset, -offset]];
-    points.map(|[x, y]| color_at(&subject, &picture, DVec3::new(x, y, 0.0)))
+    points.map(|[x, y]| color_at(&bench_scene, &picture, DVec3::new(x, y, 0.0)))
 }
 
 #[test]
-fn a_clamped_texture_keeps_the_colour_of_its_edge() {
+fn a_clamped_texture_keeps_the_color_of_its_edge() {
     // The texture fills the middle third.
     for offset in [0.2, 0.5, 0.9] {
         assert_eq!(quarters("clamp", offset), [RED, GREEN, BLUE, WHITE], "{offset}");
@@ -134,38 +134,38 @@ fn texture_coordinates_are_transformed() {
 #[test]
 fn what_is_masked_is_cut_out_and_cannot_be_picked() {
     assert_eq!(quarters("mask", 0.5), [RED, None, RED, None]);
-    let (subject, _) = case("mask");
+    let (bench_scene, _) = case("mask");
     let size = DVec2::splat(f64::from(SIDE));
     let picked = |x: f64| {
-        let ray = subject.camera.ray(DVec2::new(x, 32.0), size);
-        pick(&subject.flat, &subject.meshes, &ray, subject.camera.near, subject.camera.far)
+        let ray = bench_scene.camera.ray(DVec2::new(x, 32.0), size);
+        pick(&bench_scene.flat, &bench_scene.meshes, &ray, bench_scene.camera.near, bench_scene.camera.far)
     };
-    assert_eq!((picked(24.0), picked(40.0)), (Some(subject.flat.meshes[0].id), None));
+    assert_eq!((picked(24.0), picked(40.0)), (Some(bench_scene.flat.meshes[0].id), None));
 }
 
 #[test]
 fn a_skin_stands_where_its_joints_are() {
-    let (subject, warnings) = case("skin");
+    let (bench_scene, warnings) = case("skin");
     assert!(warnings.is_empty(), "{warnings:?}");
-    let mesh = subject.meshes[0].as_ref().unwrap();
+    let mesh = bench_scene.meshes[0].as_ref().unwrap();
     assert_eq!((mesh.bounds.min, mesh.bounds.max), (DVec3::new(1.0, -1.0, 0.0), DVec3::new(3.0, 1.0, 0.0)));
-    let picture = picture(&subject);
-    assert!(color_at(&subject, &picture, DVec3::X * 2.0).is_some());
-    assert!(color_at(&subject, &picture, DVec3::ZERO).is_none());
+    let picture = picture(&bench_scene);
+    assert!(color_at(&bench_scene, &picture, DVec3::X * 2.0).is_some());
+    assert!(color_at(&bench_scene, &picture, DVec3::ZERO).is_none());
 }
 
 #[test]
 fn a_cube_far_from_its_origin_is_a_cube() {
-    let (subject, warnings) = case("utm");
+    let (bench_scene, warnings) = case("utm");
     assert!(warnings.is_empty(), "{warnings:?}");
-    let mesh = subject.meshes[0].as_ref().unwrap();
+    let mesh = bench_scene.meshes[0].as_ref().unwrap();
     let size = mesh.bounds.max - mesh.bounds.min;
     assert!((size - 0.74).abs().max_element() < 1e-6, "{size}");
     // As the same cube that was never far away.
-    let drawn = picture(&subject);
+    let drawn = picture(&bench_scene);
     let side = 0.74_f64;
     let width = f64::from(SIDE) / (2.0 * 20_f64.to_radians().tan());
-    let distance = subject.camera.position.length();
+    let distance = bench_scene.camera.position.length();
     // A cube seen at an angle shows between one and √3 of its sides.
     let least = (side * width / (distance + side)).powi(2);
     let most = 3_f64.sqrt() * (side * width / (distance - side)).powi(2);
@@ -177,23 +177,23 @@ fn a_cube_far_from_its_origin_is_a_cube() {
 
 #[test]
 fn shared_vertices_are_written_once() {
-    let (subject, warnings) = case("grid");
+    let (bench_scene, warnings) = case("grid");
     assert!(warnings.is_empty(), "{warnings:?}");
-    let mesh = subject.meshes[0].as_ref().unwrap();
+    let mesh = bench_scene.meshes[0].as_ref().unwrap();
     assert!(mesh.positions.len() <= 10_000, "{} vertices", mesh.positions.len());
     assert_eq!(mesh.parts.len(), 1);
-    assert_eq!(hits(&picture(&subject)), SQUARE);
+    assert_eq!(hits(&picture(&bench_scene)), SQUARE);
 }
 
 /// The case `clamp` with its JSON changed.
-fn changed(change: impl Fn(&mut Value)) -> Subject {
-    let (mut subject, _) = case("clamp");
+fn changed(change: impl Fn(&mut Value)) -> BenchScene {
+    let (mut bench_scene, _) = case("clamp");
     let text = std::fs::read(folder().join("clamp.gltf")).unwrap();
     let mut json: Value = serde_json::from_slice(&text).unwrap();
     change(&mut json);
     let mesh = parse(&serde_json::to_vec(&json).unwrap(), Path::new("changed"), None).unwrap();
-    subject.meshes = vec![Some(Arc::new(mesh))];
-    subject
+    bench_scene.meshes = vec![Some(Arc::new(mesh))];
+    bench_scene
 }
 
 #[test]

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
 use glam::{DQuat, DVec2, DVec3};
-use isolith::flat::trace::{Hit, Tracer};
-use isolith::flat::truth::truth;
-use isolith::flat::twin::{field, gradient};
+use isolith::flat::eval::{field, gradient};
+use isolith::flat::reference::image::render_reference;
+use isolith::flat::reference::trace::{Hit, Tracer};
 use isolith::flat::{Accuracy, FlatScene, flatten};
 use isolith::geometry::{Camera, Ray};
-use isolith::render::kernel::{Evaluator, Features, Options, Structure};
 use isolith::render::probe;
+use isolith::render::wgsl::{Evaluator, OpSet, Options, Structure};
 use isolith::scene::{
     Blend, Group, MaterialId, Modifier, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind, file,
 };
@@ -53,8 +53,8 @@ fn rays(camera: &Camera, side: u32) -> impl Iterator<Item = Ray> + '_ {
 #[test]
 fn a_convex_solid_shows_only_what_faces_the_eye() {
     const SIDE: u32 = 128;
-    let (flat, camera) = case("numerics/truth_capped_cone_normals.json");
-    let buffers = truth(&flat, &[], &camera, [SIDE, SIDE], &|_| ()).unwrap().buffers;
+    let (flat, camera) = case("numerics/reference_capped_cone_normals.json");
+    let buffers = render_reference(&flat, &[], &camera, [SIDE, SIDE], &|_| ()).unwrap().buffers;
     let mut hits = 0;
     for (i, ray) in rays(&camera, SIDE).enumerate() {
         if buffers.depth[i].is_finite() {
@@ -152,8 +152,8 @@ fn no_shape_turns_its_normal_on_the_gpu_either() {
         let near: Vec<(DVec3, DVec3)> =
             points.iter().flat_map(|(p, n)| (-3..=3).map(move |i| (*p + *n * (f64::from(i) * step), *n))).collect();
         let places: Vec<DVec3> = near.iter().map(|(p, _)| *p).collect();
-        let structure = Structure::of(&flat, &flat.components[0]).expect("one shape has a kernel");
-        for evaluator in [Evaluator::Interpreted(Features::of(&flat)), Evaluator::Specialised(structure)] {
+        let structure = Structure::of(&flat, &flat.components[0]).expect("one shape has a pipeline");
+        for evaluator in [Evaluator::Interpreter(OpSet::of(&flat)), Evaluator::StraightLine(structure)] {
             let found = probe::surface(&gpu, &flat, 0, &places, &evaluator, Options::default()).unwrap();
             for ((p, normal), found) in near.iter().zip(found) {
                 let is_right = found.gradient.dot(*normal) > 0.0 || found.distance == 0.0;
@@ -164,7 +164,7 @@ fn no_shape_turns_its_normal_on_the_gpu_either() {
 }
 
 #[test]
-fn sheets_and_wires_of_a_micrometre_are_hit() {
+fn sheets_and_wires_of_a_micrometer_are_hit() {
     const THIN: f64 = 1e-6;
     let sheet = Shape::Box { size: [4.0, 4.0, THIN], rounding: 0.0 };
     let quad = Shape::Quad { width: 4.0, depth: 4.0, skew: 0.0, thickness: THIN };
@@ -198,7 +198,7 @@ fn sheets_and_wires_of_a_micrometre_are_hit() {
 }
 
 #[test]
-fn a_sheet_of_a_tenth_of_a_millimetre_is_seen_in_pictures_of_any_size() {
+fn a_sheet_of_a_tenth_of_a_millimeter_is_seen_in_pictures_of_any_size() {
     let (flat, camera) = case("thin-sheet/sheet.json");
     for side in [7, 16, 48, 97] {
         let (mut found, mut right) = (0, 0);
@@ -212,7 +212,7 @@ fn a_sheet_of_a_tenth_of_a_millimetre_is_seen_in_pictures_of_any_size() {
     }
 }
 
-/// Where a ray meets the upper face of a slab one metre thick, or the wall of a hole through it: nothing, where it leaves
+/// Where a ray meets the upper face of a slab one meter thick, or the wall of a hole through it: nothing, where it leaves
 /// through the hole.
 fn pierced_slab(ray: &Ray, hole: DVec3, radius: f64) -> Option<f64> {
     let top = -ray.origin.y / ray.direction.y;
@@ -255,7 +255,7 @@ fn a_hole_at_the_corner_of_a_large_slab_is_where_algebra_says() {
 }
 
 #[test]
-fn a_ball_blended_with_a_box_a_thousand_kilometres_away_is_a_ball() {
+fn a_ball_blended_with_a_box_a_thousand_kilometers_away_is_a_ball() {
     let (flat, camera) = case("numerics/blended_pair_1e6_apart.json");
     let mut tracer = Tracer::new(&flat);
     let mut hits = 0;
@@ -303,7 +303,7 @@ fn a_flush_cut_leaves_no_skin_however_it_is_turned() {
     for i in 0..60 {
         let (flat, ray) = flush_hole(&mut random);
         let found = hit(&flat, &ray).unwrap_or_else(|| panic!("{i}: the block is passed"));
-        // The upper face is three metres away, and the floor at least a tenth more.
+        // The upper face is three meters away, and the floor at least a tenth more.
         assert!(found.t > 3.09, "{i}: hit at {}", found.t);
     }
     // A skin that somebody made is one.
@@ -333,19 +333,19 @@ fn what_has_no_thickness_is_nothing_for_the_reference() {
 }
 
 #[test]
-fn a_slow_truth_is_drawn_or_names_file_and_node() {
+fn a_slow_reference_is_drawn_or_names_file_and_node() {
     let folder = tempfile::tempdir().unwrap();
     let started = Instant::now();
     let output = Command::new(env!("CARGO_BIN_EXE_isolith"))
-        .args(["render", "--truth", "--size", "3x2", "--quiet", "-o"])
+        .args(["render", "--reference", "--size", "3x2", "--quiet", "-o"])
         .arg(folder.path().join("x.png"))
-        .arg(path("hostile/truth-given-up.json"))
+        .arg(path("hostile/reference-given-up.json"))
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&output.stderr);
     assert!(started.elapsed() < Duration::from_secs(60));
     // Rays that follow a face get on now; `cli::failure` tests what is said of one that does not.
-    let is_named = told.contains("truth-given-up.json: n0 #1: a ray was not at its end");
+    let is_named = told.contains("reference-given-up.json: n0 #1: a ray was not at its end");
     assert!(output.status.success() || is_named, "{told}");
 }
 
@@ -353,7 +353,7 @@ fn a_slow_truth_is_drawn_or_names_file_and_node() {
 fn mistaken(shown: &Scene, meant: &Scene, camera: &Camera, side: u32) -> Accuracy {
     let picture = |scene: &Scene| {
         let flat = flatten(scene, 0.0).unwrap();
-        (truth(&flat, &[], camera, [side; 2], &|_| ()).unwrap(), flat)
+        (render_reference(&flat, &[], camera, [side; 2], &|_| ()).unwrap(), flat)
     };
     let ((shown, flat), (meant, _)) = (picture(shown), picture(meant));
     Accuracy::against(&shown.buffers, &flat, &meant)

@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 
 use isolith::flat::{NO_LEAF, flatten};
 use isolith::geometry::{Aabb, ArcPiece};
-use isolith::render::Method;
-use isolith::scene::{Attachment, NodeKind, Scene, Shape, file, text_outline};
+use isolith::render::EvalStrategy;
+use isolith::scene::{Attachment, NodeKind, Scene, Shape, file, text_profile};
 
-use crate::gpu::Subject;
+use crate::gpu::BenchScene;
 use build::{Font, arabic_forms, composite, polygons, rectangles};
 
 /// How long a hostile file may take.
@@ -38,7 +38,7 @@ fn text_of(scene: &Scene) -> (String, Attachment<isolith::font::Face>) {
 
 fn arcs(name: &str) -> Vec<ArcPiece> {
     let (text, font) = text_of(&scene(&format!("text/{name}.json")));
-    text_outline(&text, &font, 1.0)
+    text_profile(&text, &font, 1.0)
 }
 
 /// Where the ink of each closed curve begins and ends, from left to right.
@@ -69,7 +69,7 @@ fn assert_inks(found: &[ArcPiece], expected: &[[f64; 2]]) {
 /// The outlines of a text with a font made by code.
 fn drawn(font: &Font, text: &str) -> Vec<ArcPiece> {
     let font = Attachment::new("made.ttf", font.file()).unwrap_or_else(|error| panic!("{error}"));
-    text_outline(text, &font, 1.0)
+    text_profile(text, &font, 1.0)
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn letters_without_ink_leave_no_trace() {
     let (text, font) = text_of(&scene("text/plain.json"));
     for unseen in ['\u{200d}', '\u{fe0f}', '\u{200b}', '\u{200e}', '\u{ad}', '\u{200f}', '\u{2060}', '\u{feff}'] {
         let with = format!("A{unseen}B");
-        assert_eq!(text_outline(&with, &font, 1.0), text_outline(&text, &font, 1.0), "U+{:04X}", u32::from(unseen));
+        assert_eq!(text_profile(&with, &font, 1.0), text_profile(&text, &font, 1.0), "U+{:04X}", u32::from(unseen));
     }
 }
 
@@ -100,8 +100,8 @@ fn hebrew_runs_from_right_to_left() {
     let (text, font) = text_of(&scene("text/alef-bet.json"));
     let first: String = text.chars().take(1).collect();
     let second: String = text.chars().skip(1).collect();
-    let width = |text: &str| inks(&text_outline(text, &font, 1.0)).iter().map(|[a, b]| b - a).sum::<f64>();
-    let both = inks(&text_outline(&text, &font, 1.0));
+    let width = |text: &str| inks(&text_profile(text, &font, 1.0)).iter().map(|[a, b]| b - a).sum::<f64>();
+    let both = inks(&text_profile(&text, &font, 1.0));
     assert!((width(&first) - width(&second)).abs() > 0.05, "the letters cannot be told apart");
     assert!((both[0][1] - both[0][0] - width(&second)).abs() < 1e-6, "the second letter stands on the left: {both:?}");
 }
@@ -165,8 +165,9 @@ fn arabic_letters_are_joined() {
 
 #[test]
 fn overlapping_contours_look_as_their_union() {
-    let [overlap, union] = ["overlap", "union"]
-        .map(|name| Subject::new(name, &scene(&format!("text/{name}.json")), None).render(96, Method::Interpreted));
+    let [overlap, union] = ["overlap", "union"].map(|name| {
+        BenchScene::new(name, &scene(&format!("text/{name}.json")), None).render(96, EvalStrategy::Interpreter)
+    });
     let mut seen = 0;
     for i in 0..overlap.leaf.len() {
         assert_eq!(overlap.leaf[i] == NO_LEAF, union.leaf[i] == NO_LEAF, "pixel {i}");

@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use isolith::flat::Body;
-use isolith::flat::twin::{heightmap_height, ocean_height, terrain_height};
+use isolith::flat::PreparedShape;
+use isolith::flat::eval::{heightmap_height, ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
-use isolith::scene::{Shape, ShapeKind, profile_curve, text_outline, tube_curve};
+use isolith::scene::{Shape, ShapeKind, profile_curve, text_profile, tube_curve};
 
 use super::samples::evaluate;
 use super::surfaces::{Patch, outside_of, sphere, turned};
@@ -68,7 +68,7 @@ fn lambda_at(arc: &ArcPiece, share: f64) -> f64 {
     arc.reach * (2.0 * share - 1.0)
 }
 
-/// A curve as chords, and the ray upwards that says whether a point is inside.
+/// A curve as chords, and the ray upward that says whether a point is inside.
 struct Chords(Vec<[DVec2; 2]>);
 
 impl Chords {
@@ -95,7 +95,7 @@ impl Chords {
 }
 
 /// A profile as a prism without end, whose field at its middle says how deep a point of the plane is in it.
-fn endless(shape: &Shape) -> Body {
+fn endless(shape: &Shape) -> PreparedShape {
     let mut prism = shape.clone();
     match &mut prism {
         Shape::Extrusion { depth, rounding, .. } | Shape::Text { depth, rounding, .. } => {
@@ -103,21 +103,21 @@ fn endless(shape: &Shape) -> Body {
         }
         _ => panic!("a profile"),
     }
-    Body::new(&prism)
+    PreparedShape::new(&prism)
 }
 
-fn depth_in(endless: &Body, p: DVec2) -> f64 {
+fn depth_in(endless: &PreparedShape, p: DVec2) -> f64 {
     evaluate(endless, [p.x, p.y, 0.0])
 }
 
-fn height(body: &Body, x: f64, z: f64) -> f64 {
-    let rows = |row: usize| body.rows[row];
-    let of_kind = match body.kind {
+fn height(prepared: &PreparedShape, x: f64, z: f64) -> f64 {
+    let rows = |row: usize| prepared.payload[row];
+    let of_kind = match prepared.kind {
         ShapeKind::Ocean => ocean_height,
         ShapeKind::Heightmap => heightmap_height,
         _ => terrain_height,
     };
-    of_kind(x, z, &body.parameters, &rows)
+    of_kind(x, z, &prepared.parameters, &rows)
 }
 
 pub fn inside(shape: &Shape, p: DVec3) -> bool {
@@ -127,7 +127,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let half = 0.5 * depth;
             let rounding = rounding.min(half);
             if rounding == 0.0 {
-                return p.z.abs() < half && Chords::new(&outline_of(shape)).hold(p.truncate());
+                return p.z.abs() < half && Chords::new(&profile_of(shape)).hold(p.truncate());
             }
             let d = DVec2::new(depth_in(&endless(shape), p.truncate()) + rounding, p.z.abs() - half + rounding);
             d.max(DVec2::ZERO).length() < rounding
@@ -137,7 +137,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
         }
         Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => {
             let [x, depth, z] = *size;
-            let is_below = || p.y < height(&Body::new(shape), p.x, p.z);
+            let is_below = || p.y < height(&PreparedShape::new(shape), p.x, p.z);
             p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && is_below()
         }
         _ => panic!("stands in `surfaces`"),
@@ -161,7 +161,9 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             };
             profile_curve(corners, *smooth).into_iter().map(turn).collect()
         }
-        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => relief(shape, *size),
+        Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => {
+            heightfield(shape, *size)
+        }
         _ => panic!("stands in `surfaces`"),
     }
 }
@@ -196,18 +198,18 @@ fn tube(pieces: Vec<Piece>) -> Vec<Patch> {
     patches
 }
 
-/// The arcs of a profile. Letters have outlines that do not overlap.
-fn outline_of(shape: &Shape) -> Vec<ArcPiece> {
+/// The arcs of a profile. Letters have profiles that do not overlap.
+fn profile_of(shape: &Shape) -> Vec<ArcPiece> {
     match shape {
         Shape::Extrusion { corners, smooth, .. } => profile_curve(corners, *smooth),
-        Shape::Text { text, font, size, .. } => text_outline(text, font, *size),
+        Shape::Text { text, font, size, .. } => text_profile(text, font, *size),
         _ => panic!("a profile"),
     }
 }
 
 fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
     let mut patches: Vec<Patch> = Vec::new();
-    let mut arcs = outline_of(shape);
+    let mut arcs = profile_of(shape);
     if arcs.is_empty() {
         arcs.push(ArcPiece::straight(DVec3::ZERO, DVec3::ZERO));
     }
@@ -237,23 +239,23 @@ fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
     patches
 }
 
-fn relief(shape: &Shape, [x, depth, z]: [f64; 3]) -> Vec<Patch> {
+fn heightfield(shape: &Shape, [x, depth, z]: [f64; 3]) -> Vec<Patch> {
     let at = move |u: f64, v: f64| ((u - 0.5) * x, (v - 0.5) * z);
     let mut patches: Vec<Patch> = Vec::new();
     for top in [false, true] {
-        let body = Body::new(shape);
+        let prepared = PreparedShape::new(shape);
         patches.push(Box::new(move |u, v| {
             let (x, z) = at(u, v);
-            let h = height(&body, x, z);
+            let h = height(&prepared, x, z);
             (h >= -depth).then(|| DVec3::new(x, if top { h } else { -depth }, z))
         }));
     }
     for side in 0..4 {
-        let body = Body::new(shape);
+        let prepared = PreparedShape::new(shape);
         patches.push(Box::new(move |u, v| {
             let end = f64::from(side % 2);
             let (x, z) = if side < 2 { at(u, end) } else { at(end, u) };
-            let h = height(&body, x, z);
+            let h = height(&prepared, x, z);
             (h >= -depth).then(|| DVec3::new(x, -depth + (h + depth) * v, z))
         }));
     }

@@ -1,7 +1,7 @@
 //! The contract of every modifier, over content that is not symmetric.
 
 use glam::{DQuat, DVec3};
-use isolith::flat::twin::{field, gradient};
+use isolith::flat::eval::{field, gradient};
 use isolith::flat::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::scene::{
@@ -137,7 +137,7 @@ fn surroundings(component: &Component) -> (DVec3, f64) {
 fn steps_through_modifiers_are_safe() {
     for_each(8, |what, kind, flat, component| {
         if kind == ModifierKind::Repeat {
-            // Neighbours are looked at by place, so the field may rise at once where it is far from the surface; that
+            // Neighbors are looked at by place, so the field may rise at once where it is far from the surface; that
             // it never exceeds the distance is tested against copies.
             return;
         }
@@ -183,15 +183,15 @@ fn a_modifier_rises_with_the_distance_from_its_bounds() {
         let (center, reach) = surroundings(component);
         let mut random = Random::new(13);
         let first = &flat.nodes[component.first as usize];
-        let [joint, middle, half] = [0, 1, 2].map(|row| flat.numbers[first.numbers as usize + row].map(f64::from));
-        if first.modifier().is_none() || first.extent != component.count || joint[1] == 0.0 {
+        let [blend_params, middle, half] = [0, 1, 2].map(|row| flat.params[first.params as usize + row].map(f64::from));
+        if first.modifier().is_none() || first.extent != component.count || blend_params[1] == 0.0 {
             return;
         }
         count += 1;
         let [middle, half] = [middle, half].map(|[x, y, z, _]| DVec3::new(x, y, z));
         for _ in 0..many(400) {
             let p = center + random.point(2.5 * reach);
-            let least = joint[1] * ((p - middle).abs() - half).max(DVec3::ZERO).length();
+            let least = blend_params[1] * ((p - middle).abs() - half).max(DVec3::ZERO).length();
             let f = field(flat, component, p);
             assert!(least == 0.0 || f >= least - 2e-6 * reach, "{what}: {f} at {p}, said to be at least {least}");
         }

@@ -1,7 +1,7 @@
 //! Every operator with every kernel.
 
 use isolith::flat::Join;
-use isolith::flat::twin::{Joined, Joint, op_join};
+use isolith::flat::eval::{BlendParams, BlendResult, op_join};
 use isolith::scene::{Blend, BlendKernel, Operator};
 
 use super::samples::{Random, many};
@@ -13,10 +13,10 @@ fn kernels() -> impl Iterator<Item = (u32, BlendKernel)> {
     BlendKernel::ALL.into_iter().enumerate().map(|(i, kernel)| (i as u32, kernel))
 }
 
-/// A joint as flattening writes it.
-fn joint(join: Join, blend: &Blend, [half_width, depth]: [f64; 2]) -> Joint {
+/// A blend as flattening writes it.
+fn blend_params(join: Join, blend: &Blend, [half_width, depth]: [f64; 2]) -> BlendParams {
     let has_width = matches!(join, Join::Pipe | Join::Groove | Join::Tongue);
-    Joint { support: blend.support(), size: if has_width { half_width } else { blend.steps.into() }, depth }
+    BlendParams { support: blend.support(), size: if has_width { half_width } else { blend.steps.into() }, depth }
 }
 
 /// Grooves and tongues have no steps.
@@ -24,8 +24,8 @@ fn applies(join: Join, kernel: BlendKernel) -> bool {
     !(kernel.has_steps() && matches!(join, Join::Groove | Join::Tongue))
 }
 
-fn apply(join: Join, a: f64, b: f64, blend: &Blend, kernel: u32) -> Joined<f64> {
-    op_join(join as u32, a, b, &joint(join, blend, [0.2, 0.3]), kernel)
+fn apply(join: Join, a: f64, b: f64, blend: &Blend, kernel: u32) -> BlendResult<f64> {
+    op_join(join as u32, a, b, &blend_params(join, blend, [0.2, 0.3]), kernel)
 }
 
 fn hard(join: Join, a: f64, b: f64) -> f64 {
@@ -94,7 +94,7 @@ fn beyond_the_support_the_operators_are_hard() {
     }
 }
 
-/// What flattening and pruning rely upon.
+/// What flattening and tapes rely upon.
 #[test]
 fn far_from_the_second_operand_the_first_is_left_as_it_is() {
     let mut random = Random::new(4);
@@ -191,7 +191,7 @@ fn signs_are_what_the_operators_mean() {
             (Join::Morph, (1.0 - depth) * a + depth * b < 0.0),
             (Join::Paint, a < 0.0),
         ] {
-            let value = op_join(join as u32, a, b, &joint(join, &Blend::HARD, [half_width, depth]), 0).value;
+            let value = op_join(join as u32, a, b, &blend_params(join, &Blend::HARD, [half_width, depth]), 0).value;
             assert_eq!(value < 0.0, inside, "{join:?} at {a}, {b}: {value}");
         }
     }
@@ -233,5 +233,5 @@ fn the_shader_numbers_joins_and_kernels_alike() {
     let joins: Vec<Join> = Operator::ALL.into_iter().map(Join::of).collect();
     assert_eq!(joins, Join::ALL[1..=joins.len()]);
     // No artist's operator: a difference with its operands exchanged.
-    assert_eq!(Join::ALL[joins.len() + 1..], [Join::Remainder]);
+    assert_eq!(Join::ALL[joins.len() + 1..], [Join::ReverseDifference]);
 }

@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use image::{DynamicImage, ImageBuffer, ImageFormat, Luma};
-use isolith::flat::Body;
-use isolith::flat::twin::{Real, shape_distance};
+use isolith::flat::PreparedShape;
+use isolith::flat::eval::{Real, shape_distance};
 use isolith::scene::limits::UNIT;
 use isolith::scene::{Attached, Limits, ParamValue, Shape, ShapeKind};
 
@@ -81,7 +81,7 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
             ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(next(), next(), next())),
             ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
             ParamValue::Text(_) => {
-                // Up to three letters: an empty text, one outline, outlines with holes.
+                // Up to three letters: an empty text, one profile, profiles with holes.
                 let count = within(&Limits { soft: [0.0, 3.9], hard: [0.0, 3.0], unit: "" }) as usize;
                 ParamValue::Text("oi8".chars().take(count).collect())
             }
@@ -110,7 +110,7 @@ pub fn image(instead_of: &Attached, pixel: &mut dyn FnMut() -> u16) -> Attached 
     instead_of.with("random.png", bytes.into_inner()).unwrap()
 }
 
-/// A number from the soft range; lengths up to `longest` metres.
+/// A number from the soft range; lengths up to `longest` meters.
 pub fn usual(random: &mut Random, limits: &Limits, longest: f64) -> f64 {
     let [low, high] = limits.soft;
     if limits.unit == "m" { random.range(low.max(-longest), high.min(longest)) } else { random.range(low, high) }
@@ -135,8 +135,8 @@ pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
 }
 
 /// The field of a shape.
-pub fn evaluate<T: Real>(body: &Body, p: [T; 3]) -> T {
-    shape_distance(body.kind, p, &body.parameters, &|row| body.rows[row])
+pub fn evaluate<T: Real>(prepared: &PreparedShape, p: [T; 3]) -> T {
+    shape_distance(prepared.kind, p, &prepared.parameters, &|row| prepared.payload[row])
 }
 
 /// The size of a shape: the greatest of its numbers, or of its bounds' where some are no lengths.
@@ -148,7 +148,7 @@ pub fn size(shape: &Shape) -> f64 {
     shape.packed().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// Points where formulas break: the centre, the axes, planes of symmetry, edges, far away.
+/// Points where formulas break: the center, the axes, planes of symmetry, edges, far away.
 pub fn special_points(shape: &Shape) -> Vec<DVec3> {
     let q = if shape.kind().has_data() {
         [shape.bounds().max.to_array(), [0.0; 3]].concat()

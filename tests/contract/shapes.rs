@@ -1,8 +1,8 @@
 //! Every shape.
 
 use glam::DVec3;
-use isolith::flat::Body;
-use isolith::flat::twin::{Dual, Real};
+use isolith::flat::PreparedShape;
+use isolith::flat::eval::{Dual, Real};
 use isolith::scene::{Corners, Shape, ShapeKind};
 
 use super::drawn::tube_distance;
@@ -11,17 +11,17 @@ use super::samples::{Random, evaluate, extreme, many, ordinary, size, special_po
 use super::surfaces::{brute_distance, inside, patches};
 
 fn distance(shape: &Shape, p: DVec3) -> f64 {
-    evaluate(&Body::new(shape), p.to_array())
+    evaluate(&PreparedShape::new(shape), p.to_array())
 }
 
 fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
     let coordinates = DVec3::AXES.map(|axis| Dual::coordinate(axis, 0.0, p));
-    let Dual { v, d } = evaluate(&Body::new(shape), coordinates);
+    let Dual { v, d } = evaluate(&PreparedShape::new(shape), coordinates);
     (v, d)
 }
 
 /// Inside tubes that meet themselves and rounded notches the field only has to be a bound; above hills and waves
-/// everywhere, and where a drawn outline is rounded.
+/// everywhere, and where a drawn profile is rounded.
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
         Shape::Terrain { .. } | Shape::Ocean { .. } | Shape::Heightmap { .. } => return false,
@@ -224,9 +224,9 @@ fn a_shape_that_absorbs_a_scale_is_the_scaled_shape() {
     }
 }
 
-/// Of an outline 1e9 m long, details at one end are closed as they are: all of them lie within the rounding of the whole.
+/// Of a profile 1e9 m long, details at one end are closed as they are: all of them lie within the rounding of the whole.
 #[test]
-fn details_of_a_huge_outline_are_closed() {
+fn details_of_a_huge_profile_are_closed() {
     let corners = Corners::new([[1.0, 1.0], [0.001, 1e-9], [1e9, 1e-30], [1.0, 1e-30], [1.0, 0.001]]);
     for smooth in [false, true] {
         let shape = Shape::Extrusion { corners: corners.clone(), smooth, depth: 0.001, rounding: 0.0 };

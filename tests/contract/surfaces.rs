@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use glam::DVec3;
 use isolith::scene::Shape;
 
-use super::{drawn, outlines};
+use super::{drawn, profiles};
 
 /// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
 /// surface because it lies inside.
@@ -50,7 +50,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
         }
         Shape::Octahedron { radius } => p.abs().element_sum() < radius,
         _ if shape.kind().has_data() => drawn::inside(shape, p),
-        _ => outlines::inside(shape, p),
+        _ => profiles::inside(shape, p),
     }
 }
 
@@ -110,12 +110,12 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             })
             .collect(),
         _ if shape.kind().has_data() => drawn::patches(shape),
-        _ => outlines::patches(shape),
+        _ => profiles::patches(shape),
     }
 }
 
 /// The distance from `p` to the nearest point of the patches: the best of a grid on each, then from the
-/// best few of these the best of ever smaller neighbourhoods.
+/// best few of these the best of ever smaller neighborhoods.
 pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     let measure = |patch: &Patch, [u, v]: [f64; 2]| patch(u, v).map_or(f64::INFINITY, |s| s.distance(p));
     let grid = (40.0 / (patches.len() as f64).sqrt()).clamp(6.0, 20.0) as usize;
@@ -309,7 +309,7 @@ pub fn outside_only(patch: Patch, shape: Shape) -> Patch {
     outside_of(patch, move |p| inside(&shape, p))
 }
 
-/// The patch without what lies inside together with a small neighbourhood, so that rounding does not tear holes.
+/// The patch without what lies inside together with a small neighborhood, so that rounding does not tear holes.
 pub fn outside_of(patch: Patch, holds: impl Fn(DVec3) -> bool + 'static) -> Patch {
     let e = 1e-7;
     let deep = move |p: DVec3| holds(p) && DVec3::AXES.iter().all(|a| holds(p + *a * e) && holds(p - *a * e));

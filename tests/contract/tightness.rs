@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use isolith::flat::twin::field;
-use isolith::flat::{Body, flatten};
+use isolith::flat::eval::field;
+use isolith::flat::{PreparedShape, flatten};
 use isolith::geometry::Aabb;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
@@ -13,7 +13,7 @@ use isolith::scene::{
 
 use super::drawn::tube_distance;
 use super::modifiers::{modified, usual};
-use super::outlines::menger_distance;
+use super::profiles::menger_distance;
 use super::samples::{Random, evaluate};
 use super::surfaces::{Patch, brute_distance, patches};
 
@@ -25,14 +25,14 @@ const POINTS: usize = 200;
 const SCENE_POINTS: usize = 60;
 
 /// The distance from outside by brute force.
-fn truth(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
+fn exact(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
     match *shape {
         Shape::MengerSponge { size, iterations } => {
             menger_distance(p, DVec3::ZERO, size, iterations.round() as i32, f64::INFINITY)
         }
         Shape::Julia { .. } | Shape::Kleinian { .. } | Shape::Mandelbulb { .. } => {
-            let body = Body::new(shape);
-            ray_distance(&|p| evaluate(&body, p.to_array()), p)
+            let prepared = PreparedShape::new(shape);
+            ray_distance(&|p| evaluate(&prepared, p.to_array()), p)
         }
         Shape::Tube { .. } => tube_distance(shape, p),
         _ => brute_distance(surface, p),
@@ -62,7 +62,7 @@ fn ray_distance(field: &dyn Fn(DVec3) -> f64, p: DVec3) -> f64 {
 /// The mean and the least of field over distance, at so many random points outside, around a box.
 fn measure(
     field: &dyn Fn(DVec3) -> f64,
-    truth: &dyn Fn(DVec3) -> f64,
+    exact: &dyn Fn(DVec3) -> f64,
     bounds: Aabb,
     seed: u64,
     points: usize,
@@ -77,7 +77,7 @@ fn measure(
         if f < 1e-3 {
             continue;
         }
-        let d = truth(p);
+        let d = exact(p);
         assert!(f <= d + 1e-6, "seed {seed} at {p}: the field is {f}, the distance {d}");
         (sum, least, count) = (sum + f / d, least.min(f / d), count + 1);
     }
@@ -87,14 +87,14 @@ fn measure(
 /// Of a shape with its default parameters.
 fn of_shape(kind: ShapeKind) -> String {
     let shape = kind.default_shape();
-    let (surface, body) = (patches(&shape), Body::new(&shape));
+    let (surface, prepared) = (patches(&shape), PreparedShape::new(&shape));
     let bounds = if shape.bounds().is_finite() {
         Aabb::from_center_half(DVec3::ZERO, DVec3::splat(shape.bounds().half().max_element()))
     } else {
         shape.bounds()
     };
-    let field = |p: DVec3| evaluate(&body, p.to_array());
-    measure(&field, &|p| truth(&shape, &surface, p), bounds, 17 + kind as u64, POINTS)
+    let field = |p: DVec3| evaluate(&prepared, p.to_array());
+    measure(&field, &|p| exact(&shape, &surface, p), bounds, 17 + kind as u64, POINTS)
 }
 
 /// Of a scene.
@@ -108,7 +108,7 @@ fn of_scene(scene: &Scene, seed: u64) -> String {
 /// A box and a ball that reaches out of it.
 fn joined(group: Group) -> Scene {
     let mut scene = Scene::new();
-    let parent = scene.insert(None, 0, Node::new("Joint", NodeKind::Group(group))).unwrap();
+    let parent = scene.insert(None, 0, Node::new("Blend", NodeKind::Group(group))).unwrap();
     let parts = [
         (Shape::Box { size: [0.9, 0.6, 0.8], rounding: 0.05 }, DVec3::ZERO),
         (Shape::Sphere { radius: 0.42 }, DVec3::new(0.1, 0.33, 0.16)),

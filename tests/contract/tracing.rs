@@ -1,12 +1,12 @@
-//! The truth tracer, picking and the truth picture.
+//! The reference tracer, picking and the reference picture.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec2, DVec3};
 use isolith::flat::pick::pick;
-use isolith::flat::trace::{Tracer, trace};
-use isolith::flat::truth::truth;
-use isolith::flat::{FlatScene, Hitee, flatten};
+use isolith::flat::reference::image::render_reference;
+use isolith::flat::reference::trace::{Tracer, trace};
+use isolith::flat::{FlatScene, HitTarget, flatten};
 use isolith::geometry::{Camera, Ray};
 use isolith::mesh::MeshLibrary;
 use isolith::scene::{Blend, Group, MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};
@@ -36,7 +36,7 @@ fn a_sphere_is_hit_where_algebra_says() {
     let (mut hits, mut misses) = (0, 0);
     for i in 0..4_000 {
         let origin = random.direction() * 4.0;
-        // Every other ray grazes: it passes the centre at the radius, more or less.
+        // Every other ray grazes: it passes the center at the radius, more or less.
         let offset = if i % 2 == 0 { random.range(0.0, 3.0) } else { 0.75 + random.range(-1.0, 1.0) * 1e-6 };
         let side = origin.cross(random.direction()).normalize();
         let direction = (side * offset - origin).normalize();
@@ -125,7 +125,7 @@ fn a_blend_belongs_to_the_object_that_weighs_most() {
 }
 
 #[test]
-fn a_truth_picture_has_every_buffer() {
+fn a_reference_picture_has_every_buffer() {
     let (flat, _) = scene_of([object(Shape::Sphere { radius: 1.0 }), object(Shape::Plane {}).at(DVec3::NEG_Y)]);
     let camera = Camera::looking_at(DVec3::new(0.0, 1.0, 5.0), DVec3::ZERO, 0.7);
     let rows = AtomicUsize::new(0);
@@ -133,7 +133,7 @@ fn a_truth_picture_has_every_buffer() {
         rows.fetch_add(1, Ordering::Relaxed);
     };
     let size = [96, 64];
-    let picture = truth(&flat, &[], &camera, size, &count).unwrap();
+    let picture = render_reference(&flat, &[], &camera, size, &count).unwrap();
     assert_eq!(rows.load(Ordering::Relaxed), 64);
     let buffers = &picture.buffers;
     let mut seen = [0; 3];
@@ -143,11 +143,11 @@ fn a_truth_picture_has_every_buffer() {
             let pixel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let p = camera.ray(pixel, DVec2::new(96.0, 64.0)).at(f64::from(buffers.depth[i]));
             let normal = DVec3::from(buffers.normal[i].map(f64::from));
-            let (kind, expected) = match buffers.hitee(i) {
-                Hitee::Background => (0, DVec3::ZERO),
-                Hitee::Leaf(0) => (1, p),
-                Hitee::Leaf(_) => (2, DVec3::Y),
-                Hitee::Mesh(_) => panic!("there is no mesh"),
+            let (kind, expected) = match buffers.hit_target(i) {
+                HitTarget::Background => (0, DVec3::ZERO),
+                HitTarget::Leaf(0) => (1, p),
+                HitTarget::Leaf(_) => (2, DVec3::Y),
+                HitTarget::Mesh(_) => panic!("there is no mesh"),
             };
             seen[kind] += 1;
             assert!((normal - expected).length() < 1e-5, "{normal} {expected}");
@@ -172,7 +172,7 @@ fn meshes_stand_among_fields() {
     assert!(missing.is_empty(), "{missing:?}");
     let camera = Camera::looking_at(DVec3::new(0.0, 0.0, 8.0), DVec3::ZERO, 0.5);
     let size = [64, 64];
-    let picture = truth(&flat, &meshes, &camera, size, &|_| {}).unwrap().buffers;
+    let picture = render_reference(&flat, &meshes, &camera, size, &|_| {}).unwrap().buffers;
     let world_from_local = scene.world_from_local(mesh_id);
     let triangles = meshes[0].as_ref().unwrap();
     let mut seen = [0; 3];
@@ -182,16 +182,16 @@ fn meshes_stand_among_fields() {
             let ray = camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), DVec2::splat(64.0));
             let p = ray.at(f64::from(picture.depth[i]));
             let picked = pick(&flat, &meshes, &ray, camera.near, camera.far);
-            match picture.hitee(i) {
-                Hitee::Background => {
+            match picture.hit_target(i) {
+                HitTarget::Background => {
                     assert_eq!(picked, None);
                     seen[0] += 1;
                 }
-                Hitee::Leaf(leaf) => {
+                HitTarget::Leaf(leaf) => {
                     assert_eq!((flat.ids[leaf], picked), (wall_id, Some(wall_id)));
                     seen[1] += 1;
                 }
-                Hitee::Mesh(index) => {
+                HitTarget::Mesh(index) => {
                     assert_eq!((flat.meshes[index].id, picked), (mesh_id, Some(mesh_id)));
                     // The point lies on the mesh: a ray along the normal from just before it hits at once.
                     let normal = DVec3::from(picture.normal[i].map(f64::from));

@@ -1,11 +1,11 @@
 //! Random trees of shapes and groups, through flattening.
 
 use glam::{DAffine3, DQuat, DVec3};
-use isolith::flat::twin::{field, gradient, surface};
+use isolith::flat::eval::{field, gradient, surface};
 use isolith::flat::{Component, FlatScene, flatten};
 use isolith::scene::{
-    Blend, BlendKernel, Group, Joining, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, RadiusUnit,
-    Scene, ShapeKind,
+    Blend, BlendKernel, BlendOverride, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator,
+    RadiusUnit, Scene, ShapeKind,
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
@@ -39,7 +39,7 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
     let is_group = depth < 4 && random.chance(if depth == 0 { 0.9 } else { 0.5 });
     let kind = if is_group {
         let radius = if recipe.blends && random.chance(0.7) { random.range(0.01, 0.5) } else { 0.0 };
-        let unit = random.pick(&[RadiusUnit::Metres, RadiusUnit::Metres, RadiusUnit::Size]);
+        let unit = random.pick(&[RadiusUnit::Meters, RadiusUnit::Meters, RadiusUnit::Size]);
         let steps = 1 + random.index(5) as u32;
         let blend = Blend { unit, steps, ..Blend::new(random.pick(&BlendKernel::ALL), radius) };
         // Without blends every operator is one on sets, so that a point is inside or outside by its meaning. The
@@ -68,7 +68,7 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
     node.negative = random.chance(0.2);
     node.visible = !random.chance(0.08);
     if recipe.blends && parent.is_some() && random.chance(0.2) {
-        node.joining = random.pick(&[Joining::Hard, Joining::Radius(0.1)]);
+        node.blend_override = random.pick(&[BlendOverride::Hard, BlendOverride::Radius(0.1)]);
         node.apart = scene.children(parent).take(1).map(|n| n.id).collect();
     }
     let id = scene.insert(parent, usize::MAX, node).unwrap();
@@ -94,7 +94,7 @@ fn for_each_component(mut visit: impl FnMut(&Scene, &FlatScene, &Component, &mut
     assert!(count > TREES);
 }
 
-/// A sphere, as centre and radius, around everything that is bounded.
+/// A sphere, as center and radius, around everything that is bounded.
 fn surroundings(component: &Component) -> (DVec3, f64) {
     if component.bounds.is_finite() {
         (component.bounds.center(), 0.2 + component.bounds.half().length())
@@ -194,8 +194,8 @@ fn groups_rise_with_the_distance_from_their_bounds() {
         let (center, reach) = surroundings(component);
         for index in component.first..component.first + component.count {
             let node = &flat.nodes[index as usize];
-            let [joint, low, half] = [0, 1, 2].map(|row| flat.numbers[node.numbers as usize + row].map(f64::from));
-            if !node.is_group() || joint[1] == 0.0 {
+            let [blend_params, low, half] = [0, 1, 2].map(|row| flat.params[node.params as usize + row].map(f64::from));
+            if !node.is_group() || blend_params[1] == 0.0 {
                 continue;
             }
             groups += 1;
@@ -203,7 +203,7 @@ fn groups_rise_with_the_distance_from_their_bounds() {
             let [low, half] = [low, half].map(|[x, y, z, _]| DVec3::new(x, y, z));
             for _ in 0..many(200) {
                 let p = center + random.point(2.0 * reach);
-                let least = joint[1] * ((p - low).abs() - half).max(DVec3::ZERO).length();
+                let least = blend_params[1] * ((p - low).abs() - half).max(DVec3::ZERO).length();
                 let f = field(flat, &inner, p);
                 assert!(least == 0.0 || f >= least - 1e-6 * reach, "{f} at {p}, said to be at least {least}");
             }
@@ -222,7 +222,7 @@ fn gradients_of_trees_are_those_of_central_differences() {
 }
 
 #[test]
-fn the_shares_of_the_materials_sum_to_one() {
+fn the_weights_of_the_materials_sum_to_one() {
     let mut mixed = 0;
     for_each_component(|_, flat, component, random| {
         let (center, reach) = surroundings(component);
@@ -230,7 +230,7 @@ fn the_shares_of_the_materials_sum_to_one() {
             let p = center + random.point(reach);
             let point = surface(flat, component, p);
             assert_eq!((point.distance, point.gradient), gradient(flat, component, p));
-            // The materials are the primary colours, so a colour is the list of shares.
+            // The materials are the primary colors, so a color is the list of weights.
             let shares = point.material.albedo;
             assert!((shares.element_sum() - 1.0).abs() < 1e-12 && shares.min_element() >= 0.0, "{shares}");
             mixed += usize::from(shares.max_element() < 0.99);

@@ -40,7 +40,7 @@ pub fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
 /// Draws frames until no file is being read. Not by `run`: the thread that reads asks for frames when it likes.
 fn read_to_the_end(harness: &mut Harness<'_, Editor>) {
     let since = Instant::now();
-    while harness.state().reading().next().is_some() {
+    while harness.state().files_being_read().next().is_some() {
         assert!(since.elapsed() < Duration::from_secs(60), "a file is read without an end");
         std::thread::sleep(Duration::from_millis(1));
         harness.step();
@@ -101,7 +101,7 @@ fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
         harness.key_press(Key::Enter);
         harness.step();
         // It is looked for in the next frame at the earliest, after that has told of it.
-        assert_eq!(harness.state().reading().collect::<Vec<_>>(), ["alps.png"]);
+        assert_eq!(harness.state().files_being_read().collect::<Vec<_>>(), ["alps.png"]);
         assert_eq!(*harness.state().document().scene(), scene);
     };
     start(&mut harness);
@@ -115,7 +115,7 @@ fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
     start(&mut harness);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::N);
     harness.step();
-    assert_eq!(harness.state().reading().count(), 0);
+    assert_eq!(harness.state().files_being_read().count(), 0);
     harness.run();
     assert_eq!(harness.state().document().scene().nodes().len(), 1, "a new scene has a sun");
     assert_eq!(undo_all(&mut harness), 0);

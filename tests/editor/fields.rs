@@ -79,15 +79,15 @@ fn a_number_that_must_be_whole_is_rounded_and_says_so() {
 }
 
 #[test]
-fn a_colour_that_is_none_says_so() {
+fn a_color_that_is_none_says_so() {
     let (scene, _) = scene();
     let mut harness = open_tall(scene.clone());
     select(&mut harness, "Ball");
-    let swatch = field(&harness, "Colour").rect().center();
+    let swatch = field(&harness, "Base color").rect().center();
     click(&mut harness, swatch);
     type_into(&mut harness, "Hex", "#12345");
     assert_eq!(*harness.state().document().scene(), scene);
-    assert!(said(&harness)[0].contains("“#12345” is no colour"), "{:?}", said(&harness));
+    assert!(said(&harness)[0].contains("“#12345” is no color"), "{:?}", said(&harness));
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn list_shows(harness: &Harness<'_, Editor>) -> Option<String> {
     super::list_box(harness, "Material").accesskit_node().value()
 }
 
-/// Two objects of a kind that wear different materials and differ in what `change` does by their index.
+/// Two objects of a kind that have different materials and differ in what `change` does by their index.
 fn two(change: impl Fn(&mut Node, usize), kind: ShapeKind) -> (Scene, [NodeId; 2]) {
     let mut scene = Scene::new();
     let first = scene.materials()[0].id;

@@ -118,13 +118,13 @@ fn modifiers_are_reordered_switched_off_and_removed() {
         harness.get_all_by_label(name).nth(at).unwrap().click();
         harness.run();
     };
-    press(&mut harness, "Apply later", 0);
+    press(&mut harness, "Move down", 0);
     assert_eq!(kinds(&harness, ring), [Round, Twist, Waves]);
-    press(&mut harness, "Apply earlier", 2);
+    press(&mut harness, "Move up", 2);
     assert_eq!(kinds(&harness, ring), [Round, Waves, Twist]);
     // The first cannot come earlier, nor the last later.
-    press(&mut harness, "Apply earlier", 0);
-    press(&mut harness, "Apply later", 2);
+    press(&mut harness, "Move up", 0);
+    press(&mut harness, "Move down", 2);
     assert_eq!(kinds(&harness, ring), [Round, Waves, Twist]);
     click(&mut harness, Waves.label(), Role::CheckBox);
     assert_eq!(modifiers(&harness, ring).iter().map(|slot| slot.enabled).collect::<Vec<_>>(), [true, false, true]);
@@ -165,7 +165,7 @@ fn the_image_of_a_displacement_is_chosen_refused_and_done_without() {
     assert!(name(&harness).is_none() && !displaces(&harness));
     choose(&mut harness, "Image: No file", &text);
     let message = harness.state().messages().last().unwrap().text.clone();
-    let place = format!("Ring {ring}: Image displacement: image: ");
+    let place = format!("Ring {ring}: Displace (image): image: ");
     assert!(message.starts_with(&format!("{place}\"notes.txt\" must be a PNG, JPEG or EXR image")), "{message}");
     assert!(name(&harness).is_none());
     choose(&mut harness, "Image: No file", &image);

@@ -50,7 +50,7 @@ fn typed_digits_never_land_in_the_next_field() {
 }
 
 #[test]
-fn typed_digits_go_backwards_with_shift_tab_too() {
+fn typed_digits_go_backward_with_shift_tab_too() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open_tall(scene);
     select(&mut harness, "Ball");
@@ -85,13 +85,13 @@ fn a_row_that_appears_above_a_field_does_not_take_its_keyboard() {
     at_once(&mut harness, click(radius));
     // The row of the blend radius comes in two cards higher.
     let mut node = harness.state().document().scene().node(ball).unwrap().as_ref().clone();
-    node.joining = isolith::scene::Joining::Radius(0.2);
+    node.blend_override = isolith::scene::BlendOverride::Radius(0.2);
     harness.state_mut().document_mut().apply(isolith::document::Edit::Replace(node)).unwrap();
     harness.run();
     at_once(&mut harness, [text("2"), key(Key::Enter)].concat());
     assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 2.0 });
-    let joining = harness.state().document().scene().node(ball).unwrap().joining;
-    assert_eq!(joining, isolith::scene::Joining::Radius(0.2));
+    let blend_override = harness.state().document().scene().node(ball).unwrap().blend_override;
+    assert_eq!(blend_override, isolith::scene::BlendOverride::Radius(0.2));
 }
 
 #[test]

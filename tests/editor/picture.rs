@@ -3,7 +3,7 @@
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
-use isolith::flat::inspect::Look;
+use isolith::flat::debug_view::ViewMode;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
 
@@ -114,20 +114,24 @@ fn a_monkey_finds_no_panic_and_undo_leads_back() {
 }
 
 #[test]
-fn the_look_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
+fn the_view_mode_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
     let (scene, _) = scene();
     let mut harness = open(scene.clone());
-    assert_eq!(harness.state().view().look, Look::Shaded);
-    for (name, look) in [("Show steps", Look::Steps), ("Show normals", Look::Normals), ("Show shaded", Look::Shaded)] {
-        harness.get_by_label("Picture shows").click();
+    assert_eq!(harness.state().view().view_mode, ViewMode::Shaded);
+    for (name, view_mode) in [
+        ("Shading: steps", ViewMode::Steps),
+        ("Shading: normals", ViewMode::Normals),
+        ("Shading: shaded", ViewMode::Shaded),
+    ] {
+        harness.get_by_label("Viewport shading").click();
         harness.run();
-        if look.counts() {
+        if view_mode.counts() {
             harness.get_by_label("Debug").click();
             harness.run();
         }
         harness.get_by_label(name).click();
         harness.run();
-        assert_eq!(harness.state().view().look, look);
+        assert_eq!(harness.state().view().view_mode, view_mode);
     }
     harness.get_by_label("View").click();
     harness.run();
@@ -135,10 +139,10 @@ fn the_look_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
     assert!(is_on("Grid"), "a check mark shows what is on");
     press(&mut harness, Modifiers::NONE, Key::Escape);
     press(&mut harness, Modifiers::NONE, Key::F3);
-    harness.event(Event::Text("show slope".into()));
+    harness.event(Event::Text("shading slope".into()));
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Enter);
-    assert_eq!(harness.state().view().look, Look::Slope);
+    assert_eq!(harness.state().view().view_mode, ViewMode::Slope);
     assert_eq!(undo_all(&mut harness), 0, "looking changes nothing");
     assert_eq!(*harness.state().document().scene(), scene);
 }

@@ -12,7 +12,8 @@ use isolith::scene::Shape;
 use super::{click, field, open, open_in, open_tall, pointer, press, row, scene, select, shape, undo_all};
 
 /// The buttons that open something.
-const OPENERS: [&str; 9] = ["File", "Edit", "Add", "View", "Picture shows", "Kind", "Blends", "Colour", "Material"];
+const OPENERS: [&str; 9] =
+    ["File", "Edit", "Add", "View", "Viewport shading", "Primitive", "Blend", "Base color", "Material"];
 
 fn is_open(harness: &Harness<'_, Editor>) -> bool {
     Popup::is_any_open(&harness.ctx)
@@ -24,7 +25,7 @@ fn opener(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
     let mut found = harness.get_all_by_label(name).map(|node| node.rect().center());
     match name {
         _ if bar => found.find(|pos| pos.y < 40.0).unwrap(),
-        "Kind" | "Blends" | "Material" => super::list_box(harness, name).rect().center(),
+        "Primitive" | "Blend" | "Material" => super::list_box(harness, name).rect().center(),
         _ => field(harness, name).rect().center(),
     }
 }
@@ -87,12 +88,12 @@ fn escape_closes_the_log_first() {
     let mut harness = open(scene);
     select(&mut harness, "Ball");
     press(&mut harness, Modifiers::NONE, Key::F3);
-    harness.event(Event::Text("messages".into()));
+    harness.event(Event::Text("log".into()));
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Enter);
-    assert!(harness.query_by_label("Nothing has happened yet.").is_some());
+    assert!(harness.query_by_label("No messages").is_some());
     press(&mut harness, Modifiers::NONE, Key::Escape);
-    assert!(harness.query_by_label("Nothing has happened yet.").is_none());
+    assert!(harness.query_by_label("No messages").is_none());
     assert_eq!(harness.state().document().selection(), [ball]);
 }
 
@@ -130,11 +131,11 @@ fn escape_cancels_what_is_being_typed_or_dragged() {
 }
 
 #[test]
-fn escape_cancels_a_colour() {
+fn escape_cancels_a_color() {
     let (scene, _) = scene();
     let mut harness = open_tall(scene.clone());
     select(&mut harness, "Ball");
-    open_popup(&mut harness, "Colour");
+    open_popup(&mut harness, "Base color");
     let hex = field(&harness, "Hex").rect().center();
     click(&mut harness, hex);
     press(&mut harness, Modifiers::COMMAND, Key::A);
@@ -143,7 +144,7 @@ fn escape_cancels_a_colour() {
     press(&mut harness, Modifiers::NONE, Key::Escape);
     assert_eq!(*harness.state().document().scene(), scene);
     if !is_open(&harness) {
-        open_popup(&mut harness, "Colour");
+        open_popup(&mut harness, "Base color");
     }
     let square = harness.get_by_label("Saturation and brightness").rect();
     pointer(&mut harness, square.center(), true);
@@ -162,7 +163,7 @@ fn a_click_beside_a_popup_takes_what_was_typed_in_it() {
     let (scene, _) = scene();
     let mut harness = open_tall(scene);
     select(&mut harness, "Ball");
-    open_popup(&mut harness, "Colour");
+    open_popup(&mut harness, "Base color");
     let hex = field(&harness, "Hex").rect().center();
     click(&mut harness, hex);
     press(&mut harness, Modifiers::COMMAND, Key::A);
@@ -285,7 +286,7 @@ fn menus_fit_the_window_and_scroll() {
         harness.state_mut().document_mut().select(vec![ball]);
         harness.run();
         let screen = Rect::from_min_size(Pos2::ZERO, size);
-        for name in ["File", "Edit", "Add", "View", "Picture shows", "Blends"] {
+        for name in ["File", "Edit", "Add", "View", "Viewport shading", "Blend"] {
             open_popup(&mut harness, name);
             harness.run_steps(4);
             for rect in popup_rects(&harness) {
@@ -317,7 +318,7 @@ fn a_list_still_does_what_is_chosen_in_it() {
     let (scene, [_, ball, ..]) = scene();
     let mut harness = open(scene);
     select(&mut harness, "Ball");
-    open_popup(&mut harness, "Kind");
+    open_popup(&mut harness, "Primitive");
     let entry = harness.get_all_by_label("Box").next().unwrap().rect().center();
     click(&mut harness, entry);
     assert!(!is_open(&harness));

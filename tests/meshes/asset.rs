@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::DVec3;
-use isolith::mesh::{MeshLibrary, Replaced, load};
+use isolith::mesh::{MeshLibrary, ReloadOutcome, load};
 
 pub fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
@@ -49,7 +49,7 @@ fn the_library_reads_a_file_once_and_remembers_failures() {
     assert!(Arc::ptr_eq(&missing, &library.get("models/nobody.glb").unwrap_err()));
     assert_eq!(missing.file, "models/nobody.glb");
     let source = library.sources().into_iter().find(|source| source.path() == "models/suzanne.glb").unwrap();
-    assert!(matches!(library.replace(source.read()), Replaced::Fresh(_)));
+    assert!(matches!(library.replace(source.read()), ReloadOutcome::Fresh(_)));
     assert!(!Arc::ptr_eq(&first, &library.get("models/suzanne.glb").unwrap()));
     library.set_folder(None);
     assert!(library.get("models/suzanne.glb").unwrap_err().reason.contains("no folder"));

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use isolith::flat::flatten;
-use isolith::mesh::{MeshLibrary, Replaced, load, parse};
+use isolith::mesh::{MeshLibrary, ReloadOutcome, load, parse};
 use isolith::scene::file;
 use serde_json::{Value, json};
 
@@ -186,5 +186,5 @@ fn textures_are_counted_for_the_scene_and_not_for_the_file() {
     assert!(c.textures.is_empty() && c.warnings[0].contains("textures of the scene together"), "{:?}", c.warnings);
     // Read again, a file may take what it took.
     let source = library.sources().into_iter().find(|source| source.path() == "a.glb").unwrap();
-    assert!(matches!(library.replace(source.read()), Replaced::Fresh(mesh) if mesh.textures.len() == 1));
+    assert!(matches!(library.replace(source.read()), ReloadOutcome::Fresh(mesh) if mesh.textures.len() == 1));
 }

@@ -145,7 +145,7 @@ fn only_the_default_scene_is_shown_and_without_scenes_all() {
 }
 
 #[test]
-fn quantised_positions_are_read_as_shares() {
+fn quantized_positions_are_read_as_shares() {
     let mut tiny = Tiny::new();
     let corners: [i8; 12] = [0, 0, 0, 0, 127, 0, 0, 0, 0, -128, 0, 0];
     let positions = tiny.accessor(&corners.map(|c| c as u8), 5120, "VEC3", 3);

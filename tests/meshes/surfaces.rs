@@ -103,7 +103,7 @@ fn rays_go_through_what_is_cut_out() {
 }
 
 #[test]
-fn older_materials_show_their_diffuse_colour() {
+fn older_materials_show_their_diffuse_color() {
     let mut tiny = everything();
     let older = json!({ "diffuseFactor": [0.25, 0.5, 0.75, 1], "diffuseTexture": { "index": 0 } });
     tiny.json["materials"] = json!([{ "extensions": { "KHR_materials_pbrSpecularGlossiness": older } }]);
@@ -111,7 +111,7 @@ fn older_materials_show_their_diffuse_colour() {
     let mesh = read(&tiny);
     let surface = mesh.parts[0].surface;
     assert_eq!((surface.color, surface.texture), ([0.25, 0.5, 0.75, 1.0], Some(0)));
-    assert_eq!(mesh.warnings, ["KHR_materials_pbrSpecularGlossiness: only its diffuse colour is drawn"]);
+    assert_eq!(mesh.warnings, ["KHR_materials_pbrSpecularGlossiness: only its diffuse color is drawn"]);
 }
 
 /// The warnings of a triangle with these changes.

@@ -93,7 +93,7 @@ pub fn triangle() -> Tiny {
     tiny
 }
 
-/// A quad with everything that the reader knows: normals, colours, a texture, a sparse accessor, a
+/// A quad with everything that the reader knows: normals, colors, a texture, a sparse accessor, a
 /// second mesh as a strip, a tree of nodes.
 pub fn everything() -> Tiny {
     let mut tiny = Tiny::new();
@@ -154,7 +154,7 @@ pub fn posed() -> Tiny {
     tiny
 }
 
-/// A picture of one colour.
+/// A picture of one color.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
     let mut out = std::io::Cursor::new(Vec::new());
     image::RgbaImage::from_pixel(width, height, image::Rgba([200, 100, 50, 255]))

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use egui_kittest::Harness;
 use isolith::document::Document;
 use isolith::editor::{CommandId, Editor, Picture};
-use isolith::mesh::{MeshLibrary, Replaced, Watcher};
+use isolith::mesh::{MeshLibrary, ReloadOutcome, Watcher};
 use isolith::scene::{MeshNode, Node, NodeKind, Scene, file};
 use serde_json::json;
 
@@ -58,21 +58,21 @@ fn a_file_that_changes_is_read_again() {
     fs::write(folder.path().join("model.bin"), &bytes).unwrap();
     let fresh = wait("a change of the buffer", || watcher.news().next());
     assert!(wakes.try_recv().is_ok());
-    assert!(matches!(library.replace(fresh), Replaced::Fresh(mesh) if mesh.bounds.max.x == 3.0));
+    assert!(matches!(library.replace(fresh), ReloadOutcome::Fresh(mesh) if mesh.bounds.max.x == 3.0));
     assert_eq!(library.get("model.gltf").unwrap().bounds.max.x, 3.0);
     // Broken, the old one stays; mended, it is read.
     fs::write(folder.path().join("model.gltf"), "{").unwrap();
     let fresh = wait("a broken file", || watcher.news().next());
-    assert!(matches!(library.replace(fresh), Replaced::Kept(error) if error.reason.contains("not glTF JSON")));
+    assert!(matches!(library.replace(fresh), ReloadOutcome::Kept(error) if error.reason.contains("not glTF JSON")));
     assert_eq!(library.get("model.gltf").unwrap().bounds.max.x, 3.0);
     write(folder.path(), 5.0);
     let fresh = wait("a mended file", || watcher.news().next());
-    assert!(matches!(library.replace(fresh), Replaced::Fresh(mesh) if mesh.bounds.max.x == 5.0));
+    assert!(matches!(library.replace(fresh), ReloadOutcome::Fresh(mesh) if mesh.bounds.max.x == 5.0));
     // In another folder nobody waits for it.
     watcher.read_all();
     let fresh = wait("a file that was asked for", || watcher.news().next());
     library.set_folder(None);
-    assert!(matches!(library.replace(fresh), Replaced::Unwanted));
+    assert!(matches!(library.replace(fresh), ReloadOutcome::Unwanted));
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_file_that_appears_is_read() {
     fs::write(folder.path().join("later.glb"), triangle().glb()).unwrap();
     for _ in 0..2 {
         let fresh = wait("a file that appears", || watcher.news().next());
-        assert!(matches!(library.replace(fresh), Replaced::Fresh(_)));
+        assert!(matches!(library.replace(fresh), ReloadOutcome::Fresh(_)));
     }
     assert_eq!(library.get("model.gltf").unwrap().bounds.max.x, 2.0);
     assert!(library.get("later.glb").is_ok());

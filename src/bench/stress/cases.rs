@@ -1,10 +1,10 @@
-//! Subjects by circumstances. Those of one subject stand together, so that its kernel is built once.
+//! Nodes by circumstances. Those of one node stand together, so that its pipeline is built once.
 
 use glam::DVec3;
 
-use super::figures::Allowed;
-use super::place::View;
-use super::subject::{Place, Subject, usual_blend};
+use super::metrics::Allowed;
+use super::node::{StressNode, StressPlacement, usual_blend};
+use super::place::StressView;
 use crate::scene::{
     Attached, Attachment, Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator,
     ParamValue, Shape, ShapeKind, limits,
@@ -12,26 +12,26 @@ use crate::scene::{
 
 /// A thing to draw, and how.
 #[derive(Clone, Debug)]
-pub struct Case {
-    pub(super) subject: Subject,
+pub struct StressCase {
+    pub(super) node: StressNode,
     /// What is difficult, in words.
     pub circumstance: String,
-    pub(super) place: Place,
-    pub(super) view: View,
+    pub(super) place: StressPlacement,
+    pub(super) view: StressView,
 }
 
-impl Case {
+impl StressCase {
     /// What is drawn.
     pub fn name(&self) -> String {
-        self.subject.name()
+        self.node.name()
     }
 
     /// How much of it may be wrong.
     pub(super) fn allowed(&self) -> Allowed {
-        match (&self.subject, self.view) {
-            (Subject::Shape(Shape::Kleinian { .. }), _) => Allowed::DUST,
-            (_, View::At(_)) => Allowed::FAR_CELL,
-            (Subject::Modified(Modifier::Elongate { length }), _) if length.contains(&limits::SIZE.hard[1]) => {
+        match (&self.node, self.view) {
+            (StressNode::Shape(Shape::Kleinian { .. }), _) => Allowed::DUST,
+            (_, StressView::At(_)) => Allowed::FAR_CELL,
+            (StressNode::Modified(Modifier::Elongate { length }), _) if length.contains(&limits::SIZE.hard[1]) => {
                 Allowed::SLIVER
             }
             _ => Allowed::USUAL,
@@ -40,7 +40,7 @@ impl Case {
 }
 
 /// Every case.
-pub fn cases() -> Vec<Case> {
+pub fn cases() -> Vec<StressCase> {
     let mut all = Vec::new();
     for &kind in ShapeKind::ALL {
         shape(kind, &mut all);
@@ -48,7 +48,7 @@ pub fn cases() -> Vec<Case> {
     for operator in Operator::ALL {
         let kernels = if operator.has_kernel() { BlendKernel::ALL.as_slice() } else { &BlendKernel::ALL[..1] };
         for &kernel in kernels {
-            joint(operator, kernel, &mut all);
+            blend_cases(operator, kernel, &mut all);
         }
     }
     for &kind in ModifierKind::ALL {
@@ -57,30 +57,30 @@ pub fn cases() -> Vec<Case> {
     all
 }
 
-/// The subject as it is, at the ends of the scales, far away, and from where rays are difficult.
-fn everywhere(subject: &Subject, all: &mut Vec<Case>) {
-    let scaled = |scale| Place { scale, ..Place::PLAIN };
-    let far = Place { at: DVec3::new(6e5, -6e5, 5.3e5), ..Place::PLAIN };
+/// The node as it is, at the ends of the scales, far away, and from where rays are difficult.
+fn everywhere(node: &StressNode, all: &mut Vec<StressCase>) {
+    let scaled = |scale| StressPlacement { scale, ..StressPlacement::PLAIN };
+    let far = StressPlacement { at: DVec3::new(6e5, -6e5, 5.3e5), ..StressPlacement::PLAIN };
     let circumstances = [
-        ("plain", Place::PLAIN, View::Whole),
-        ("scale 1e-4", scaled(1e-4), View::Whole),
-        ("scale 1e4", scaled(1e4), View::Whole),
-        ("1e6 from the origin", far, View::Whole),
-        ("1e6 from the origin, grazing", far, View::Grazing),
-        ("grazing", Place::PLAIN, View::Grazing),
-        ("from inside", Place::PLAIN, View::Inside),
-        ("from 1e-3", Place::PLAIN, View::Near),
+        ("plain", StressPlacement::PLAIN, StressView::Whole),
+        ("scale 1e-4", scaled(1e-4), StressView::Whole),
+        ("scale 1e4", scaled(1e4), StressView::Whole),
+        ("1e6 from the origin", far, StressView::Whole),
+        ("1e6 from the origin, grazing", far, StressView::Grazing),
+        ("grazing", StressPlacement::PLAIN, StressView::Grazing),
+        ("from inside", StressPlacement::PLAIN, StressView::Inside),
+        ("from 1e-3", StressPlacement::PLAIN, StressView::Near),
     ];
-    all.extend(circumstances.map(|(circumstance, place, view)| Case {
-        subject: subject.clone(),
+    all.extend(circumstances.map(|(circumstance, place, view)| StressCase {
+        node: node.clone(),
         circumstance: circumstance.into(),
         place,
         view,
     }));
 }
 
-fn plain(subject: Subject, circumstance: String) -> Case {
-    Case { subject, circumstance, place: Place::PLAIN, view: View::Whole }
+fn plain(node: StressNode, circumstance: String) -> StressCase {
+    StressCase { node, circumstance, place: StressPlacement::PLAIN, view: StressView::Whole }
 }
 
 /// Numbers at which a parameter is tried, with their names: nothing, thin as 1e-4 of `size`, the limits.
@@ -103,9 +103,9 @@ fn extremes(limits: &Limits, size: f64) -> Vec<(&'static str, f64)> {
     kept
 }
 
-fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
+fn shape(kind: ShapeKind, all: &mut Vec<StressCase>) {
     let usual = kind.default_shape();
-    everywhere(&Subject::Shape(usual.clone()), all);
+    everywhere(&StressNode::Shape(usual.clone()), all);
     let bounds = usual.bounds();
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 1.0 };
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
@@ -120,7 +120,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<Case>) {
                 let mut shape = usual.clone();
                 if shape.set_value(index, value) && shape != usual {
                     let circumstance = format!("{}{axis} {name}", param.name.replace('_', " "));
-                    all.push(plain(Subject::Shape(shape), circumstance));
+                    all.push(plain(StressNode::Shape(shape), circumstance));
                 }
             }
         }
@@ -137,13 +137,13 @@ fn along_axes<N: Copy, V>(usual: [N; 3], number: N, value: impl Fn([N; 3]) -> V)
     [(" x", 0), (" y", 1), (" z", 2)].map(|(name, axis)| (name, replaced(axis))).into()
 }
 
-fn joint(operator: Operator, kernel: BlendKernel, all: &mut Vec<Case>) {
+fn blend_cases(operator: Operator, kernel: BlendKernel, all: &mut Vec<StressCase>) {
     let usual = Group::new(operator, usual_blend(kernel));
-    // Far off and close by, joints of all kernels are the same code.
+    // Far off and close by, blends of all kernels are the same code.
     if operator == Operator::Union || kernel == BlendKernel::ALL[0] {
-        everywhere(&Subject::Joint(usual), all);
+        everywhere(&StressNode::Blend(usual), all);
     }
-    let mut push = |group: Group, circumstance: String| all.push(plain(Subject::Joint(group), circumstance));
+    let mut push = |group: Group, circumstance: String| all.push(plain(StressNode::Blend(group), circumstance));
     if operator.has_radius() {
         for (name, radius) in [("without a blend", 0.0), ("blend of 1e6", limits::BLEND_RADIUS.hard[1])] {
             push(Group { blend: Blend::new(kernel, radius), ..usual }, name.into());
@@ -186,9 +186,9 @@ fn with_image(mut modifier: Modifier) -> Modifier {
     modifier
 }
 
-fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
+fn modifier(kind: ModifierKind, all: &mut Vec<StressCase>) {
     let usual = with_image(kind.default_modifier());
-    everywhere(&Subject::Modified(usual.clone()), all);
+    everywhere(&StressNode::Modified(usual.clone()), all);
     for (index, (param, value)) in kind.params().iter().zip(usual.values()).enumerate() {
         for (name, number) in extremes(&param.limits, 1.0) {
             let whole = number as u32;
@@ -204,7 +204,7 @@ fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
                 let mut changed_modifier = usual.clone();
                 if changed_modifier.set_value(index, value) && changed_modifier != usual {
                     let circumstance = format!("{}{axis} {name}", param.name.replace('_', " "));
-                    all.push(plain(Subject::Modified(changed_modifier), circumstance));
+                    all.push(plain(StressNode::Modified(changed_modifier), circumstance));
                 }
             }
         }
@@ -214,9 +214,9 @@ fn modifier(kind: ModifierKind, all: &mut Vec<Case>) {
         for (name, axes) in [("a row", [0, 1, 1]), ("a grid", [0, 0, 0])] {
             let mut endless = usual.clone();
             endless.set_value(0, ModifierValue::Counts(axes));
-            let view = View::At(DVec3::from(spacing) * CELL * DVec3::from(axes.map(|n| f64::from(n == 0))));
-            let case = plain(Subject::Modified(endless), format!("cell 1e4 of {name} without end"));
-            all.push(Case { view, ..case });
+            let view = StressView::At(DVec3::from(spacing) * CELL * DVec3::from(axes.map(|n| f64::from(n == 0))));
+            let case = plain(StressNode::Modified(endless), format!("cell 1e4 of {name} without end"));
+            all.push(StressCase { view, ..case });
         }
     }
 }

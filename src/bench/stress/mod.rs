@@ -1,19 +1,19 @@
-//! Numerical stress: every shape, operator and modifier where numbers get difficult, against the truth.
+//! Numerical stress: every shape, operator and modifier where numbers get difficult, against the reference.
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `subject` | what is stressed, as a scene |
-//! | `cases` | subjects by circumstances |
+//! | `node` | what is stressed, as a scene |
+//! | `cases` | nodes by circumstances |
 //! | `place` | where the eye is |
-//! | `figures` | a picture against its truth |
+//! | `metrics` | a picture against its reference |
 //! | `sheet` | the worst cases as pictures |
 
 mod cases;
-mod figures;
+mod metrics;
+mod node;
 mod place;
 mod sheet;
-mod subject;
 
-pub use cases::{Case, cases};
-pub use figures::{Allowed, Figures, first_of_each, stress_table, worst_first};
+pub use cases::{StressCase, cases};
+pub use metrics::{Allowed, Metrics, first_of_each, stress_table, worst_first};
 pub use sheet::stress_sheet;

@@ -2,15 +2,15 @@
 
 use glam::{DVec2, DVec3};
 
-use super::subject::Place;
-use crate::flat::trace::{TraceError, trace};
-use crate::flat::twin::surface;
+use super::node::StressPlacement;
+use crate::flat::eval::surface;
+use crate::flat::reference::trace::{TraceError, trace};
 use crate::flat::{FlatScene, view::THREE_QUARTER};
 use crate::geometry::{Aabb, Camera};
 
 /// Where the eye is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum View {
+pub(super) enum StressView {
     /// It sees all.
     Whole,
     /// It looks along the surface, at an angle of about one degree.
@@ -19,25 +19,25 @@ pub(super) enum View {
     Inside,
     /// It is a thousandth of a unit from the surface and looks at it askew.
     Near,
-    /// It looks at what is there, in the subject's own space, from as far as it would at the origin.
+    /// It looks at what is there, in the node's own space, from as far as it would at the origin.
     At(DVec3),
 }
 
-/// How far `View::Near` is from the surface, in metres.
+/// How far `StressView::Near` is from the surface, in meters.
 const CLOSE: f64 = 1e-3;
-/// Height over the surface of `View::Grazing`, as a share of the distance to the point it looks at.
+/// Height over the surface of `StressView::Grazing`, as a share of the distance to the point it looks at.
 const LOW: f64 = 0.02;
 
-impl View {
+impl StressView {
     /// The camera of this view; none where it needs a point of the surface, and the middle of the whole view has none.
     ///
     /// # Errors
     /// A ray has no end.
-    pub fn camera(self, flat: &FlatScene, place: Place, aspect: f64) -> Result<Option<Camera>, TraceError> {
+    pub fn camera(self, flat: &FlatScene, place: StressPlacement, aspect: f64) -> Result<Option<Camera>, TraceError> {
         let endless = || flat.components.iter().any(|component| !component.bounds.is_finite());
         let around = |at| Aabb::from_center_half(at, DVec3::splat(place.scale));
         let content = match self {
-            Self::At(local) => around(place.at + Place::turn() * local * place.scale),
+            Self::At(local) => around(place.at + StressPlacement::turn() * local * place.scale),
             _ if endless() => around(place.at),
             _ => flat.content(&[]),
         };

@@ -30,7 +30,7 @@ pub(super) fn commands() -> Vec<Command> {
             let attenuation = Attenuation::default();
             add_lamp(e, "Spot light", LightKind::Spot { attenuation, inner: 20.0, outer: 30.0 });
         }),
-        new(ICON_VIDEOCAM, "Camera from view", "A camera that sees what the picture shows now", |e, _| add_camera(e))
+        new(ICON_VIDEOCAM, "Camera from view", "A camera that sees what the viewport shows now", |e, _| add_camera(e))
             .group(),
     ]);
     all
@@ -45,7 +45,7 @@ fn add_sun(editor: &mut Editor) {
     insertion::node(editor, Node::new("Sun", NodeKind::Light(Light::sun())).rotated(down));
 }
 
-/// A lamp two metres above where the view looks, shining down.
+/// A lamp two meters above where the view looks, shining down.
 fn add_lamp(editor: &mut Editor, name: &str, light: LightKind) {
     let down = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     let light = Light { color: [1.0; 3], intensity: 4.0, light };

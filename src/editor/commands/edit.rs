@@ -17,14 +17,14 @@ use crate::scene::Operator;
 const CTRL: Modifiers = Modifiers::COMMAND;
 
 fn any(editor: &Editor) -> bool {
-    !editor.bench.document.selection().is_empty()
+    !editor.session.document.selection().is_empty()
 }
 
 pub(super) fn commands() -> Vec<Command> {
     let mut all = history();
     all.extend(structure());
     all.extend(roles());
-    all.extend(further_operators());
+    all.extend(extended_operators());
     all.extend(showing());
     all
 }
@@ -37,47 +37,47 @@ fn history() -> Vec<Command> {
     let shift_ctrl = CTRL.plus(Modifiers::SHIFT);
     vec![
         Command::new(Menu::Edit, Icon::from(ICON_UNDO), "Undo", "Takes back the last change", |e, _| {
-            e.bench.document.undo();
+            e.session.document.undo();
         })
         .key(CTRL, Key::Z)
-        .when(|e| e.bench.document.undo_label().is_some()),
+        .when(|e| e.session.document.undo_label().is_some()),
         Command::new(Menu::Edit, Icon::from(ICON_REDO), "Redo", "Does again what was taken back", |e, _| {
-            e.bench.document.redo();
+            e.session.document.redo();
         })
         .key(shift_ctrl, Key::Z)
         .key(CTRL, Key::Y)
-        .when(|e| e.bench.document.redo_label().is_some()),
+        .when(|e| e.session.document.redo_label().is_some()),
     ]
 }
 
 fn structure() -> Vec<Command> {
     vec![
-        new(ICON_EDIT, "Rename", "Changes the name in the tree", |e, _| e.rename_active())
+        new(ICON_EDIT, "Rename", "Changes the name in the outliner", |e, _| e.rename_active())
             .key(Modifiers::NONE, Key::F2)
             .group(),
         new(ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it", |e, _| {
-            selection::duplicate(&mut e.bench);
+            selection::duplicate(&mut e.session);
         })
         .key(Modifiers::SHIFT, Key::D)
         .key(CTRL, Key::D),
-        new(ICON_DELETE, "Delete", "Removes the selection", |e, _| selection::delete(&mut e.bench))
+        new(ICON_DELETE, "Delete", "Removes the selection", |e, _| selection::delete(&mut e.session))
             .key(Modifiers::NONE, Key::X)
             .key(Modifiers::NONE, Key::Delete),
         new(ICON_FOLDER, "Group", "Puts the selection into a group", |e, _| {
-            selection::join(&mut e.bench, Operator::Union, true);
+            selection::join(&mut e.session, Operator::Union, true);
         })
         .key(CTRL, Key::G)
         .group(),
         new(ICON_FOLDER_OFF, "Ungroup", "Takes the children out of the selected groups", |e, _| {
-            selection::ungroup(&mut e.bench);
+            selection::ungroup(&mut e.session);
         })
         .key(CTRL.plus(Modifiers::SHIFT), Key::G),
         new(ICON_ARROW_UPWARD, "Move up", "One place up among its siblings; the order of operands matters", |e, _| {
-            selection::shift(&mut e.bench, -1);
+            selection::shift(&mut e.session, -1);
         })
         .key(Modifiers::ALT, Key::ArrowUp),
         new(ICON_ARROW_DOWNWARD, "Move down", "One place down among its siblings", |e, _| {
-            selection::shift(&mut e.bench, 1);
+            selection::shift(&mut e.session, 1);
         })
         .key(Modifiers::ALT, Key::ArrowDown),
     ]
@@ -85,50 +85,50 @@ fn structure() -> Vec<Command> {
 
 fn roles() -> Vec<Command> {
     vec![
-        new(ICON_JOIN_FULL, "Unite", "Joins the selection: what is in any of it", |e, _| {
-            selection::join(&mut e.bench, Operator::Union, false);
+        new(ICON_JOIN_FULL, "Union", "Joins the selection: what is in any of it", |e, _| {
+            selection::join(&mut e.session, Operator::Union, false);
         })
         .key(Modifiers::NONE, Key::U)
         .group(),
         new(ICON_JOIN_INNER, "Intersect", "Keeps what is in all of the selection", |e, _| {
-            selection::join(&mut e.bench, Operator::Intersection, false);
+            selection::join(&mut e.session, Operator::Intersection, false);
         })
         .key(Modifiers::NONE, Key::I),
         new(ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection", |e, _| {
-            selection::join(&mut e.bench, Operator::Difference, false);
+            selection::join(&mut e.session, Operator::Difference, false);
         })
         .key(Modifiers::NONE, Key::D),
-        new(ICON_REMOVE_CIRCLE, "Toggle negative", "Cut away from what stands before it, or joined again", |e, _| {
-            selection::toggle_negative(&mut e.bench);
+        new(ICON_REMOVE_CIRCLE, "Toggle subtract", "Cut away from what stands before it, or joined again", |e, _| {
+            selection::toggle_negative(&mut e.session);
         })
         .key(Modifiers::NONE, Key::N),
     ]
 }
 
-/// Operators without a key; the palette finds them.
-fn further_operators() -> Vec<Command> {
+/// Operators without a key; the command palette finds them.
+fn extended_operators() -> Vec<Command> {
     vec![
-        new(ICON_JOIN, "Exclude", "Keeps what is in one of the selection but not in the next", |e, _| {
-            selection::join(&mut e.bench, Operator::Xor, false);
+        new(ICON_JOIN, "Exclude (XOR)", "Keeps what is in one of the selection but not in the next", |e, _| {
+            selection::join(&mut e.session, Operator::Xor, false);
         })
         .group(),
         new(ICON_PLUMBING, "Pipe", "A tube along the curve where the surfaces of the selection meet", |e, _| {
-            selection::join(&mut e.bench, Operator::Pipe, false);
+            selection::join(&mut e.session, Operator::Pipe, false);
         }),
         new(ICON_VERTICAL_ALIGN_BOTTOM, "Groove", "Cuts a groove along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.bench, Operator::Groove, false);
+            selection::join(&mut e.session, Operator::Groove, false);
         }),
-        new(ICON_VERTICAL_ALIGN_TOP, "Tongue", "Raises a tongue along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.bench, Operator::Tongue, false);
+        new(ICON_VERTICAL_ALIGN_TOP, "Ridge", "Raises a ridge along the surfaces of all later ones", |e, _| {
+            selection::join(&mut e.session, Operator::Tongue, false);
         }),
         new(ICON_STYLUS, "Engrave", "Cuts a V along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.bench, Operator::Engrave, false);
+            selection::join(&mut e.session, Operator::Engrave, false);
         }),
         new(ICON_ANIMATION, "Morph", "A shape between those of the selection", |e, _| {
-            selection::join(&mut e.bench, Operator::Morph, false);
+            selection::join(&mut e.session, Operator::Morph, false);
         }),
-        new(ICON_FORMAT_PAINT, "Paint", "The first of the selection in the colours of the others", |e, _| {
-            selection::join(&mut e.bench, Operator::Paint, false);
+        new(ICON_FORMAT_PAINT, "Color projection", "The first of the selection in the colors of the others", |e, _| {
+            selection::join(&mut e.session, Operator::Paint, false);
         }),
     ]
 }
@@ -141,7 +141,7 @@ fn showing() -> Vec<Command> {
             "Select all",
             "Selects every node that is not locked",
             |e, _| {
-                selection::select_all(&mut e.bench);
+                selection::select_all(&mut e.session);
             },
         )
         .key(CTRL, Key::A)
@@ -149,10 +149,10 @@ fn showing() -> Vec<Command> {
         Command::new(
             Menu::Edit,
             None,
-            "Select nothing",
+            "Deselect all",
             "Clears the selection and shows the scene's settings",
             |e, _| {
-                e.bench.document.select(Vec::new());
+                e.session.document.select(Vec::new());
             },
         )
         .key(Modifiers::NONE, Key::Escape)
@@ -163,31 +163,31 @@ fn showing() -> Vec<Command> {
             "Toggle visible",
             "Hides the selection, or shows it again",
             |e, _| {
-                selection::toggle_visible(&mut e.bench);
+                selection::toggle_visible(&mut e.session);
             },
         )
         .key(Modifiers::NONE, Key::H)
         .when(any),
         Command::new(Menu::Edit, Icon::from(ICON_VISIBILITY), "Show all", "Shows everything that is hidden", |e, _| {
-            selection::show_all(&mut e.bench);
+            selection::show_all(&mut e.session);
         })
         .key(Modifiers::ALT, Key::H),
         Command::new(
             Menu::Edit,
             Icon::from(ICON_LOCK),
             "Toggle lock",
-            "Locked nodes are not picked in the picture",
+            "Locked nodes are not picked in the viewport",
             |e, _| {
-                selection::toggle_locked(&mut e.bench);
+                selection::toggle_locked(&mut e.session);
             },
         )
         .key(Modifiers::NONE, Key::L)
         .when(any),
-        Command::new(Menu::Edit, None, "Remove unused materials", "Removes materials that nothing wears", |e, _| {
-            let unused = selection::unused_materials(e.bench.document.scene());
-            e.bench.together(|bench| {
+        Command::new(Menu::Edit, None, "Remove unused materials", "Removes materials that nothing uses", |e, _| {
+            let unused = selection::unused_materials(e.session.document.scene());
+            e.session.together(|session| {
                 for id in unused {
-                    bench.apply(Edit::RemoveMaterial(id));
+                    session.apply(Edit::RemoveMaterial(id));
                 }
             });
         }),

@@ -1,5 +1,5 @@
 //! Everything that the artist can order, in one table: it feeds the menus, the toolbar, the shortcuts
-//! and the palette.
+//! and the command palette.
 
 mod add;
 mod edit;
@@ -14,8 +14,8 @@ use egui_material_icons::icons::{
     ICON_CHECK_BOX, ICON_CHECK_BOX_OUTLINE_BLANK, ICON_RADIO_BUTTON_CHECKED, ICON_RADIO_BUTTON_UNCHECKED,
 };
 
-use super::palette::Palette;
-use super::{Editor, glyphs, theme};
+use super::command_palette::CommandPalette;
+use super::{Editor, icons, theme};
 use crate::scene::ShapeKind;
 
 /// Where a command stands.
@@ -30,8 +30,8 @@ pub enum Menu {
     /// The camera and what is shown.
     View,
     /// What the picture shows; a part of the menu View.
-    Look,
-    /// What the picture shows to whoever looks for a fault; a part of the menu of [`Menu::Look`].
+    ViewMode,
+    /// What the picture shows to whoever looks for a fault; a part of the menu of [`Menu::ViewMode`].
     Debug,
 }
 
@@ -160,7 +160,7 @@ impl CommandId {
     /// Runs it, where it can be run.
     pub fn run(self, editor: &mut Editor, ctx: &Context) {
         if self.enabled(editor) {
-            editor.bench.finish();
+            editor.session.finish();
             (self.get().run)(editor, ctx);
         }
     }
@@ -177,7 +177,7 @@ pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
     if let Some(command) = ctx.input_mut(|i| take_shortcut(i, is_of_document)) {
         ctx.memory_mut(|memory| memory.stop_text_input());
         Popup::close_all(ctx);
-        editor.palette = Palette::default();
+        editor.command_palette = CommandPalette::default();
         editor.pending = Some(command);
         return;
     }
@@ -186,7 +186,7 @@ pub fn run_shortcuts(editor: &mut Editor, ctx: &Context) {
     if editor.has_dialog() || editor.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
         return;
     }
-    let log = &mut editor.bench.messages.show_log;
+    let log = &mut editor.session.messages.show_log;
     if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
         *log = false;
     }
@@ -229,7 +229,7 @@ pub fn menu_entries(ui: &mut Ui, editor: &Editor, menu: Menu) -> Option<CommandI
 pub fn context_entries(ui: &mut Ui) -> Option<CommandId> {
     const GROUPS: [&[&str]; 4] = [
         &["Rename", "Duplicate", "Delete"],
-        &["Group", "Ungroup", "Toggle negative"],
+        &["Group", "Ungroup", "Toggle subtract"],
         &["Move up", "Move down"],
         &["Toggle visible", "Toggle lock", "Frame selected"],
     ];
@@ -285,8 +285,8 @@ impl Command {
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
         match (self.menu, on) {
-            (Menu::Look | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Menu::Look | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Menu::ViewMode | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::ViewMode | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }
@@ -306,14 +306,14 @@ fn paint(ui: &Ui, entry: egui::Rect, icon: Icon, enabled: bool) {
         entry.left_center() + egui::vec2(ui.spacing().button_padding.x + 10.0, 0.0),
         egui::Vec2::splat(16.0),
     );
-    let square = glyphs::centered(square, 16.0);
+    let square = icons::centered(square, 16.0);
     let dim = if enabled { 1.0 } else { 0.45 };
     match icon {
         Icon::Material(icon) => {
-            glyphs::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
+            icons::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
         }
         Icon::Shape(kind) => {
-            glyphs::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
+            icons::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
         }
     }
 }

@@ -9,7 +9,7 @@ use egui_material_icons::icons::{
 use super::{Command, Icon, Menu};
 use crate::editor::Editor;
 use crate::editor::navigation::Side;
-use crate::flat::inspect::Look;
+use crate::flat::debug_view::ViewMode;
 
 fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
     Command::new(Menu::View, Icon::from(icon), name, help, run)
@@ -21,7 +21,7 @@ pub(super) fn commands() -> Vec<Command> {
         new(ICON_CENTER_FOCUS_STRONG, "Frame selected", "Shows all of the selection", |e, _| e.frame_selected())
             .key(NONE, Key::F)
             .key(NONE, Key::Period)
-            .when(|e| !e.bench.document.selection().is_empty()),
+            .when(|e| !e.session.document.selection().is_empty()),
         new(ICON_FIT_SCREEN, "Frame all", "Shows the whole scene", |e, _| e.frame_all())
             .key(NONE, Key::Home)
             .key(NONE, Key::A),
@@ -58,27 +58,29 @@ pub(super) fn commands() -> Vec<Command> {
             e.show_outline ^= true;
         })
         .switch(|e| e.show_outline),
-        new(ICON_SEARCH, "Find command…", "Every command by its name", |e, _| e.palette.open())
+        new(ICON_SEARCH, "Find command…", "Every command by its name", |e, _| e.command_palette.open())
             .key(NONE, Key::F3)
             .key(Modifiers::COMMAND, Key::P)
             .group(),
-        new(ICON_LIST, "Messages", "Everything that was said", |e, _| e.bench.messages.show_log ^= true),
+        new(ICON_LIST, "Log", "All messages so far", |e, _| e.session.messages.show_log ^= true),
     ]);
-    all.extend(Look::ALL.into_iter().map(|look| {
-        let menu = if is_diagnostic(look) { Menu::Debug } else { Menu::Look };
-        let command = Command::new(menu, None, look_command(look), look.help(), move |e, _| e.look = look);
-        let command = command.switch(move |e| e.look == look);
-        if matches!(look, Look::Slope | Look::Nodes) { command.group() } else { command }
+    all.extend(ViewMode::ALL.into_iter().map(|view_mode| {
+        let menu = if is_diagnostic(view_mode) { Menu::Debug } else { Menu::ViewMode };
+        let command = Command::new(menu, None, view_mode_command(view_mode), view_mode.help(), move |e, _| {
+            e.view_mode = view_mode
+        });
+        let command = command.switch(move |e| e.view_mode == view_mode);
+        if matches!(view_mode, ViewMode::Slope | ViewMode::Nodes) { command.group() } else { command }
     }));
     all
 }
 
 /// Whether it shows how the renderer works rather than the scene.
-fn is_diagnostic(look: Look) -> bool {
-    look.counts() || look == Look::Slope
+fn is_diagnostic(view_mode: ViewMode) -> bool {
+    view_mode.counts() || view_mode == ViewMode::Slope
 }
 
-/// The name of the command that has the picture show `look`.
-fn look_command(look: Look) -> String {
-    format!("Show {}", look.name())
+/// The name of the command that has the picture show `view_mode`.
+fn view_mode_command(view_mode: ViewMode) -> String {
+    format!("Shading: {}", view_mode.name())
 }

@@ -5,13 +5,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::modifier::{Deformation, Deformed};
 use super::{Leaf, Link, Part, Unsupported};
 use crate::flat::Join;
-use crate::flat::body::Body;
+use crate::flat::eval::BlendParams;
 use crate::flat::modify::is_idle;
-use crate::flat::twin::Joint;
+use crate::flat::prepare::PreparedShape;
 use crate::geometry::singular_values;
 use crate::scene::{
-    Blend, BlendKernel, Group, Joining, Modifier, ModifierSlot, Node, NodeId, NodeKind, Operator, RadiusUnit, Scene,
-    Shape,
+    Blend, BlendKernel, BlendOverride, Group, Modifier, ModifierSlot, Node, NodeId, NodeKind, Operator, RadiusUnit,
+    Scene, Shape,
 };
 
 /// The whole scene: its top is a hard union.
@@ -28,7 +28,7 @@ struct Builder<'a> {
 type Found = Result<Option<Part>, Unsupported>;
 
 /// An operand with its node and how it joins; the first of a group joins nothing.
-type Joined<'n> = (&'n Node, Option<Link>, Part);
+type SiblingOperand<'n> = (&'n Node, Option<Link>, Part);
 
 impl Builder<'_> {
     /// The node as an operand.
@@ -114,7 +114,7 @@ impl Builder<'_> {
 
     /// The children of a group, in their order; nothing where there is no operand.
     fn fold(&self, parent: Option<NodeId>, group: &Group, outer: &DAffine3) -> Found {
-        let mut so_far: Vec<Joined<'_>> = Vec::new();
+        let mut so_far: Vec<SiblingOperand<'_>> = Vec::new();
         let mut whole: Option<Part> = None;
         for child in self.scene.children(parent) {
             let child: &Node = child;
@@ -128,9 +128,10 @@ impl Builder<'_> {
                 continue;
             };
             // At the top nothing blends.
-            let joining = if parent.is_some() { child.joining } else { Joining::Hard };
-            let link = link(group, child.negative, joining).map_err(|reason| Unsupported { node: child.id, reason })?;
-            let needs_values = link.joint.support > 0.0 || !is_on_sets(link);
+            let blend_override = if parent.is_some() { child.blend_override } else { BlendOverride::Hard };
+            let link =
+                link(group, child.negative, blend_override).map_err(|reason| Unsupported { node: child.id, reason })?;
+            let needs_values = link.blend_params.support > 0.0 || !is_on_sets(link);
             if needs_values && !(part.is_exact() && before.is_exact()) {
                 return Err(Unsupported { node: child.id, reason: BLENDED });
             }
@@ -143,13 +144,13 @@ impl Builder<'_> {
 
 /// What stands, and one more operand, the last of those so far: it does not blend with those from which it is kept
 /// apart. With the others it blends alone, and the result joins without a blend.
-fn joined(group: &Group, before: Part, so_far: &[Joined<'_>], link: Link, part: Part) -> Part {
+fn joined(group: &Group, before: Part, so_far: &[SiblingOperand<'_>], link: Link, part: Part) -> Part {
     let Some(((node, ..), others)) = so_far.split_last() else { return before };
     let is_apart = |other: &Node| node.apart.contains(&other.id) || other.apart.contains(&node.id);
-    if link.joint.support == 0.0 || !others.iter().any(|(other, ..)| is_apart(other)) {
+    if link.blend_params.support == 0.0 || !others.iter().any(|(other, ..)| is_apart(other)) {
         return join(group, before, link, part);
     }
-    let hard = Link { joint: Joint { support: 0.0, ..link.joint }, ..link };
+    let hard = Link { blend_params: BlendParams { support: 0.0, ..link.blend_params }, ..link };
     let is_symmetric = [Join::Union, Join::Intersection].map(|join| join as u32).contains(&link.join);
     let mut allowed: Option<Part> = None;
     for (other, own, part) in others.iter().filter(|(other, ..)| is_symmetric && !is_apart(other)) {
@@ -169,7 +170,7 @@ fn joined(group: &Group, before: Part, so_far: &[Joined<'_>], link: Link, part: 
 /// Why a blend cannot be compared.
 const BLENDED: &str = "it joins by the values of a deformation or repetition, of which only the surface is given";
 
-/// Whether a joint without a blend knows only inside and outside.
+/// Whether a hard join knows only inside and outside.
 fn is_on_sets(link: Link) -> bool {
     let sets = [Join::Union, Join::Intersection, Join::Difference, Join::Xor, Join::Paint];
     sets.map(|join| join as u32).contains(&link.join)
@@ -195,18 +196,22 @@ fn join(group: &Group, a: Part, link: Link, b: Part) -> Part {
 
 /// Copies in a union with this blend.
 fn united(parts: Vec<Option<Part>>, radius: f64) -> Found {
-    let link = Link { join: Join::Union as u32, joint: Joint::blend(radius), kernel: BlendKernel::Circular as u32 };
+    let link = Link {
+        join: Join::Union as u32,
+        blend_params: BlendParams::blend(radius),
+        kernel: BlendKernel::Circular as u32,
+    };
     let parts = parts.into_iter().flatten();
     Ok(parts.reduce(|all, part| join(&Group::UNION, all, link, part)))
 }
 
 /// How a child joins, by its group and by its own wish.
-fn link(group: &Group, negative: bool, joining: Joining) -> Result<Link, &'static str> {
+fn link(group: &Group, negative: bool, blend_override: BlendOverride) -> Result<Link, &'static str> {
     let join = if negative { Join::Difference } else { Join::of(group.operator) };
-    let radius = match joining {
-        Joining::Inherit => group.blend.radius,
-        Joining::Hard => 0.0,
-        Joining::Radius(radius) => radius,
+    let radius = match blend_override {
+        BlendOverride::Inherit => group.blend.radius,
+        BlendOverride::Hard => 0.0,
+        BlendOverride::Radius(radius) => radius,
     };
     let has_radius = !matches!(join, Join::Pipe | Join::Morph);
     if has_radius && radius > 0.0 && group.blend.unit == RadiusUnit::Size {
@@ -232,7 +237,7 @@ fn link(group: &Group, negative: bool, joining: Joining) -> Result<Link, &'stati
         Join::Paint => radius,
         _ => Blend { kernel, radius, ..group.blend }.support(),
     };
-    Ok(Link { join: join as u32, joint: Joint { support, size, depth }, kernel: kernel as u32 })
+    Ok(Link { join: join as u32, blend_params: BlendParams { support, size, depth }, kernel: kernel as u32 })
 }
 
 /// A shape in its place. A scale along its own axes goes into its numbers where there is such a shape, so that its field is
@@ -247,8 +252,8 @@ fn leaf(shape: &Shape, outer: &DAffine3) -> Leaf {
     let scale = if is_even { DVec3::splat(mean) } else { lengths };
     if is_square && let Some(absorbed) = shape.absorb_scale(scale) {
         let turned = DAffine3 { matrix3: DMat3::from_cols(x, y, z), ..*outer };
-        return Leaf { local_from_outer: turned.inverse(), scale: 1.0, body: Body::new(&absorbed) };
+        return Leaf { local_from_outer: turned.inverse(), scale: 1.0, prepared: PreparedShape::new(&absorbed) };
     }
     let least = if is_square { scale.min_element() } else { singular_values(&outer.matrix3).0 };
-    Leaf { local_from_outer: outer.inverse(), scale: least, body: Body::new(shape) }
+    Leaf { local_from_outer: outer.inverse(), scale: least, prepared: PreparedShape::new(shape) }
 }

@@ -2,7 +2,7 @@
 //! no number rounded to 32 bits. Slow; a second opinion for tests. Renderer and reference read the arrays that flattening
 //! makes, so a fault of flattening is in both.
 //!
-//! It shares with them the formulas of shapes and operators (`twin`), what a shape is evaluated with (`Body`), which modifiers
+//! It shares with them the formulas of shapes and operators (`eval`), what a shape is evaluated with (`PreparedShape`), which modifiers
 //! do nothing, and no more. Copies are made one by one, and cells of a repetition without end are looked at around the point.
 //!
 //! | file | what it does |
@@ -16,8 +16,8 @@ mod modifier;
 use glam::{DAffine3, DVec3};
 use thiserror::Error;
 
-use super::body::Body;
-use super::twin::{Joint, op_join, shape_distance};
+use super::eval::{BlendParams, op_join, shape_distance};
+use super::prepare::PreparedShape;
 use crate::geometry::Aabb;
 use crate::scene::{NodeId, Scene};
 use modifier::Deformed;
@@ -41,7 +41,7 @@ impl SceneField {
     /// Prepares a scene.
     ///
     /// # Errors
-    /// A joint depends on values that flattening chooses freely: sizes of bounds, or the field of a deformation away from
+    /// A blend depends on values that flattening chooses freely: sizes of bounds, or the field of a deformation away from
     /// its surface.
     pub fn new(scene: &Scene) -> Result<Self, Unsupported> {
         Ok(Self { whole: build::whole(scene)? })
@@ -78,14 +78,14 @@ struct Leaf {
     local_from_outer: DAffine3,
     /// Factor on its local distance.
     scale: f64,
-    body: Body,
+    prepared: PreparedShape,
 }
 
 /// How an operand joins what stands before it.
 #[derive(Clone, Copy)]
 struct Link {
     join: u32,
-    joint: Joint,
+    blend_params: BlendParams,
     kernel: u32,
 }
 
@@ -95,11 +95,11 @@ impl Part {
             Self::Nothing => f64::INFINITY,
             Self::Leaf(leaf) => {
                 let local = leaf.local_from_outer.transform_point3(p).to_array();
-                let Body { kind, parameters, rows, .. } = &leaf.body;
+                let PreparedShape { kind, parameters, payload: rows, .. } = &leaf.prepared;
                 shape_distance(*kind, local, parameters, &|row| rows[row]) * leaf.scale
             }
             Self::Fold { first, rest } => rest.iter().fold(first.value(p), |so_far, (link, part)| {
-                op_join(link.join, so_far, part.value(p), &link.joint, link.kernel).value
+                op_join(link.join, so_far, part.value(p), &link.blend_params, link.kernel).value
             }),
             Self::Deformed(deformed) => deformed.value(p),
         }
@@ -117,7 +117,7 @@ impl Part {
     fn bounds(&self) -> Aabb {
         match self {
             Self::Nothing => Aabb::EMPTY,
-            Self::Leaf(leaf) => leaf.body.bounds.transformed(&leaf.local_from_outer.inverse()),
+            Self::Leaf(leaf) => leaf.prepared.bounds.transformed(&leaf.local_from_outer.inverse()),
             Self::Fold { first, rest } => rest.iter().fold(first.bounds(), |all, (_, part)| all.union(&part.bounds())),
             Self::Deformed(deformed) => deformed.content.bounds().transformed(&deformed.local_from_outer.inverse()),
         }

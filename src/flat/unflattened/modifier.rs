@@ -3,8 +3,8 @@
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::Part;
-use crate::flat::body::spline;
-use crate::flat::twin::{noise_value, sdf_heights};
+use crate::flat::eval::{noise_value, sdf_heights};
+use crate::flat::prepare::spline;
 use crate::scene::{Axis, Modifier};
 
 /// Along an axis without end, and where there are too many cells to look at all, so many cells to either side are looked at.
@@ -59,7 +59,7 @@ pub(super) struct Repeat {
 pub(super) struct Displacement {
     rows: Vec<[f64; 4]>,
     pixels: [f64; 2],
-    /// Tiles for each metre.
+    /// Tiles for each meter.
     tiles: [f64; 2],
     axis: Axis,
 }
@@ -144,13 +144,13 @@ impl Deformed {
             Deformation::Round { radius } => content(p) - radius,
             Deformation::Onion { half, walls, spacing } => {
                 let f = content(p);
-                // The nearest of the walls, which lie inwards from the surface.
+                // The nearest of the walls, which lie inward from the surface.
                 let nearest = (-f / spacing).round_ties_even().clamp(0.0, walls - 1.0);
                 (f + nearest * spacing).abs() - half
             }
             Deformation::Twist { angle } => content(DQuat::from_rotation_y(-angle * p.y) * p),
             Deformation::Bend { radius, sign } => {
-                // From the centre of the arc, which lies at `radius` to that side.
+                // From the center of the arc, which lies at `radius` to that side.
                 let down = radius - sign * p.y;
                 content(DVec3::new(p.x.atan2(down) * radius, sign * (radius - p.x.hypot(down)), p.z))
             }

@@ -17,7 +17,7 @@ fn circle(center: DVec3, radius: f64) -> Vec<ArcPiece> {
     vec![ArcPiece::leaving(right, DVec3::Y, left), ArcPiece::leaving(left, -DVec3::Y, right)]
 }
 
-fn backwards(arcs: Vec<ArcPiece>) -> Vec<ArcPiece> {
+fn backward(arcs: Vec<ArcPiece>) -> Vec<ArcPiece> {
     arcs.into_iter().rev().map(ArcPiece::reversed).collect()
 }
 
@@ -43,11 +43,11 @@ fn united(parts: &[Vec<ArcPiece>]) -> Option<Vec<ArcPiece>> {
 
 #[test]
 fn simple_curves_stay_as_they_are() {
-    let ring = [circle(DVec3::ZERO, 1.0), backwards(circle(DVec3::ZERO, 0.5))];
+    let ring = [circle(DVec3::ZERO, 1.0), backward(circle(DVec3::ZERO, 0.5))];
     assert_eq!(united(&ring), None);
     assert_eq!(united(&[rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([2.0, 0.0], [3.0, 1.0])]), None);
     // Of the other orientation, as in the other kind of font.
-    assert_eq!(united(&ring.map(backwards)), None);
+    assert_eq!(united(&ring.map(backward)), None);
     assert_eq!(united(&[]), None);
 }
 
@@ -79,7 +79,7 @@ fn what_touches_or_coincides_is_joined() {
     let twice = united(&[circle(DVec3::ZERO, 1.0), circle(DVec3::ZERO, 1.0)]).unwrap();
     assert!((length(&twice) - std::f64::consts::TAU).abs() < 1e-6);
     // And once in each direction: nothing is left.
-    let gone = united(&[circle(DVec3::ZERO, 1.0), backwards(circle(DVec3::ZERO, 1.0))]).unwrap();
+    let gone = united(&[circle(DVec3::ZERO, 1.0), backward(circle(DVec3::ZERO, 1.0))]).unwrap();
     assert!(gone.is_empty());
     // A stroke that crosses itself.
     let knot =

@@ -1,31 +1,31 @@
-//! The passes that evaluate a component: `cone`, `trace`, `surface`. One kernel holds all three, built
+//! The passes that evaluate a component: `cone`, `trace`, `surface`. One pipeline holds all three, built
 //! for one [`Evaluator`].
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
 
-use crate::render::kernel::{Evaluator, Options, ShaderError, source};
-use crate::render::layouts::*;
-use crate::render::targets::Targets;
+use crate::render::resources::layouts::*;
+use crate::render::resources::targets::Targets;
+use crate::render::wgsl::{Evaluator, Options, ShaderError, assemble};
 
 /// The pipelines of one evaluator.
 #[derive(Debug)]
-pub struct Kernel {
-    /// Which quads of the picture a component touches, and from where on.
+pub struct FieldPipelines {
+    /// Which subtiles of the picture a component touches, and from where on.
     pub cone: ComputePipeline,
-    /// Hits within these quads.
+    /// Hits within these subtiles.
     pub trace: ComputePipeline,
     /// Normal, material and leaf of the hits.
     pub surface: ComputePipeline,
-    /// One bit for each stage that was dispatched.
+    /// One bit for each pass that was dispatched.
     used: AtomicU32,
 }
 
-impl Kernel {
-    /// Marks a stage as dispatched; true the first time.
-    pub fn first_use(&self, stage: usize) -> bool {
-        let bit = 1 << stage;
+impl FieldPipelines {
+    /// Marks a pass as dispatched; true the first time.
+    pub fn first_use(&self, pass: usize) -> bool {
+        let bit = 1 << pass;
         self.used.fetch_or(bit, Ordering::Relaxed) & bit == 0
     }
 }
@@ -41,26 +41,26 @@ pub struct FieldLayouts {
 /// Bind groups for the targets of the three passes.
 #[derive(Debug)]
 pub struct FieldGroups {
-    /// Of [`Kernel::cone`].
+    /// Of [`FieldPipelines::cone`].
     pub cone: BindGroup,
-    /// Of [`Kernel::trace`].
+    /// Of [`FieldPipelines::trace`].
     pub trace: BindGroup,
     /// The same where the rays that are left are dispatched: what says how many must not be written then.
-    pub packed: BindGroup,
-    /// Of [`Kernel::surface`].
+    pub compacted: BindGroup,
+    /// Of [`FieldPipelines::surface`].
     pub surface: BindGroup,
 }
 
 /// Buffers that the passes hand on to each other.
 #[derive(Clone, Copy, Debug)]
-pub struct Lists<'a> {
-    /// Quads that the cones have left, list after list; then those with hits.
-    pub quads: &'a wgpu::Buffer,
+pub struct FieldBuffers<'a> {
+    /// Subtiles that the cones have left, list after list; then those with hits.
+    pub subtiles: &'a wgpu::Buffer,
     /// For each list the arguments of its indirect dispatch, and how many there are.
-    pub quad_counts: &'a wgpu::Buffer,
+    pub subtile_counts: &'a wgpu::Buffer,
     /// Pixels whose march goes on, list after list.
     pub rays: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatches over these, and over quads with hits.
+    /// For each list the arguments of its indirect dispatches over these, and over subtiles with hits.
     pub ray_counts: &'a wgpu::Buffer,
     /// Any other buffer.
     pub nothing: &'a wgpu::Buffer,
@@ -104,7 +104,7 @@ impl FieldLayouts {
         }
     }
 
-    /// Builds the kernel of an evaluator.
+    /// Builds the pipeline of an evaluator.
     ///
     /// # Errors
     /// A shader file is missing. What the driver thinks of the source is reported to the device.
@@ -114,13 +114,13 @@ impl FieldLayouts {
         layouts: &Layouts,
         evaluator: &Evaluator,
         options: Options,
-    ) -> Result<Kernel, ShaderError> {
+    ) -> Result<FieldPipelines, ShaderError> {
         let pipeline = |name: &str, entry_point: &str, targets: &BindGroupLayout| {
-            let groups = [&layouts.view, &layouts.scene, targets, &layouts.work];
-            let text = source(&format!("{name}.wgsl"), evaluator, options)?;
+            let groups = [&layouts.view, &layouts.scene, targets, &layouts.dispatch_params];
+            let text = assemble(&format!("{name}.wgsl"), evaluator, options)?;
             Ok(compute_pipeline(device, name, text, entry_point, &groups))
         };
-        Ok(Kernel {
+        Ok(FieldPipelines {
             cone: pipeline("cone", "cone", &self.cone)?,
             trace: pipeline("trace", "trace", &self.trace)?,
             surface: pipeline("surface", "surface_pass", &self.surface)?,
@@ -129,41 +129,41 @@ impl FieldLayouts {
     }
 
     /// Binds the targets.
-    pub fn bind(&self, device: &wgpu::Device, targets: &Targets, lists: Lists<'_>) -> FieldGroups {
+    pub fn bind(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> FieldGroups {
         let texture = wgpu::BindingResource::TextureView;
         let cone = [
-            texture(&targets.farthest.view),
-            lists.quads.as_entire_binding(),
-            lists.quad_counts.as_entire_binding(),
+            texture(&targets.hiz.view),
+            lists.subtiles.as_entire_binding(),
+            lists.subtile_counts.as_entire_binding(),
             lists.march_counts.as_entire_binding(),
         ];
         let trace = [
             texture(&targets.depth.view),
-            texture(&targets.owner.view),
+            texture(&targets.visibility.view),
             texture(&targets.march.view),
-            texture(&targets.farthest.view),
-            lists.quads.as_entire_binding(),
+            texture(&targets.hiz.view),
+            lists.subtiles.as_entire_binding(),
             lists.march_counts.as_entire_binding(),
             lists.rays.as_entire_binding(),
             lists.ray_counts.as_entire_binding(),
-            lists.quad_counts.as_entire_binding(),
+            lists.subtile_counts.as_entire_binding(),
         ];
-        let mut packed = trace.clone();
-        packed[7] = lists.nothing.as_entire_binding();
+        let mut compacted = trace.clone();
+        compacted[7] = lists.nothing.as_entire_binding();
         let surface = [
             texture(&targets.depth.view),
-            texture(&targets.owner.view),
+            texture(&targets.visibility.view),
             texture(&targets.normal.view),
             texture(&targets.diffuse.view),
             texture(&targets.emission.view),
             texture(&targets.leaf.view),
-            lists.quads.as_entire_binding(),
+            lists.subtiles.as_entire_binding(),
             lists.ray_counts.as_entire_binding(),
         ];
         FieldGroups {
             cone: bind(device, "cone targets", &self.cone, &cone),
             trace: bind(device, "trace targets", &self.trace, &trace),
-            packed: bind(device, "trace targets", &self.trace, &packed),
+            compacted: bind(device, "trace targets", &self.trace, &compacted),
             surface: bind(device, "surface targets", &self.surface, &surface),
         }
     }

@@ -9,15 +9,15 @@ use glam::{DAffine3, DVec3};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
-use crate::flat::truth::FILE_MATERIAL;
+use crate::flat::reference::image::FILE_MATERIAL;
 use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::Camera;
-use crate::mesh::{Part, Sampler, Surface, Texture, TriangleMesh, Wrap};
-use crate::render::buffers::Mirror;
-use crate::render::kernel::{ShaderError, plain_source};
-use crate::render::layouts::*;
-use crate::render::standpoint::ahead_of;
-use crate::render::targets::{BACKGROUND, Targets};
+use crate::mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
+use crate::render::frame::standpoint::ray_origin_depth;
+use crate::render::resources::buffers::SyncedBuffer;
+use crate::render::resources::layouts::*;
+use crate::render::resources::targets::{BACKGROUND, Targets};
+use crate::render::wgsl::{ShaderError, assemble_plain};
 
 /// The pass, and the meshes that are on the device.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub struct MeshPass {
     texture_layout: BindGroupLayout,
     /// For every way to look a texture up.
     samplers: HashMap<Sampler, wgpu::Sampler>,
-    instances: Mirror,
+    instances: SyncedBuffer,
     instance_group: Option<BindGroup>,
     /// By the address of the mesh on the CPU; dropped with it.
     uploaded: HashMap<usize, Uploaded>,
@@ -38,7 +38,7 @@ pub struct MeshPass {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
-    /// First row of world space, relative to the eye or to what `ahead` says, from the mesh's space.
+    /// First row of world space, relative to the eye or to what `ray_origin_depth` says, from the mesh's space.
     pub eye_from_local_x: [f32; 4],
     /// Second row.
     pub eye_from_local_y: [f32; 4],
@@ -50,7 +50,7 @@ pub struct Instance {
     pub normal_y: [f32; 4],
     /// Third row.
     pub normal_z: [f32; 4],
-    /// Factor of the vertices' colours and of their opacity.
+    /// Factor of the vertices' colors and of their opacity.
     pub color: [f32; 4],
     /// Row of the texture's U from the coordinates of the vertices.
     pub texture_x: [f32; 4],
@@ -60,16 +60,16 @@ pub struct Instance {
     pub albedo: [f32; 3],
     /// Strength of the highlight.
     pub specular: f32,
-    /// Goes to the owner target.
-    pub owner: u32,
-    /// 1: `albedo` stands for the mesh's own colours.
+    /// Goes to the visibility target.
+    pub visibility: u32,
+    /// 1: `albedo` stands for the mesh's own colors.
     pub overridden: u32,
     /// 1: the placement turns left into right, and so the order of a triangle's corners.
     pub mirrored: u32,
     /// Where the opacity is less, there is no surface; negative: it is everywhere.
     pub alpha_cutoff: f32,
     /// How far the point that positions are relative to is before the eye, see `shaders/common/ray.wgsl`.
-    pub ahead: f32,
+    pub ray_origin_depth: f32,
     /// Unused.
     pub padding_0: u32,
     /// Unused.
@@ -125,7 +125,7 @@ impl MeshPass {
             instance_layout,
             texture_layout,
             samplers: samplers(device),
-            instances: Mirror::uniform(device, "mesh instances"),
+            instances: SyncedBuffer::uniform(device, "mesh instances"),
             instance_group: None,
             uploaded: HashMap::new(),
             draws: Vec::new(),
@@ -154,7 +154,7 @@ impl MeshPass {
                 self.uploaded.insert(key, uploaded);
             }
             let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
-            let placed = Placed::new(flat, placed, index, camera, ahead_of(&seen, camera, size));
+            let placed = PlacedInstance::new(flat, placed, index, camera, ray_origin_depth(&seen, camera, size));
             let mut last = None;
             for (part, look) in mesh.parts.iter().enumerate() {
                 let instance = placed.of_part(look);
@@ -179,22 +179,22 @@ impl MeshPass {
     /// Clears the shared targets and draws.
     pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
         self.draw(encoder, targets, view);
-        let [from, to] = [&targets.owner, &targets.leaf].map(|target| target.texture.as_image_copy());
-        encoder.copy_texture_to_texture(from, to, targets.owner.texture.size());
+        let [from, to] = [&targets.visibility, &targets.leaf].map(|target| target.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, targets.visibility.texture.size());
     }
 
     fn draw(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
         // Another size, so another render pass; it only clears.
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("clear farthest"),
-            color_attachments: &[cleared(&targets.farthest.view, f64::from(BACKGROUND))],
+            label: Some("clear hiz"),
+            color_attachments: &[cleared(&targets.hiz.view, f64::from(BACKGROUND))],
             ..Default::default()
         }));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("mesh"),
             color_attachments: &[
                 cleared(&targets.depth.view, f64::from(BACKGROUND)),
-                cleared(&targets.owner.view, f64::from(NO_LEAF)),
+                cleared(&targets.visibility.view, f64::from(NO_LEAF)),
                 cleared(&targets.normal.view, 0.0),
                 cleared(&targets.diffuse.view, 0.0),
             ],
@@ -238,7 +238,7 @@ impl MeshPass {
         let white = Texture { width: 1, height: 1, rgba: vec![255; 4] };
         let white = upload_texture(device, queue, &white);
         let views: Vec<_> = mesh.textures.iter().map(|texture| upload_texture(device, queue, texture)).collect();
-        // Many parts wear the same texture.
+        // Many parts have the same texture.
         let mut groups: HashMap<(Option<usize>, Sampler), BindGroup> = HashMap::new();
         let mut group = |Surface { texture, sampler, .. }: Surface| {
             let make = || {
@@ -264,7 +264,7 @@ impl MeshPass {
 fn upload_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
     let texture = fitting(texture, device.limits().max_texture_dimension_2d);
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("base colour"),
+        label: Some("base color"),
         size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,
@@ -324,15 +324,15 @@ fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColor
 }
 
 /// A placed mesh: what its parts have in common.
-struct Placed {
+struct PlacedInstance {
     eye_from_local: DAffine3,
     /// As it is for a part at the mesh's own origin that looks like nothing special.
     common: Instance,
 }
 
-impl Placed {
-    fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ahead: f64) -> Self {
-        let eye = camera.position + camera.rotation * DVec3::NEG_Z * ahead;
+impl PlacedInstance {
+    fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ray_origin_depth: f64) -> Self {
+        let eye = camera.position + camera.rotation * DVec3::NEG_Z * ray_origin_depth;
         let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
         // Normals go by the inverse transpose; only its direction counts.
         let n = m.matrix3.inverse().transpose();
@@ -348,17 +348,17 @@ impl Placed {
             normal_z: normal_row(2),
             albedo: material.map_or([1.0; 3], |m| m.albedo),
             specular: material.map_or(FILE_MATERIAL.specular as f32, |m| m.specular),
-            owner: MESH_BIT | index as u32,
+            visibility: MESH_BIT | index as u32,
             overridden: u32::from(material.is_some()),
             mirrored: u32::from(m.matrix3.determinant() < 0.0),
-            ahead: ahead as f32,
+            ray_origin_depth: ray_origin_depth as f32,
             ..Instance::zeroed()
         };
         Self { eye_from_local: m, common }
     }
 
-    fn of_part(&self, part: &Part) -> Instance {
-        let Part { origin, surface, .. } = part;
+    fn of_part(&self, part: &MeshPart) -> Instance {
+        let MeshPart { origin, surface, .. } = part;
         let m = &self.eye_from_local;
         let translation = m.translation + m.matrix3 * *origin;
         let row = |i: usize| {
@@ -382,10 +382,10 @@ impl Placed {
 fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
-        source: wgpu::ShaderSource::Wgsl(plain_source("mesh.wgsl")?.into()),
+        source: wgpu::ShaderSource::Wgsl(assemble_plain("mesh.wgsl")?.into()),
     });
     use wgpu::VertexFormat::{Float32x2, Float32x3, Float32x4};
-    // Position, normal, colour, texture coordinate.
+    // Position, normal, color, texture coordinate.
     let formats = [Float32x3, Float32x3, Float32x4, Float32x2];
     let attributes: Vec<_> = formats
         .iter()

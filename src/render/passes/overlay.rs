@@ -5,11 +5,11 @@ use glam::{DVec3, UVec2};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use crate::flat::FlatScene;
-use crate::render::buffers::Mirror;
-use crate::render::kernel::{ShaderError, plain_source};
-use crate::render::layouts::*;
-use crate::render::schedule::Plan;
-use crate::render::targets::{Target, Targets};
+use crate::render::frame::plan::FramePlan;
+use crate::render::resources::buffers::SyncedBuffer;
+use crate::render::resources::layouts::*;
+use crate::render::resources::targets::{Target, Targets};
+use crate::render::wgsl::{ShaderError, assemble_plain};
 use crate::scene::NodeId;
 
 /// What is drawn over the picture.
@@ -42,7 +42,7 @@ impl OverlaySettings {
 pub struct Overlay {
     /// The eye, its x and z reduced to one coarse cell.
     pub eye: [f32; 3],
-    /// Side of a fine cell, in metres.
+    /// Side of a fine cell, in meters.
     pub cell: f32,
     /// Where the X axis runs in the reduced grid.
     pub axis_x: f32,
@@ -69,8 +69,8 @@ pub struct OverlayPass {
     own: BindGroupLayout,
     targets: BindGroupLayout,
     picture: BindGroupLayout,
-    uniform: Mirror,
-    selected: Mirror,
+    uniform: SyncedBuffer,
+    selected: SyncedBuffer,
     own_group: Option<BindGroup>,
 }
 
@@ -86,7 +86,7 @@ impl OverlayPass {
         );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("overlay"),
-            source: wgpu::ShaderSource::Wgsl(plain_source("overlay.wgsl")?.into()),
+            source: wgpu::ShaderSource::Wgsl(assemble_plain("overlay.wgsl")?.into()),
         });
         let picture = layout(device, "overlay picture", &[entry(0, stage, read_texture(false))]);
         let over = pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets]);
@@ -96,8 +96,8 @@ impl OverlayPass {
                 .map(|entry_point| screen_pipeline(device, &module, entry_point, &over, blend));
         let whole = pipeline_layout(device, "overlay enlarge", &[&layouts.view, &own, &targets, &picture]);
         let enlarge = screen_pipeline(device, &module, "overlay_enlarge_fragment", &whole, None);
-        let uniform = Mirror::uniform(device, "overlay");
-        let selected = Mirror::storage(device, "selected");
+        let uniform = SyncedBuffer::uniform(device, "overlay");
+        let selected = SyncedBuffer::storage(device, "selected");
         Ok(Self {
             grid,
             outline,
@@ -156,7 +156,7 @@ impl OverlayPass {
         targets: &Targets,
         enlarged: Option<&Target>,
         view: &BindGroup,
-        plan: &Plan,
+        plan: &FramePlan,
     ) {
         let Some(own) = &self.own_group else { return };
         let inputs = [&targets.depth, &targets.leaf].map(|t| wgpu::BindingResource::TextureView(&t.view));
@@ -216,7 +216,7 @@ impl Outlined {
     }
 
     /// Around the pixels that the outline may cover: upper left, and the first outside.
-    fn around(&self, plan: &Plan, size: UVec2) -> Option<[UVec2; 2]> {
+    fn around(&self, plan: &FramePlan, size: UVec2) -> Option<[UVec2; 2]> {
         if self.meshes {
             return Some([UVec2::ZERO, size]);
         }

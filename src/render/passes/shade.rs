@@ -2,13 +2,13 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
-use crate::flat::truth::FILE_MATERIAL;
+use crate::flat::reference::image::FILE_MATERIAL;
 use crate::flat::{FlatMaterial, FlatScene};
-use crate::render::kernel::{ShaderError, plain_source};
-use crate::render::layouts::*;
-use crate::render::schedule::Piece;
-use crate::render::targets::Targets;
-use crate::render::uniforms::Work;
+use crate::render::frame::plan::Dispatch;
+use crate::render::resources::layouts::*;
+use crate::render::resources::targets::Targets;
+use crate::render::resources::uniforms::DispatchParams;
+use crate::render::wgsl::{ShaderError, assemble_plain};
 
 /// The pass.
 #[derive(Debug)]
@@ -36,7 +36,7 @@ impl ShadePass {
         );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("shade"),
-            source: wgpu::ShaderSource::Wgsl(plain_source("shade.wgsl")?.into()),
+            source: wgpu::ShaderSource::Wgsl(assemble_plain("shade.wgsl")?.into()),
         });
         let layout = pipeline_layout(device, "shade", &[&layouts.view, &lights, &targets]);
         let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
@@ -45,7 +45,7 @@ impl ShadePass {
 
     /// The pass's own bind group.
     pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.owner];
+        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.visibility];
         let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
         bind(device, "shade targets", &self.targets, &resources)
     }
@@ -55,20 +55,20 @@ impl ShadePass {
         bind(device, "lights", &self.lights, &resources)
     }
 
-    /// Draws these pieces of the picture.
+    /// Draws the pixels of these dispatches.
     pub fn record<'p>(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         color: &wgpu::TextureView,
         groups: [&BindGroup; 3],
-        pieces: impl Iterator<Item = &'p Piece>,
+        dispatches: impl Iterator<Item = &'p Dispatch>,
     ) {
         let mut pass = screen_pass(encoder, "shade", color);
         pass.set_pipeline(&self.pipeline);
         for (at, group) in (0..).zip(groups) {
             pass.set_bind_group(at, group, &[]);
         }
-        for Work { origin, end, .. } in pieces.map(|piece| piece.work) {
+        for DispatchParams { origin, end, .. } in dispatches.map(|dispatch| dispatch.params) {
             pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
             pass.draw(0..3, 0..1);
         }

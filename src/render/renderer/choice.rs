@@ -1,42 +1,43 @@
-//! Which kernel draws which component, and with which lists.
+//! Which pipeline draws which component, and with which tapes.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use super::{RenderError, Renderer};
-use crate::flat::{CellTree, Component, FlatNode, FlatScene, leaf_data};
+use crate::flat::{CellTree, Component, FlatNode, FlatScene, leaf_payload};
 use crate::geometry::Camera;
-use crate::render::kernel::shape_loops;
-use crate::render::kernels::{Choice, Method, Walk};
-use crate::render::keys::Key;
-use crate::render::schedule::Evaluation;
+use crate::render::frame::plan::EvaluationCost;
+use crate::render::pipelines::cache::{EvalMode, EvalStrategy, PipelineChoice};
+use crate::render::pipelines::key::PipelineKey;
+use crate::render::wgsl::shape_loops;
 use crate::scene::ShapeKind;
 
 /// What [`Renderer::choose`] finds, beside the components.
 pub(super) struct Chosen {
-    pub(super) keys: Vec<Option<Key>>,
-    pub(super) choices: Vec<Choice>,
-    pub(super) evaluations: Vec<Evaluation>,
+    pub(super) keys: Vec<Option<PipelineKey>>,
+    pub(super) choices: Vec<PipelineChoice>,
+    pub(super) evaluations: Vec<EvaluationCost>,
     pub(super) trees: Vec<Option<Arc<CellTree>>>,
 }
 
-/// Lists that are expected within this time are waited for: walking without them would cost more. Others come
+/// Tapes that are expected within this time are waited for: walking without them would cost more. Others come
 /// with a later frame.
-const LISTS_AT_ONCE: Duration = Duration::from_millis(25);
+const TAPES_AT_ONCE: Duration = Duration::from_millis(25);
 
 impl Renderer {
-    /// Kernels, and what they need to know, for each component.
+    /// Pipelines, and what they need to know, for each component.
     pub(super) fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
-        let keys = self.kernels.keys(flat, self.method);
-        // Lists are made only for what no specialised kernel is to draw.
-        let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && self.method != Method::Interpreted).collect();
-        let mut trees = match self.method {
-            Method::Auto => self.pruner.trees_so_far(flat, &wanted, LISTS_AT_ONCE),
-            _ => self.pruner.trees(flat, &wanted),
+        let keys = self.pipelines.keys(flat, self.strategy);
+        // Tapes are made only for what no specialized pipeline is to draw.
+        let wanted: Vec<bool> =
+            keys.iter().map(|key| key.is_none() && self.strategy != EvalStrategy::Interpreter).collect();
+        let mut trees = match self.strategy {
+            EvalStrategy::Auto => self.tape_cache.ready_trees(flat, &wanted, TAPES_AT_ONCE),
+            _ => self.tape_cache.trees(flat, &wanted),
         };
         self.check_cancel()?;
-        // What has no room on the device is walked without lists.
-        let mut room = self.lists.most_words(&self.gpu.device);
+        // What has no room on the device is walked without tapes.
+        let mut room = self.tapes.most_words(&self.gpu.device);
         for tree in &mut trees {
             let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
             match room.checked_sub(needed) {
@@ -44,18 +45,20 @@ impl Renderer {
                 None => *tree = None,
             }
         }
-        let has_lists: Vec<bool> = trees.iter().map(Option::is_some).collect();
-        let choices = self.kernels.choose(flat, &keys, self.method, &has_lists, &largest_first(flat, camera))?;
-        let loops = self.kernels.loops();
+        let has_tapes: Vec<bool> = trees.iter().map(Option::is_some).collect();
+        let choices = self.pipelines.choose(flat, &keys, self.strategy, &has_tapes, &largest_first(flat, camera))?;
+        let loops = self.pipelines.loops();
         let evaluation = |i: usize| {
-            let rounds = rounds(flat, &flat.components[i]);
-            let straight = || Evaluation::of_straight(&flat.components[i], rounds);
-            let mut now = match (choices[i].walk, &trees[i], keys[i]) {
-                (Walk::Straight, _, Some(_)) => straight(),
-                (Walk::List, Some(tree), _) => Evaluation::of_lists(&flat.components[i], tree, loops, rounds),
-                _ => Evaluation::of_entries(&flat.components[i], loops, rounds),
+            let loop_trips = loop_trips(flat, &flat.components[i]);
+            let straight = || EvaluationCost::of_straight_line(&flat.components[i], loop_trips);
+            let mut now = match (choices[i].mode, &trees[i], keys[i]) {
+                (EvalMode::StraightLine, _, Some(_)) => straight(),
+                (EvalMode::Tape, Some(tree), _) => {
+                    EvaluationCost::of_tapes(&flat.components[i], tree, loops, loop_trips)
+                }
+                _ => EvaluationCost::of_entries(&flat.components[i], loops, loop_trips),
             };
-            // A kernel that becomes ready takes over within the frame.
+            // A pipeline that becomes ready takes over within the frame.
             now.iterations = now.iterations.max(keys[i].map_or(0, |_| straight().iterations));
             now
         };
@@ -75,14 +78,14 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Rounds that the loops of the component's leaves take together, at most.
-fn rounds(flat: &FlatScene, component: &Component) -> u32 {
+/// Iterations that the loops of the component's leaves take together, at most.
+fn loop_trips(flat: &FlatScene, component: &Component) -> u32 {
     let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
     let of_leaf = |node: &FlatNode| {
         let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
         let [loops, most] = shape_loops(kind);
         // Without a loop data are looked up at one place.
-        most + if loops > 0 { leaf_data(kind, &flat.numbers[node.numbers as usize..]).len() as u32 } else { 0 }
+        most + if loops > 0 { leaf_payload(kind, &flat.params[node.params as usize..]).len() as u32 } else { 0 }
     };
     entries.iter().filter(|node| node.is_leaf()).map(of_leaf).sum()
 }
@@ -92,24 +95,24 @@ mod tests {
     use super::*;
     use crate::{flat, gallery};
 
-    /// Dispatches are cut by these rounds: if an image's rows counted, a heightmap would take minutes.
+    /// Dispatches are cut by these trip counts: if an image's rows counted, a heightmap would take minutes.
     #[test]
-    fn data_count_as_rounds_only_where_they_are_looped_over() {
+    fn data_count_as_loop_trips_only_where_they_are_looped_over() {
         let shapes = gallery::all().into_iter().find(|(name, _)| *name == "shapes").expect("the sheet of shapes").1;
         let flat = flat::flatten(&shapes, 0.0).expect("within the limits");
         let of_kind = |kind: ShapeKind| {
             let is_it = |node: &&FlatNode| node.is_leaf() && node.code & 0xffff == kind as u32;
             let holds = |c: &&Component| flat.nodes[c.first as usize..][..c.count as usize].iter().any(|n| is_it(&n));
             let component = flat.components.iter().find(holds).expect("every shape is in the sheet");
-            (rounds(&flat, component), component.data)
+            (loop_trips(&flat, component), component.payload_rows)
         };
         for kind in ShapeKind::ALL.iter().copied().filter(|kind| kind.has_data()) {
-            let (rounds, data) = of_kind(kind);
+            let (loop_trips, data) = of_kind(kind);
             assert!(data > 0, "{kind:?}");
             if shape_loops(kind)[0] > 0 {
-                assert!(rounds >= data, "{kind:?}: {rounds} rounds over {data} rows");
+                assert!(loop_trips >= data, "{kind:?}: {loop_trips} loop_trips over {data} rows");
             } else {
-                assert_eq!(rounds, 0, "{kind:?}");
+                assert_eq!(loop_trips, 0, "{kind:?}");
             }
         }
     }

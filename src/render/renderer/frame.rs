@@ -1,44 +1,44 @@
-//! A picture under way: what is still to be done, by which kernels.
+//! A picture under way: what is still to be done, by which pipelines.
 
 use std::time::Duration;
 
 use super::Slot;
 use super::unfinished::GoingOn;
-use crate::flat::inspect::Look;
-use crate::render::kernels::{Choice, Walk};
-use crate::render::keys::Key;
-use crate::render::pace::{Effort, Pace};
+use crate::flat::debug_view::ViewMode;
+use crate::render::frame::cost_model::{Cost, CostModel};
+use crate::render::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER, Pass};
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::schedule::{DISPATCH_TARGET, LONGER, Piece, Plan, Stage};
+use crate::render::pipelines::cache::{EvalMode, PipelineChoice};
+use crate::render::pipelines::key::PipelineKey;
 
 /// A frame under way.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    pub(super) plan: Plan,
-    pub(super) keys: Vec<Option<Key>>,
-    pub(super) choices: Vec<Choice>,
+    pub(super) plan: FramePlan,
+    pub(super) keys: Vec<Option<PipelineKey>>,
+    pub(super) choices: Vec<PipelineChoice>,
     pub(super) next: usize,
-    /// The pace at the beginning: the pace that is learnt on the way must not move the bar.
-    pub(super) pace: Pace,
+    /// The cost model at the beginning: what is learned on the way must not move the bar.
+    pub(super) cost_model: CostModel,
     pub(super) seconds_done: f64,
     /// What its dispatches have taken; `None` where that says nothing about others.
     pub(super) measured: Option<Duration>,
-    /// So many later rounds may be submitted together with others; where it is 0 each stands alone.
-    pub(super) rounds_at_once: u32,
+    /// So many later relaunches may be submitted together with others; where it is 0 each stands alone.
+    pub(super) relaunches_at_once: u32,
     pub(super) seconds: f64,
     pub(super) slot: Slot,
     pub(super) overlay: OverlaySettings,
-    pub(super) look: Look,
+    pub(super) view_mode: ViewMode,
     /// How its rays go on.
     pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
-    /// Where kernels for forms find theirs; beside components with such a key.
-    pub(super) form_rows: Vec<Option<u32>>,
+    /// Where pipelines for templates find theirs; beside components with such a key.
+    pub(super) template_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<crate::scene::NodeId>,
 }
 
-/// See [`Frame::rounds_at_once`]; more would save nothing.
-const MOST_ROUNDS_AT_ONCE: u32 = 64;
+/// See [`Frame::relaunches_at_once`]; more would save nothing.
+const MAX_RELAUNCHES_AT_ONCE: u32 = 64;
 
 impl Frame {
     /// Share that is done, from 0 to 1.
@@ -46,56 +46,59 @@ impl Frame {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
     }
 
-    /// Where the rows of a component's kernel begin among those of forms, in bytes; `None` for all other kernels.
-    pub(super) fn form_window(&self, component: usize) -> Option<u32> {
-        self.form_rows[component].filter(|_| self.choices[component].walk == Walk::Straight)
+    /// Where the rows of a component's pipeline begin among those of templates, in bytes; `None` for all other pipelines.
+    pub(super) fn template_window(&self, component: usize) -> Option<u32> {
+        self.template_rows[component].filter(|_| self.choices[component].mode == EvalMode::StraightLine)
     }
 
-    /// The pieces to submit next, what effort they are, and how many of them are later rounds. How long those take nobody
+    /// The dispatches to submit next, what they cost, and how many of them are later relaunches. How long those take nobody
     /// can foresee: mostly nothing is left for them, but what is left may take long.
-    pub(super) fn next_batch(&self, pace: &Pace) -> (std::ops::Range<usize>, Effort, u32) {
-        let (mut effort, mut rounds, mut end) = (Effort::default(), 0, self.next);
-        for piece in &self.plan.pieces[self.next..] {
-            let more = effort + piece.effort;
-            let more_rounds = rounds + u32::from(piece.work.round > 0);
-            let fits = more_rounds <= self.rounds_at_once && pace.seconds(more) <= DISPATCH_TARGET.as_secs_f64();
+    pub(super) fn next_batch(&self, cost_model: &CostModel) -> (std::ops::Range<usize>, Cost, u32) {
+        let (mut cost, mut relaunches, mut end) = (Cost::default(), 0, self.next);
+        for dispatch in &self.plan.dispatches[self.next..] {
+            let more = cost + dispatch.cost;
+            let more_relaunches = relaunches + u32::from(dispatch.params.relaunch > 0);
+            let fits =
+                more_relaunches <= self.relaunches_at_once && cost_model.seconds(more) <= DISPATCH_TARGET.as_secs_f64();
             if end > self.next && !fits {
                 break;
             }
-            (effort, rounds, end) = (more, more_rounds, end + 1);
+            (cost, relaunches, end) = (more, more_relaunches, end + 1);
         }
-        (self.next..end, effort, rounds)
+        (self.next..end, cost, relaunches)
     }
 
-    /// Learns from how long a batch took how many later rounds the next one may hold.
-    pub(super) fn learn_rounds(&mut self, rounds: u32, took: Duration) {
-        if took > DISPATCH_TARGET {
-            self.rounds_at_once = 0;
-        } else if rounds >= self.rounds_at_once {
-            self.rounds_at_once = (2 * self.rounds_at_once).clamp(1, MOST_ROUNDS_AT_ONCE);
+    /// Learns from how long a batch took how many later relaunches the next one may hold.
+    pub(super) fn learn_relaunches(&mut self, relaunches: u32, elapsed: Duration) {
+        if elapsed > DISPATCH_TARGET {
+            self.relaunches_at_once = 0;
+        } else if relaunches >= self.relaunches_at_once {
+            self.relaunches_at_once = (2 * self.relaunches_at_once).clamp(1, MAX_RELAUNCHES_AT_ONCE);
         }
     }
 
-    /// Whether a kernel is dispatched for the first time among these pieces.
-    pub(super) fn uses_fresh_kernel(&self, pieces: std::ops::Range<usize>) -> bool {
-        let field = |p: &&Piece| matches!(p.stage, Stage::Cone | Stage::Trace | Stage::Surface);
-        let kernels =
-            self.plan.pieces[pieces].iter().filter(field).map(|p| (p, &self.choices[p.work.component as usize]));
+    /// Whether a pipeline is dispatched for the first time among these dispatches.
+    pub(super) fn uses_fresh_pipelines(&self, dispatches: std::ops::Range<usize>) -> bool {
+        let field = |p: &&Dispatch| matches!(p.pass, Pass::Cone | Pass::Trace | Pass::Surface);
+        let pipelines = self.plan.dispatches[dispatches]
+            .iter()
+            .filter(field)
+            .map(|p| (p, &self.choices[p.params.component as usize]));
         // All of them, not only up to the first fresh one: each is marked.
-        kernels.fold(false, |fresh, (piece, choice)| choice.kernel.first_use(piece.stage as usize) | fresh)
+        pipelines.fold(false, |fresh, (dispatch, choice)| choice.pipelines.first_use(dispatch.pass as usize) | fresh)
     }
 
     /// Leaves out everything but light and overlay: for a picture of the same scene from the same place
     /// that is complete in its slot already.
     pub fn skip_to_shading(&mut self) {
-        let shading = self.plan.pieces.iter().position(|p| p.stage == Stage::Shade);
-        self.next = shading.unwrap_or(self.plan.pieces.len());
+        let shading = self.plan.dispatches.iter().position(|p| p.pass == Pass::Shade);
+        self.next = shading.unwrap_or(self.plan.dispatches.len());
         self.measured = None;
     }
 
     /// Leaves out light and overlay: depth, normals and materials are all that is wanted.
     pub fn skip_shading(&mut self) {
-        self.plan.pieces.retain(|piece| piece.stage != Stage::Shade);
+        self.plan.dispatches.retain(|dispatch| dispatch.pass != Pass::Shade);
         self.overlay = OverlaySettings::default();
     }
 
@@ -106,6 +109,6 @@ impl Frame {
 
     /// Whether the picture is complete.
     pub fn is_done(&self) -> bool {
-        self.next == self.plan.pieces.len()
+        self.next == self.plan.dispatches.len()
     }
 }

@@ -1,30 +1,30 @@
 //! What is asked of a finished frame: counts, buffers, and the limit for measuring.
 
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::{Frame, QUAD_COUNTS, RenderError, Renderer, Slot};
-use crate::flat::Buffers;
+use super::{Frame, RenderError, Renderer, SUBTILE_COUNTS, Slot};
+use crate::flat::GBuffer;
+use crate::render::frame::plan::{Dispatch, Pass};
 use crate::render::gpu::Gpu;
+use crate::render::gpu::readback::{read_buffers, read_color, read_words_at};
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::readback::{read_buffers, read_color, read_words_at};
-use crate::render::schedule::{Piece, Stage};
-use crate::render::uniforms::{Work, strided};
+use crate::render::resources::uniforms::{DispatchParams, strided};
 
-/// What kernels that count have counted.
+/// What pipelines that count have counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Evaluations of fields by rays.
     pub steps: u64,
-    /// Rays that were begun, once for each component that they meet.
+    /// Rays that were started, once for each component that they meet.
     pub rays: u64,
     /// Evaluations of fields by cones.
     pub cone_steps: u64,
-    /// Quads that the cones have left, of all components.
-    pub quads: u64,
+    /// Subtiles that the cones have left, of all components.
+    pub subtiles: u64,
     /// Evaluations by rays and cones, for each component.
     pub of_components: Vec<u64>,
-    /// Cells of pruned lists that rays and cones looked up, for each component.
+    /// Cells of tapes that rays and cones looked up, for each component.
     pub cells: Vec<u64>,
-    /// Entries of pruned lists that they read, for each component.
+    /// Entries of tapes that they read, for each component.
     pub entries: Vec<u64>,
 }
 
@@ -32,25 +32,26 @@ impl Renderer {
     /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
     /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
     pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
-        let confirm = |piece: &Piece| {
-            let work = Work { round: 1, last_round: 1, max_steps: 1, packed: 0, ..piece.work };
-            match piece.stage {
-                Stage::Trace if piece.work.round == 0 => Some(Piece { work, ..*piece }),
-                Stage::Surface | Stage::Shade => Some(*piece),
+        let confirm = |dispatch: &Dispatch| {
+            let dispatch_params =
+                DispatchParams { relaunch: 1, last_relaunch: 1, max_steps: 1, compacted: 0, ..dispatch.params };
+            match dispatch.pass {
+                Pass::Trace if dispatch.params.relaunch == 0 => Some(Dispatch { params: dispatch_params, ..*dispatch }),
+                Pass::Surface | Pass::Shade => Some(*dispatch),
                 _ => None,
             }
         };
         let mut plan = frame.plan.clone();
-        plan.pieces = frame.planned().iter().filter_map(confirm).collect();
+        plan.dispatches = frame.planned().iter().filter_map(confirm).collect();
         let Gpu { device, queue, .. } = &self.gpu;
-        self.work.set(device, queue, &strided(plan.pieces.iter().map(|piece| piece.work)));
+        self.dispatch_params.set(device, queue, &strided(plan.dispatches.iter().map(|dispatch| dispatch.params)));
         let targets = &self.slot(frame.slot).targets;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let size = targets.depth.texture.size();
         let (from, to) = (targets.depth.texture.as_image_copy(), targets.march.texture.as_image_copy());
         encoder.copy_texture_to_texture(from, to, size);
         queue.submit([encoder.finish()]);
-        let seconds = frame.pace.seconds(plan.effort());
+        let seconds = frame.cost_model.seconds(plan.cost());
         let overlay = OverlaySettings::default();
         let mut limit = Frame { plan, next: 0, seconds_done: 0.0, seconds, measured: None, overlay, ..frame.clone() };
         limit.end_as_planned();
@@ -66,22 +67,23 @@ impl Renderer {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// What a frame has counted, with kernels that count.
+    /// What a frame has counted, with pipelines that count.
     pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
         let words = self.component_counts(frame)?;
-        let lists = read_words_at(&self.gpu, self.quad_counts.buffer(), 0, frame.plan.lists as usize * QUAD_COUNTS)?;
-        let sum = |i: usize| lists.chunks_exact(QUAD_COUNTS).map(|c| u64::from(c[i])).sum();
+        let lists =
+            read_words_at(&self.gpu, self.subtile_counts.buffer(), 0, frame.plan.lists as usize * SUBTILE_COUNTS)?;
+        let sum = |i: usize| lists.chunks_exact(SUBTILE_COUNTS).map(|c| u64::from(c[i])).sum();
         let of_each = |i: usize| words.iter().map(|c| u64::from(c[i])).collect::<Vec<_>>();
         let mut of_components = of_each(1);
-        for piece in frame.planned().iter().filter(|piece| piece.stage == Stage::Cone) {
-            of_components[piece.work.component as usize] +=
-                u64::from(lists[piece.work.list as usize * QUAD_COUNTS + 3]);
+        for dispatch in frame.planned().iter().filter(|dispatch| dispatch.pass == Pass::Cone) {
+            of_components[dispatch.params.component as usize] +=
+                u64::from(lists[dispatch.params.list as usize * SUBTILE_COUNTS + 3]);
         }
         Ok(Counts {
             steps: of_each(1).iter().sum(),
             rays: of_each(2).iter().sum(),
             cone_steps: sum(3),
-            quads: sum(4),
+            subtiles: sum(4),
             of_components,
             cells: of_each(3),
             entries: of_each(4),
@@ -96,7 +98,7 @@ impl Renderer {
     }
 
     /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
-    pub fn read(&self, frame: &Frame) -> Result<Buffers, RenderError> {
+    pub fn read(&self, frame: &Frame) -> Result<GBuffer, RenderError> {
         Ok(read_buffers(&self.gpu, &self.slot(frame.slot).targets)?)
     }
 

@@ -4,23 +4,23 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{Frame, RenderError, Renderer, Slot, SlotState};
-use crate::flat::inspect::{Look, Span};
-use crate::flat::{Buffers, FlatScene, Warning};
+use crate::flat::debug_view::{DepthRange, ViewMode};
+use crate::flat::{FlatScene, GBuffer, Warning};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 use crate::render::gpu::Gpu;
-use crate::render::kernel::Options;
-use crate::render::kernels::Method;
-use crate::render::passes::inspect::InspectPass;
+use crate::render::gpu::readback::read_buffers;
+use crate::render::passes::debug_view::DebugViewPass;
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::readback::read_buffers;
+use crate::render::pipelines::cache::EvalStrategy;
+use crate::render::wgsl::Options;
 
 impl Renderer {
-    /// A renderer for looks that count: its kernels count, and components are walked by pruned lists, so that none
-    /// has to be compiled for a look.
+    /// A renderer for view modes that count: its pipelines count, and components are walked by tapes, so that none
+    /// has to be compiled for a view mode.
     pub fn counting(gpu: &Gpu) -> Result<Self, RenderError> {
         let mut renderer = Self::with_options(gpu, Options { counting: true, ..Self::options(gpu) })?;
-        renderer.set_method(Method::Pruned);
+        renderer.set_strategy(EvalStrategy::Tape);
         Ok(renderer)
     }
 
@@ -33,25 +33,25 @@ impl Renderer {
         camera: &Camera,
         size: [u32; 2],
         progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(Buffers, Vec<Warning>), RenderError> {
-        self.render_as(Look::Shaded, flat, meshes, camera, size, progress)
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
     }
 
-    /// The same by another look; for those that count the renderer must be one that does.
+    /// The same by another view mode; for those that count the renderer must be one that does.
     pub fn render_as(
         &mut self,
-        look: Look,
+        view_mode: ViewMode,
         flat: &FlatScene,
         meshes: &[Option<Arc<TriangleMesh>>],
         camera: &Camera,
         size: [u32; 2],
         progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(Buffers, Vec<Warning>), RenderError> {
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
         let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        self.inspect(&mut frame, look, flat, &Span::of(&flat.content(meshes), camera.position))?;
+        self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
         while !frame.is_done() {
             if !progress(frame.progress()) {
-                return Err(RenderError::Cancelled);
+                return Err(RenderError::Canceled);
             }
             self.advance(&mut frame, Duration::ZERO)?;
         }
@@ -60,27 +60,33 @@ impl Renderer {
         Ok((buffers, self.unfinished_rays(&frame)?))
     }
 
-    /// Has the frame end as this look; distances are coloured within `span`. For looks that count the renderer must be
+    /// Has the frame end as this look; distances are colored within `depth_range`. For view modes that count the renderer must be
     /// one that does: others have counted nothing that could be shown.
-    pub fn inspect(&mut self, frame: &mut Frame, look: Look, flat: &FlatScene, span: &Span) -> Result<(), RenderError> {
-        assert!(self.counting || !look.counts(), "{} needs kernels that count", look.name());
-        frame.look = look;
-        if look != Look::Shaded {
+    pub fn debug_view(
+        &mut self,
+        frame: &mut Frame,
+        view_mode: ViewMode,
+        flat: &FlatScene,
+        depth_range: &DepthRange,
+    ) -> Result<(), RenderError> {
+        assert!(self.counting || !view_mode.counts(), "{} needs pipelines that count", view_mode.name());
+        frame.view_mode = view_mode;
+        if view_mode != ViewMode::Shaded {
             let Gpu { device, queue, .. } = &self.gpu;
-            if self.inspect.is_none() {
-                self.inspect = Some(InspectPass::new(device, &self.layouts)?);
+            if self.debug_view.is_none() {
+                self.debug_view = Some(DebugViewPass::new(device, &self.layouts)?);
             }
-            if let Some(pass) = &mut self.inspect {
-                pass.prepare((device, queue), flat, look, span);
+            if let Some(pass) = &mut self.debug_view {
+                pass.prepare((device, queue), flat, view_mode, depth_range);
             }
         }
         Ok(())
     }
 
-    /// Colours the finished picture by the frame's look.
-    pub(super) fn record_look(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
+    /// Colors the finished picture by the frame's look.
+    pub(super) fn record_debug_view(&self, encoder: &mut wgpu::CommandEncoder, frame: &Frame) {
         let SlotState { targets, groups, .. } = self.slot(frame.slot);
-        if let (true, Some(pass), Some(groups)) = (frame.look != Look::Shaded, &self.inspect, groups) {
+        if let (true, Some(pass), Some(groups)) = (frame.view_mode != ViewMode::Shaded, &self.debug_view, groups) {
             pass.record(&self.gpu.device, encoder, targets, &groups.view, self.march_counts.buffer());
         }
     }

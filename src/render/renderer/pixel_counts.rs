@@ -1,26 +1,26 @@
-//! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without kernels
+//! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without pipelines
 //! that count there is no room for them, and nothing is written.
 
 use super::{Frame, RenderError, Renderer};
-use crate::render::readback::read_words_at;
-use crate::render::schedule::TILE;
+use crate::render::frame::plan::TILE;
+use crate::render::gpu::readback::read_words_at;
 
-/// Words that are counted for each component: rays without an end, evaluations by rays, rays begun, and by rays and
-/// cones cells and list entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
+/// Words that are counted for each component: rays without an end, evaluations by rays, rays started, and by rays and
+/// cones cells and tape entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
 pub(super) const COMPONENT_COUNTS: usize = 5;
 /// Words that are counted for each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
 pub(super) const PIXEL_COUNTS: usize = 4;
 
 /// What rays or cones took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Took {
+pub struct TraceCounts {
     /// Evaluations of fields.
     pub evaluations: u32,
-    /// Rays begun, one for each component that is met; 0 for cones.
+    /// Rays started, one for each component that is met; 0 for cones.
     pub rays: u32,
-    /// Cells of pruned lists that were looked up.
+    /// Cells of tapes that were looked up.
     pub cells: u32,
-    /// Entries of pruned lists that were read.
+    /// Entries of tapes that were read.
     pub entries: u32,
 }
 
@@ -31,14 +31,14 @@ pub struct PixelCounts {
     /// Width and height of the picture.
     pub size: [u32; 2],
     /// By rays, for each pixel, row by row from the upper left corner.
-    pub pixels: Vec<Took>,
+    pub pixels: Vec<TraceCounts>,
     /// By cones, for each tile of 8 by 8 pixels; a cone looks for all of them, so they are counted apart.
-    pub tiles: Vec<Took>,
+    pub tiles: Vec<TraceCounts>,
 }
 
 /// How a number is spread over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Spread {
+pub struct Distribution {
     /// Of all pixels.
     pub mean: f64,
     /// 99 of 100 pixels have no more.
@@ -49,16 +49,16 @@ pub struct Spread {
 
 impl PixelCounts {
     /// Evaluations by the rays of a pixel.
-    pub fn steps(&self) -> Spread {
+    pub fn steps(&self) -> Distribution {
         let mut all: Vec<u32> = self.pixels.iter().map(|pixel| pixel.evaluations).collect();
         all.sort_unstable();
-        let Some(max) = all.last() else { return Spread::default() };
+        let Some(max) = all.last() else { return Distribution::default() };
         let mean = all.iter().map(|v| f64::from(*v)).sum::<f64>() / all.len() as f64;
-        Spread { mean, p99: f64::from(all[(all.len() - 1) * 99 / 100]), max: f64::from(*max) }
+        Distribution { mean, p99: f64::from(all[(all.len() - 1) * 99 / 100]), max: f64::from(*max) }
     }
 
     /// A pixel's share, a 64th, of what the cones of its tile took, with what its own rays took.
-    pub fn with_cones(&self, x: u32, y: u32, of: impl Fn(&Took) -> u32) -> f64 {
+    pub fn with_cones(&self, x: u32, y: u32, of: impl Fn(&TraceCounts) -> u32) -> f64 {
         let [width, _] = self.size;
         let tile = (y / TILE * width.div_ceil(TILE) + x / TILE) as usize;
         let own = of(&self.pixels[(y * width + x) as usize]);
@@ -66,8 +66,8 @@ impl PixelCounts {
     }
 
     /// By rays and cones, over all pixels.
-    pub fn per_pixel(&self, of: impl Fn(&Took) -> u32) -> f64 {
-        let sum: u64 = self.pixels.iter().chain(&self.tiles).map(|took| u64::from(of(took))).sum();
+    pub fn per_pixel(&self, of: impl Fn(&TraceCounts) -> u32) -> f64 {
+        let sum: u64 = self.pixels.iter().chain(&self.tiles).map(|counted| u64::from(of(counted))).sum();
         sum as f64 / self.pixels.len().max(1) as f64
     }
 }
@@ -112,14 +112,14 @@ impl Renderer {
         }
     }
 
-    /// What each pixel of the frame took that was drawn last; empty where kernels do not count.
+    /// What each pixel of the frame took that was drawn last; empty where pipelines do not count.
     pub fn pixel_counts(&self, frame: &Frame) -> Result<PixelCounts, RenderError> {
         let size = self.slot(frame.slot).targets.size;
         let count = self.pixel_words(size);
         let first = self.march_counts.buffer().size() as usize / 4 - count;
         let words = read_words_at(&self.gpu, self.march_counts.buffer(), first, count)?;
-        let took = |w: &[u32]| Took { evaluations: w[0], rays: w[1], cells: w[2], entries: w[3] };
-        let mut pixels: Vec<Took> = words.chunks_exact(PIXEL_COUNTS).map(took).collect();
+        let counted = |w: &[u32]| TraceCounts { evaluations: w[0], rays: w[1], cells: w[2], entries: w[3] };
+        let mut pixels: Vec<TraceCounts> = words.chunks_exact(PIXEL_COUNTS).map(counted).collect();
         let tiles = pixels.split_off(if count == 0 { 0 } else { size[0] as usize * size[1] as usize });
         Ok(PixelCounts { size, pixels, tiles })
     }

@@ -1,12 +1,12 @@
 //! Rays that have not come to an end within the steps of a plan: traced again with more, and reported where that does not do.
 
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::{Frame, QUAD_COUNTS, RAY_COUNTS, RenderError, Renderer, SlotState};
+use super::{Frame, RAY_COUNTS, RenderError, Renderer, SUBTILE_COUNTS, SlotState};
 use crate::flat::Warning;
+use crate::render::frame::cost_model::Cost;
+use crate::render::frame::plan::{Dispatch, LONGER, Pass};
 use crate::render::gpu::Gpu;
-use crate::render::pace::Effort;
-use crate::render::schedule::{LONGER, Piece, Stage};
-use crate::render::uniforms::strided;
+use crate::render::resources::uniforms::strided;
 
 /// How the rays of a frame go on that have not ended as planned.
 #[derive(Clone, Debug, Default)]
@@ -20,14 +20,14 @@ pub(super) struct GoingOn {
 }
 
 impl Frame {
-    /// The pieces that were planned before any ray went on.
-    pub(super) fn planned(&self) -> &[Piece] {
-        &self.plan.pieces[..self.going_on.planned.unwrap_or(self.plan.pieces.len())]
+    /// The dispatches that were planned before any ray went on.
+    pub(super) fn planned(&self) -> &[Dispatch] {
+        &self.plan.dispatches[..self.going_on.planned.unwrap_or(self.plan.dispatches.len())]
     }
 }
 
-/// Of a list of quads before its cones, and of what its rays leave; see `shaders/common/quads.wgsl`.
-pub(super) const NO_QUADS: [u32; QUAD_COUNTS] = [0, 1, 1, 0, 0];
+/// Of a list of subtiles before its cones, and of what its rays leave; see `shaders/common/subtiles.wgsl`.
+pub(super) const NO_SUBTILES: [u32; SUBTILE_COUNTS] = [0, 1, 1, 0, 0];
 pub(super) const NO_RAYS: [u32; RAY_COUNTS] = [0, 1, 1, 0, 1, 1, 0];
 
 impl Renderer {
@@ -38,13 +38,13 @@ impl Renderer {
         let unfinished = self.count_unfinished(frame)?;
         let is_meant = |component: u32| unfinished[component as usize] > 0;
         if unfinished.iter().any(|count| *count > 0) {
-            let planned = *frame.going_on.planned.get_or_insert(frame.plan.pieces.len());
-            frame.plan.pieces.truncate(planned);
+            let planned = *frame.going_on.planned.get_or_insert(frame.plan.dispatches.len());
+            frame.plan.dispatches.truncate(planned);
             let again = frame.plan.again(is_meant, *times);
-            if planned + again.len() <= self.most_pieces() {
-                let effort = again.iter().fold(Effort::default(), |sum, piece| sum + piece.effort);
-                frame.seconds += frame.pace.seconds(effort);
-                frame.plan.pieces.extend(again);
+            if planned + again.len() <= self.max_dispatches() {
+                let cost = again.iter().fold(Cost::default(), |sum, dispatch| sum + dispatch.cost);
+                frame.seconds += frame.cost_model.seconds(cost);
+                frame.plan.dispatches.extend(again);
                 frame.going_on.times += 1;
                 frame.measured = None;
                 self.prepare_again(frame, planned, &is_meant);
@@ -57,7 +57,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Uploads the pieces from `planned` on, and has nothing be counted for what they trace.
+    /// Uploads the dispatches from `planned` on, and has nothing be counted for what they trace.
     fn prepare_again(&mut self, frame: &mut Frame, planned: usize, is_meant: &dyn Fn(u32) -> bool) {
         frame.next = planned;
         let Gpu { device, queue, .. } = &self.gpu;
@@ -67,13 +67,17 @@ impl Renderer {
         for component in (0..frame.origins.len()).filter(|at| is_meant(*at as u32)) {
             write(self.march_counts.buffer(), component * COMPONENT_COUNTS, &[0]);
         }
-        for piece in frame.plan.pieces[planned..].iter().filter(|piece| piece.stage == Stage::Cone) {
-            let list = piece.work.list as usize;
-            write(self.quad_counts.buffer(), list * QUAD_COUNTS, &NO_QUADS);
+        for dispatch in frame.plan.dispatches[planned..].iter().filter(|dispatch| dispatch.pass == Pass::Cone) {
+            let list = dispatch.params.list as usize;
+            write(self.subtile_counts.buffer(), list * SUBTILE_COUNTS, &NO_SUBTILES);
             write(self.ray_counts.buffer(), list * RAY_COUNTS, &NO_RAYS);
             write(self.rays.buffer(), list, &[0]);
         }
-        if self.work.set(device, queue, &strided(frame.plan.pieces.iter().map(|piece| piece.work))) {
+        if self.dispatch_params.set(
+            device,
+            queue,
+            &strided(frame.plan.dispatches.iter().map(|dispatch| dispatch.params)),
+        ) {
             self.slots.iter_mut().flatten().for_each(|state| state.groups = None);
             let groups = self.bind_all(&self.slot(frame.slot).targets);
             if let Some(SlotState { groups: bound, .. }) = &mut self.slots[frame.slot as usize] {

@@ -26,7 +26,7 @@ pub fn load(path: &Path) -> Result<Scene, FileError> {
 
 /// Reads a scene file, and returns with it how the file was, to find out later whether it has changed.
 pub fn load_stamped(path: &Path) -> Result<(Scene, Stamp), FileError> {
-    // Looked at first: a file that is changed while it is read counts as changed afterwards.
+    // Looked at first: a file that is changed while it is read counts as changed afterward.
     let metadata = fs::metadata(path);
     let bytes = bytes_of(path, MAX_FILE_BYTES)?;
     let stamp = Stamp::of(&bytes, metadata.ok().as_ref());

@@ -14,14 +14,14 @@ use serde_json::json;
 use crate::geometry::Transform;
 use crate::scene::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{
-    CameraNode, Environment, Group, Joining, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node,
-    NodeId, NodeKind, Object, whole,
+    BlendOverride, CameraNode, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot,
+    Node, NodeId, NodeKind, Object, whole,
 };
 
 /// The version that is written; every version up to it is read.
 pub const VERSION: u64 = 1;
 
-/// A scene of Isolith. Lengths are metres, angles degrees, colours linear; +Y is up.
+/// A scene of Isolith. Lengths are meters, angles degrees, colors linear; +Y is up.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a scene in braces")]
 pub(super) struct SceneV1 {
@@ -69,7 +69,7 @@ pub(super) struct NodeV1 {
     pub negative: bool,
     /// How it blends with its siblings.
     #[serde(default, skip_serializing_if = "is_inherited")]
-    pub joining: Joining,
+    pub joining: BlendOverride,
     /// Ids of siblings with which it does not blend.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_APART>")]
     pub apart: Vec<NodeId>,
@@ -148,7 +148,7 @@ impl From<&Node> for NodeV1 {
             visible: node.visible,
             locked: node.locked,
             negative: node.negative,
-            joining: node.joining,
+            joining: node.blend_override,
             apart: node.apart.clone(),
             transform: node.transform.into(),
             modifiers: node.modifiers.clone(),
@@ -188,7 +188,7 @@ impl NodeV1 {
             visible: self.visible,
             locked: self.locked,
             negative: self.negative,
-            joining: self.joining,
+            blend_override: self.joining,
             apart: self.apart,
             transform: self.transform.into(),
             modifiers: self.modifiers,
@@ -252,8 +252,8 @@ fn is_true(value: &bool) -> bool {
     *value
 }
 
-fn is_inherited(value: &Joining) -> bool {
-    *value == Joining::Inherit
+fn is_inherited(value: &BlendOverride) -> bool {
+    *value == BlendOverride::Inherit
 }
 
 fn is_false(value: &bool) -> bool {

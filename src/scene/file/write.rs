@@ -40,7 +40,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
 }
 
 /// Every value of an object stands on a line of its own, and so does every object and every list in a list. A list
-/// of numbers stays on one line: a point or a colour is one value.
+/// of numbers stays on one line: a point or a color is one value.
 #[derive(Default)]
 struct OneValuePerLine {
     indent: usize,

@@ -13,10 +13,10 @@ use super::{check_size, spend};
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// An image of brightness.
-type Grey = ImageBuffer<Luma<f32>, Vec<f32>>;
+type Gray = ImageBuffer<Luma<f32>, Vec<f32>>;
 
 /// Brightness from 0 to 1 within the display window; black where there is no data. And how many pixels were read.
-pub fn read(bytes: &[u8]) -> Result<(Grey, u64), String> {
+pub fn read(bytes: &[u8]) -> Result<(Gray, u64), String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
     let (mut pixels, mut size) = (0_u64, 0_u64);
     for header in &meta.headers {

@@ -4,7 +4,7 @@ macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
         $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
-        /// A shape with its parameters, in metres, in local space.
+        /// A shape with its parameters, in meters, in local space.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
         #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum Shape {
@@ -96,7 +96,7 @@ macro_rules! shapes {
 
             /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
             /// cosine; a number of sides is followed by the cosine and sine of half the angle of one. Of a shape with
-            /// data all are 0: `flat::Body` makes what is read instead.
+            /// data all are 0: `flat::PreparedShape` makes what is read instead.
             #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
             pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
                 let mut out = [0.0; SHAPE_FLOATS];

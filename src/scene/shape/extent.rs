@@ -187,7 +187,7 @@ fn thick(flat: Aabb, depth: f64) -> Aabb {
     Aabb::new(flat.min - half, flat.max + half)
 }
 
-/// The radius of the circle in which a ball is cut at a height over its centre.
+/// The radius of the circle in which a ball is cut at a height over its center.
 fn rim(radius: f64, cut: f64) -> f64 {
     ((radius - cut) * (radius + cut)).sqrt()
 }

@@ -48,7 +48,7 @@ pub fn balls(ray: &Ray, centers: impl IntoIterator<Item = DVec3>, radius: f64) -
 pub fn half_space(ray: &Ray, point: DVec3, normal: DVec3) -> Seen {
     let climb = normal.dot(ray.direction);
     let height = normal.dot(ray.origin - point);
-    // Towards the horizon f32 does not know.
+    // Toward the horizon f32 does not know.
     let edge = if climb.abs() < 1e-3 { 0.0 } else { f64::INFINITY };
     let slope = (1.0 - climb * climb).max(0.0).sqrt() / climb.abs();
     Seen { span: (climb < 0.0 && height > 0.0).then(|| [-height / climb, f64::INFINITY]), slope, edge }

@@ -2,7 +2,7 @@
 //! smaller.
 
 use glam::DQuat;
-use isolith::flat::twin::field;
+use isolith::flat::eval::field;
 use isolith::geometry::Ray;
 use isolith::render::{OverlaySettings, Slot};
 use isolith::scene::{Blend, BlendKernel, Group, Modifier, Operator};
@@ -29,13 +29,13 @@ fn slab(ray: &Ray, hole: DVec3) -> Seen {
 
 #[test]
 fn a_small_hole_at_the_corner_of_100_km_is_right() {
-    let found = check(&case("numerics/slab_100km_hole_at_corner"), SIZE, &METHODS, &|ray| slab(ray, hole()));
+    let found = check(&case("numerics/slab_100km_hole_at_corner"), SIZE, &STRATEGIES, &|ray| slab(ray, hole()));
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
 #[test]
 fn a_hole_that_is_2_mm_elsewhere_is_refused() {
-    let found = check(&case("numerics/slab_100km_hole_at_corner"), SIZE, &[Method::Interpreted], &|ray| {
+    let found = check(&case("numerics/slab_100km_hole_at_corner"), SIZE, &[EvalStrategy::Interpreter], &|ray| {
         slab(ray, hole() + DVec3::X * 2e-3)
     });
     assert_eq!(found.len(), 1);
@@ -43,12 +43,12 @@ fn a_hole_that_is_2_mm_elsewhere_is_refused() {
 
 #[test]
 fn two_things_1000_km_apart_are_both_right() {
-    let mut subject = case("numerics/blended_pair_1e6_apart");
-    let mut found = check(&subject, SIZE, &METHODS, &|ray| hand::ball(ray, DVec3::ZERO, 0.5));
+    let mut bench_scene = case("numerics/blended_pair_1e6_apart");
+    let mut found = check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::ball(ray, DVec3::ZERO, 0.5));
     // The other one is a cube: from its side a wall that faces the eye.
     let wall = DVec3::new(1e6 + 0.5, 0.0, 0.0);
-    subject.camera = Camera::looking_at(wall + DVec3::new(2.0, 0.1, 0.2), wall, 0.1);
-    found.extend(check(&subject, SIZE, &METHODS, &|ray| hand::half_space(ray, wall, DVec3::X)));
+    bench_scene.camera = Camera::looking_at(wall + DVec3::new(2.0, 0.1, 0.2), wall, 0.1);
+    found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::half_space(ray, wall, DVec3::X)));
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
@@ -82,7 +82,7 @@ fn in_space(ray: &Ray, (turn, place): (DQuat, DVec3)) -> Ray {
 
 /// Where it stands and how it is turned does not matter.
 #[test]
-fn floors_of_many_kilometres_are_right_however_they_are_turned() {
+fn floors_of_many_kilometers_are_right_however_they_are_turned() {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 0.7);
     let center = DVec3::new(41_234.567, 0.0, -23_456.789);
     let slab = Shape::Box { size: [100_000.0, 6.0, 100_000.0], rounding: 0.0 };
@@ -90,9 +90,9 @@ fn floors_of_many_kilometres_are_right_however_they_are_turned() {
     for place in [(DQuat::IDENTITY, DVec3::ZERO), (turn, DVec3::new(1234.5, -77.0, 9e4))] {
         for (shape, at) in [(slab.clone(), DVec3::Y * -3.0), (Shape::Plane {}, DVec3::ZERO)] {
             let scene = floor(shape, at, center, place);
-            let mut subject = Subject::new(&format!("floor at {at}, turned by {}", place.0), &scene, None);
-            subject.camera = into_hole(center, place);
-            found.extend(check(&subject, SIZE, &METHODS, &|ray| {
+            let mut bench_scene = BenchScene::new(&format!("floor at {at}, turned by {}", place.0), &scene, None);
+            bench_scene.camera = into_hole(center, place);
+            found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| {
                 hand::floor_with_hole(&in_space(ray, place), center, 0.5, 1.5, false)
             }));
         }
@@ -102,18 +102,18 @@ fn floors_of_many_kilometres_are_right_however_they_are_turned() {
 
 /// The reference knows the numbers before they were rounded: else it would be wrong by the same.
 #[test]
-fn the_field_of_a_large_thing_is_known_to_a_micrometre() {
+fn the_field_of_a_large_thing_is_known_to_a_micrometer() {
     let place = (DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 0.7), DVec3::new(1234.5, -77.0, 9e4));
     let center = DVec3::new(41_234.567, 0.0, -23_456.789);
     let slab = Shape::Box { size: [100_000.0, 6.0, 100_000.0], rounding: 0.0 };
-    let subject = Subject::new("floor", &floor(slab, DVec3::Y * -3.0, center, place), None);
-    let [component] = &subject.flat.components[..] else { panic!("one component") };
+    let bench_scene = BenchScene::new("floor", &floor(slab, DVec3::Y * -3.0, center, place), None);
+    let [component] = &bench_scene.flat.components[..] else { panic!("one component") };
     for i in 0..50 {
         let (sin, cos) = f64::from(i).sin_cos();
         // On the wall of the hole, and on the floor beside it.
         for (local, meant) in [([0.5 * cos, -0.7, 0.5 * sin], 0.0), ([0.9 * cos, 0.125, 0.9 * sin], 0.125)] {
             let world = place.0 * (DVec3::from(local) + center) + place.1;
-            let found = field(&subject.flat, component, world - component.origin);
+            let found = field(&bench_scene.flat, component, world - component.origin);
             assert!((found - meant).abs() < 1e-6, "{found} instead of {meant} at {local:?}");
         }
     }
@@ -131,13 +131,13 @@ fn a_mirror_image_80_km_away_is_right() {
     scene.insert(Some(group), 0, object(Shape::Sphere { radius: 0.5 }, center)).expect("room");
     let post = Shape::Box { size: [0.2, 0.2, 0.2], rounding: 0.0 };
     scene.insert(Some(group), 1, object(post, center + DVec3::X * 3.0)).expect("room");
-    let mut subject = Subject::new("mirrored", &scene, None);
-    assert_eq!(subject.flat.components.len(), 1);
+    let mut bench_scene = BenchScene::new("mirrored", &scene, None);
+    assert_eq!(bench_scene.flat.components.len(), 1);
     let mut found = Vec::new();
     for sides in [DVec3::new(1.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, 1.0), DVec3::new(-1.0, 1.0, -1.0)] {
         let there = center * sides;
-        subject.camera = Camera::looking_at(there + DVec3::new(0.4, 0.9, 2.1), there, 0.45);
-        found.extend(check(&subject, SIZE, &METHODS, &|ray| hand::ball(ray, there, 0.5)));
+        bench_scene.camera = Camera::looking_at(there + DVec3::new(0.4, 0.9, 2.1), there, 0.45);
+        found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::ball(ray, there, 0.5)));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
@@ -165,15 +165,16 @@ fn the_20000th_copy_is_as_right_as_the_first() {
         let group = Node::new("beads", NodeKind::Group(Group::UNION)).modified(repeat);
         let group = scene.insert(None, 0, group).expect("room");
         scene.insert(Some(group), 0, object(Shape::Sphere { radius: 0.3 }, DVec3::X * 0.2)).expect("room");
-        let mut subject = Subject::new(&format!("beads, mirrored: {mirrored}, endless: {endless}"), &scene, None);
+        let mut bench_scene =
+            BenchScene::new(&format!("beads, mirrored: {mirrored}, endless: {endless}"), &scene, None);
         let place = |cell: i32| beads(cell, mirrored) * if endless { DVec3::X } else { DVec3::ONE };
         for cell in [4, 20_001, 29_999] {
             let there = place(cell);
-            subject.camera = Camera::looking_at(there + DVec3::new(0.1, 0.9, 1.6), there, 0.6);
+            bench_scene.camera = Camera::looking_at(there + DVec3::new(0.1, 0.9, 1.6), there, 0.6);
             // Others are seen far behind, or not at all.
-            subject.camera.far = 4.0;
+            bench_scene.camera.far = 4.0;
             let cells = || (cell - 4..=cell + 4).filter(|cell| endless || (0..30_000).contains(cell));
-            found.extend(check(&subject, SIZE, &METHODS, &|ray| hand::balls(ray, cells().map(place), 0.3)));
+            found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::balls(ray, cells().map(place), 0.3)));
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -191,23 +192,23 @@ fn a_twisted_thing_far_from_the_rest_of_its_component_is_right() {
     let twisted = object(column, far).modified(Modifier::Twist { angle: 90.0 });
     scene.insert(Some(group), 0, twisted).expect("room");
     scene.insert(Some(group), 1, object(Shape::Sphere { radius: 0.5 }, DVec3::ZERO)).expect("room");
-    let mut near_it = Subject::new("twisted", &scene, None);
+    let mut near_it = BenchScene::new("twisted", &scene, None);
     near_it.camera = Camera::looking_at(far + DVec3::new(0.8, 0.6, 3.0), far, 0.9);
     // The same without the other thing stands at its own origin.
     let mut alone = Scene::new();
     let column = Shape::Box { size: [0.4, 2.0, 0.3], rounding: 0.0 };
     alone.insert(None, 0, object(column, far).modified(Modifier::Twist { angle: 90.0 })).expect("room");
-    let mut alone = Subject::new("alone", &alone, None);
+    let mut alone = BenchScene::new("alone", &alone, None);
     alone.camera = near_it.camera;
-    for method in METHODS {
-        let [a, b] = [&near_it, &alone].map(|subject| draw(subject, SIZE, method));
+    for strategy in STRATEGIES {
+        let [a, b] = [&near_it, &alone].map(|bench_scene| draw(bench_scene, SIZE, strategy));
         let footprint = near_it.camera.footprint(SIZE[1].into());
         let differs = |i: &usize| {
             let [a, b] = [a.depth[*i], b.depth[*i]].map(f64::from);
             a.is_finite() != b.is_finite() || (a - b).abs() > 0.2 * footprint * b
         };
         let wrong: Vec<_> = (0..a.depth.len()).filter(differs).collect();
-        assert!(wrong.len() <= 2, "{method:?}: {} pixels differ: {wrong:?}", wrong.len());
+        assert!(wrong.len() <= 2, "{strategy:?}: {} pixels differ: {wrong:?}", wrong.len());
         assert!(b.depth.iter().filter(|d| d.is_finite()).count() > 1_000);
     }
 }
@@ -215,28 +216,29 @@ fn a_twisted_thing_far_from_the_rest_of_its_component_is_right() {
 /// What is uploaded when the camera moves a little is no more than where it stands; nothing is built.
 #[test]
 fn a_small_move_of_the_camera_uploads_no_rows_and_builds_nothing() {
-    let mut subject = case("numerics/slab_100km_hole_at_corner");
+    let mut bench_scene = case("numerics/slab_100km_hole_at_corner");
     let renderer = &mut shared().renderer;
-    for method in METHODS {
-        renderer.set_method(method);
+    for strategy in STRATEGIES {
+        renderer.set_strategy(strategy);
         let mut uploaded = Vec::new();
         for _ in 0..8 {
             let before = renderer.uploaded();
             let overlay = OverlaySettings::default();
-            let frame = renderer.begin(Slot::Full, &subject.flat, &subject.meshes, &subject.camera, SIZE, overlay);
+            let frame =
+                renderer.begin(Slot::Full, &bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, SIZE, overlay);
             let mut frame = frame.unwrap_or_else(|error| panic!("{error}"));
-            assert!(!renderer.is_preparing() || uploaded.is_empty(), "{method:?}");
+            assert!(!renderer.is_preparing() || uploaded.is_empty(), "{strategy:?}");
             renderer.advance(&mut frame, std::time::Duration::MAX).unwrap_or_else(|error| panic!("{error}"));
             uploaded.push(renderer.uploaded() - before);
-            subject.camera.position += DVec3::new(1e-4, 2e-4, -1e-4);
+            bench_scene.camera.position += DVec3::new(1e-4, 2e-4, -1e-4);
         }
         // One component's uniforms; a cell's border may lie on the way once.
         let more = uploaded[1..].iter().filter(|bytes| **bytes > 256).count();
-        assert!(more <= 1, "{method:?}: {uploaded:?}");
+        assert!(more <= 1, "{strategy:?}: {uploaded:?}");
     }
 }
 
-/// Many small things of one blend over 20 km: by lists, each in a cell of its own.
+/// Many small things of one blend over 20 km: by tapes, each in a cell of its own.
 #[test]
 fn a_heap_of_stones_is_right_in_each_of_its_corners() {
     let mut scene = Scene::new();
@@ -248,13 +250,13 @@ fn a_heap_of_stones_is_right_in_each_of_its_corners() {
     for (i, place) in places.iter().enumerate() {
         scene.insert(Some(group), i, object(Shape::Sphere { radius: 0.4 }, *place)).expect("room");
     }
-    let mut subject = Subject::new("stones", &scene, None);
-    assert_eq!(subject.flat.components.len(), 1);
+    let mut bench_scene = BenchScene::new("stones", &scene, None);
+    assert_eq!(bench_scene.flat.components.len(), 1);
     let mut found = Vec::new();
     for place in [places[0], places[13], places[39]] {
-        subject.camera = Camera::looking_at(place + DVec3::new(1.0, 0.5, 0.8), place, 0.7);
+        bench_scene.camera = Camera::looking_at(place + DVec3::new(1.0, 0.5, 0.8), place, 0.7);
         let all = |ray: &Ray| -> Seen { hand::balls(ray, places.iter().copied(), 0.4) };
-        found.extend(check(&subject, SIZE, &METHODS, &all));
+        found.extend(check(&bench_scene, SIZE, &STRATEGIES, &all));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }

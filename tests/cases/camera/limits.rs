@@ -11,9 +11,9 @@ use super::*;
 #[test]
 fn what_stands_in_a_corner_is_not_nearer_than_it_is() {
     let balls = [([0.75, 0.7, -0.45], 0.03), ([-0.8, -0.75, -0.46], 0.03), ([0.0, 0.0, -5.0], 0.5)];
-    let subject = case("numerics/near_cull_120");
-    assert_eq!((subject.camera.near, subject.camera.position), (1.0, DVec3::ZERO));
-    let found = check(&subject, [256, 256], &METHODS, &|ray| {
+    let bench_scene = case("numerics/near_cull_120");
+    assert_eq!((bench_scene.camera.near, bench_scene.camera.position), (1.0, DVec3::ZERO));
+    let found = check(&bench_scene, [256, 256], &STRATEGIES, &|ray| {
         balls
             .iter()
             .map(|(center, radius)| hand::ball(ray, DVec3::from(*center), *radius))
@@ -27,17 +27,17 @@ fn nothing_behind_the_far_limit_is_drawn() {
     for name in ["numerics/far_cut", "numerics/near_far_cut"] {
         let found = check_by_reference(name, [256, 256]);
         assert!(found.is_empty(), "{}", found.join("\n"));
-        let subject = case(name);
-        for method in METHODS {
-            let picture = draw(&subject, [256, 256], method);
-            let limits = subject.camera.near as f32..=subject.camera.far as f32;
+        let bench_scene = case(name);
+        for strategy in STRATEGIES {
+            let picture = draw(&bench_scene, [256, 256], strategy);
+            let limits = bench_scene.camera.near as f32..=bench_scene.camera.far as f32;
             let outside = picture.depth.iter().filter(|d| d.is_finite() && !limits.contains(d)).count();
-            assert_eq!(outside, 0, "{name}, {method:?}");
+            assert_eq!(outside, 0, "{name}, {strategy:?}");
         }
     }
 }
 
-/// A ball that both limits cut, off the middle of a wide picture; its kernel leaps, and by a difference it does not.
+/// A ball that both limits cut, off the middle of a wide picture; its pipeline leaps, and by a difference it does not.
 #[test]
 fn a_ball_is_cut_at_distances_along_the_ray() {
     let (center, radius) = (DVec3::new(3.0, 2.5, -3.5), 1.75);
@@ -56,12 +56,12 @@ fn a_ball_is_cut_at_distances_along_the_ray() {
     let mut found = Vec::new();
     for scene in [scene_of([ball()]), cut()] {
         for [near, far] in [[1e-3, 1e4], [4.2, 1e4], [1e-3, 4.2], [3.9, 4.1], [5.5, 9.0]] {
-            let mut subject = Subject::new(&format!("ball from {near} to {far}"), &scene, None);
-            subject.camera = Camera::looking_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 120.0_f64.to_radians());
-            (subject.camera.near, subject.camera.far) = (near, far);
+            let mut bench_scene = BenchScene::new(&format!("ball from {near} to {far}"), &scene, None);
+            bench_scene.camera = Camera::looking_at(DVec3::ZERO, DVec3::new(0.3, 0.2, -1.0), 120.0_f64.to_radians());
+            (bench_scene.camera.near, bench_scene.camera.far) = (near, far);
             let seen = |ray: &isolith::geometry::Ray| hand::ball(ray, center, radius);
-            found.extend(check(&subject, [96, 64], &METHODS, &seen));
-            found.extend(check_picking(&subject, [96, 64], &seen));
+            found.extend(check(&bench_scene, [96, 64], &STRATEGIES, &seen));
+            found.extend(check_picking(&bench_scene, [96, 64], &seen));
         }
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -69,20 +69,20 @@ fn a_ball_is_cut_at_distances_along_the_ray() {
 
 /// Where picking finds something else than is seen.
 fn check_picking(
-    subject: &Subject,
+    bench_scene: &BenchScene,
     [width, height]: [u32; 2],
     seen: &dyn Fn(&isolith::geometry::Ray) -> Seen,
 ) -> Vec<String> {
     let size = DVec2::new(width.into(), height.into());
-    let Camera { near, far, .. } = subject.camera;
+    let Camera { near, far, .. } = bench_scene.camera;
     let mut wrong = Vec::new();
     for y in (0..height).step_by(3) {
         for x in (0..width).step_by(3) {
-            let ray = subject.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+            let ray = bench_scene.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
             let meant = seen(&ray).span.filter(|[entry, exit]| *exit >= near && *entry <= far);
-            let found = pick(&subject.flat, &subject.meshes, &ray, near, far);
+            let found = pick(&bench_scene.flat, &bench_scene.meshes, &ray, near, far);
             if found.is_some() != meant.is_some() {
-                wrong.push(format!("{}: picked {found:?} at ({x}, {y}) instead of {meant:?}", subject.name));
+                wrong.push(format!("{}: picked {found:?} at ({x}, {y}) instead of {meant:?}", bench_scene.name));
             }
         }
     }
@@ -99,7 +99,7 @@ fn a_mesh_is_cut_at_distances_along_the_ray() {
     for [near, far] in [[1e-3, 1e4], [1.0, 1e4], [1.0, 1.3]] {
         let mut camera = Camera::looking_at(DVec3::ZERO, DVec3::NEG_Z, 120.0_f64.to_radians());
         (camera.near, camera.far) = (near, far);
-        let subject = square(place, camera);
+        let bench_scene = square(place, camera);
         let normal = turn * DVec3::Z;
         let seen = |ray: &isolith::geometry::Ray| {
             let plane = hand::half_space(ray, DVec3::new(0.0, 0.0, -0.6), normal);
@@ -108,8 +108,8 @@ fn a_mesh_is_cut_at_distances_along_the_ray() {
             // Of no thickness: what the near limit cuts off shows nothing behind.
             Seen { span: plane.span.map(|[t, _]| [t, t]).filter(|_| aside < 0.0), ..plane }
         };
-        found.extend(check(&subject, [64, 64], &[Method::Interpreted], &seen));
-        found.extend(check_picking(&subject, [64, 64], &seen));
+        found.extend(check(&bench_scene, [64, 64], &[EvalStrategy::Interpreter], &seen));
+        found.extend(check_picking(&bench_scene, [64, 64], &seen));
     }
     assert!(found.is_empty(), "{}", found.join("\n"));
 }

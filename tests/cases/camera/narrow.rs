@@ -4,7 +4,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use isolith::flat::FlatMesh;
 use isolith::geometry::Camera;
 use isolith::mesh::MeshLibrary;
-use isolith::render::Method;
+use isolith::render::EvalStrategy;
 use isolith::scene::{Blend, Group, Node, NodeId, NodeKind, Operator, Shape};
 
 use super::hand::{self, Seen};
@@ -32,7 +32,7 @@ fn radius(angle: f64, distance: f64) -> f64 {
 /// Draws what `shapes` makes of each camera's radius, and compares.
 fn sweep(
     name: &str,
-    methods: &[Method],
+    strategies: &[EvalStrategy],
     shapes: &dyn Fn(f64, &mut Scene),
     seen: &dyn Fn(&isolith::geometry::Ray, f64) -> Seen,
 ) {
@@ -41,9 +41,9 @@ fn sweep(
         let radius = radius(angle, distance);
         let mut scene = Scene::new();
         shapes(radius, &mut scene);
-        let mut subject = Subject::new(&format!("{name} by {angle}° from {distance} m"), &scene, None);
-        subject.camera = looking(CENTER, distance, angle, size);
-        found.extend(check(&subject, size, methods, &|ray| seen(ray, radius)));
+        let mut bench_scene = BenchScene::new(&format!("{name} by {angle}° from {distance} m"), &scene, None);
+        bench_scene.camera = looking(CENTER, distance, angle, size);
+        found.extend(check(&bench_scene, size, strategies, &|ray| seen(ray, radius)));
     }
     assert!(found.is_empty(), "{} pictures are wrong:\n{}", found.len(), found.join("\n"));
 }
@@ -52,7 +52,7 @@ fn sweep(
 fn a_ball_is_right_from_a_twentieth_of_a_degree_to_170() {
     sweep(
         "ball",
-        &[Method::Interpreted, Method::Specialised],
+        &[EvalStrategy::Interpreter, EvalStrategy::StraightLine],
         &|radius, scene| {
             scene.insert(None, 0, object(Shape::Sphere { radius }, CENTER)).expect("room");
         },
@@ -60,12 +60,12 @@ fn a_ball_is_right_from_a_twentieth_of_a_degree_to_170() {
     );
 }
 
-/// A difference whose cutters are out of reach: as many shapes as lists and kernels with cuts need.
+/// A difference whose cutters are out of reach: as many shapes as tapes and pipelines with cuts need.
 #[test]
 fn a_ball_among_cuts_is_right_by_every_method() {
     sweep(
         "ball with cuts",
-        &METHODS,
+        &STRATEGIES,
         &|radius, scene| {
             let group = Node::new("cut", NodeKind::Group(Group::new(Operator::Difference, Blend::HARD)));
             let group = scene.insert(None, 0, group).expect("room");
@@ -84,7 +84,7 @@ fn a_plane_is_right_from_a_twentieth_of_a_degree_to_170() {
     let turn = DQuat::from_rotation_z(0.4) * DQuat::from_rotation_x(0.3);
     sweep(
         "plane",
-        &[Method::Interpreted, Method::Specialised],
+        &[EvalStrategy::Interpreter, EvalStrategy::StraightLine],
         &|_, scene| {
             scene.insert(None, 0, object(Shape::Plane {}, CENTER).rotated(turn)).expect("room");
         },
@@ -96,10 +96,10 @@ fn a_plane_is_right_from_a_twentieth_of_a_degree_to_170() {
 fn the_comparison_sees_a_fiftieth_of_a_percent() {
     let size = [64, 64];
     let radius = radius(0.5, 5e5);
-    let mut subject = Subject::new("ball", &scene_of([object(Shape::Sphere { radius }, CENTER)]), None);
-    subject.camera = looking(CENTER, 5e5, 0.5, size);
+    let mut bench_scene = BenchScene::new("ball", &scene_of([object(Shape::Sphere { radius }, CENTER)]), None);
+    bench_scene.camera = looking(CENTER, 5e5, 0.5, size);
     let faults = |center: DVec3, factor: f64| {
-        check(&subject, size, &[Method::Specialised], &|ray| hand::ball(ray, center, factor * radius)).len()
+        check(&bench_scene, size, &[EvalStrategy::StraightLine], &|ray| hand::ball(ray, center, factor * radius)).len()
     };
     assert_eq!(
         [faults(CENTER, 1.0), faults(CENTER, 1.005), faults(CENTER + DVec3::X * 0.004 * radius, 1.0)],
@@ -109,8 +109,9 @@ fn the_comparison_sees_a_fiftieth_of_a_percent() {
 
 #[test]
 fn long_lenses_of_the_cases_are_right() {
-    let ball =
-        |name: &str, radius: f64| check(&case(name), [320, 240], &METHODS, &|ray| hand::ball(ray, DVec3::ZERO, radius));
+    let ball = |name: &str, radius: f64| {
+        check(&case(name), [320, 240], &STRATEGIES, &|ray| hand::ball(ray, DVec3::ZERO, radius))
+    };
     let mut found = ball("narrow-pixels/telephoto", 0.61);
     found.extend(ball("narrow-pixels/narrow", 0.015));
     assert!(found.is_empty(), "{}", found.join("\n"));
@@ -125,13 +126,18 @@ fn shapes_by_long_lenses_are_as_the_reference_says() {
 }
 
 /// A square of four vertices, in its own space 2 m wide across Z.
-pub fn square(world_from_local: DAffine3, camera: Camera) -> Subject {
+pub fn square(world_from_local: DAffine3, camera: Camera) -> BenchScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/narrow-pixels");
-    let mut subject = Subject::new("square", &Scene::new(), None);
-    subject.flat.meshes.push(FlatMesh { id: NodeId(1), path: "quad.gltf".into(), world_from_local, material: None });
-    let (meshes, missing) = subject.flat.load_meshes(&mut MeshLibrary::new(Some(folder)));
+    let mut bench_scene = BenchScene::new("square", &Scene::new(), None);
+    bench_scene.flat.meshes.push(FlatMesh {
+        id: NodeId(1),
+        path: "quad.gltf".into(),
+        world_from_local,
+        material: None,
+    });
+    let (meshes, missing) = bench_scene.flat.load_meshes(&mut MeshLibrary::new(Some(folder)));
     assert!(missing.is_empty(), "{missing:?}");
-    Subject { meshes, camera, ..subject }
+    BenchScene { meshes, camera, ..bench_scene }
 }
 
 #[test]
@@ -142,15 +148,16 @@ fn a_mesh_is_right_by_long_lenses() {
     {
         let (half, turn) = (radius(angle, distance), DQuat::from_rotation_y(1.1) * DQuat::from_rotation_x(-0.5));
         let place = DAffine3 { matrix3: DMat3::from_quat(turn) * half, translation: CENTER };
-        let subject = square(place, looking(CENTER, distance, angle, size));
+        let bench_scene = square(place, looking(CENTER, distance, angle, size));
         let normal = turn * DVec3::Z;
-        found.extend(check(&subject, size, &[Method::Interpreted], &|ray| {
+        found.extend(check(&bench_scene, size, &[EvalStrategy::Interpreter], &|ray| {
             let plane = hand::half_space(ray, CENTER, normal);
             let Some([t, _]) = plane.span else { return plane };
             let local = turn.inverse() * (ray.at(t) - CENTER);
             let aside = local.abs().max_element() - half;
-            // Rasterisers place vertices on a grid of a 256th of a pixel.
-            let edge = (aside.abs() / (t * plane.slope.hypot(1.0)) - subject.camera.footprint(size[1].into()) / 128.0)
+            // Rasterizers place vertices on a grid of a 256th of a pixel.
+            let edge = (aside.abs() / (t * plane.slope.hypot(1.0))
+                - bench_scene.camera.footprint(size[1].into()) / 128.0)
                 .max(0.0);
             Seen { span: plane.span.filter(|_| aside < 0.0), edge, ..plane }
         }));

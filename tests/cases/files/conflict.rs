@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
-use isolith::document::{Document, Edit, RecentFiles, Replaced};
+use isolith::document::{Document, Edit, OverwriteRisk, RecentFiles};
 use isolith::editor::Editor;
 use isolith::scene::{Environment, Scene, file};
 
@@ -44,20 +44,20 @@ fn saving_knows_what_it_would_replace() {
     let path = saved(folder.path(), 1);
     let mut document = Document::open(&path).expect("opens");
     let other = folder.path().join("other.json");
-    assert_eq!(document.would_replace(&other), Replaced::Nothing, "nothing is there");
+    assert_eq!(document.would_replace(&other), OverwriteRisk::Nothing, "nothing is there");
     fs::write(&other, "{}").expect("written");
-    assert_eq!(document.would_replace(&other), Replaced::OtherFile);
+    assert_eq!(document.would_replace(&other), OverwriteRisk::OtherFile);
     let text = fs::read(&path).expect("there");
     for (what, contents, expected) in [
-        ("as it was read", text.clone(), Replaced::Nothing),
-        ("written anew with the same contents", text.clone(), Replaced::Nothing),
-        ("one byte longer", [&text[..], b"\n"].concat(), Replaced::ChangedByOthers),
+        ("as it was read", text.clone(), OverwriteRisk::Nothing),
+        ("written anew with the same contents", text.clone(), OverwriteRisk::Nothing),
+        ("one byte longer", [&text[..], b"\n"].concat(), OverwriteRisk::ChangedByOthers),
         (
             "of the same length",
             text.iter().map(|b| if *b == b'0' { b'1' } else { *b }).collect(),
-            Replaced::ChangedByOthers,
+            OverwriteRisk::ChangedByOthers,
         ),
-        ("empty", Vec::new(), Replaced::ChangedByOthers),
+        ("empty", Vec::new(), OverwriteRisk::ChangedByOthers),
     ] {
         fs::write(&path, contents).expect("written");
         for spelling in [path.clone(), folder.path().join("./scene.json")] {
@@ -65,13 +65,13 @@ fn saving_knows_what_it_would_replace() {
         }
     }
     document.save().expect("saved");
-    assert_eq!(document.would_replace(&path), Replaced::Nothing, "what was saved is known");
+    assert_eq!(document.would_replace(&path), OverwriteRisk::Nothing, "what was saved is known");
     fs::remove_file(&path).expect("removed");
-    assert_eq!(document.would_replace(&path), Replaced::Nothing, "it is gone");
+    assert_eq!(document.would_replace(&path), OverwriteRisk::Nothing, "it is gone");
     // A document that was saved elsewhere belongs there from then on.
     document.save_as(&other).expect("saved");
     fs::write(&other, "{}").expect("written");
-    assert_eq!(document.would_replace(&other), Replaced::ChangedByOthers);
+    assert_eq!(document.would_replace(&other), OverwriteRisk::ChangedByOthers);
 }
 
 #[test]

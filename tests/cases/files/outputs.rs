@@ -36,7 +36,7 @@ impl Place {
 
     /// Renders by the reference renderer, which needs no driver.
     fn render(&self, outputs: &[&str]) -> Output {
-        self.run(&[&["render", "ball.json", "--truth", "--size", "16x12", "--quiet"], outputs].concat())
+        self.run(&[&["render", "ball.json", "--reference", "--size", "16x12", "--quiet"], outputs].concat())
     }
 
     fn rendered(&self, outputs: &[&str]) {
@@ -187,7 +187,7 @@ fn a_full_disk_leaves_the_old_picture() {
     let old = fs::read(place.at("x.png")).expect("there");
     // No file may become longer than nothing; a signal that is ignored becomes an error.
     let limited = format!(
-        "trap '' XFSZ; ulimit -f 0; exec '{}' render ball.json --truth --size 64x48 --quiet -o x.png",
+        "trap '' XFSZ; ulimit -f 0; exec '{}' render ball.json --reference --size 64x48 --quiet -o x.png",
         env!("CARGO_BIN_EXE_isolith")
     );
     let mut command = Command::new("sh");

@@ -1,7 +1,7 @@
 //! The empty set is an operand like any other.
 
 use glam::DVec3;
-use isolith::flat::truth::truth;
+use isolith::flat::reference::image::render_reference;
 use isolith::flat::{FlatScene, Warning};
 use isolith::scene::{Attachment, CameraNode, Group, Light, Modifier, Node, NodeId, NodeKind, Operator, Scene, Shape};
 
@@ -54,7 +54,8 @@ fn cases_of_empty_operands_are_nothing_by_every_evaluator() {
         for Warning { node, reason, .. } in &flat.warnings {
             assert_eq!((node.0, reason.contains("g1 (#1)")), (2, true), "{name}: {reason}");
         }
-        let picture = truth(&flat, &[], &flat.cameras[0].camera, [16, 12], &|_| {}).expect("nothing to trace");
+        let picture =
+            render_reference(&flat, &[], &flat.cameras[0].camera, [16, 12], &|_| {}).expect("nothing to trace");
         assert!(picture.buffers.depth.iter().all(|depth| depth.is_infinite()), "{name}");
     }
 }
@@ -88,7 +89,7 @@ fn every_operator_takes_every_kind_of_nothing() {
                 let what = format!("{operator:?}, kind {kind}, last: {last}");
                 assert_eq!(count(&flat), usize::from(expected), "{what}");
                 if expected {
-                    assert_eq!((&flat.numbers, flat.nodes.len()), (&lone.numbers, 1), "{what}");
+                    assert_eq!((&flat.params, flat.nodes.len()), (&lone.params, 1), "{what}");
                 }
                 let names: Vec<&str> = flat.warnings.iter().map(|warning| &*warning.name).collect();
                 assert_eq!(names, if expected { vec![] } else { vec!["nothing"] }, "{what}: {:?}", flat.warnings);

@@ -304,7 +304,7 @@ fn repetitions_of_repetitions_are_limited_by_what_a_point_meets() {
 }
 
 #[test]
-fn flattening_is_cancelled() {
+fn flattening_is_canceled() {
     let mut scene = Scene::new();
     add(&mut scene, None, ball().modified(around(512)).modified(around(256)));
     let cancel = Cancel::default();

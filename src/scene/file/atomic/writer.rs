@@ -14,7 +14,7 @@ use super::{backup, plain};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteStep {
     /// Follow links and look at the file that stands there.
-    Look,
+    Resolve,
     /// Make the temporary file beside it.
     Create,
     /// Write the bytes.
@@ -35,7 +35,7 @@ impl WriteStep {
     /// For messages.
     pub fn label(self) -> &'static str {
         match self {
-            Self::Look => "looking at the file",
+            Self::Resolve => "looking at the file",
             Self::Create => "making a temporary file beside it",
             Self::Write => "writing the temporary file",
             Self::Mode => "giving the temporary file the old one's mode",
@@ -91,9 +91,9 @@ impl Calls<'_> {
 }
 
 fn look(calls: &mut Calls<'_>, path: &Path) -> Result<(PathBuf, Option<fs::Metadata>), WriteError> {
-    let target = calls.call(WriteStep::Look, || resolved(path))?;
-    let old = calls.call(WriteStep::Look, || existing(&target))?;
-    calls.call(WriteStep::Look, || match (target.file_name(), folder_of(&target)) {
+    let target = calls.call(WriteStep::Resolve, || resolved(path))?;
+    let old = calls.call(WriteStep::Resolve, || existing(&target))?;
+    calls.call(WriteStep::Resolve, || match (target.file_name(), folder_of(&target)) {
         (Some(_), Some(_)) => Ok(()),
         _ => Err(io::ErrorKind::InvalidFilename.into()),
     })?;
@@ -186,8 +186,8 @@ mod tests {
             fatal = failures.iter().filter(|(_, failed)| *failed).map(|(step, _)| *step).collect();
         }
         fatal.dedup();
-        use WriteStep::{Backup, Create, Look, Mode, Rename, Sync, SyncFolder, Write};
-        assert_eq!(fatal, [Look, Create, Write, Mode, Sync, Backup, Rename, SyncFolder], "the steps come in order");
+        use WriteStep::{Backup, Create, Mode, Rename, Resolve, Sync, SyncFolder, Write};
+        assert_eq!(fatal, [Resolve, Create, Write, Mode, Sync, Backup, Rename, SyncFolder], "the steps come in order");
     }
 
     #[test]

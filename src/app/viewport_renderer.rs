@@ -1,0 +1,368 @@
+//! The viewport's picture: a coarse one at once where the full one would take too long, the full one
+//! bit by bit while nothing changes, nothing at all while it is up to date.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui_wgpu::RenderState;
+use egui::TextureId;
+
+use crate::editor::{Editor, Message, Picture, ViewSettings};
+use crate::flat::FlatScene;
+use crate::flat::debug_view::{DepthRange, ViewMode};
+use crate::mesh::TriangleMesh;
+use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
+use crate::scene::NodeId;
+
+/// A picture that takes longer than this is made coarse first.
+const AT_ONCE: Duration = Duration::from_millis(60);
+/// Time given to the full picture in each frame of the window, in parts of what painting the window takes: that is a
+/// sixtieth of a second on a graphics card, but a tenth on a software driver, where less would mostly repaint.
+const PER_PAINTING: f32 = 2.0;
+/// That time, at least and at most.
+const PER_FRAME: [Duration; 2] = [Duration::from_millis(16), Duration::from_millis(150)];
+/// A full picture that takes longer than this waits for the pipelines that are being built: they make it
+/// many times faster than the interpreter would.
+const WORTH_WAITING: Duration = Duration::from_millis(1500);
+/// The same for tapes, which are made sooner: some 200 ms in most scenes.
+const TAPES_WORTH_WAITING: Duration = Duration::from_millis(300);
+
+/// See the module.
+pub(super) struct ViewportRenderer {
+    renderers: Renderers,
+    state: RenderState,
+    textures: [Option<(TextureId, [u32; 2])>; 2],
+    shown: Option<Slot>,
+    request: Option<RenderRequest>,
+    in_flight: Option<(Frame, Instant)>,
+    elapsed: Duration,
+    /// What painting the window took the last time that it was measured.
+    painting: Duration,
+    /// When the last update ended, if it asked for the next one at once.
+    painting_since: Option<Instant>,
+    /// The camera or a value is being dragged.
+    navigating: bool,
+    /// The full picture waits for the end of a drag, or for pipelines or tapes that are being made.
+    waiting: bool,
+    /// Pipelines may have become ready that no picture has used.
+    needs_prewarm: bool,
+    /// Of the last coarse picture, before it is enlarged.
+    preview_size: Option<[u32; 2]>,
+}
+
+/// What draws the lit picture, and what draws the looks that count: counting costs time and memory, so the second one
+/// is there only while such a view mode is shown.
+struct Renderers {
+    plain: Renderer,
+    counting: Option<Renderer>,
+}
+
+impl Renderers {
+    /// The one that draws what is shown now.
+    fn active(&mut self) -> &mut Renderer {
+        self.counting.as_mut().unwrap_or(&mut self.plain)
+    }
+
+    /// From now on this look is shown.
+    fn choose(&mut self, view_mode: ViewMode) -> Result<(), RenderError> {
+        if !view_mode.counts() {
+            self.counting = None;
+        } else if self.counting.is_none() {
+            self.counting = Some(Renderer::counting(self.plain.gpu())?);
+        }
+        Ok(())
+    }
+}
+
+/// Everything that the picture depends on.
+#[derive(Clone)]
+struct RenderRequest {
+    view: ViewSettings,
+    flat: Arc<FlatScene>,
+    meshes: Vec<Option<usize>>,
+    outline: Vec<NodeId>,
+}
+
+impl PartialEq for RenderRequest {
+    /// A flat scene is another one when it has been made anew: comparing its numbers in every frame would take longer.
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.flat, &other.flat)
+            && self.view == other.view
+            && self.meshes == other.meshes
+            && self.outline == other.outline
+    }
+}
+
+impl ViewportRenderer {
+    pub fn new(gpu: Gpu, state: RenderState) -> Result<Self, RenderError> {
+        Ok(Self {
+            renderers: Renderers { plain: Renderer::new(&gpu)?, counting: None },
+            state,
+            textures: [None, None],
+            shown: None,
+            request: None,
+            in_flight: None,
+            elapsed: Duration::ZERO,
+            painting: PER_FRAME[0],
+            painting_since: None,
+            navigating: false,
+            waiting: false,
+            needs_prewarm: false,
+            preview_size: None,
+        })
+    }
+
+    pub fn is_lost(&self) -> bool {
+        self.renderers.plain.gpu().is_lost()
+    }
+
+    /// What there is to show now.
+    pub fn picture(&self) -> Picture {
+        let shown = self.shown.and_then(|slot| self.textures[slot as usize]);
+        Picture {
+            texture: shown.map(|(id, _)| id),
+            size_px: shown.map_or([1, 1], |(_, size)| size),
+            progress: self.in_flight.as_ref().map(|(frame, _)| frame.progress()),
+            status: self.status(),
+        }
+    }
+
+    fn status(&self) -> String {
+        let renderer = &self.renderers.plain;
+        let name = short_name(&renderer.gpu().info.name);
+        status_text(name, self.elapsed, renderer.pipelines_building(), renderer.pipelines_failed())
+    }
+
+    /// Brings the picture nearer to what the editor wants, in bounded time.
+    pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
+        self.renderers.plain.gpu().check()?;
+        self.painting = self.painting_since.take().map_or(self.painting, |since| since.elapsed());
+        let ViewSettings { navigating, .. } = editor.view();
+        // Not part of what the picture depends on: letting go changes nothing in it.
+        let view = ViewSettings { navigating: false, ..editor.view() };
+        let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
+        let (flat, library) = editor.flat_and_meshes();
+        let flat = flat.clone();
+        let (meshes, _) = flat.load_meshes(library);
+        let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
+        let request = RenderRequest { view, flat, meshes: addresses, outline };
+        let news = self.follow_pipelines(editor, ctx);
+        let settled = self.navigating && !navigating;
+        self.navigating = navigating;
+        let is_other = self.request.as_ref() != Some(&request);
+        if is_other || (self.waiting && (news || settled)) {
+            if self.differs_in_marks_only(&request) {
+                self.restyle(&request, &meshes)?;
+            } else {
+                self.start(&request, &meshes, is_other)?;
+            }
+            self.request = Some(request);
+        }
+        if let Some((frame, started)) = &mut self.in_flight {
+            let time = self.painting.mul_f32(PER_PAINTING).clamp(PER_FRAME[0], PER_FRAME[1]);
+            if !frame.is_done() {
+                self.renderers.active().advance(frame, time)?;
+            }
+            if frame.is_done() {
+                self.elapsed = started.elapsed();
+                for mut warning in self.renderers.active().unfinished_rays(frame)? {
+                    warning.name =
+                        editor.document().scene().node(warning.node).map_or(String::new(), |n| n.name.clone());
+                    editor.report(Message::warning(format!("{}: {}", warning.name, warning.reason)));
+                }
+                self.in_flight = None;
+                self.show(Slot::Full);
+            }
+            ctx.request_repaint();
+            self.painting_since = Some(Instant::now());
+        } else if let (true, Some(RenderRequest { view, flat, .. })) =
+            (self.needs_prewarm && !self.waiting, &self.request)
+        {
+            self.needs_prewarm = self.renderers.active().prewarm_pipelines(flat, &view.camera, AT_ONCE)?;
+            if self.needs_prewarm {
+                ctx.request_repaint();
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the full picture is there and only grid, outline or view mode are to change, and the view mode by what is found
+    /// already.
+    fn differs_in_marks_only(&self, request: &RenderRequest) -> bool {
+        let complete = self.shown == Some(Slot::Full) && self.in_flight.is_none() && !self.waiting;
+        let marked_alike = |shown: &RenderRequest| {
+            let ViewSettings { show_grid, show_outline, view_mode, .. } = shown.view;
+            let view_mode =
+                if view_mode.counts() == request.view.view_mode.counts() { view_mode } else { request.view.view_mode };
+            let view = ViewSettings { show_grid, show_outline, view_mode, ..request.view };
+            RenderRequest { view, outline: shown.outline.clone(), ..request.clone() }
+        };
+        complete && self.request.as_ref().is_some_and(|shown| *shown == marked_alike(shown))
+    }
+
+    /// Draws the marks anew over the picture that is there.
+    fn restyle(&mut self, request: &RenderRequest, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
+        let mut frame = self.begin(Slot::Full, request, meshes, request.view.size_px)?;
+        frame.skip_to_shading();
+        self.renderers.active().advance(&mut frame, Duration::MAX)?;
+        self.show(Slot::Full);
+        Ok(())
+    }
+
+    /// Pipelines and tapes that are being made are waited for without hurry; pipelines that failed are told of.
+    /// True when another one has become ready.
+    fn follow_pipelines(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
+        let tapes = self.renderers.plain.tape_cache();
+        let mut news = tapes.collect();
+        let failures = tapes.take_failures();
+        if tapes.building() > 0 {
+            ctx.request_repaint_after(Duration::from_millis(30));
+        }
+        let pipelines = self.renderers.plain.pipelines();
+        let built = pipelines.collect();
+        news |= built;
+        self.needs_prewarm |= built;
+        if built {
+            // The status bar of this frame still counts it.
+            ctx.request_repaint();
+        }
+        for failure in failures.into_iter().chain(pipelines.take_failures()) {
+            editor.report(Message::warning(failure));
+        }
+        if pipelines.building() > 0 {
+            // Painting takes from the threads that compile what a processor's driver draws with.
+            ctx.request_repaint_after(Duration::from_millis(if self.waiting { 200 } else { 1_000 }));
+        }
+        news
+    }
+
+    /// Begins the full picture, after a coarse one if the full one is not to be had at once. Where nothing but the pipelines is
+    /// other than before, that is drawn again only if it becomes finer and has to last.
+    fn start(
+        &mut self,
+        request: &RenderRequest,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        is_other: bool,
+    ) -> Result<(), RenderError> {
+        let ViewSettings { camera, size_px, .. } = request.view;
+        let flat = &*request.flat;
+        self.renderers.choose(request.view.view_mode)?;
+        let full = self.renderers.active().estimate(flat, &camera, size_px)?;
+        let started = Instant::now();
+        let active = self.renderers.active();
+        let pipelines_pay = full > WORTH_WAITING && active.pipelines_building() > 0;
+        let tapes_pay = full > TAPES_WORTH_WAITING && active.tape_cache().building() > 0;
+        self.waiting = full > AT_ONCE && (self.navigating || pipelines_pay || tapes_pay);
+        let coarse = coarse_size(size_px, full, AT_ONCE);
+        let is_finer = self.waiting && self.preview_size.is_some_and(|shown| coarse > shown);
+        if full > AT_ONCE && (is_other || is_finer) {
+            let mut frame = self.begin(Slot::Preview, request, meshes, coarse)?;
+            self.preview_size = Some(coarse);
+            self.renderers.active().advance(&mut frame, Duration::MAX)?;
+            self.show(Slot::Preview);
+        }
+        if self.waiting {
+            self.in_flight = None;
+            return Ok(());
+        }
+        let mut frame = self.begin(Slot::Full, request, meshes, size_px)?;
+        if full <= AT_ONCE {
+            // Rays that have not ended go on for longer than anybody could expect.
+            self.renderers.active().advance(&mut frame, 4 * AT_ONCE)?;
+        }
+        if frame.is_done() && self.renderers.active().unfinished_rays(&frame)?.is_empty() {
+            self.elapsed = started.elapsed();
+            self.in_flight = None;
+            self.show(Slot::Full);
+        } else {
+            self.in_flight = Some((frame, started));
+        }
+        Ok(())
+    }
+
+    /// Begins the picture of a request.
+    fn begin(
+        &mut self,
+        slot: Slot,
+        request: &RenderRequest,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        size_px: [u32; 2],
+    ) -> Result<Frame, RenderError> {
+        let RenderRequest { view: ViewSettings { camera, show_grid, view_mode, .. }, flat, outline, .. } = request;
+        // Lines would change the colors that a view mode is read by.
+        let grid = *show_grid && *view_mode == ViewMode::Shaded;
+        let shown_at = Some(request.view.size_px);
+        let overlay = OverlaySettings { grid, outline: outline.clone(), shown_at };
+        let renderer = self.renderers.active();
+        let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
+        if *view_mode != ViewMode::Shaded {
+            renderer.debug_view(
+                &mut frame,
+                *view_mode,
+                flat,
+                &DepthRange::of(&flat.content(meshes), camera.position),
+            )?;
+        }
+        Ok(frame)
+    }
+
+    /// Makes the picture in `slot` the one that egui draws.
+    fn show(&mut self, slot: Slot) {
+        let Some((view, size)) = self.renderers.active().picture(slot) else { return };
+        let filter = match slot {
+            Slot::Full => wgpu::FilterMode::Nearest,
+            Slot::Preview => wgpu::FilterMode::Linear,
+        };
+        let mut egui_renderer = self.state.renderer.write();
+        let device = &self.state.device;
+        let texture = &mut self.textures[slot as usize];
+        let id = match *texture {
+            Some((id, _)) => {
+                egui_renderer.update_egui_texture_from_wgpu_texture(device, view, filter, id);
+                id
+            }
+            None => egui_renderer.register_native_texture(device, view, filter),
+        };
+        *texture = Some((id, size));
+        self.shown = Some(slot);
+    }
+}
+
+/// The selected nodes and all below them.
+fn with_descendants(editor: &Editor) -> Vec<NodeId> {
+    let document = editor.document();
+    let scene = document.scene();
+    let ranges = document.selection().iter().filter_map(|id| scene.index_of(*id)).map(|i| scene.subtree(i));
+    ranges.flat_map(|range| scene.nodes()[range].iter().map(|n| n.id)).collect()
+}
+
+/// Adapter, time of the last picture, pipelines on the way, pipelines that failed.
+fn status_text(adapter: &str, elapsed: Duration, building: usize, failed: usize) -> String {
+    let mut text = format!("{adapter} · {:.0} ms", elapsed.as_secs_f64() * 1e3);
+    if building > 0 {
+        text += " · Preparing shaders…";
+    }
+    if failed > 0 {
+        text += &format!(" · {failed} pipeline{} failed, interpreter in use", if failed == 1 { "" } else { "s" });
+    }
+    text
+}
+
+/// The adapter's name without the parenthesis that many carry.
+fn short_name(name: &str) -> &str {
+    name.split(" (").next().unwrap_or(name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failed_pipelines_stay_in_the_status() {
+        let text = |building, failed| status_text("card", Duration::from_millis(12), building, failed);
+        assert_eq!(text(0, 0), "card · 12 ms");
+        assert_eq!(text(2, 0), "card · 12 ms · Preparing shaders…");
+        assert_eq!(text(0, 1), "card · 12 ms · 1 pipeline failed, interpreter in use");
+        assert_eq!(text(1, 3), "card · 12 ms · Preparing shaders… · 3 pipelines failed, interpreter in use");
+    }
+}

@@ -1,0 +1,168 @@
+//! The document with what every panel needs to change it: gestures and messages.
+
+use std::sync::Arc;
+
+use egui::{Context, Id};
+
+use super::messages::{Message, Messages};
+use crate::document::{Document, Edit};
+use crate::scene::{Attached, Material, ModifierKind, ModifierValue, Node, NodeId, NodeKind, ParamValue};
+
+/// The document, the gesture in progress, the messages.
+///
+/// Every change by a widget names the widget. All changes by one widget, from its first until the
+/// pointer is up and the widget has lost the keyboard, are one gesture and so one undo step.
+pub struct EditSession {
+    /// The document.
+    pub document: Document,
+    /// What the artist is told.
+    pub messages: Messages,
+    /// The file that a panel wants to be asked for.
+    pub wanted_file: Option<WantedFile>,
+    gesture: Option<Id>,
+}
+
+/// A file for a parameter of some nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WantedFile {
+    /// Which nodes.
+    pub nodes: Vec<NodeId>,
+    /// Which of their parameters.
+    pub target: ParamTarget,
+    /// What it is now.
+    pub instead_of: Attached,
+}
+
+/// A parameter that holds a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ParamTarget {
+    /// Of this index among those of the shape.
+    Shape(usize),
+    /// Of the modifier at this place, of this index among its own.
+    Modifier([usize; 2]),
+}
+
+impl ParamTarget {
+    /// Gives the node the file; false, and nothing changed, where it has no such parameter.
+    pub fn set(self, node: &mut Node, file: &Attached) -> bool {
+        match (self, &mut node.kind) {
+            (Self::Shape(index), NodeKind::Object(object)) => {
+                object.shape.set_value(index, ParamValue::File(file.clone()))
+            }
+            (Self::Shape(_), _) => false,
+            (Self::Modifier([place, index]), _) => {
+                let slot = node.modifiers.get_mut(place);
+                slot.is_some_and(|slot| slot.modifier.set_value(index, ModifierValue::File(file.clone())))
+            }
+        }
+    }
+
+    /// The node, its shape or modifier, and the parameter, for messages.
+    pub fn label(self, node: &Node) -> String {
+        let (of, name) = match (self, &node.kind) {
+            (Self::Shape(index), NodeKind::Object(object)) => {
+                let kind = object.shape.kind();
+                (kind.label(), kind.params().get(index).map(|param| param.name))
+            }
+            (Self::Shape(_), _) => ("", None),
+            (Self::Modifier([place, index]), _) => {
+                let kind = node.modifiers.get(place).map(|slot| slot.modifier.kind());
+                let param = kind.and_then(|kind| kind.params().get(index));
+                (kind.map_or("", ModifierKind::label), param.map(|param| param.name))
+            }
+        };
+        format!("{} {}: {of}: {}", node.name, node.id, name.unwrap_or_default())
+    }
+}
+
+impl EditSession {
+    /// A session without messages.
+    pub fn new(document: Document) -> Self {
+        Self { document, messages: Messages::default(), wanted_file: None, gesture: None }
+    }
+
+    /// One change that is its own undo step; returns the nodes added. A refusal becomes a message.
+    pub fn apply(&mut self, edit: Edit) -> Vec<NodeId> {
+        match self.document.apply(edit) {
+            Ok(added) => added,
+            Err(refusal) => {
+                self.messages.push(Message::error(refusal.to_string()));
+                Vec::new()
+            }
+        }
+    }
+
+    /// A change by a widget, part of its gesture.
+    pub fn apply_by(&mut self, widget: Id, edit: Edit) -> Vec<NodeId> {
+        self.begin(widget);
+        self.apply(edit)
+    }
+
+    /// Changes each of the nodes, as part of the widget's gesture.
+    pub fn change(&mut self, widget: Id, ids: &[NodeId], change: impl Fn(&mut Node)) {
+        self.begin(widget);
+        for &id in ids {
+            if let Some(node) = self.document.scene().node(id) {
+                let mut node = Node::clone(node);
+                change(&mut node);
+                self.apply(Edit::Replace(node));
+            }
+        }
+    }
+
+    /// Changes a material, as part of the widget's gesture.
+    pub fn change_material(&mut self, widget: Id, material: Material) {
+        self.apply_by(widget, Edit::ReplaceMaterial(material));
+    }
+
+    /// Several changes as one undo step.
+    pub fn together<R>(&mut self, changes: impl FnOnce(&mut Self) -> R) -> R {
+        self.document.begin_gesture();
+        let result = changes(self);
+        self.document.end_gesture();
+        result
+    }
+
+    /// The nodes selected, in order of selection; the last is the active one.
+    pub fn selected(&self) -> Vec<Arc<Node>> {
+        self.document.selection().iter().filter_map(|id| self.document.scene().node(*id).cloned()).collect()
+    }
+
+    /// Whether a value is being changed right now.
+    pub fn is_changing(&self) -> bool {
+        self.gesture.is_some()
+    }
+
+    /// Ends the gesture when its widget has been let go. Once a frame, after all panels.
+    pub fn settle(&mut self, ctx: &Context) {
+        let Some(widget) = self.gesture else { return };
+        let held = ctx.input(|i| i.pointer.any_down()) || ctx.memory(|m| m.has_focus(widget));
+        if !held {
+            self.finish();
+        }
+    }
+
+    /// Ends the gesture now, whatever the pointer does.
+    pub fn finish(&mut self) {
+        if self.gesture.take().is_some() {
+            self.document.end_gesture();
+        }
+    }
+
+    /// Takes the gesture back, whatever the pointer does.
+    pub fn cancel(&mut self) {
+        if self.gesture.take().is_some() {
+            self.document.cancel_gesture();
+        }
+    }
+
+    /// Starts the widget's gesture unless it is the one in progress.
+    pub fn begin(&mut self, widget: Id) {
+        if self.gesture == Some(widget) {
+            return;
+        }
+        self.finish();
+        self.document.begin_gesture();
+        self.gesture = Some(widget);
+    }
+}

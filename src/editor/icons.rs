@@ -1,0 +1,73 @@
+//! The icons of every kind of node. Shapes are drawn in `shape_icons`.
+
+use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT,
+    ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM,
+    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+};
+
+pub use super::shape_icons::paint_shape;
+use super::theme;
+use crate::scene::{LightKind, Node, NodeKind, Operator};
+
+/// The drawing of a node's kind: a shape's silhouette or an icon, in the kind's color.
+pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
+    let color = node_color(node);
+    match &node.kind {
+        NodeKind::Object(object) => paint_shape(painter, rect, object.shape.kind(), color),
+        NodeKind::Group(group) => paint_icon(painter, rect, operator_icon(group.operator), color),
+        NodeKind::Mesh(_) => paint_icon(painter, rect, ICON_VIEW_IN_AR, color),
+        NodeKind::Light(light) => paint_icon(painter, rect, light_icon(&light.light), color),
+        NodeKind::Camera(_) => paint_icon(painter, rect, ICON_VIDEOCAM, color),
+    }
+}
+
+/// The color of a node's kind.
+pub fn node_color(node: &Node) -> Color32 {
+    match node.kind {
+        _ if node.negative => theme::NEGATIVE,
+        NodeKind::Object(_) => theme::OBJECT,
+        NodeKind::Group(_) => theme::GROUP,
+        NodeKind::Mesh(_) => theme::MESH,
+        NodeKind::Light(_) => theme::LIGHT,
+        NodeKind::Camera(_) => theme::CAMERA,
+    }
+}
+
+/// The icon of an operator: which part of two circles stays.
+pub fn operator_icon(operator: Operator) -> MaterialIcon {
+    match operator {
+        Operator::Union => ICON_JOIN_FULL,
+        Operator::Intersection => ICON_JOIN_INNER,
+        Operator::Difference => ICON_JOIN_LEFT,
+        Operator::Xor => ICON_JOIN,
+        Operator::Pipe => ICON_PLUMBING,
+        Operator::Groove => ICON_VERTICAL_ALIGN_BOTTOM,
+        Operator::Tongue => ICON_VERTICAL_ALIGN_TOP,
+        Operator::Engrave => ICON_STYLUS,
+        Operator::Morph => ICON_ANIMATION,
+        Operator::Paint => ICON_FORMAT_PAINT,
+    }
+}
+
+/// The icon of a kind of light.
+pub fn light_icon(light: &LightKind) -> MaterialIcon {
+    match light {
+        LightKind::Sun {} => ICON_WB_SUNNY,
+        LightKind::Point { .. } => ICON_LIGHTBULB,
+        LightKind::Spot { .. } => ICON_FLASHLIGHT_ON,
+    }
+}
+
+/// Paints an icon into the middle of `rect`.
+pub fn paint_icon(painter: &Painter, rect: Rect, icon: MaterialIcon, color: Color32) {
+    let font = FontId::new(rect.height(), icon.font_family());
+    painter.text(rect.center(), Align2::CENTER_CENTER, icon.codepoint, font, color);
+}
+
+/// A square of the given side in the middle of `rect`.
+pub fn centered(rect: Rect, side: f32) -> Rect {
+    Rect::from_center_size(pos2(rect.center().x.round(), rect.center().y.round()), vec2(side, side))
+}

@@ -1,0 +1,178 @@
+//! The widgets of the inspector: a label on the left, a field on the right, all on one grid. Numbers are in `numbers`.
+
+use egui::{Align, Color32, Context, Id, Key, Layout, Response, RichText, ScrollArea, TextEdit, Ui, UiBuilder, vec2};
+
+use super::{color_picker, theme};
+
+/// What a field shows where the selected nodes differ.
+pub const MIXED: &str = "–";
+
+/// Width of the labels in points.
+const LABEL_WIDTH: f32 = 92.0;
+
+/// A row: label, then whatever `add` adds in the width that is left.
+///
+/// Its widgets are known by the label and not by their place: rows that come and go above it do not hand the keyboard on.
+pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let id = ui.scope_id().with(("row", label));
+    let horizontal = |ui: &mut Ui| {
+        let size = vec2(LABEL_WIDTH, theme::ROW_HEIGHT);
+        let layout = Layout::left_to_right(Align::Center);
+        ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_min_size(size);
+            let text = RichText::new(label).color(theme::WEAK);
+            let response = ui.add(egui::Label::new(text).truncate());
+            if !help.is_empty() {
+                response.on_hover_text(help);
+            }
+        });
+        add(ui)
+    };
+    ui.scope_builder(UiBuilder::new().scope_id(id), |ui| ui.horizontal(horizontal).inner).inner
+}
+
+/// A card with a title.
+pub fn card<R>(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
+    let frame = egui::Frame::new().fill(theme::CARD).corner_radius(7.0).inner_margin(egui::Margin::symmetric(10, 8));
+    let content = |ui: &mut Ui| {
+        ui.set_width(ui.available_width());
+        let header = egui::CollapsingHeader::new(RichText::new(title).strong().color(Color32::WHITE));
+        header.default_open(true).show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            ui.push_id(title, add).inner
+        })
+    };
+    frame.show(ui, content).inner.body_returned
+}
+
+/// A button that holds a color; values are linear. Answers with the new linear color. `mixed` shows a dash.
+pub fn color(ui: &mut Ui, name: &str, linear: [f64; 3], mixed: bool) -> (Id, Option<[f64; 3]>) {
+    // The picker works on brightness-limited colors; what is brighter keeps its brightness as a factor.
+    let peak = linear.iter().copied().fold(1.0, f64::max);
+    let mut shown = linear.map(|v| (v / peak) as f32);
+    let before = shown;
+    let (response, picked) = color_picker::button(ui, name, &mut shown, mixed);
+    let id = response.id;
+    let changed = picked && shown != before;
+    // Channels that the picker left alone keep their full precision.
+    let mut value = linear;
+    for c in 0..3 {
+        if shown[c] != before[c] {
+            value[c] = (f64::from(shown[c]) * peak * 1e5).round() / 1e5;
+        }
+    }
+    (id, changed.then_some(value))
+}
+
+/// A drop-down list. Answers with the entry chosen, where it differs.
+pub fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    name: &str,
+    current: Option<T>,
+    options: &[T],
+    label: impl Fn(T) -> &'static str,
+    help: impl Fn(T) -> &'static str,
+) -> (Id, Option<T>) {
+    let mut chosen = None;
+    let shown = current.map_or(MIXED, &label);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).width(ui.available_width()).truncate();
+    let combo = combo.height(list_room(ui.ctx()));
+    let response = combo.show_ui(ui, |ui| {
+        for &option in options {
+            let mut entry = ui.selectable_label(current == Some(option), label(option));
+            let text = help(option);
+            if !text.is_empty() {
+                entry = entry.on_hover_text(text);
+            }
+            if entry.clicked() && current != Some(option) {
+                chosen = Some(option);
+            }
+        }
+    });
+    ui.ctx().accesskit_node_builder(response.response.id, |node| node.set_label(name.to_owned()));
+    (response.response.id, chosen)
+}
+
+/// A frameless button with an icon.
+pub fn icon_button(ui: &mut Ui, icon: egui_material_icons::MaterialIcon, name: &str, color: Color32) -> Response {
+    let text = icon.rich_text().size(theme::ICON_SIZE).color(color);
+    let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
+    response.on_hover_text(name)
+}
+
+/// A line of text that counts when it has been typed to its end: by Enter, Tab or a click elsewhere, not by Escape.
+pub fn line(ui: &mut Ui, name: &str, current: &str, hint: &str) -> (Id, Option<String>) {
+    let id = ui.next_auto_id();
+    let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
+    let field = TextEdit::singleline(&mut text).id(id).hint_text(hint).desired_width(ui.available_width());
+    let response = ui.add(field);
+    ui.ctx().accesskit_node_builder(id, |node| node.set_label(name.to_owned()));
+    let typing = response.has_focus();
+    let typed = response.lost_focus() && !ui.input(|i| i.key_pressed(Key::Escape)) && text != current;
+    ui.data_mut(|d| {
+        d.remove::<String>(id);
+        if typing {
+            d.insert_temp(id, text.clone());
+        }
+    });
+    (id, typed.then_some(text))
+}
+
+/// The text, with dots instead of its middle where it has more characters than that: both ends tell names apart, and the
+/// last one holds the kind of a file.
+pub fn elided(text: &str, most: usize) -> String {
+    let count = text.chars().count();
+    if count <= most {
+        return text.to_owned();
+    }
+    let kept = most.saturating_sub(1);
+    let (head, tail) = (kept.div_ceil(2), kept / 2);
+    text.chars().take(head).chain(['…']).chain(text.chars().skip(count - tail)).collect()
+}
+
+/// How high a list may be that opens above or below a widget: there is as much room on one of the sides at least.
+pub fn list_room(ctx: &Context) -> f32 {
+    (ctx.content_rect().height() * 0.5 - 24.0).clamp(80.0, 420.0)
+}
+
+/// The entries of a menu, which scroll where they take more than `room`.
+pub fn scrolling<R>(ui: &mut Ui, room: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
+    // That there is more below must be seen before the pointer is there.
+    let scroll = &mut ui.spacing_mut().scroll;
+    (scroll.floating_width, scroll.dormant_handle_opacity) = (4.0, 0.7);
+    ScrollArea::vertical().max_height(room).show(ui, add).inner
+}
+
+/// The room for the entries of a menu that hangs down from a bar at the top of the window.
+pub fn room_below(ui: &Ui) -> f32 {
+    (ui.ctx().content_rect().bottom() - ui.cursor().top() - 14.0).max(80.0)
+}
+
+/// The room for those of a menu that stands beside another one, or at the pointer.
+pub fn room_beside(ctx: &Context) -> f32 {
+    (ctx.content_rect().height() - 32.0).max(80.0)
+}
+
+/// Shows something in all of the room that is left, without ever asking for more of it.
+pub fn fixed<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let rect = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+    inside.shrink_clip_rect(rect.expand(2.0));
+    let result = add(&mut inside);
+    ui.allocate_rect(rect, egui::Sense::hover());
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::elided;
+
+    #[test]
+    fn long_names_keep_both_ends() {
+        assert_eq!(elided("short", 5), "short");
+        assert_eq!(elided("a long name.json", 9), "a lo…json");
+        assert_eq!(elided("äöüäöü", 3), "ä…ü");
+        assert_eq!(elided("abc", 0), "…");
+    }
+}

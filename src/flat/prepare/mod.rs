@@ -1,0 +1,84 @@
+//! Shapes as evaluators see them: numbers, and rows of data behind them.
+//!
+//! | file | what it makes |
+//! |---|---|
+//! | `tube` | arcs of a curve with radii |
+//! | `profile` | arcs of a profile, cut so that each only rises |
+//! | `heightfield` | layers of noise, waves, heights of an image |
+
+mod heightfield;
+mod profile;
+mod tube;
+
+use glam::DVec3;
+pub(super) use heightfield::spline;
+
+use crate::geometry::Aabb;
+use crate::scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
+
+/// A shape, ready to be evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreparedShape {
+    /// Which function evaluates it.
+    pub kind: ShapeKind,
+    /// Its parameters; of a shape with data what was made of them.
+    pub parameters: [f64; SHAPE_FLOATS],
+    /// Its data, with a sphere around the shape first (center, radius); nothing for a shape without.
+    pub payload: Vec<[f64; 4]>,
+    /// A box around the surface, in local space.
+    pub bounds: Aabb,
+}
+
+impl PreparedShape {
+    /// What a shape is evaluated with.
+    pub fn new(shape: &Shape) -> Self {
+        let (kind, bounds) = (shape.kind(), shape.bounds());
+        let PreparedParams { parameters, payload } = match shape {
+            Shape::Tube { points, radius, closed } => tube::tube(points, *radius, *closed),
+            Shape::Extrusion { corners, smooth, depth, rounding } => {
+                profile::extrusion(corners, *smooth, *depth, *rounding)
+            }
+            Shape::Text { text, font, size, depth, rounding } => {
+                profile::text(&text_profile(text, font, *size), *depth, *rounding)
+            }
+            Shape::Heightmap { image, size, height } => heightfield::heightmap(Heights::of(image), *size, *height),
+            Shape::Revolution { corners, smooth, offset } => profile::revolution(corners, *smooth, *offset),
+            Shape::Terrain { size, amplitude, wavelength, octaves, roughness, seed } => {
+                heightfield::terrain(*size, *amplitude, *wavelength, *octaves, *roughness, *seed)
+            }
+            Shape::Ocean { size, amplitude, wavelength, waves, direction, spread, sharpness, phase } => {
+                let run = [*direction, *spread, *phase].map(f64::to_radians);
+                heightfield::ocean(*size, *amplitude, *wavelength, *waves, run, *sharpness)
+            }
+            _ => PreparedParams { parameters: shape.packed(), payload: Vec::new() },
+        };
+        let mut payload = payload;
+        if kind.has_data() {
+            let bounding_sphere = bounding_sphere(bounds.center(), bounds.half().length());
+            payload.insert(0, bounding_sphere);
+        }
+        Self { kind, parameters, payload, bounds }
+    }
+}
+
+/// Parameters and payload of a prepared shape.
+struct PreparedParams {
+    parameters: [f64; SHAPE_FLOATS],
+    payload: Vec<[f64; 4]>,
+}
+
+impl PreparedParams {
+    /// The parameters as they stand in their first rows.
+    fn new(first: [f64; 4], second: [f64; 4], payload: Vec<[f64; 4]>) -> Self {
+        let mut parameters = [0.0; SHAPE_FLOATS];
+        parameters[..4].copy_from_slice(&first);
+        parameters[4..8].copy_from_slice(&second);
+        Self { parameters, payload }
+    }
+}
+
+/// A row with a sphere, a little larger so that f32 may round.
+fn bounding_sphere(center: DVec3, radius: f64) -> [f64; 4] {
+    let room = 1e-6 * (radius + center.abs().max_element());
+    [center.x, center.y, center.z, radius + room]
+}

@@ -1,0 +1,13 @@
+//! The reference renderer: a picture traced on the processor in f64, and how wrong another picture is against it.
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `trace` | rays against the CPU evaluator, with certainty instead of a step limit |
+//! | `shade` | light on surfaces, counterpart of `shaders/light` |
+//! | `image` | the whole picture by `eval`, `trace` and `shade` |
+//! | `accuracy` | how wrong a picture is, against the reference |
+
+pub mod accuracy;
+pub mod image;
+pub mod shade;
+pub mod trace;

@@ -1,0 +1,249 @@
+//! Light on surfaces, in f64, from the same numbers and by the same formulas as
+//! `shaders/light/shade.wgsl`. Colors are linear until [`shade_encode`].
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use crate::flat::eval::SurfaceMaterial;
+use crate::flat::{FlatLight, FlatScene};
+use crate::geometry::Camera;
+use crate::scene::{Attenuation, LightKind};
+
+/// A light as the GPU reads it, relative to the eye; `shaders/common/light.wgsl` is its counterpart.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct GpuLight {
+    /// Where it is, relative to the eye.
+    pub position: [f32; 3],
+    /// One of [`GpuLight::DIRECTIONAL`], [`GpuLight::POINT`], [`GpuLight::SPOT`].
+    pub kind: u32,
+    /// Unit vector in which the light travels.
+    pub direction: [f32; 3],
+    /// Nothing is lit beyond this distance.
+    pub range: f32,
+    /// Color times intensity, linear.
+    pub color: [f32; 3],
+    /// Constant term of the attenuation.
+    pub constant: f32,
+    /// Per meter.
+    pub linear: f32,
+    /// Per square meter.
+    pub quadratic: f32,
+    /// Cosine of the half angle within which a spot is full; always above `cos_outer`.
+    pub cos_inner: f32,
+    /// Cosine of the half angle at which a spot has faded out.
+    pub cos_outer: f32,
+}
+
+impl GpuLight {
+    /// Parallel light.
+    pub const DIRECTIONAL: u32 = 0;
+    /// Light from a point into every direction.
+    pub const POINT: u32 = 1;
+    /// Light from a point into a cone.
+    pub const SPOT: u32 = 2;
+
+    fn new(light: &FlatLight, eye: DVec3) -> Self {
+        let (kind, attenuation, [inner, outer]) = match light.light.light {
+            LightKind::Sun {} => (Self::DIRECTIONAL, Attenuation::default(), [0.0, 0.0]),
+            LightKind::Point { attenuation } => (Self::POINT, attenuation, [0.0, 0.0]),
+            LightKind::Spot { attenuation, inner, outer } => (Self::SPOT, attenuation, [inner, outer]),
+        };
+        let cos_outer = outer.to_radians().cos();
+        Self {
+            position: (light.position - eye).as_vec3().to_array(),
+            kind,
+            direction: light.direction.as_vec3().to_array(),
+            range: attenuation.range as f32,
+            color: (DVec3::from(light.light.color) * light.light.intensity).as_vec3().to_array(),
+            constant: attenuation.constant as f32,
+            linear: attenuation.linear as f32,
+            quadratic: attenuation.quadratic as f32,
+            // A cone with a hard edge still needs a width for the fade to be defined.
+            cos_inner: inner.to_radians().cos().max(cos_outer + 1e-4) as f32,
+            cos_outer: cos_outer as f32,
+        }
+    }
+
+    fn directional(direction: DVec3, color: DVec3) -> Self {
+        Self {
+            kind: Self::DIRECTIONAL,
+            direction: direction.normalize().as_vec3().to_array(),
+            color: color.as_vec3().to_array(),
+            range: 1.0,
+            constant: 1.0,
+            ..Self::zeroed()
+        }
+    }
+}
+
+/// The lights of the scene as seen from the camera. A scene without any is lit like a studio, fixed to
+/// the viewer: a key light from over the left shoulder and a weak one from the right.
+pub fn gpu_lights(flat: &FlatScene, camera: &Camera) -> Vec<GpuLight> {
+    if flat.lights.is_empty() {
+        let world = |direction: DVec3| camera.rotation * direction;
+        return vec![
+            GpuLight::directional(world(DVec3::new(0.55, -0.75, -0.9)), DVec3::new(1.12, 1.08, 1.02)),
+            GpuLight::directional(world(DVec3::new(-0.9, -0.1, -0.5)), DVec3::new(0.16, 0.20, 0.28)),
+        ];
+    }
+    flat.lights.iter().map(|light| GpuLight::new(light, camera.position)).collect()
+}
+
+/// Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from
+/// everywhere. `position` is relative to the eye; `normal` and `to_eye` have unit length.
+pub fn shade_surface(
+    material: &SurfaceMaterial,
+    position: DVec3,
+    normal: DVec3,
+    to_eye: DVec3,
+    ambient: DVec3,
+    lights: &[GpuLight],
+) -> DVec3 {
+    let mut color = material.emission + material.albedo * shade_ambient(normal.y, ambient);
+    for light in lights {
+        let (to_light, share) = shade_incoming(light, position);
+        let facing = normal.dot(to_light).max(0.0);
+        let halfway = to_light + to_eye;
+        let alignment = normal.dot(halfway).max(0.0) / halfway.length().max(1e-6);
+        let highlight = material.specular * alignment.powf(material.shininess);
+        color += (material.albedo + highlight) * vector(light.color) * (facing * share);
+    }
+    color
+}
+
+/// Unit vector toward the light, and the share of the light that arrives, shadows aside.
+pub fn shade_incoming(light: &GpuLight, position: DVec3) -> (DVec3, f64) {
+    if light.kind == GpuLight::DIRECTIONAL {
+        return (-vector(light.direction), 1.0);
+    }
+    let offset = vector(light.position) - position;
+    let distance = offset.length();
+    let to_light = offset / distance.max(1e-6);
+    let mut share = shade_attenuation(light, distance);
+    if light.kind == GpuLight::SPOT {
+        let (none, full) = (f64::from(light.cos_outer), f64::from(light.cos_inner));
+        let x = ((-to_light.dot(vector(light.direction)) - none) / (full - none)).clamp(0.0, 1.0);
+        share *= x * x * (3.0 - 2.0 * x);
+    }
+    (to_light, share)
+}
+
+/// Weakening with distance; fades to nothing at the light's range.
+pub fn shade_attenuation(light: &GpuLight, distance: f64) -> f64 {
+    let ratio = (distance / f64::from(light.range)).min(1.0);
+    let window = 1.0 - ratio.powi(4);
+    let [constant, linear, quadratic] = [light.constant, light.linear, light.quadratic].map(f64::from);
+    window * window / (constant + (linear + quadratic * distance) * distance).max(1e-4)
+}
+
+/// Light from everywhere: full from above, half from below.
+pub fn shade_ambient(normal_y: f64, ambient: DVec3) -> DVec3 {
+    ambient * (0.75 + 0.25 * normal_y)
+}
+
+/// What a ray sees that hits nothing; `direction_y` is the height of its unit direction.
+pub fn shade_background(direction_y: f64, sky: DVec3, horizon: DVec3) -> DVec3 {
+    let height = direction_y.clamp(0.0, 1.0);
+    horizon.lerp(sky, height * (2.0 - height))
+}
+
+/// Linear light to what a screen expects (IEC 61966-2-1), clamped to 0..1.
+pub fn shade_encode(linear: DVec3) -> DVec3 {
+    linear
+        .clamp(DVec3::ZERO, DVec3::ONE)
+        .map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 })
+}
+
+/// Back from [`shade_encode`]: what a byte of a texture means.
+pub fn shade_decode(encoded: DVec3) -> DVec3 {
+    encoded.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
+}
+
+fn vector(v: [f32; 3]) -> DVec3 {
+    DVec3::from(v.map(f64::from))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flat::flatten;
+    use crate::scene::{Light, Node, NodeKind, Scene};
+
+    const GRAY: SurfaceMaterial =
+        SurfaceMaterial { albedo: DVec3::splat(0.5), specular: 0.5, emission: DVec3::ZERO, shininess: 16.0 };
+
+    fn light(kind: LightKind) -> GpuLight {
+        let light = Light { color: [1.0, 0.5, 0.25], intensity: 2.0, light: kind };
+        let flat = FlatLight { id: crate::scene::NodeId(1), position: DVec3::Y * 4.0, direction: DVec3::NEG_Y, light };
+        GpuLight::new(&flat, DVec3::Y)
+    }
+
+    /// A floor 2 below the light's height over the eye, seen from the side.
+    fn floor(lights: &[GpuLight], x: f64) -> DVec3 {
+        shade_surface(&GRAY, DVec3::new(x, 1.0, -2.0), DVec3::Y, DVec3::Z, DVec3::ZERO, lights)
+    }
+
+    #[test]
+    fn a_directional_light_gives_albedo_times_color_times_cosine() {
+        let sun = light(LightKind::Sun {});
+        let matte = SurfaceMaterial { specular: 0.0, ..GRAY };
+        let tilted = DVec3::new(0.0, 0.5, 0.75_f64.sqrt());
+        let color = shade_surface(&matte, DVec3::ZERO, tilted, DVec3::Z, DVec3::ZERO, &[sun]);
+        assert!((color - DVec3::new(0.5, 0.25, 0.125)).length() < 1e-7, "{color}");
+        assert_eq!(shade_surface(&matte, DVec3::ZERO, DVec3::NEG_Y, DVec3::Z, DVec3::ZERO, &[sun]), DVec3::ZERO);
+    }
+
+    #[test]
+    fn point_lights_weaken_and_end_at_their_range() {
+        let attenuation = Attenuation { constant: 1.0, linear: 0.5, quadratic: 0.25, range: 8.0 };
+        let lamp = light(LightKind::Point { attenuation });
+        assert!((shade_attenuation(&lamp, 2.0) - (1.0 - 1.0 / 256.0_f64).powi(2) / 3.0).abs() < 1e-6);
+        assert_eq!(shade_attenuation(&lamp, 8.0), 0.0);
+        assert_eq!(shade_attenuation(&lamp, 100.0), 0.0);
+        let nothing = Attenuation { constant: 0.0, linear: 0.0, quadratic: 0.0, range: 8.0 };
+        assert!(shade_attenuation(&light(LightKind::Point { attenuation: nothing }), 0.0).is_finite());
+    }
+
+    #[test]
+    fn spots_are_full_within_and_dark_without() {
+        for (inner, outer) in [(20.0, 30.0), (30.0, 30.0), (0.0, 0.0)] {
+            let spot = light(LightKind::Spot { attenuation: Attenuation::default(), inner, outer });
+            let share = |degrees: f64| {
+                let (s, c) = degrees.to_radians().sin_cos();
+                shade_incoming(&spot, vector(spot.position) + DVec3::new(s, -c, 0.0)).1
+            };
+            if inner > 1.0 {
+                assert_eq!(share(inner - 1.0), shade_attenuation(&spot, 1.0));
+            }
+            assert_eq!(share(outer + 1.0), 0.0);
+        }
+        assert!(
+            floor(&[light(LightKind::Spot { attenuation: Attenuation::default(), inner: 60.0, outer: 70.0 })], 0.1).x
+                > 0.1
+        );
+    }
+
+    #[test]
+    fn a_scene_without_lights_is_not_black_and_one_with_lights_keeps_its_own() {
+        let camera = Camera::looking_at(DVec3::new(1.0, 2.0, 3.0), DVec3::ZERO, 0.7);
+        let mut scene = Scene::new();
+        let studio = gpu_lights(&flatten(&scene, 0.0).unwrap(), &camera);
+        let facing = (camera.position).normalize();
+        let color = shade_surface(&GRAY, -camera.position, facing, facing, DVec3::ZERO, &studio);
+        assert!(color.min_element() > 0.1, "{color}");
+        scene.insert(None, 0, Node::new("Sun", NodeKind::Light(Light::sun()))).unwrap();
+        let own = gpu_lights(&flatten(&scene, 0.0).unwrap(), &camera);
+        assert_eq!((own.len(), own[0].direction), (1, [0.0, 0.0, -1.0]));
+    }
+
+    #[test]
+    fn encoding_is_undone_by_decoding() {
+        for i in 0..=100 {
+            let c = DVec3::splat(f64::from(i) / 100.0);
+            assert!((shade_decode(shade_encode(c)) - c).length() < 1e-4);
+        }
+        let clamped = shade_encode(DVec3::new(-1.0, 2.0, 0.0));
+        assert!((clamped - DVec3::Y).length() < 1e-12, "{clamped}");
+    }
+}

@@ -1,0 +1,147 @@
+//! The spaces of a component that have tapes of their own: that of the component, and that of what each modifier holds.
+//!
+//! A modifier is one operand where it stands; what it holds has tapes in its own space, so they stay right whatever it
+//! does to that space. But there more than the surface matters: a shell of 0.1 m needs the field up to 0.1 m to the last
+//! bit, a blend as far as it reaches. So a domain says up to which value its field must be exact; only cells beyond that
+//! are without a tape.
+
+use std::ops::Range;
+
+use super::{Grid, SIZE_SLACK, least_entries};
+use crate::flat::eval::BlendParams;
+use crate::flat::{Component, FlatNode, FlatScene, Join, MODIFIER_ROWS, ModifierDomain, ParamRow};
+use crate::scene::ModifierKind;
+
+/// A space that has tapes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Domain {
+    /// Its entries, counted from the component's first; with those of modifiers in it, which are no operands here.
+    pub entries: Range<usize>,
+    /// Where its cells lie.
+    pub grid: Grid,
+    /// Its field must be exact wherever it is no farther from 0 than this, in meters.
+    pub exact: f64,
+    /// How often it may be evaluated for one point of the component.
+    pub copies: u32,
+}
+
+/// The domains of a component that has tapes, because it is large or because all should have some.
+pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
+    domains(flat, component, least_entries(component)).or_else(|| domains(flat, component, 1))
+}
+
+/// The domains of a component: its own, then those of its contents; those of `least` entries have a grid. Nothing where
+/// none has.
+pub(super) fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Domain>> {
+    let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
+    let rows = |node: &FlatNode| &flat.params[node.params as usize..];
+    let mut exact = vec![0.0; component.modifier_domains.len()];
+    // Asked of every large component in each frame that changes anything; few hold modifiers.
+    if component.is_modified() {
+        fill_exact(
+            &Entries { nodes, rows: &rows, modifier_domains: &component.modifier_domains },
+            0..nodes.len(),
+            0.0,
+            &mut exact,
+        );
+    }
+    let size = component.bounds.min.abs().max(component.bounds.max.abs()).max_element();
+    let own =
+        ModifierDomain { entry: 0, bounds: component.bounds, cull_box: component.bounds, bound_slope: 0.0, copies: 1 };
+    let first = std::iter::once((&own, 0..nodes.len(), 0.0));
+    let inner = component.modifier_domains.iter().zip(exact).map(|(content, exact)| {
+        let at = content.entry as usize;
+        (content, at + 1..at + nodes[at].extent as usize, exact)
+    });
+    let all: Vec<Domain> = first
+        .chain(inner)
+        .map(|(content, entries, exact)| {
+            let is_large = own_entries(nodes, entries.clone()) >= least as usize;
+            let exact = if exact > 0.0 { exact + SIZE_SLACK * (exact + size) } else { 0.0 };
+            let grid = if is_large { Grid::around(content, exact) } else { Grid::ONE_CELL };
+            Domain { entries, grid, exact, copies: content.copies }
+        })
+        .collect();
+    all.iter().any(|domain| domain.grid != Grid::ONE_CELL).then_some(all)
+}
+
+/// How many entries of a range do not stand within a modifier that does.
+fn own_entries(nodes: &[FlatNode], range: Range<usize>) -> usize {
+    let (mut at, mut count) = (range.start, 0);
+    while at < range.end {
+        count += 1;
+        at += if nodes[at].modifier().is_some() { nodes[at].extent as usize } else { 1 };
+    }
+    count
+}
+
+struct Entries<'a> {
+    nodes: &'a [FlatNode],
+    rows: &'a dyn Fn(&FlatNode) -> &'a [ParamRow],
+    modifier_domains: &'a [ModifierDomain],
+}
+
+/// Finds how exact the contents of modifiers in the fold `range` must be, where that fold must be up to `exact`.
+fn fill_exact(entries: &Entries<'_>, range: Range<usize>, exact: f64, out: &mut [f64]) {
+    let mut operands = Vec::new();
+    let mut at = range.start;
+    while at < range.end {
+        let node = &entries.nodes[at];
+        if node.is_run() {
+            at += 1;
+            continue;
+        }
+        operands.push(at);
+        at += node.extent as usize;
+    }
+    // From the last to the first, since each blend after an operand needs more of it.
+    let mut needed = exact;
+    for (i, index) in operands.iter().enumerate().rev() {
+        let node = &entries.nodes[*index];
+        let rows = (entries.rows)(node);
+        if i > 0 {
+            needed += before_blend(node, rows);
+        }
+        let inside = index + 1..index + node.extent as usize;
+        match node.modifier() {
+            Some(kind) => {
+                let of = entries.modifier_domains.iter().position(|content| content.entry as usize == *index);
+                let needed = of_content(kind, rows, needed);
+                out[of.expect("every modifier holds something")] = needed;
+                fill_exact(entries, inside, needed, out);
+            }
+            None if node.is_group() => fill_exact(entries, inside, needed, out),
+            None => {}
+        }
+    }
+}
+
+/// How much farther than its result the operands of a blend must be exact: where they differ by the support of the blend
+/// the blend is hard, and beyond twice the support it stays beyond whatever the far one is. Nothing is known of the
+/// extended operators.
+fn before_blend(node: &FlatNode, rows: &[ParamRow]) -> f64 {
+    match Join::ALL[node.join() as usize] {
+        Join::Union | Join::Intersection | Join::Difference | Join::ReverseDifference => {
+            2.0 * BlendParams::read(&rows[0]).support
+        }
+        _ => f64::INFINITY,
+    }
+}
+
+/// How exact the content must be for a modifier's field to be exact up to `exact`.
+fn of_content(kind: ModifierKind, rows: &[ParamRow], exact: f64) -> f64 {
+    // What follows from a distance scale of 0 is not evaluated.
+    let local = exact / f64::from(rows[1][3]).max(f64::MIN_POSITIVE);
+    let own = |row: usize, column: usize| f64::from(rows[MODIFIER_ROWS + row][column]);
+    match kind {
+        ModifierKind::Mirror | ModifierKind::Polar => unreachable!("these are written as copies"),
+        ModifierKind::Repeat | ModifierKind::Elongate => local,
+        ModifierKind::Recursion => local / own(0, 3).min(1.0).powi(own(1, 3) as i32 - 1),
+        ModifierKind::Twist | ModifierKind::Bend | ModifierKind::Taper => local / own(0, 1),
+        ModifierKind::Round => local + own(0, 0).abs(),
+        ModifierKind::Onion => local + own(0, 0) + own(0, 1) * own(0, 2),
+        ModifierKind::Waves => local / own(0, 3) + own(0, 0).abs(),
+        ModifierKind::Noise => local / own(1, 0) + own(1, 1),
+        ModifierKind::Displacement => local / own(1, 0) + own(1, 1).abs().max(own(1, 2).abs()),
+    }
+}

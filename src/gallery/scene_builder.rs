@@ -1,0 +1,207 @@
+//! The vocabulary in which the example scenes are written.
+
+use glam::{DQuat, DVec3};
+
+use crate::geometry::Camera;
+use crate::scene::{
+    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
+    Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape,
+};
+
+/// A scene in the making.
+///
+/// Every number that comes out of a sine or a square root is rounded to nine decimals on the way in:
+/// libraries differ in the last bits, and the files must not.
+pub(super) struct SceneBuilder {
+    scene: Scene,
+}
+
+impl SceneBuilder {
+    /// Nothing but sky.
+    pub fn new(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
+        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment { sky, horizon, ambient }, 1)
+            .expect("an empty scene is within every limit");
+        Self { scene }
+    }
+
+    /// A matte material.
+    pub fn matte(&mut self, name: &str, albedo: [f64; 3]) -> MaterialId {
+        self.glossy(name, albedo, 0.08, 16.0)
+    }
+
+    /// A material with a highlight.
+    pub fn glossy(&mut self, name: &str, albedo: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
+        self.material(Material { specular, shininess, ..Material::new(MaterialId(0), name, albedo) })
+    }
+
+    /// A material that shines by itself.
+    pub fn glowing(&mut self, name: &str, albedo: [f64; 3], emission: [f64; 3]) -> MaterialId {
+        self.material(Material { specular: 0.0, emission, ..Material::new(MaterialId(0), name, albedo) })
+    }
+
+    /// A material with a highlight that also shines by itself.
+    pub fn glass(
+        &mut self,
+        name: &str,
+        albedo: [f64; 3],
+        [specular, shininess]: [f64; 2],
+        emission: [f64; 3],
+    ) -> MaterialId {
+        self.material(Material { specular, shininess, emission, ..Material::new(MaterialId(0), name, albedo) })
+    }
+
+    fn material(&mut self, material: Material) -> MaterialId {
+        let id = self.scene.next_material_id();
+        self.scene.insert_material(Material { id, ..material }).expect("the id is new");
+        id
+    }
+
+    /// Adds a node behind the others of its parent.
+    pub fn add(&mut self, parent: impl Into<Option<NodeId>>, node: Node) -> NodeId {
+        let inserted = self.scene.insert(parent.into(), usize::MAX, settled(node));
+        inserted.expect("example scenes are within every limit")
+    }
+
+    /// Parallel light that comes from the direction `from`.
+    pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], intensity: f64) {
+        let rotation = Camera::looking_at(DVec3::from(from), DVec3::ZERO, 1.0).rotation;
+        let light = Light { color, intensity, light: LightKind::Sun {} };
+        self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(from)).rotated(rotation));
+    }
+
+    /// A lamp that shines everywhere.
+    pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], intensity: f64, attenuation: Attenuation) {
+        let light = Light { color, intensity, light: LightKind::Point { attenuation } };
+        self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)));
+    }
+
+    /// A spot light at `at`, aimed at `target`, with a cone from `inner` to `outer` degrees.
+    pub fn spot(
+        &mut self,
+        name: &str,
+        [at, target]: [[f64; 3]; 2],
+        color: [f64; 3],
+        intensity: f64,
+        [inner, outer]: [f64; 2],
+    ) {
+        let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.02, range: 40.0 };
+        let light = Light { color, intensity, light: LightKind::Spot { attenuation, inner, outer } };
+        let rotation = Camera::looking_at(DVec3::from(at), DVec3::from(target), 1.0).rotation;
+        self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)).rotated(rotation));
+    }
+
+    /// The camera.
+    pub fn camera(&mut self, position: [f64; 3], target: [f64; 3], fov_y: f64) {
+        let camera = CameraNode { fov_y, near: 0.01, far: 1000.0 };
+        let (position, target) = (DVec3::from(position), DVec3::from(target));
+        let rotation = Camera::looking_at(position, target, 1.0).rotation;
+        self.add(None, Node::new("Camera", NodeKind::Camera(camera)).at(position).rotated(rotation));
+    }
+
+    /// The scene.
+    pub fn finish(self) -> Scene {
+        self.scene
+    }
+}
+
+/// A group whose children are joined hard.
+pub(super) fn group(name: &str, operator: Operator) -> Node {
+    Node::new(name, NodeKind::Group(Group::new(operator, Blend::HARD)))
+}
+
+/// A group whose children are blended.
+pub(super) fn blended(name: &str, operator: Operator, kernel: BlendKernel, radius: f64) -> Node {
+    Node::new(name, NodeKind::Group(Group::new(operator, Blend::new(kernel, radius))))
+}
+
+/// A shape with a material.
+pub(super) fn object(name: &str, shape: Shape, material: MaterialId) -> Node {
+    Node::new(name, NodeKind::Object(Object { shape, material }))
+}
+
+/// A glTF file.
+pub(super) fn mesh(name: &str, path: &str) -> Node {
+    Node::new(name, NodeKind::Mesh(MeshNode { path: path.into(), material: None }))
+}
+
+pub(super) fn sphere(radius: f64) -> Shape {
+    Shape::Sphere { radius }
+}
+
+pub(super) fn ellipsoid(x: f64, y: f64, z: f64) -> Shape {
+    Shape::Ellipsoid { radii: [x, y, z] }
+}
+
+/// A box of the given edge lengths with rounded edges.
+pub(super) fn cuboid(x: f64, y: f64, z: f64, rounding: f64) -> Shape {
+    Shape::Box { size: [x, y, z], rounding }
+}
+
+pub(super) fn cylinder(radius: f64, height: f64, rounding: f64) -> Shape {
+    Shape::Cylinder { radius, height, rounding }
+}
+
+pub(super) fn torus(major_radius: f64, minor_radius: f64) -> Shape {
+    Shape::Torus { major_radius, minor_radius }
+}
+
+pub(super) fn cone(bottom_radius: f64, top_radius: f64, height: f64) -> Shape {
+    Shape::CappedCone { bottom_radius, top_radius, height }
+}
+
+pub(super) fn round_cone(bottom_radius: f64, top_radius: f64, height: f64) -> Shape {
+    Shape::RoundCone { bottom_radius, top_radius, height }
+}
+
+pub(super) fn capsule(start: [f64; 3], end: [f64; 3], radius: f64) -> Shape {
+    Shape::Capsule { start, end, radius }
+}
+
+/// A rotation about X, in degrees.
+pub(super) fn turn_x(degrees: f64) -> DQuat {
+    DQuat::from_rotation_x(degrees.to_radians())
+}
+
+/// A rotation about Y, in degrees.
+pub(super) fn turn_y(degrees: f64) -> DQuat {
+    DQuat::from_rotation_y(degrees.to_radians())
+}
+
+/// A rotation about Z, in degrees.
+pub(super) fn turn_z(degrees: f64) -> DQuat {
+    DQuat::from_rotation_z(degrees.to_radians())
+}
+
+pub(super) fn v(x: f64, y: f64, z: f64) -> DVec3 {
+    DVec3::new(x, y, z)
+}
+
+/// The node with every computed number rounded.
+fn settled(mut node: Node) -> Node {
+    let round = |v: f64| (v * 1e9).round() / 1e9 + 0.0;
+    let round3 = |v: DVec3| DVec3::new(round(v.x), round(v.y), round(v.z));
+    let transform = &mut node.transform;
+    transform.translation = round3(transform.translation);
+    transform.scale = round3(transform.scale);
+    transform.rotation = DQuat::from_array(transform.rotation.to_array().map(round)).normalize();
+    if let NodeKind::Object(object) = &mut node.kind {
+        for (i, value) in object.shape.values().into_iter().enumerate() {
+            object.shape.set_value(
+                i,
+                match value {
+                    ParamValue::Scalar(v) => ParamValue::Scalar(round(v)),
+                    ParamValue::Vector(v) => ParamValue::Vector(round3(v)),
+                    ParamValue::List(mut list) => {
+                        list.rows.iter_mut().flatten().for_each(|v| *v = round(*v));
+                        ParamValue::List(list)
+                    }
+                    other @ (ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_)) => other,
+                },
+            );
+        }
+    }
+    if let NodeKind::Group(group) = &mut node.kind {
+        group.blend.radius = round(group.blend.radius);
+    }
+    node
+}

@@ -1,0 +1,67 @@
+//! Plans cover every pixel, and are refused where they would be too long.
+
+use super::*;
+
+#[test]
+fn parts_cover_every_pixel_once_and_stay_small() {
+    let rect = Rect { origin: [16, 8], end: [301, 177] };
+    for (per_pixel, most) in [(1.0, 1e12), (1.0, 5000.0), (100.0, 5000.0), (1e9, 1.0)] {
+        let mut covered = vec![0; 301 * 177];
+        let mut parts = 0;
+        rect.cut(per_pixel, most, |r| {
+            parts += 1;
+            let limit = most.max(per_pixel * f64::from(TILE * TILE));
+            assert!(r.pixels() * per_pixel <= limit, "{r:?}");
+            for y in r.origin[1]..r.end[1] {
+                for x in r.origin[0]..r.end[0] {
+                    covered[(y * 301 + x) as usize] += 1;
+                }
+            }
+        });
+        assert_eq!(rect.parts(per_pixel, most), parts);
+        for y in 0..177 {
+            for x in 0..301 {
+                let inside = x >= 16 && y >= 8;
+                assert_eq!(covered[y * 301 + x], i32::from(inside));
+            }
+        }
+    }
+}
+
+#[test]
+fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
+    let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.0);
+    let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
+    let evaluations = vec![slow; flat.components.len()];
+    let plan = plan(&flat, &camera, [64, 64], &evaluations, &CostModel::new(true), usize::MAX).expect("room for all");
+    let of = |dispatches: &[Dispatch], pass: Pass| dispatches.iter().filter(|dispatch| dispatch.pass == pass).count();
+    let again = plan.again(|component| component == 2, 8);
+    let meant: Vec<Dispatch> =
+        plan.dispatches.iter().filter(|dispatch| dispatch.params.component == 2).copied().collect();
+    assert!(again.iter().all(|dispatch| dispatch.params.component == 2 || dispatch.pass == Pass::Shade));
+    assert_eq!(of(&again, Pass::Shade), of(&plan.dispatches, Pass::Shade));
+    assert_eq!(of(&again, Pass::Surface), of(&meant, Pass::Surface));
+    assert_eq!(of(&again, Pass::Cone), of(&meant, Pass::Cone));
+    assert_eq!(of(&again, Pass::Trace), 8 * of(&meant, Pass::Trace));
+    let mut last = again.iter().filter(|dispatch| dispatch.pass == Pass::Trace && dispatch.params.last_relaunch == 1);
+    let relaunches = meant.iter().map(|dispatch| dispatch.params.relaunch + 1).max().expect("it is seen");
+    assert!(relaunches > 1_000 && last.all(|dispatch| dispatch.params.relaunch + 1 == 8 * relaunches));
+    assert!(again.iter().all(|dispatch| (dispatch.params.compacted == 1) == (dispatch.params.relaunch > 0)));
+    assert!(plan.again(|_| false, 8).iter().all(|dispatch| dispatch.pass == Pass::Shade));
+}
+
+#[test]
+fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
+    let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.0);
+    let cheap = EvaluationCost { straight: true, iterations: 10, leaves: 8.0 };
+    // Of the third one few steps fit in a dispatch.
+    let mut evaluations = vec![cheap; flat.components.len()];
+    evaluations[2].iterations = MAX_ITERATIONS / 4;
+    let planned = |most| plan(&flat, &camera, [640, 480], &evaluations, &CostModel::new(true), most);
+    let count = planned(usize::MAX).expect("room for all").dispatches.len();
+    assert!(count > 1_000, "{count}");
+    assert_eq!(planned(count).expect("just enough room").dispatches.len(), count);
+    assert_eq!(planned(count - 1).expect_err("too many"), TooLong { component: 2 });
+}

@@ -1,0 +1,127 @@
+//! Targets and buffers back to the CPU.
+
+use std::time::Duration;
+
+use crate::flat::{BACKGROUND_DEPTH, GBuffer};
+use crate::render::gpu::{Gpu, GpuError};
+use crate::render::resources::targets::{BACKGROUND, Target, Targets};
+
+/// How long to wait for word that a buffer can be read, when the device has done all its work.
+const CALL_BACK: Duration = Duration::from_secs(30);
+
+/// The picture with depth, leaf and normal of every pixel.
+pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<GBuffer, GpuError> {
+    let [width, height] = targets.size;
+    let depth: Vec<f32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.depth, 4)?);
+    let leaf: Vec<u32> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.leaf, 4)?);
+    let normal: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, &targets.normal, 16)?);
+    let color = read_color(gpu, &targets.color)?;
+    Ok(GBuffer {
+        width,
+        height,
+        depth: depth.iter().map(|d| if *d >= BACKGROUND { BACKGROUND_DEPTH } else { *d }).collect(),
+        leaf,
+        normal: normal.iter().map(|n| [n[0], n[1], n[2]]).collect(),
+        color,
+    })
+}
+
+/// The colors of a target, row by row.
+pub fn read_color(gpu: &Gpu, target: &Target) -> Result<Vec<[u8; 4]>, GpuError> {
+    Ok(bytemuck::pod_collect_to_vec(&read_texture(gpu, target, 4)?))
+}
+
+/// The texels of a target, row by row without gaps.
+fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<u8>, GpuError> {
+    let size = target.texture.size();
+    let row = (size.width * bytes_per_texel) as usize;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let buffer = landing(gpu, (padded * size.height as usize) as u64);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(padded as u32),
+        rows_per_image: Some(size.height),
+    };
+    encoder.copy_texture_to_buffer(
+        target.texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo { buffer: &buffer, layout },
+        size,
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = read_mapped(gpu, &buffer)?;
+    Ok(bytes.chunks_exact(padded).flat_map(|r| &r[..row]).copied().collect())
+}
+
+/// The first `count` words of a buffer.
+pub fn read_words(gpu: &Gpu, source: &wgpu::Buffer, count: usize) -> Result<Vec<u32>, GpuError> {
+    read_words_at(gpu, source, 0, count)
+}
+
+/// `count` words of a buffer from the word `first` on.
+pub fn read_words_at(gpu: &Gpu, source: &wgpu::Buffer, first: usize, count: usize) -> Result<Vec<u32>, GpuError> {
+    if count == 0 {
+        return Ok(Vec::new());
+    }
+    let size = count as u64 * 4;
+    let buffer = landing(gpu, size);
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(source, first as u64 * 4, &buffer, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    Ok(bytemuck::pod_collect_to_vec(&read_mapped(gpu, &buffer)?))
+}
+
+fn landing(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let slice = buffer.slice(..);
+    let (sender, receiver) = std::sync::mpsc::channel();
+    slice.map_async(wgpu::MapMode::Read, move |result| {
+        // The receiver waits below; if it has given up there is nobody to tell.
+        let _ = sender.send(result);
+    });
+    gpu.wait()?;
+    // Where several threads wait for one device, another of them may be about to call back.
+    match receiver.recv_timeout(CALL_BACK) {
+        Ok(Ok(())) => {}
+        _ => return Err(GpuError::Refused("a buffer could not be read back".into())),
+    }
+    let mapped = slice.get_mapped_range().map_err(|e| GpuError::Refused(e.to_string()))?;
+    Ok(mapped.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One thread's wait may end while another, which found the work done, has not called back yet.
+    #[test]
+    fn many_threads_may_read_from_one_device() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        std::thread::scope(|scope| {
+            for thread in 0..32_u32 {
+                let gpu = &gpu;
+                scope.spawn(move || {
+                    let words = [thread, thread + 1, thread * 7];
+                    let source = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                        label: Some("source"),
+                        size: 12,
+                        usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+                        mapped_at_creation: false,
+                    });
+                    gpu.queue.write_buffer(&source, 0, bytemuck::cast_slice(&words));
+                    for _ in 0..300 {
+                        assert_eq!(read_words(gpu, &source, 3).expect("words"), words);
+                    }
+                });
+            }
+        });
+    }
+}

@@ -1,0 +1,408 @@
+//! Which pipeline evaluates which component: the interpreter at once, a specialized one as soon as it is
+//! built. Equal structures share a pipeline; nobody ever waits for one unless asked to.
+
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
+
+use crate::flat::{Component, FlatScene};
+use crate::guard::guarded;
+use crate::render::gpu::Gpu;
+use crate::render::passes::field::{FieldLayouts, FieldPipelines};
+use crate::render::pipelines::key::{PipelineKey, Templates};
+use crate::render::pipelines::prewarm::Prewarmer;
+use crate::render::resources::layouts::Layouts;
+use crate::render::wgsl::{Evaluator, OpSet, Options, ShaderError, Structure};
+
+/// How components are evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum EvalStrategy {
+    /// Specialized pipelines for what is not too large for one, tapes for the rest; both are made in the
+    /// background, and the interpreter draws until they are ready.
+    #[default]
+    Auto,
+    /// The interpreter for everything.
+    Interpreter,
+    /// Tapes where a component has them, the interpreter for the rest; waits until they are made.
+    Tape,
+    /// Specialized pipelines for everything that is not too large for one; waits until they are built.
+    StraightLine,
+    /// A pipeline for each component with its numbers written into it, however large: what the benches compare with.
+    Baked,
+}
+
+/// Most specialized pipelines that are kept; the least recently used go first.
+pub const MAX_PIPELINES: usize = 1024;
+
+/// See the module.
+#[derive(Debug)]
+pub struct PipelineCache {
+    shared: Arc<CompileContext>,
+    interpreters: Vec<InterpreterPipelines>,
+    templates: Templates,
+    specialized: HashMap<u128, CachedPipelines>,
+    worker: Option<CompileWorker>,
+    clock: u64,
+    built: u32,
+    failures: Vec<String>,
+}
+
+/// Most pipelines for walking that are kept for scenes of other shapes.
+const MAX_INTERPRETERS: usize = 8;
+
+/// Pipelines that walk, for scenes with certain shapes.
+#[derive(Debug)]
+struct InterpreterPipelines {
+    ops: OpSet,
+    entries: Arc<FieldPipelines>,
+    tape: Option<Arc<FieldPipelines>>,
+    /// By tapes too, for components with modifiers.
+    tape_modified: Option<Arc<FieldPipelines>>,
+}
+
+/// What the worker needs too.
+#[derive(Debug)]
+struct CompileContext {
+    gpu: Gpu,
+    layouts: Layouts,
+    field: FieldLayouts,
+    options: Options,
+}
+
+#[derive(Debug)]
+struct CachedPipelines {
+    state: PipelineState,
+    used: u64,
+}
+
+#[derive(Debug)]
+enum PipelineState {
+    Building,
+    Ready(Arc<FieldPipelines>),
+    Failed,
+}
+
+/// The pipeline of a component.
+#[derive(Clone, Debug)]
+pub struct PipelineChoice {
+    /// Its pipelines.
+    pub pipelines: Arc<FieldPipelines>,
+    /// How they evaluate it.
+    pub mode: EvalMode,
+}
+
+/// How pipelines evaluate a component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EvalMode {
+    /// All entries of the subtree-extent array.
+    Interpreter,
+    /// The tape of a cell.
+    Tape,
+    /// Straight-line code: it is the component's structure.
+    StraightLine,
+}
+
+type FinishedBuild = (u128, Result<FieldPipelines, String>);
+
+#[derive(Debug)]
+struct CompileWorker {
+    orders: Option<Sender<(u128, Evaluator)>>,
+    finished: Receiver<FinishedBuild>,
+    waiting: usize,
+    is_unwanted: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl PipelineCache {
+    /// The interpreter, for no shapes yet.
+    pub fn new(gpu: &Gpu, layouts: &Layouts, options: Options) -> Result<Self, ShaderError> {
+        let field = FieldLayouts::new(&gpu.device);
+        let ops = OpSet::none();
+        let evaluator = Evaluator::Interpreter(ops.clone());
+        let entries = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
+        let interpreters = vec![InterpreterPipelines { ops, entries, tape: None, tape_modified: None }];
+        let shared = Arc::new(CompileContext { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
+        Ok(Self {
+            shared,
+            interpreters,
+            templates: Templates::default(),
+            specialized: HashMap::new(),
+            worker: None,
+            clock: 0,
+            built: 0,
+            failures: Vec::new(),
+        })
+    }
+
+    /// Layouts of the field passes.
+    pub fn field(&self) -> &FieldLayouts {
+        &self.shared.field
+    }
+
+    /// Pipelines built so far.
+    pub fn built(&self) -> u32 {
+        self.built
+    }
+
+    /// Loops in the code that walks, see [`OpSet::loops`].
+    pub fn loops(&self) -> u32 {
+        self.interpreters.first().map_or(0, |interpreter| interpreter.ops.loops())
+    }
+
+    /// How many pipelines are being built.
+    pub fn building(&self) -> usize {
+        self.worker.as_ref().map_or(0, |w| w.waiting)
+    }
+
+    /// Pipelines that could not be built; the interpreter or tapes draw in their place.
+    pub fn failed(&self) -> usize {
+        self.specialized.values().filter(|slot| matches!(slot.state, PipelineState::Failed)).count()
+    }
+
+    /// What went wrong since the last call; the interpreter goes on.
+    pub fn take_failures(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.failures)
+    }
+
+    /// Takes over what the worker has finished. True if there was anything.
+    pub fn collect(&mut self) -> bool {
+        let Some(worker) = &mut self.worker else { return false };
+        let finished: Vec<FinishedBuild> = worker.finished.try_iter().collect();
+        worker.waiting -= finished.len();
+        let any = !finished.is_empty();
+        for (key, result) in finished {
+            self.store(key, result);
+        }
+        any
+    }
+
+    /// Pipelines that have become ready since `choices` were made, put in their place.
+    pub fn refresh(&mut self, keys: &[Option<PipelineKey>], choices: &mut [PipelineChoice]) {
+        for (key, choice) in keys.iter().zip(choices) {
+            let Some(CachedPipelines { state: PipelineState::Ready(pipelines), .. }) =
+                key.and_then(|k| self.specialized.get(&k.bits))
+            else {
+                continue;
+            };
+            *choice = PipelineChoice { pipelines: pipelines.clone(), mode: EvalMode::StraightLine };
+        }
+    }
+
+    /// What each component's pipeline is for; `None` where it gets none.
+    pub fn keys(&mut self, flat: &FlatScene, strategy: EvalStrategy) -> Vec<Option<PipelineKey>> {
+        self.templates.keys(flat, strategy)
+    }
+
+    /// The pipeline for each component; `keys` from [`PipelineCache::keys`], `has_tapes` tells which components have
+    /// tapes. Those that come first in `order` have their pipelines ordered first.
+    pub fn choose(
+        &mut self,
+        flat: &FlatScene,
+        keys: &[Option<PipelineKey>],
+        strategy: EvalStrategy,
+        has_tapes: &[bool],
+        order: &[usize],
+    ) -> Result<Vec<PipelineChoice>, ShaderError> {
+        self.collect();
+        self.clock += 1;
+        let mut choices = vec![None; flat.components.len()];
+        for (index, key) in order.iter().filter_map(|i| Some((*i, keys[*i]?))) {
+            let component = &flat.components[index];
+            choices[index] = self.specialized(key.bits, strategy, || match (strategy, key.template) {
+                (EvalStrategy::Baked, _) => {
+                    Some(Evaluator::Baked(Structure::whole(flat, component), component_rows(flat, component)))
+                }
+                (_, Some(shapes)) => Structure::template(flat, component, shapes).map(Evaluator::StraightLine),
+                _ => Structure::of(flat, component).map(Evaluator::StraightLine),
+            });
+        }
+        let by_tape = |i: usize| strategy != EvalStrategy::Interpreter && has_tapes.get(i) == Some(&true);
+        let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
+        let needs_tapes =
+            |modified: bool| open.iter().any(|i| by_tape(*i) && flat.components[*i].is_modified() == modified);
+        if !open.is_empty() {
+            self.choose_interpreter(flat, [false, true].map(needs_tapes))?;
+        }
+        self.forget_oldest();
+        let interpreter = &self.interpreters[0];
+        let tape = |i: usize| {
+            if flat.components[i].is_modified() { &interpreter.tape_modified } else { &interpreter.tape }
+        };
+        let walked = |i: usize| match tape(i) {
+            Some(pipelines) if by_tape(i) => PipelineChoice { pipelines: pipelines.clone(), mode: EvalMode::Tape },
+            _ => PipelineChoice { pipelines: interpreter.entries.clone(), mode: EvalMode::Interpreter },
+        };
+        let ready = |pipelines| PipelineChoice { pipelines, mode: EvalMode::StraightLine };
+        Ok(choices.into_iter().enumerate().map(|(i, own)| own.map_or_else(|| walked(i), ready)).collect())
+    }
+
+    fn specialized(
+        &mut self,
+        key: u128,
+        strategy: EvalStrategy,
+        evaluator: impl FnOnce() -> Option<Evaluator>,
+    ) -> Option<Arc<FieldPipelines>> {
+        if let Some(slot) = self.specialized.get_mut(&key) {
+            slot.used = self.clock;
+            match &slot.state {
+                PipelineState::Ready(pipelines) => return Some(pipelines.clone()),
+                PipelineState::Failed => return None,
+                PipelineState::Building if strategy == EvalStrategy::Auto => return None,
+                PipelineState::Building => {}
+            }
+        }
+        let evaluator = evaluator()?;
+        if strategy != EvalStrategy::Auto {
+            let result = build(&self.shared, &evaluator);
+            self.store(key, result);
+            return match &self.specialized.get(&key)?.state {
+                PipelineState::Ready(pipelines) => Some(pipelines.clone()),
+                _ => None,
+            };
+        }
+        self.specialized.insert(key, CachedPipelines { state: PipelineState::Building, used: self.clock });
+        let shared = self.shared.clone();
+        let worker = self.worker.get_or_insert_with(|| CompileWorker::start(shared));
+        worker.waiting += 1;
+        // A worker that is gone leaves everything to the interpreter.
+        if let Some(orders) = &worker.orders {
+            let _ = orders.send((key, evaluator));
+        }
+        None
+    }
+
+    fn store(&mut self, key: u128, result: Result<FieldPipelines, String>) {
+        self.built += 1;
+        let state = match result {
+            Ok(pipelines) => PipelineState::Ready(Arc::new(pipelines)),
+            Err(reason) => {
+                self.failures.push(reason);
+                PipelineState::Failed
+            }
+        };
+        self.specialized.insert(key, CachedPipelines { state, used: self.clock });
+    }
+
+    /// Puts the pipelines first that walk and know all shapes of the scene, and not many more: what a pipeline holds is
+    /// paid for by every scene, because lavapipe executes every arm of a `switch`.
+    /// `needs_tapes` tells whether components without, and with, modifiers have some.
+    fn choose_interpreter(&mut self, flat: &FlatScene, needs_tapes: [bool; 2]) -> Result<(), ShaderError> {
+        let wanted = OpSet::of(flat);
+        let CompileContext { gpu, layouts, field, options } = &*self.shared;
+        let build = |evaluator| field.build(&gpu.device, layouts, &evaluator, *options).map(Arc::new);
+        let fits =
+            |interpreter: &InterpreterPipelines| interpreter.ops.covers(&wanted) && interpreter.ops.is_near(&wanted);
+        match self.interpreters.iter().position(fits) {
+            Some(at) => self.interpreters[..=at].rotate_right(1),
+            None => {
+                let entries = build(Evaluator::Interpreter(wanted.clone()))?;
+                self.interpreters
+                    .insert(0, InterpreterPipelines { ops: wanted, entries, tape: None, tape_modified: None });
+                self.interpreters.truncate(MAX_INTERPRETERS);
+                self.built += 1;
+            }
+        }
+        let interpreter = &mut self.interpreters[0];
+        let plain = OpSet { modifiers: BTreeSet::new(), ..interpreter.ops.clone() };
+        let tape = [(&mut interpreter.tape, plain), (&mut interpreter.tape_modified, interpreter.ops.clone())];
+        for ((slot, ops), _) in tape.into_iter().zip(needs_tapes).filter(|(_, needed)| *needed) {
+            if slot.is_none() {
+                *slot = Some(build(Evaluator::Tape(ops))?);
+                self.built += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn forget_oldest(&mut self) {
+        while self.specialized.len() > MAX_PIPELINES {
+            let ready = self.specialized.iter().filter(|(_, slot)| !matches!(slot.state, PipelineState::Building));
+            let Some(oldest) = ready.min_by_key(|(_, slot)| slot.used).map(|(key, _)| *key) else { return };
+            if self.specialized[&oldest].used == self.clock {
+                return;
+            }
+            self.specialized.remove(&oldest);
+        }
+    }
+}
+
+impl CompileWorker {
+    fn start(shared: Arc<CompileContext>) -> Self {
+        let (orders, ordered) = channel::<(u128, Evaluator)>();
+        let (finish, finished) = channel();
+        let is_unwanted = Arc::new(AtomicBool::new(false));
+        let should_end = is_unwanted.clone();
+        let work = move || {
+            // A driver that computes on the processor compiles at the first dispatch, in the queue's own
+            // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
+            let new_prewarmer = || guarded(|| Prewarmer::new(&shared.gpu, shared.options)).ok()?.ok();
+            let prewarmer = if shared.gpu.is_software() { new_prewarmer() } else { None };
+            for (key, evaluator) in ordered {
+                if should_end.load(Ordering::Relaxed) {
+                    return;
+                }
+                if let Some(prewarmer) = &prewarmer {
+                    // A pipeline that fails is reported where it is built for use.
+                    let _ = guarded(|| prewarmer.prewarm(&evaluator));
+                }
+                let built = guarded(|| build(&shared, &evaluator)).flatten();
+                if finish.send((key, built)).is_err() {
+                    return;
+                }
+            }
+        };
+        // Without a thread the orders stay where they are, and the interpreter goes on.
+        let thread = std::thread::Builder::new().name("pipelines".into()).spawn(work).ok();
+        Self { orders: Some(orders), finished, waiting: 0, is_unwanted, thread }
+    }
+}
+
+/// Waits for the pipeline that is being built: a driver that is compiling while the program ends crashes.
+impl Drop for CompileWorker {
+    fn drop(&mut self) {
+        self.is_unwanted.store(true, Ordering::Relaxed);
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // A worker that has panicked has nothing left to do either.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The component's numbers as bits, without the data of its leaves.
+fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
+    let rows = component.params as usize..(component.params + component.param_rows - component.payload_rows) as usize;
+    flat.params[rows].iter().map(|row| row.map(f32::to_bits)).collect()
+}
+
+/// Builds a pipeline; what the driver or the validation has against it comes back in words.
+fn build(shared: &CompileContext, evaluator: &Evaluator) -> Result<FieldPipelines, String> {
+    let device = &shared.gpu.device;
+    let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let built = shared.field.build(device, &shared.layouts, evaluator, shared.options);
+    let complaint = pollster::block_on(scope.pop());
+    match (built, complaint) {
+        (Ok(pipelines), None) => Ok(pipelines),
+        (Err(error), _) => Err(error.to_string()),
+        (_, Some(error)) => Err(format!("a pipeline could not be built, the interpreter goes on: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_pipeline_is_counted_and_its_reason_is_told_once() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        let layouts = Layouts::new(&gpu.device);
+        let mut pipelines = PipelineCache::new(&gpu, &layouts, Options::default()).expect("an interpreter");
+        assert_eq!(pipelines.failed(), 0);
+        pipelines.store(7, Err("the driver refuses".into()));
+        assert_eq!(pipelines.failed(), 1);
+        assert_eq!(pipelines.take_failures(), ["the driver refuses"]);
+        assert!(pipelines.take_failures().is_empty() && pipelines.failed() == 1, "it stays failed");
+    }
+}

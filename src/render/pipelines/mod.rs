@@ -1,0 +1,5 @@
+//! The pipelines that evaluate components: which component shares one, those that are built, and compiling ahead of use.
+
+pub mod cache;
+pub mod key;
+pub mod prewarm;

@@ -1,0 +1,121 @@
+//! Has a driver compile pipelines before they are needed, on a device of its own.
+
+use crate::render::gpu::{Gpu, GpuError};
+use crate::render::passes::field::{FieldBuffers, FieldGroups, FieldLayouts};
+use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT, TAPES_FORMAT, bind, window};
+use crate::render::resources::targets::Targets;
+use crate::render::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
+use crate::render::wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
+
+/// A device with just enough on it to dispatch a pipeline over nothing.
+#[derive(Debug)]
+pub struct Prewarmer {
+    gpu: Gpu,
+    layouts: Layouts,
+    field: FieldLayouts,
+    options: Options,
+    view: wgpu::BindGroup,
+    scene: wgpu::BindGroup,
+    dispatch_params: wgpu::BindGroup,
+    groups: FieldGroups,
+}
+
+impl Prewarmer {
+    /// Opens a device on the adapter of `drawing`.
+    pub fn new(drawing: &Gpu, options: Options) -> Result<Self, GpuError> {
+        let gpu = drawing.another()?;
+        let device = &gpu.device;
+        let layouts = Layouts::new(device);
+        let field = FieldLayouts::new(device);
+        let zeros = |size: usize| {
+            let mut buffer = SyncedBuffer::rows(device, "prewarm");
+            buffer.set(device, &gpu.queue, &vec![0; size]);
+            buffer
+        };
+        let rows = zeros(MAX_PIPELINE_ROWS as usize * 16);
+        let small = zeros(1024);
+        // What is written to may not be read in the same dispatch: each has a buffer of its own.
+        let written = [(); 6].map(|()| zeros(1024));
+        let lists = FieldBuffers {
+            subtiles: written[0].buffer(),
+            subtile_counts: written[1].buffer(),
+            march_counts: written[2].buffer(),
+            rays: written[3].buffer(),
+            ray_counts: written[4].buffer(),
+            nothing: written[5].buffer(),
+        };
+        let [params, tapes_texture] =
+            [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT)].map(|(l, f)| DataTexture::new(device, l, f));
+        let scene = [
+            small.binding(),
+            params.binding(),
+            window(small.buffer(), size_of::<GpuComponent>()),
+            small.binding(),
+            window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
+            tapes_texture.binding(),
+        ];
+        Ok(Self {
+            view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<GpuView>())]),
+            scene: bind(device, "scene", &layouts.scene, &scene),
+            dispatch_params: bind(
+                device,
+                "dispatch_params",
+                &layouts.dispatch_params,
+                &[window(small.buffer(), size_of::<DispatchParams>())],
+            ),
+            // Sides that are no powers of two, as in most windows: what lavapipe compiles depends on it.
+            groups: field.bind(device, &Targets::new(device, [24, 24]), lists),
+            layouts,
+            field,
+            options,
+            gpu: gpu.clone(),
+        })
+    }
+
+    /// Compiles the pipeline of `evaluator` by dispatching it over nothing.
+    ///
+    /// # Errors
+    /// What the device complains about. Failures show up again where the pipeline is built for use.
+    pub fn prewarm(&self, evaluator: &Evaluator) -> Result<(), GpuError> {
+        let Ok(pipelines) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else {
+            return Ok(());
+        };
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_bind_group(0, &self.view, &[]);
+            pass.set_bind_group(1, &self.scene, &[0, 0]);
+            pass.set_bind_group(3, &self.dispatch_params, &[0]);
+            let passes = [
+                (&pipelines.cone, &self.groups.cone),
+                (&pipelines.trace, &self.groups.trace),
+                (&pipelines.surface, &self.groups.surface),
+            ];
+            for (pipeline, targets) in passes {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(2, targets, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+            }
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.wait()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gallery;
+    use crate::render::wgsl::OpSet;
+
+    /// Nobody sees what a prewarmer's device complains about: pipelines would only be compiled later, while a frame waits.
+    #[test]
+    fn what_is_dispatched_over_nothing_is_accepted() {
+        let prewarmer = Gpu::headless()
+            .and_then(|gpu| Prewarmer::new(&gpu, Options::default()))
+            .unwrap_or_else(|error| panic!("{error}"));
+        let flat = crate::flat::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
+        prewarmer.prewarm(&Evaluator::Interpreter(OpSet::of(&flat))).unwrap_or_else(|error| panic!("{error}"));
+    }
+}

@@ -1,0 +1,263 @@
+//! Buffers that hold what the CPU says and upload only what has changed.
+
+use std::ops::Range;
+
+/// A GPU buffer with a copy of what it holds.
+#[derive(Debug)]
+pub struct SyncedBuffer {
+    label: &'static str,
+    usage: wgpu::BufferUsages,
+    buffer: wgpu::Buffer,
+    held: Vec<u8>,
+    uploaded: u64,
+}
+
+impl SyncedBuffer {
+    /// An empty storage buffer.
+    pub fn storage(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// An empty uniform buffer.
+    pub fn uniform(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// An empty storage buffer that the device writes and the CPU reads back.
+    pub fn read_back(device: &wgpu::Device, label: &'static str) -> Self {
+        Self::new(device, label, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC)
+    }
+
+    /// An empty buffer for every use: read as storage and as uniform, written, read back.
+    pub fn rows(device: &wgpu::Device, label: &'static str) -> Self {
+        let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
+        Self::new(device, label, usages)
+    }
+
+    /// An empty buffer that holds the arguments of indirect dispatches, written by the device.
+    pub fn indirect(device: &wgpu::Device, label: &'static str) -> Self {
+        let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
+        Self::new(device, label, usages)
+    }
+
+    /// Makes the buffer hold `bytes`, whatever the device has written since.
+    pub fn reset(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        self.held.clear();
+        self.set(device, queue, bytes)
+    }
+
+    /// Makes room for `size` bytes; what they are does not matter.
+    pub fn reserve(&mut self, device: &wgpu::Device, size: usize) -> bool {
+        let grown = size as u64 > self.buffer.size();
+        if grown {
+            self.buffer = create(device, self.label, self.usage, size.next_power_of_two());
+            self.held.clear();
+        }
+        grown
+    }
+
+    fn new(device: &wgpu::Device, label: &'static str, usage: wgpu::BufferUsages) -> Self {
+        let usage = usage | wgpu::BufferUsages::COPY_DST;
+        Self { label, usage, buffer: create(device, label, usage, Self::LEAST), held: Vec::new(), uploaded: 0 }
+    }
+
+    /// Smallest buffer: no binding may be empty.
+    const LEAST: usize = 256;
+
+    /// Makes the buffer hold `bytes` (a multiple of 4). Uploads the range between the first and the
+    /// last difference. Returns whether the buffer is another one, so that bind groups must be remade.
+    pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
+        self.set_with_room(device, queue, bytes, 0, 4).0
+    }
+
+    /// The same, with at least `room` bytes behind `bytes`; what they are does not matter. Also returns what has
+    /// changed, in whole units of `unit` bytes.
+    pub fn set_with_room(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        bytes: &[u8],
+        room: usize,
+        unit: usize,
+    ) -> (bool, Option<Range<usize>>) {
+        let grown = self.reserve(device, bytes.len() + room);
+        let changed = take_over(&mut self.held, bytes, unit);
+        if let Some(range) = &changed {
+            queue.write_buffer(&self.buffer, range.start as u64, &bytes[range.clone()]);
+            self.uploaded += range.len() as u64;
+        }
+        (grown, changed)
+    }
+
+    /// The buffer, whole.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        self.buffer.as_entire_binding()
+    }
+
+    /// The buffer.
+    pub fn buffer(&self) -> &wgpu::Buffer {
+        &self.buffer
+    }
+
+    /// Bytes uploaded so far.
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+}
+
+/// A texture of rows that holds what the CPU says, line after line.
+#[derive(Debug)]
+pub struct DataTexture {
+    label: &'static str,
+    format: wgpu::TextureFormat,
+    texture: wgpu::Texture,
+    view: wgpu::TextureView,
+    uploaded: u64,
+}
+
+impl DataTexture {
+    /// Texels in a line; `LINE` in `shaders/common/scene.wgsl`.
+    pub const LINE: usize = 4096;
+
+    /// Of texels of this format.
+    pub fn new(device: &wgpu::Device, label: &'static str, format: wgpu::TextureFormat) -> Self {
+        let (texture, view) = create_lines(device, label, format, 1);
+        Self { label, format, texture, view, uploaded: 0 }
+    }
+
+    /// Most bytes that a device can hold.
+    pub fn most_bytes(&self, device: &wgpu::Device) -> usize {
+        device.limits().max_texture_dimension_2d as usize * Self::LINE * self.texel()
+    }
+
+    /// Makes room for `bytes`. Where that takes another texture nothing stands in it, and the answer is true.
+    pub fn reserve(&mut self, device: &wgpu::Device, bytes: usize) -> bool {
+        let lines = bytes.div_ceil(self.texel() * Self::LINE).max(1) as u32;
+        let grown = lines > self.texture.height();
+        if grown {
+            let lines = lines.next_power_of_two().min(device.limits().max_texture_dimension_2d);
+            (self.texture, self.view) = create_lines(device, self.label, self.format, lines);
+        }
+        grown
+    }
+
+    /// Writes whole texels, the first at the byte `at`: the end of a line, whole lines, the beginning of one.
+    pub fn write(&mut self, queue: &wgpu::Queue, at: usize, bytes: &[u8]) {
+        let line = self.texel() * Self::LINE;
+        let head = (at.next_multiple_of(line) - at).min(bytes.len());
+        let whole = (bytes.len() - head) / line * line;
+        for (from, to, width) in
+            [(0, head, head), (head, head + whole, line), (head + whole, bytes.len(), bytes.len() - head - whole)]
+        {
+            self.write_lines(queue, at + from, &bytes[from..to], width);
+        }
+    }
+
+    /// Writes lines of `width` bytes.
+    fn write_lines(&mut self, queue: &wgpu::Queue, at: usize, bytes: &[u8], width: usize) {
+        if bytes.is_empty() {
+            return;
+        }
+        let (at, rows) = (at / self.texel(), (bytes.len() / width) as u32);
+        let origin = wgpu::Origin3d { x: (at % Self::LINE) as u32, y: (at / Self::LINE) as u32, z: 0 };
+        let target = wgpu::TexelCopyTextureInfo { origin, ..self.texture.as_image_copy() };
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width as u32), rows_per_image: Some(rows) };
+        let size = wgpu::Extent3d { width: (width / self.texel()) as u32, height: rows, depth_or_array_layers: 1 };
+        queue.write_texture(target, bytes, layout, size);
+        self.uploaded += bytes.len() as u64;
+    }
+
+    /// Bytes of a texel.
+    pub fn texel(&self) -> usize {
+        self.format.block_copy_size(None).expect("a format of colors") as usize
+    }
+
+    /// The texture, whole.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(&self.view)
+    }
+
+    /// Bytes uploaded so far.
+    pub fn uploaded(&self) -> u64 {
+        self.uploaded
+    }
+}
+
+fn create_lines(
+    device: &wgpu::Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    lines: u32,
+) -> (wgpu::Texture, wgpu::TextureView) {
+    let texture = device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: DataTexture::LINE as u32, height: lines, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    (texture, view)
+}
+
+fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: usize) -> wgpu::Buffer {
+    device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size.max(SyncedBuffer::LEAST) as u64,
+        usage,
+        mapped_at_creation: false,
+    })
+}
+
+/// Makes `held` what `bytes` is. Returns the range that differed, in whole units of `unit` bytes; `None` where nothing
+/// has to be uploaded.
+fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<Range<usize>> {
+    let common = held.len().min(bytes.len());
+    let same = common_prefix(&held[..common], &bytes[..common]);
+    if same == bytes.len() {
+        held.truncate(bytes.len());
+        return None;
+    }
+    let tail = if held.len() == bytes.len() { common_suffix(&held[same..], &bytes[same..]) } else { 0 };
+    held.resize(bytes.len(), 0);
+    held[same..].copy_from_slice(&bytes[same..]);
+    Some(same / unit * unit..(bytes.len() - tail).next_multiple_of(unit))
+}
+
+/// Length of the common beginning. Compares blocks, which is as fast as memory.
+fn common_prefix(a: &[u8], b: &[u8]) -> usize {
+    const BLOCK: usize = 4096;
+    let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).take_while(|(x, y)| x == y).count();
+    let start = (blocks * BLOCK).min(a.len());
+    start + a[start..].iter().zip(&b[start..]).take_while(|(x, y)| x == y).count()
+}
+
+/// Length of the common end.
+fn common_suffix(a: &[u8], b: &[u8]) -> usize {
+    const BLOCK: usize = 4096;
+    let blocks = a.rchunks(BLOCK).zip(b.rchunks(BLOCK)).take_while(|(x, y)| x == y).count();
+    let end = (blocks * BLOCK).min(a.len());
+    let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
+    end + a.iter().rev().zip(b.iter().rev()).take_while(|(x, y)| x == y).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn common_parts_are_found_across_blocks() {
+        let a: Vec<u8> = (0..20_000_u32).map(|i| (i % 251) as u8).collect();
+        let mut b = a.clone();
+        b[9_000] ^= 1;
+        assert_eq!(common_prefix(&a, &b), 9_000);
+        assert_eq!(common_suffix(&a, &b), 20_000 - 9_001);
+        assert_eq!(common_prefix(&a, &a), 20_000);
+        assert_eq!(common_suffix(&a, &a), 20_000);
+        assert_eq!(common_prefix(&[], &[]), 0);
+    }
+}

@@ -1,0 +1,212 @@
+//! Bind group layouts. Group 0 is the view, 1 the scene, 2 the pass's own targets, 3 the dispatch.
+
+use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
+use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
+
+/// Of the texture of rows.
+pub const PARAMS_FORMAT: Format = Format::Rgba32Float;
+/// Of the texture of tapes.
+pub const TAPES_FORMAT: Format = Format::Rg32Uint;
+
+/// Layouts that several passes share.
+#[derive(Clone, Debug)]
+pub struct Layouts {
+    /// Group 0: `View`.
+    pub view: BindGroupLayout,
+    /// Group 1 of the field passes: nodes, numbers, the component at a dynamic offset, materials, the component's own
+    /// rows once more as a uniform at a dynamic offset, tapes.
+    pub scene: BindGroupLayout,
+    /// Group 3: `DispatchParams`, at a dynamic offset.
+    pub dispatch_params: BindGroupLayout,
+}
+
+impl Layouts {
+    /// Makes them.
+    pub fn new(device: &wgpu::Device) -> Self {
+        let everywhere = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
+        Self {
+            view: layout(device, "view", &[entry(0, everywhere, uniform(false))]),
+            scene: layout(
+                device,
+                "scene",
+                &[
+                    read_storage(),
+                    storage_texture(PARAMS_FORMAT, Access::ReadOnly),
+                    uniform(true),
+                    read_storage(),
+                    uniform(true),
+                    storage_texture(TAPES_FORMAT, Access::ReadOnly),
+                ]
+                .iter()
+                .enumerate()
+                .map(|(b, ty)| entry(b as u32, ShaderStages::COMPUTE, *ty))
+                .collect::<Vec<_>>(),
+            ),
+            dispatch_params: layout(device, "dispatch_params", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
+        }
+    }
+}
+
+/// A layout with the given entries.
+pub fn layout(device: &wgpu::Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
+}
+
+/// An entry of a layout.
+pub fn entry(binding: u32, visibility: ShaderStages, ty: BindingType) -> BindGroupLayoutEntry {
+    BindGroupLayoutEntry { binding, visibility, ty, count: None }
+}
+
+/// A uniform buffer.
+pub fn uniform(has_dynamic_offset: bool) -> BindingType {
+    BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None }
+}
+
+/// A storage buffer that is only read.
+pub fn read_storage() -> BindingType {
+    BindingType::Buffer {
+        ty: BufferBindingType::Storage { read_only: true },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+/// A storage buffer that is written.
+pub fn write_storage() -> BindingType {
+    BindingType::Buffer {
+        ty: BufferBindingType::Storage { read_only: false },
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+/// A texture that is written.
+pub fn write_texture(format: Format) -> BindingType {
+    storage_texture(format, Access::WriteOnly)
+}
+
+/// A texture that is read and written.
+pub fn read_write_texture(format: Format) -> BindingType {
+    storage_texture(format, Access::ReadWrite)
+}
+
+fn storage_texture(format: Format, access: Access) -> BindingType {
+    BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
+}
+
+/// A texture that is read texel by texel.
+pub fn read_texture(unsigned: bool) -> BindingType {
+    BindingType::Texture {
+        sample_type: if unsigned {
+            wgpu::TextureSampleType::Uint
+        } else {
+            wgpu::TextureSampleType::Float { filterable: false }
+        },
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    }
+}
+
+/// `size` bytes of a buffer at a dynamic offset.
+pub fn window(buffer: &wgpu::Buffer, size: usize) -> wgpu::BindingResource<'_> {
+    let size = std::num::NonZeroU64::new(size as u64);
+    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
+}
+
+/// A bind group of views and buffers in the order of their bindings.
+pub fn bind(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
+        .iter()
+        .enumerate()
+        .map(|(i, resource)| wgpu::BindGroupEntry { binding: i as u32, resource: resource.clone() })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+/// A compute pipeline for `entry_point` of `source`.
+pub fn compute_pipeline(
+    device: &wgpu::Device,
+    label: &str,
+    source: String,
+    entry_point: &str,
+    layouts: &[&BindGroupLayout],
+) -> wgpu::ComputePipeline {
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(label),
+        source: wgpu::ShaderSource::Wgsl(source.into()),
+    });
+    device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&pipeline_layout(device, label, layouts)),
+        module: &module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    })
+}
+
+/// A pipeline that draws each pixel of the picture by `entry_point` of `module`, which holds `common/screen.wgsl`.
+pub fn screen_pipeline(
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layout: &wgpu::PipelineLayout,
+    blend: Option<wgpu::BlendState>,
+) -> wgpu::RenderPipeline {
+    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(entry_point),
+        layout: Some(layout),
+        vertex: wgpu::VertexState {
+            module,
+            entry_point: Some("screen_vertex"),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: None,
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            targets: &[Some(wgpu::ColorTargetState {
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                blend,
+                // What is drawn over it must leave it opaque.
+                write_mask: if blend.is_some() { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
+            })],
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
+}
+
+/// Begins to draw over the picture.
+pub fn screen_pass<'e>(
+    encoder: &'e mut wgpu::CommandEncoder,
+    label: &str,
+    color: &wgpu::TextureView,
+) -> wgpu::RenderPass<'e> {
+    let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
+    let color = wgpu::RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
+    encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(color)],
+        ..Default::default()
+    })
+}
+
+/// The layout of a pipeline's groups.
+pub fn pipeline_layout(device: &wgpu::Device, label: &str, layouts: &[&BindGroupLayout]) -> wgpu::PipelineLayout {
+    let groups: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();
+    device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(label),
+        bind_group_layouts: &groups,
+        immediate_size: 0,
+    })
+}

@@ -1,0 +1,120 @@
+//! Distances with their gradients: from the WGSL of a distance function the WGSL of its dual function that also
+//! returns the derivatives along x, y and z.
+//!
+//! Forward mode: every value that follows the point is carried with three tangents of its own type, so
+//! the rules of vectors are those of numbers. One evaluation of a dual function gives what central differences
+//! need six for, and without their error. What does not follow the point, or what the result does not
+//! follow, is written as it stands; the result of a function `detach_…` counts as constant.
+//!
+//! At kinks the derivative is that of one side. Tangents are finite where values are.
+
+mod activity;
+mod rules;
+mod tangent_writer;
+#[cfg(test)]
+mod tests;
+mod values;
+
+use std::collections::HashMap;
+
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Expression, Function, Handle, MathFunction, Module};
+use thiserror::Error;
+
+use activity::Activity;
+use tangent_writer::TangentWriter;
+
+/// What dual functions need, once before the first of them: values with their derivatives along x, y and z.
+pub const DUAL_PRELUDE: &str = "
+struct DualF32 { v: f32, x: f32, y: f32, z: f32 }
+struct DualVec2 { v: vec2f, x: vec2f, y: vec2f, z: vec2f }
+struct DualVec3 { v: vec3f, x: vec3f, y: vec3f, z: vec3f }
+struct DualVec4 { v: vec4f, x: vec4f, y: vec4f, z: vec4f }
+";
+
+/// Why a function has no dual function.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum DualError {
+    /// The source is no WGSL.
+    #[error("the distance function cannot be read: {0}")]
+    Source(String),
+    /// The source holds no function of this name.
+    #[error("there is no function {0}")]
+    NoFunction(String),
+    /// The function uses something that has no rule here.
+    #[error("{function}: no derivative of {construct}")]
+    Unsupported {
+        /// The function, which the one asked for may call.
+        function: String,
+        /// What it uses.
+        construct: String,
+    },
+}
+
+/// The dual functions of `function`, named `dual_…`, and of what it calls with values that follow its point.
+///
+/// `source` is complete: it holds all that `function` calls. The point is the first argument, a `vec3f`;
+/// all others are constants. The dual function returns the derivatives along x, y and z, then the distance. It
+/// stands beside `source`, whose functions it calls, and after [`DUAL_PRELUDE`].
+pub fn dual(source: &str, function: &str) -> Result<String, DualError> {
+    let module = naga::front::wgsl::parse_str(source).map_err(|e| DualError::Source(e.emit_to_string(source)))?;
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|e| DualError::Source(e.emit_to_string(source)))?;
+    let named = |(_, f): &(Handle<Function>, &Function)| f.name.as_deref() == Some(function);
+    let (entry, _) = module.functions.iter().find(named).ok_or_else(|| DualError::NoFunction(function.to_owned()))?;
+    check(&module, function)?;
+
+    // Callers stand after what they call: backward, all callers of a function are known before it.
+    let seeds = module.functions[entry].arguments.iter().enumerate().map(|(i, _)| i == 0).collect();
+    let mut active: HashMap<_, Vec<bool>> = HashMap::from([(entry, seeds)]);
+    let mut derived = Vec::new();
+    for (handle, called) in module.functions.iter().rev() {
+        let Some(arguments) = active.get(&handle) else { continue };
+        let activity = Activity::of(&module, &info[handle], called, arguments);
+        for (callee, arguments) in activity.calls(called) {
+            let known = active.entry(callee).or_insert_with(|| vec![false; arguments.len()]);
+            known.iter_mut().zip(arguments).for_each(|(known, more)| *known |= more);
+        }
+        derived.push((handle, activity));
+    }
+    let mut out = String::new();
+    for (handle, activity) in derived.into_iter().rev() {
+        out.push_str(&TangentWriter::new(&module, &info[handle], handle, activity, &active, handle == entry).write()?);
+    }
+    Ok(out)
+}
+
+/// Refuses what could hide from the analysis that a value follows the point, and names that dual functions need.
+fn check(module: &Module, function: &str) -> Result<(), DualError> {
+    let refuse = |function: &str, construct: &str| {
+        Err(DualError::Unsupported { function: function.to_owned(), construct: construct.to_owned() })
+    };
+    if !module.global_variables.is_empty() {
+        return refuse(function, "global variables");
+    }
+    for (_, f) in module.functions.iter() {
+        let name = f.name.as_deref().unwrap_or_default();
+        for (_, expression) in f.expressions.iter() {
+            match expression {
+                Expression::As { convert: None, .. } => return refuse(name, "bitcast"),
+                Expression::Math { fun, .. } if is_packing(*fun) => return refuse(name, "packed numbers"),
+                _ => {}
+            }
+        }
+    }
+    let functions = module.functions.iter().flat_map(|(_, f)| f.arguments.iter().map(|a| &a.name).chain([&f.name]));
+    let constants = module.constants.iter().map(|(_, c)| &c.name);
+    let types = module.types.iter().map(|(_, t)| &t.name);
+    let own = |name: &str| name.starts_with('_') && !name.starts_with("__");
+    let taken = |name: &&String| own(name) || rules::CALLED.split(' ').any(|called| called == *name);
+    match functions.chain(constants).chain(types).flatten().find(taken) {
+        Some(name) => refuse(function, &format!("the name {name}, which dual functions need")),
+        None => Ok(()),
+    }
+}
+
+fn is_packing(fun: MathFunction) -> bool {
+    use MathFunction as M;
+    matches!(fun, M::Pack4x8snorm | M::Pack4x8unorm | M::Pack2x16snorm | M::Pack2x16unorm | M::Pack2x16float)
+}

@@ -1,0 +1,183 @@
+//! Expressions, types and places as text.
+
+use naga::back::binary_operation_str;
+use naga::common::wgsl::{TryToWgsl as _, TypeContext as _};
+use naga::{
+    Expression, Handle, Literal, LocalVariable, RelationalFunction, SwizzleComponent, Type, TypeInner, UnaryOperator,
+};
+
+use super::DualError;
+use super::tangent_writer::{TangentWriter, construct};
+
+impl TangentWriter<'_> {
+    /// What stands for the value of an expression: a name, or a text that needs no brackets.
+    pub fn value(&self, handle: Handle<Expression>) -> Result<String, DualError> {
+        match &self.carried[handle.index()] {
+            Some(carried) => Ok(carried.value.clone()),
+            None => self.text(handle),
+        }
+    }
+
+    /// An expression in terms of its operands.
+    pub fn text(&self, handle: Handle<Expression>) -> Result<String, DualError> {
+        let expression = &self.function.expressions[handle];
+        Ok(match expression {
+            Expression::Literal(literal) => self.literal(*literal)?,
+            Expression::Constant(constant) => match &self.module.constants[*constant].name {
+                Some(name) => name.clone(),
+                None => return Err(self.unsupported("a constant without a name")),
+            },
+            Expression::ZeroValue(ty) => format!("{}()", self.type_name(*ty)),
+            Expression::Compose { ty, components } => {
+                let components = components.iter().map(|c| self.value(*c)).collect::<Result<Vec<_>, _>>()?;
+                format!("{}({})", self.type_name(*ty), components.join(", "))
+            }
+            Expression::Splat { value, .. } => format!("{}({})", self.type_of(handle), self.value(*value)?),
+            Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => {
+                format!("{}{}", self.value(*base)?, self.part(handle)?)
+            }
+            Expression::Swizzle { vector, .. } => format!("{}{}", self.value(*vector)?, self.part(handle)?),
+            Expression::Load { pointer } => self.place(*pointer, "")?,
+            Expression::Unary { op, expr } => format!("{}{}", unary(*op), self.value(*expr)?),
+            Expression::Binary { op, left, right } => {
+                format!("{} {} {}", self.value(*left)?, binary_operation_str(*op), self.value(*right)?)
+            }
+            Expression::Select { condition, accept, reject } => {
+                format!("select({}, {}, {})", self.value(*reject)?, self.value(*accept)?, self.value(*condition)?)
+            }
+            Expression::Relational { fun: RelationalFunction::All, argument } => {
+                format!("all({})", self.value(*argument)?)
+            }
+            Expression::Relational { fun: RelationalFunction::Any, argument } => {
+                format!("any({})", self.value(*argument)?)
+            }
+            Expression::Math { fun, arg, arg1, arg2, arg3 } => {
+                let name = fun.try_to_wgsl().ok_or_else(|| self.unsupported(&construct(fun)))?;
+                let arguments = [Some(*arg), *arg1, *arg2, *arg3].into_iter().flatten();
+                let arguments = arguments.map(|argument| self.value(argument)).collect::<Result<Vec<_>, _>>()?;
+                format!("{name}({})", arguments.join(", "))
+            }
+            Expression::As { expr, convert: Some(_), .. } => {
+                format!("{}({})", self.type_of(handle), self.value(*expr)?)
+            }
+            other => return Err(self.unsupported(&construct(other))),
+        })
+    }
+
+    fn literal(&self, literal: Literal) -> Result<String, DualError> {
+        let text = match literal {
+            Literal::F32(value) => format!("{value:?}f"),
+            Literal::U32(value) => format!("{value}u"),
+            Literal::I32(i32::MIN) => "i32(-2147483648)".to_owned(),
+            Literal::I32(value) => format!("{value}i"),
+            Literal::Bool(value) => format!("{value}"),
+            other => return Err(self.unsupported(&construct(&other))),
+        };
+        Ok(if text.starts_with('-') { format!("({text})") } else { text })
+    }
+
+    /// What follows the text of the base of an expression that is a part of another.
+    pub fn part(&self, handle: Handle<Expression>) -> Result<String, DualError> {
+        match &self.function.expressions[handle] {
+            Expression::Access { index, .. } => Ok(format!("[{}]", self.value(*index)?)),
+            Expression::AccessIndex { base, index } => {
+                let mut inner = self.inner(*base);
+                if let TypeInner::Pointer { base, .. } = inner {
+                    inner = &self.module.types[*base].inner;
+                }
+                Ok(match inner {
+                    TypeInner::Vector { .. } | TypeInner::ValuePointer { .. } => {
+                        format!(".{}", ["x", "y", "z", "w"][*index as usize])
+                    }
+                    TypeInner::Struct { members, .. } => {
+                        format!(".{}", members[*index as usize].name.as_deref().unwrap_or_default())
+                    }
+                    _ => format!("[{index}]"),
+                })
+            }
+            Expression::Swizzle { size, pattern, .. } => {
+                Ok(std::iter::once('.').chain(pattern[..*size as usize].iter().map(|c| letter(*c))).collect())
+            }
+            other => Err(self.unsupported(&construct(other))),
+        }
+    }
+
+    /// A place in a local variable, or in that of one of its tangents.
+    pub fn place(&self, pointer: Handle<Expression>, axis: &str) -> Result<String, DualError> {
+        match &self.function.expressions[pointer] {
+            Expression::LocalVariable(local) => Ok(format!("{}{axis}", self.local_name(*local))),
+            Expression::Access { base, .. } | Expression::AccessIndex { base, .. } => {
+                Ok(format!("{}{}", self.place(*base, axis)?, self.part(pointer)?))
+            }
+            _ => Err(self.unsupported("pointers as arguments")),
+        }
+    }
+
+    /// The name of a local variable; its number keeps it apart from others.
+    pub fn local_name(&self, local: Handle<LocalVariable>) -> String {
+        let name = self.function.local_variables[local].name.as_deref().unwrap_or("e");
+        let name = name.trim_start_matches('_');
+        format!("_{name}_v{}", local.index())
+    }
+
+    /// The name of an expression.
+    pub fn name(&self, handle: Handle<Expression>) -> String {
+        let name = self.function.named_expressions.get(&handle).map_or("e", String::as_str);
+        let name = name.trim_start_matches('_');
+        format!("_{name}_{}", handle.index())
+    }
+
+    /// The type of an expression.
+    pub fn inner(&self, handle: Handle<Expression>) -> &TypeInner {
+        self.info[handle].ty.inner_with(&self.module.types)
+    }
+
+    /// Whether an expression leads to a variable.
+    pub fn is_pointer(&self, handle: Handle<Expression>) -> bool {
+        matches!(self.inner(handle), TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
+    }
+
+    /// Whether an expression is the point.
+    pub fn is_point(&self, handle: Handle<Expression>) -> bool {
+        self.is_entry && matches!(self.function.expressions[handle], Expression::FunctionArgument(0))
+    }
+
+    /// The name of an expression's type.
+    pub fn type_of(&self, handle: Handle<Expression>) -> String {
+        short(&self.module.types.type_resolution_to_string(&self.info[handle].ty))
+    }
+
+    /// The name of a type.
+    pub fn type_name(&self, ty: Handle<Type>) -> String {
+        short(&self.module.types.type_to_string(ty))
+    }
+
+    /// The name of the prelude's struct that carries a type.
+    pub fn dual_type(&self, ty: Handle<Type>) -> Result<String, DualError> {
+        let name = self.type_name(ty);
+        Ok(match name.as_str() {
+            "f32" => "DualF32",
+            "vec2f" => "DualVec2",
+            "vec3f" => "DualVec3",
+            "vec4f" => "DualVec4",
+            _ => return Err(self.unsupported(&format!("a call that hands over {name}"))),
+        }
+        .to_owned())
+    }
+}
+
+fn short(name: &str) -> String {
+    name.replace("<f32>", "f")
+}
+
+fn letter(component: SwizzleComponent) -> char {
+    ['x', 'y', 'z', 'w'][component as usize]
+}
+
+fn unary(op: UnaryOperator) -> &'static str {
+    match op {
+        UnaryOperator::Negate => "-",
+        UnaryOperator::LogicalNot => "!",
+        UnaryOperator::BitwiseNot => "~",
+    }
+}

@@ -1,0 +1,157 @@
+//! WGSL for modifiers: the choice by their code, and their gradients.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use super::assemble::assemble_plain;
+use super::dual::dual;
+use super::gradients::with_rows;
+use crate::flat::{FlatNode, is_copying, modifier_payload_row, modifier_rows};
+use crate::scene::ModifierKind;
+
+/// The name of a modifier's file.
+pub fn file(kind: ModifierKind) -> String {
+    format!("{kind:?}").to_lowercase()
+}
+
+/// Whether it moves the point.
+pub fn has_point(kind: ModifierKind) -> bool {
+    use ModifierKind::{Bend, Elongate, Recursion, Repeat, Taper, Twist};
+    matches!(kind, Repeat | Recursion | Twist | Bend | Taper | Elongate)
+}
+
+/// Whether it changes the field's value.
+pub fn has_value(kind: ModifierKind) -> bool {
+    use ModifierKind::{Bend, Displacement, Noise, Onion, Round, Taper, Twist, Waves};
+    matches!(kind, Twist | Bend | Taper | Round | Onion | Waves | Noise | Displacement)
+}
+
+/// The line that includes a modifier's functions.
+pub fn modifier_include(kind: ModifierKind) -> String {
+    format!("#include \"mod/{}.wgsl\"", file(kind))
+}
+
+/// The generated file: the choice of a modifier's functions by its code.
+pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
+    let mut out = String::new();
+    for kind in modifiers {
+        line(&mut out, &modifier_include(*kind));
+    }
+    line(&mut out, "const NO_COPY: u32 = 0xffffffffu;");
+    let copying = |kind: &ModifierKind| is_copying(*kind);
+    let moving = |kind: &ModifierKind| has_point(*kind);
+    let changing = |kind: &ModifierKind| has_value(*kind);
+    let call = |name: &'static str, first: &'static str| {
+        move |kind: ModifierKind| format!("mod_{}_{name}({})", file(kind), arguments(kind, first))
+    };
+    let of = |test: &dyn Fn(&ModifierKind) -> bool| modifiers.iter().copied().filter(|k| test(k)).collect::<Vec<_>>();
+    choice(&mut out, "modifier_count(kind: u32, row: u32) -> u32", "1u", &of(&copying), &call("count", ""));
+    let start = "modifier_start(kind: u32, p: vec3f, row: u32) -> f32";
+    choice(&mut out, start, "3e38", &of(&copying), &call("start", "p"));
+    let bound = "modifier_bound(kind: u32, p: vec3f, k: u32, row: u32) -> f32";
+    choice(&mut out, bound, "-3e38", &of(&copying), &call("bound", "p, k"));
+    let scale = "modifier_scale(kind: u32, k: u32, row: u32) -> f32";
+    choice(&mut out, scale, "1.0", &of(&copying), &call("scale", "k"));
+    let point = "modifier_point(kind: u32, p: vec3f, k: u32, row: u32) -> vec3f";
+    choice(&mut out, point, "p", &of(&moving), &call("point", "p, k"));
+    let value = "modifier_value(kind: u32, f: f32, p: vec3f, row: u32) -> f32";
+    choice(&mut out, value, "f", &of(&changing), &call("value", "f, p"));
+    line(&mut out, "#include \"field/modifier.wgsl\"");
+    out
+}
+
+/// The generated file: how gradients go through modifiers.
+pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
+    let mut out = String::new();
+    let moving: Vec<_> = modifiers.iter().copied().filter(|k| has_point(*k)).collect();
+    let changing: Vec<_> = modifiers.iter().copied().filter(|k| has_value(*k)).collect();
+    for kind in &moving {
+        line(&mut out, &format!("#include \"generated/dual/pull_mod_{}.wgsl\"", file(*kind)));
+    }
+    for kind in &changing {
+        line(&mut out, &format!("#include \"generated/dual/along_mod_{}.wgsl\"", file(*kind)));
+        line(&mut out, &format!("#include \"generated/dual/through_mod_{}.wgsl\"", file(*kind)));
+    }
+    let pull = |kind| format!("dual_pull_mod_{}({}).xyz", file(kind), arguments(kind, "p, v, k"));
+    let name = "modifier_pull(kind: u32, p: vec3f, k: u32, v: vec3f, row: u32) -> vec3f";
+    choice(&mut out, name, "v", &moving, &pull);
+    let slopes = |kind| {
+        let along = format!("dual_along_mod_{}({}).xyz", file(kind), arguments(kind, "p, f"));
+        let through = format!("dual_through_mod_{}({}).x", file(kind), arguments(kind, "vec3f(f, 0.0, 0.0), p"));
+        format!("vec4f({along}, {through})")
+    };
+    let name = "modifier_slopes(kind: u32, f: f32, p: vec3f, row: u32) -> vec4f";
+    choice(&mut out, name, "vec4f(0.0, 0.0, 0.0, 1.0)", &changing, &slopes);
+    out
+}
+
+/// The derivatives of one of three functions of a modifier: `pull_mod_x`, of the point in the copy along a vector;
+/// `along_mod_x`, of the value by the point; `through_mod_x`, of the value by the field of the content.
+pub fn derived(function: &str) -> Option<String> {
+    let (way, name) = function.split_once("_mod_")?;
+    let kind = ModifierKind::ALL.iter().copied().find(|kind| file(*kind) == name)?;
+    // All three may differentiate the same function by other arguments: each has its own copy of the source.
+    let text = renamed(&assemble_plain(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
+    let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
+    let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
+    let passed = own_rows(kind, &|i| format!("r{i}"), &|_| "data".to_owned());
+    let wrapper = match way {
+        "pull" => format!(
+            "fn {function}(p: vec3f, v: vec3f, k: u32{rows}) -> f32 {{\n    return dot(v, \
+             mod_{name}_point_pull_{name}(p, k{passed}));\n}}\n"
+        ),
+        "along" => format!(
+            "fn {function}(p: vec3f, f: f32{rows}) -> f32 {{\n    return mod_{name}_value_along_{name}(f, p{passed});\n}}\n"
+        ),
+        "through" => format!(
+            "fn {function}(f: vec3f, p: vec3f{rows}) -> f32 {{\n    return mod_{name}_value_through_{name}(f.x, \
+             p{passed});\n}}\n"
+        ),
+        _ => return None,
+    };
+    let source = format!("{text}\n{wrapper}");
+    let derived = dual(&with_rows(source.clone()), function).ok()?;
+    Some(format!("{source}{derived}"))
+}
+
+/// The source with every function's name followed by `_suffix`.
+fn renamed(source: &str, suffix: &str) -> String {
+    let mut names: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).collect();
+    // Longer ones first: a name may begin another.
+    names.sort_unstable_by_key(|name| std::cmp::Reverse(name.len()));
+    names.iter().fold(source.to_owned(), |text, name| text.replace(&format!("{name}("), &format!("{name}_{suffix}(")))
+}
+
+/// The arguments of a modifier's function: `first`, then its rows read from `row` on.
+fn arguments(kind: ModifierKind, first: &str) -> String {
+    let row = |i: usize| format!("scene_row(row + {i}u)");
+    let rows = own_rows(kind, &row, &|i| format!("row + {i}u + u32({}.y)", row(i)));
+    if first.is_empty() { rows.trim_start_matches(", ").to_owned() } else { format!("{first}{rows}") }
+}
+
+/// A modifier's own rows as further arguments, what `row` makes of each; instead of the one that says where its data are,
+/// what `data` makes of it.
+pub fn own_rows(kind: ModifierKind, row: &dyn Fn(usize) -> String, data: &dyn Fn(usize) -> String) -> String {
+    let argument = |i: usize| if modifier_payload_row(kind) == Some(i) { data(i) } else { row(i) };
+    (0..modifier_rows(kind)).map(|i| format!(", {}", argument(i))).collect()
+}
+
+/// A function that calls what belongs to the modifier.
+fn choice(
+    out: &mut String,
+    signature: &str,
+    otherwise: &str,
+    kinds: &[ModifierKind],
+    call: &dyn Fn(ModifierKind) -> String,
+) {
+    line(out, &format!("fn {signature} {{\n    switch kind {{"));
+    for kind in kinds {
+        let code = FlatNode::MODIFIER + *kind as u32;
+        line(out, &format!("        case {code}u: {{ return {}; }}", call(*kind)));
+    }
+    line(out, &format!("        default: {{ return {otherwise}; }}\n    }}\n}}"));
+}
+
+fn line(out: &mut String, text: &str) {
+    writeln!(out, "{text}").expect("strings take all");
+}
