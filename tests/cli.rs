@@ -128,9 +128,9 @@ fn help_lists_the_commands_and_the_exit_codes() {
         assert!(help.succeeded().out.contains(part), "{part}");
     }
     assert!(place.run(&["--version"]).succeeded().out.starts_with("isolith "));
-    let readme = include_str!("../README.md");
+    let readme = include_str!("../src/cli/README.md");
     for code in ["| 0 |", "| 1 |", "| 2 |", "| 3 |", "| 4 |", "| 5 |", "| 130 |"] {
-        assert!(readme.contains(code), "the README does not explain {code}");
+        assert!(readme.contains(code), "the page of the command line does not explain {code}");
     }
 }
 

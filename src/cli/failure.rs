@@ -86,7 +86,7 @@ impl Failure {
         })
     }
 
-    /// The program's exit code; `--help` and the README list them.
+    /// The program's exit code; `--help` and `src/cli/README.md` list them.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Other(_) => 1,

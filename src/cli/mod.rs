@@ -41,7 +41,7 @@ use crate::scene::file;
 use failure::Failure;
 use text::{complain, say};
 
-/// What `--help` says about exit codes; the README has the same table.
+/// What `--help` says about exit codes; `src/cli/README.md` has the same table.
 const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something else went wrong while rendering

@@ -91,6 +91,7 @@ fn catch_interrupts() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
         // Without a handler Ctrl-C still ends the program, only less gently.
+        #[expect(clippy::disallowed_methods, reason = "asked a second time, the program stops without waiting")]
         let _ = ctrlc::set_handler(|| {
             if is_canceled() || AT_ONCE.load(Ordering::Relaxed) {
                 std::process::exit(INTERRUPTED);

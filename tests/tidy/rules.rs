@@ -50,8 +50,8 @@ const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const
 /// The build script stands beside what it serves, but is a program of its own.
 const BUILD_SCRIPT: &str = "src/render/embed_shaders.rs";
 
-/// Most lines of a Rust file, of a shader, and of a Rust function.
-pub const MAX_LINES: [usize; 3] = [500, 250, 70];
+/// Most lines of a Rust file, of a shader, of a Rust function, and of a WGSL function.
+pub const MAX_LINES: [usize; 4] = [500, 250, 70, 80];
 
 /// Everything that is wrong with a file, as `path:line: what`. `path` is relative to the repository.
 pub fn problems(path: &str, text: &str) -> Vec<String> {
@@ -181,15 +181,31 @@ fn functions(words: &[Token<'_>]) -> Vec<(usize, usize)> {
     let starts = words.iter().enumerate().filter(|(_, w)| w.text == "fn");
     starts
         .filter_map(|(i, word)| {
-            let body = words[i..].iter().position(|w| w.text == "{" || w.text == ";")? + i;
+            let body = body_of(words, i)?;
             let end = closing(words, body);
-            (words[body].text == "{").then(|| (word.line, words[end - 1].line - word.line + 1))
+            Some((word.line, words[end - 1].line - word.line + 1))
         })
         .collect()
 }
 
+/// The brace that opens the body of the function at `start`; none where it is only declared. The `;` of an array type
+/// stands in brackets and ends no declaration.
+fn body_of(words: &[Token<'_>], start: usize) -> Option<usize> {
+    let mut brackets = 0_usize;
+    for (i, word) in words.iter().enumerate().skip(start) {
+        match word.text {
+            "[" => brackets += 1,
+            "]" => brackets = brackets.saturating_sub(1),
+            "{" if brackets == 0 => return Some(i),
+            ";" if brackets == 0 => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
 /// The parts of the file that are tests: the bodies of modules behind `cfg(test)`.
-fn test_ranges(words: &[Token<'_>]) -> Vec<std::ops::Range<usize>> {
+pub fn test_ranges(words: &[Token<'_>]) -> Vec<std::ops::Range<usize>> {
     let is = |i: usize, text: &str| words.get(i).is_some_and(|w| w.text == text);
     (0..words.len())
         .filter(|i| is(*i, "cfg") && is(i + 1, "(") && is(i + 2, "test") && is(i + 3, ")"))
@@ -276,6 +292,9 @@ fn wgsl(path: &str, text: &str, found: &mut Vec<String>) {
     // A function's name holds a word of its file's or of its folder's: `sdf_sphere`, `shade_encode`.
     let inside = path.strip_prefix("shaders/").unwrap_or(path).trim_end_matches(".wgsl");
     let words = tokens(text);
+    for (line, length) in functions(&words).into_iter().filter(|(_, length)| *length > MAX_LINES[3]) {
+        found.push(format!("{path}:{line}: a function of {length} lines is longer than {}", MAX_LINES[3]));
+    }
     for pair in words.windows(2).filter(|pair| pair[0].text == "fn") {
         let name = format!("_{}_", pair[1].text);
         let mut words = inside.split(['/', '_']).map(|word| word.trim_end_matches('s'));
