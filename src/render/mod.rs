@@ -20,7 +20,7 @@ mod resources;
 pub mod wgsl;
 
 pub use frame::cost_model::coarse_size;
-pub use frame::{plan, standpoint};
+pub use frame::plan;
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use gpu::{driver, probe};

@@ -44,6 +44,10 @@ const FILE_OWNERS: &[&str] =
 /// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
 const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind"];
 
+/// Parts of `flat` that evaluate. The renderer uses none of them: then a comparison of both compares two programs that share
+/// data only.
+const EVALUATORS: &[&str] = &["eval", "reference", "unflattened", "pick"];
+
 /// Words behind which a name is given.
 const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const", "static", "let"];
 
@@ -131,6 +135,11 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
             }
             name if module == Some("render") && HIDDEN_FROM_RENDER.contains(&name) && !tested => {
                 report(word.line, format!("the renderer sees no {name}, only what flat makes of it"));
+            }
+            "flat" if module == Some("render") && in_path && !tested => {
+                for (_, part) in named(&words, i + 1).into_iter().filter(|(_, part)| EVALUATORS.contains(part)) {
+                    report(word.line, format!("the renderer may not use flat::{part}: it never evaluates"));
+                }
             }
             name if in_path || words.get(i.wrapping_sub(1)).is_some_and(|w| w.text == "use") => {
                 for (owned, owners) in CRATES.iter().filter(|(owned, _)| of_crate(name, owned)) {
