@@ -139,7 +139,11 @@ fn forbidden_uses_are_caught() {
     assert!(caught("src/render/a.rs", "use egui_ltreeview::X;", "only editor and app may use egui"));
     assert!(caught("src/render/a.rs", "use crate::scene::Scene;", "the renderer sees no Scene"));
     assert!(caught("src/render/a.rs", "use crate::flat::eval::field;", "it never evaluates"));
-    assert!(caught("src/render/wgsl/a.rs", "use crate::flat::{FlatScene, reference::X};", "may not use flat::reference"));
+    assert!(caught(
+        "src/render/wgsl/a.rs",
+        "use crate::flat::{FlatScene, reference::X};",
+        "may not use flat::reference"
+    ));
     assert!(caught("src/render/a.rs", "fn f() { crate::flat::pick::pick() }", "may not use flat::pick"));
     assert!(caught("src/document/mod.rs", "fn f() { std::fs::read(\"x\"); }", "touch the file system"));
     assert!(caught("src/flat/mod.rs", "use std::fs;", "touch the file system"));

@@ -71,6 +71,7 @@ pub fn problems(path: &str, text: &str) -> Vec<String> {
     }
     if path.ends_with(".rs") {
         rust(path, text, &mut found);
+        evaluators(path, text, &mut found);
     } else if path.ends_with(".wgsl") {
         wgsl(path, text, &mut found);
     }
@@ -136,11 +137,6 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
             name if module == Some("render") && HIDDEN_FROM_RENDER.contains(&name) && !tested => {
                 report(word.line, format!("the renderer sees no {name}, only what flat makes of it"));
             }
-            "flat" if module == Some("render") && in_path && !tested => {
-                for (_, part) in named(&words, i + 1).into_iter().filter(|(_, part)| EVALUATORS.contains(part)) {
-                    report(word.line, format!("the renderer may not use flat::{part}: it never evaluates"));
-                }
-            }
             name if in_path || words.get(i.wrapping_sub(1)).is_some_and(|w| w.text == "use") => {
                 for (owned, owners) in CRATES.iter().filter(|(owned, _)| of_crate(name, owned)) {
                     if module.is_some_and(|m| !owners.contains(&m)) {
@@ -166,6 +162,21 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
                 }
                 _ => {}
             }
+        }
+    }
+}
+
+/// Refuses what evaluates fields in the renderer, but for its tests.
+fn evaluators(path: &str, text: &str, found: &mut Vec<String>) {
+    if module_of(path) != Some("render") || path.ends_with("/tests.rs") || path.contains("/tests/") {
+        return;
+    }
+    let words = tokens(text);
+    let tests = test_ranges(&words);
+    for (i, word) in words.iter().enumerate().filter(|(i, _)| !tests.iter().any(|range| range.contains(i))) {
+        let parts = if word.text == "flat" { named(&words, i + 1) } else { Vec::new() };
+        for (_, part) in parts.into_iter().filter(|(_, part)| EVALUATORS.contains(part)) {
+            found.push(format!("{path}:{}: the renderer may not use flat::{part}: it never evaluates", word.line));
         }
     }
 }
