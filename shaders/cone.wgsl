@@ -79,6 +79,16 @@ fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
     );
 }
 
+// Where any ray of the cone around a tile may be within the component: distances along rays, cut by near and far.
+fn cone_interval(component: Component, cone: Cone, place: vec2u) -> vec2f {
+    // The box, grown by the cone's radius at its far end.
+    let far_corner = max(abs(component.low - component.eye), abs(component.high - component.eye));
+    let reached = min(length(far_corner) + cone.axis.skipped, 1e9);
+    let interval = bounds_interval(component, cone.axis, cone.spread * reached);
+    let entry = cone_half_space_entry(component, place * TILE);
+    return vec2f(max(max(interval.x, view.near), entry), min(interval.y, view.far));
+}
+
 @compute @workgroup_size(64)
 fn cone(@builtin(global_invocation_id) id: vec3u) {
     let columns = (dispatch.end.x - dispatch.origin.x + TILE - 1u) / TILE;
@@ -87,20 +97,12 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let component = subject;
     field_begin(component);
 
-    // Where a ray of the cone can be inside: the box, grown by the cone's radius at its far end.
     var cone = cone_around(component, place * TILE, TILE);
-    let far_corner = max(abs(component.low - component.eye), abs(component.high - component.eye));
-    let reached = min(length(far_corner) + cone.axis.skipped, 1e9);
-    let interval = bounds_interval(component, cone.axis, cone.spread * reached);
-    let entry = cone_half_space_entry(component, place * TILE);
+    let interval = cone_interval(component, cone, place);
+    let limit = interval.y;
+    var exit = min(limit, cone_hiz_of_tile(place));
     // Distances along a ray are longer than along the axis, by at most the cosine.
-    let hiz = max(
-        max(cone_hiz(place, 0u), cone_hiz(place, 1u)),
-        max(cone_hiz(place, 2u), cone_hiz(place, 3u)),
-    );
-    let limit = min(interval.y, view.far);
-    var exit = min(limit, hiz);
-    var t = max(max(interval.x, view.near), entry) * cone.cosine;
+    var t = interval.x * cone.cosine;
     let enters = id.x < columns * rows && t <= exit;
     // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
     // because the field is called from one place.
@@ -160,17 +162,23 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     if COUNTING && enters {
         cone_count(place, evaluations);
     }
+    cone_list(place, &start, &descents);
+}
+
+// Lists the quarters of a tile that need rays, with where these start, and how the field falls there.
+fn cone_list(place: vec2u, start: ptr<function, array<f32, 4>>, descents: ptr<function, array<f32, 4>>) {
     var count = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
-        count += select(0u, 1u, start[i] < CONE_PASSED);
+        count += select(0u, 1u, (*start)[i] < CONE_PASSED);
     }
     if count > 0u {
         let list = dispatch.list * SUBTILE_COUNTS;
         var slot = atomicAdd(&subtile_counts[list + 4u], count);
         atomicMax(&subtile_counts[list], (slot + count + 3u) / 4u);
         for (var i = 0u; i < 4u; i += 1u) {
-            if start[i] < CONE_PASSED {
-                subtiles[dispatch.first_subtile + slot] = Subtile(subtile_pack(cone_subtile(place, i)), start[i], descents[i]);
+            if (*start)[i] < CONE_PASSED {
+                let subtile = Subtile(subtile_pack(cone_subtile(place, i)), (*start)[i], (*descents)[i]);
+                subtiles[dispatch.first_subtile + slot] = subtile;
                 slot += 1u;
             }
         }
@@ -186,6 +194,14 @@ fn cone_subtile(place: vec2u, quarter: u32) -> vec2u {
 fn cone_hiz(place: vec2u, quarter: u32) -> f32 {
     let subtile = cone_subtile(place, quarter);
     return select(0.0, textureLoad(hiz_target, subtile, 0).x, view_contains(subtile * SUBTILE));
+}
+
+// The farthest depth of a tile.
+fn cone_hiz_of_tile(place: vec2u) -> f32 {
+    return max(
+        max(cone_hiz(place, 0u), cone_hiz(place, 1u)),
+        max(cone_hiz(place, 2u), cone_hiz(place, 3u)),
+    );
 }
 
 // What the cones of a tile took, for the list, the tile and the component.

@@ -16,6 +16,15 @@ var<private> surface_local: array<vec3f, STACK_SIZE>;
 var<private> surface_copy: array<u32, STACK_SIZE>;
 var<private> surface_least: array<Surface, STACK_SIZE>;
 
+// A modifier while its copies are evaluated, see `ModifiedValue`.
+struct ModifiedSurface {
+    kind: u32,
+    row: u32,
+    local: vec3f,
+    copy: u32,
+    least: Surface,
+}
+
 // Chooses the component. Before any call of `surface`.
 fn surface_begin(component: Component) {
     tape_component = component;
@@ -28,6 +37,48 @@ fn surface_joined(tape_entry: vec2u, before: Surface, so_far: Surface) -> Surfac
 
 fn surface_at(distance: f32) -> Surface {
     return Surface(distance, tape_component.first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+}
+
+// The modifier that a tape entry stands for, at its first copy.
+fn modified_surface_begin(tape_entry: vec2u, q: vec3f) -> ModifiedSurface {
+    let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
+    let row = tape_component.params + (tape_entry.y & 0xffffffu);
+    let local = leaf_place(row + 2u, q);
+    let least = modifier_start(kind, local, row + MODIFIER_ROWS);
+    let copy = modifier_next(kind, local, 0u, least, row + MODIFIER_ROWS);
+    return ModifiedSurface(kind, row, local, copy, surface_at(least));
+}
+
+// Puts it on the stack, with the rest of the tape that it stands in and the point outside.
+fn modified_surface_push(depth: u32, modified: ModifiedSurface, tape_entry: vec2u, tape: vec2u, q: vec3f) {
+    surface_tape_entry[depth] = tape_entry;
+    surface_tape[depth] = tape;
+    surface_outside[depth] = q;
+    surface_local[depth] = modified.local;
+    surface_copy[depth] = modified.copy;
+    surface_least[depth] = modified.least;
+}
+
+// The modifier on the stack at its next copy, after the one under way has been evaluated to `so_far`.
+fn modified_surface_next(at: u32, tape_entry: vec2u, so_far: Surface) -> ModifiedSurface {
+    let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
+    let row = tape_component.params + (tape_entry.y & 0xffffffu);
+    let local = surface_local[at];
+    var copy = surface_copy[at];
+    var least = surface_least[at];
+    if copy < NO_COPY {
+        let seen = surface_of_copy(kind, copy, local, row + MODIFIER_ROWS, so_far);
+        if seen.distance < least.distance {
+            least = seen;
+        }
+        copy = modifier_next(kind, local, copy + 1u, least.distance, row + MODIFIER_ROWS);
+    }
+    return ModifiedSurface(kind, row, local, copy, least);
+}
+
+// The point in the copy that is evaluated next.
+fn modified_surface_point(modified: ModifiedSurface) -> vec3f {
+    return modifier_point(modified.kind, modified.local, modified.copy, modified.row + MODIFIER_ROWS);
 }
 
 fn surface(p: vec3f) -> Surface {
@@ -56,19 +107,11 @@ fn surface(p: vec3f) -> Surface {
                 so_far = joined_surface_leaf(entry, shape, (tape_entry.x >> 10u) & 15u, (tape_entry.x >> 14u) & 7u, row, so_far, q);
             }
             if is_modified {
-                let kind = MODIFIER + shape - MODIFIED;
-                let local = leaf_place(row + 2u, q);
-                let least = modifier_start(kind, local, row + MODIFIER_ROWS);
-                let copy = modifier_next(kind, local, 0u, least, row + MODIFIER_ROWS);
-                surface_tape_entry[depth] = tape_entry;
-                surface_tape[depth] = tape;
-                surface_outside[depth] = q;
-                surface_local[depth] = local;
-                surface_copy[depth] = copy;
-                surface_least[depth] = surface_at(least);
-                is_new = copy < NO_COPY;
+                let modified = modified_surface_begin(tape_entry, q);
+                modified_surface_push(depth, modified, tape_entry, tape, q);
+                is_new = modified.copy < NO_COPY;
                 if is_new {
-                    q = modifier_point(kind, local, copy, row + MODIFIER_ROWS);
+                    q = modified_surface_point(modified);
                     grid = tape_modifier_grid(tape_entry.y >> 24u);
                 }
                 tape = vec2u(0u);
@@ -94,28 +137,17 @@ fn surface(p: vec3f) -> Surface {
         }
         // What a modifier holds has been evaluated at one point.
         let tape_entry = surface_tape_entry[depth - 1u];
-        let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
-        let row = tape_component.params + (tape_entry.y & 0xffffffu);
-        let local = surface_local[depth - 1u];
-        var copy = surface_copy[depth - 1u];
-        var least = surface_least[depth - 1u];
-        if copy < NO_COPY {
-            let seen = surface_of_copy(kind, copy, local, row + MODIFIER_ROWS, so_far);
-            if seen.distance < least.distance {
-                least = seen;
-            }
-            copy = modifier_next(kind, local, copy + 1u, least.distance, row + MODIFIER_ROWS);
-        }
-        is_new = copy < NO_COPY;
+        let modified = modified_surface_next(depth - 1u, tape_entry, so_far);
+        is_new = modified.copy < NO_COPY;
         if is_new {
-            surface_least[depth - 1u] = least;
-            surface_copy[depth - 1u] = copy;
-            q = modifier_point(kind, local, copy, row + MODIFIER_ROWS);
+            surface_least[depth - 1u] = modified.least;
+            surface_copy[depth - 1u] = modified.copy;
+            q = modified_surface_point(modified);
             grid = tape_modifier_grid(tape_entry.y >> 24u);
             continue;
         }
         depth -= 1u;
-        so_far = surface_joined(tape_entry, surface_stack[depth], surface_modified(kind, row, local, least));
+        so_far = surface_joined(tape_entry, surface_stack[depth], surface_modified(modified.kind, modified.row, modified.local, modified.least));
         q = surface_outside[depth];
         tape = surface_tape[depth];
     }

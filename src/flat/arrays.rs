@@ -277,6 +277,11 @@ pub struct FlatMesh {
     pub material: Option<u32>,
 }
 
+/// Strength of the highlight of a mesh that keeps its file's colors.
+pub const FILE_SPECULAR: f64 = 0.2;
+/// Its Blinn-Phong exponent.
+pub const FILE_SHININESS: f64 = 32.0;
+
 /// A camera with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatCamera {

@@ -11,6 +11,8 @@
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
+//! | `standpoint` | which point near the eye that is |
+//! | `lights` | lights relative to the eye |
 //! | `eval` | the field over the arrays, in f64, with exact derivatives: the reference |
 //! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
 //! | `reference` | the reference renderer: a whole picture in f64, and how wrong another one is |
@@ -34,6 +36,7 @@ mod flatten;
 mod fold;
 mod gbuffer;
 mod leaf;
+mod lights;
 mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
@@ -45,6 +48,7 @@ mod prepare;
 pub mod reference;
 mod reflatten;
 mod stack;
+pub mod standpoint;
 mod survey;
 mod tape;
 pub mod unflattened;
@@ -55,11 +59,11 @@ pub use arrays::*;
 pub use budget::{Cancel, Usage};
 pub use flatten::{FlattenError, flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
+pub use lights::{GpuLight, gpu_lights};
 pub use modify::{MAX_NEIGHBORS, REPEAT_REACH, is_copying};
 pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;
-pub use reference::shade::{GpuLight, gpu_lights};
 pub use reflatten::Flattener;
 pub use survey::is_quick;
 pub use tape::*;

@@ -20,14 +20,15 @@ mod resources;
 pub mod wgsl;
 
 pub use frame::cost_model::coarse_size;
-pub use frame::{plan, standpoint};
+pub use frame::plan;
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
 pub use gpu::{driver, probe};
 pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
-pub use pipelines::cache::{EvalStrategy, PipelineCache};
+pub use pipelines::cache::PipelineCache;
+pub use pipelines::strategy::EvalStrategy;
 pub use renderer::{Counts, Distribution, Frame, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

@@ -44,6 +44,10 @@ const FILE_OWNERS: &[&str] =
 /// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
 const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind"];
 
+/// Parts of `flat` that evaluate. The renderer uses none of them: then a comparison of both compares two programs that share
+/// data only.
+const EVALUATORS: &[&str] = &["eval", "reference", "unflattened", "pick"];
+
 /// Words behind which a name is given.
 const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const", "static", "let"];
 
@@ -67,6 +71,7 @@ pub fn problems(path: &str, text: &str) -> Vec<String> {
     }
     if path.ends_with(".rs") {
         rust(path, text, &mut found);
+        evaluators(path, text, &mut found);
     } else if path.ends_with(".wgsl") {
         wgsl(path, text, &mut found);
     }
@@ -157,6 +162,21 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
                 }
                 _ => {}
             }
+        }
+    }
+}
+
+/// Refuses what evaluates fields in the renderer, but for its tests.
+fn evaluators(path: &str, text: &str, found: &mut Vec<String>) {
+    if module_of(path) != Some("render") || path.ends_with("/tests.rs") || path.contains("/tests/") {
+        return;
+    }
+    let words = tokens(text);
+    let tests = test_ranges(&words);
+    for (i, word) in words.iter().enumerate().filter(|(i, _)| !tests.iter().any(|range| range.contains(i))) {
+        let parts = if word.text == "flat" { named(&words, i + 1) } else { Vec::new() };
+        for (_, part) in parts.into_iter().filter(|(_, part)| EVALUATORS.contains(part)) {
+            found.push(format!("{path}:{}: the renderer may not use flat::{part}: it never evaluates", word.line));
         }
     }
 }

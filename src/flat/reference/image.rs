@@ -8,11 +8,12 @@ use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::accuracy::{GRAZING_ANGLE, WRONG_DEPTH, node_of};
-use super::shade::{GpuLight, gpu_lights, shade_background, shade_decode, shade_encode, shade_surface};
+use super::shade::{shade_background, shade_decode, shade_encode, shade_surface};
 use super::trace::{March, TraceError, Tracer};
 use crate::flat::eval::{SurfaceMaterial, surface};
+use crate::flat::lights::{GpuLight, gpu_lights};
 use crate::flat::mesh_rays::{Meshes, trace_meshes};
-use crate::flat::{BACKGROUND_DEPTH, FlatScene, GBuffer, MESH_BIT, NO_LEAF};
+use crate::flat::{BACKGROUND_DEPTH, FILE_SHININESS, FILE_SPECULAR, FlatScene, GBuffer, MESH_BIT, NO_LEAF};
 use crate::geometry::{Camera, Ray};
 use crate::mesh::{MeshHit, TriangleMesh};
 use crate::scene::NodeId;
@@ -218,7 +219,7 @@ impl View<'_> {
 
 /// The material of a mesh that keeps its file's colors.
 pub const FILE_MATERIAL: SurfaceMaterial =
-    SurfaceMaterial { albedo: DVec3::ONE, specular: 0.2, emission: DVec3::ZERO, shininess: 32.0 };
+    SurfaceMaterial { albedo: DVec3::ONE, specular: FILE_SPECULAR, emission: DVec3::ZERO, shininess: FILE_SHININESS };
 
 /// The mesh's own color: that of vertices, part and texture.
 fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {

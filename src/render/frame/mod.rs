@@ -2,4 +2,3 @@
 
 pub mod cost_model;
 pub mod plan;
-pub mod standpoint;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::render::gpu::GpuError;
+use super::error::GpuError;
 
 /// The environment's name of an adapter, where the command line gives none.
 const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
@@ -89,8 +89,16 @@ pub fn adapters() -> Vec<AdapterSummary> {
     all(&instance()).iter().map(|adapter| AdapterSummary::from(&adapter.get_info())).collect()
 }
 
+/// How an instance is made, with or without a window.
+pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
+    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    // Validation layers are the developer's to ask for, through the environment.
+    descriptor.flags = wgpu::InstanceFlags::empty().with_env();
+    descriptor
+}
+
 pub(super) fn instance() -> wgpu::Instance {
-    wgpu::Instance::new(super::instance_descriptor())
+    wgpu::Instance::new(instance_descriptor())
 }
 
 pub(super) fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {

@@ -3,42 +3,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use thiserror::Error;
-
 use super::adapter::{self, AdapterChoice};
-
-/// Why there is no device, or no more.
-#[derive(Clone, Debug, Error)]
-pub enum GpuError {
-    /// No driver answers.
-    #[error(
-        "no graphics driver answers. On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` installs one that \
-         needs no graphics card"
-    )]
-    NoAdapter,
-    /// No adapter has the name that was asked for.
-    #[error("no graphics adapter is called \"{wanted}\"; there is {found}")]
-    NoSuchAdapter {
-        /// What was asked for.
-        wanted: String,
-        /// What there is.
-        found: String,
-    },
-    /// The driver refuses a device.
-    #[error("the graphics driver {adapter} gives no device: {reason}")]
-    NoDevice {
-        /// The driver.
-        adapter: String,
-        /// Its reason.
-        reason: String,
-    },
-    /// The device is gone.
-    #[error("the graphics device was lost: {0}")]
-    Lost(String),
-    /// The device works and refused something: a fault of the program, or too little memory.
-    #[error("the graphics driver refused a command: {0}")]
-    Refused(String),
-}
+use super::error::GpuError;
 
 /// A device and its queue, and what became of them.
 #[derive(Clone, Debug)]
@@ -148,14 +114,6 @@ impl Health {
 /// A driver's message without its line breaks.
 fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// How an instance is made, with or without a window.
-pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // Validation layers are the developer's to ask for, through the environment.
-    descriptor.flags = wgpu::InstanceFlags::empty().with_env();
-    descriptor
 }
 
 /// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default is four.

@@ -3,8 +3,10 @@
 mod adapter;
 mod device;
 pub mod driver;
+mod error;
 pub mod probe;
 pub mod readback;
 
-pub use adapter::{AdapterChoice, AdapterSummary, adapters};
-pub use device::{Gpu, GpuError, device_descriptor, instance_descriptor};
+pub use adapter::{AdapterChoice, AdapterSummary, adapters, instance_descriptor};
+pub use device::{Gpu, device_descriptor};
+pub use error::GpuError;

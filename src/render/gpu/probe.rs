@@ -3,8 +3,8 @@
 use glam::DVec3;
 use wgpu::ShaderStages;
 
+use crate::flat::standpoint::Standpoint;
 use crate::flat::{CellTree, FlatScene, ParamRow, ROW_ALIGNMENT};
-use crate::render::frame::standpoint::Standpoint;
 use crate::render::gpu::Gpu;
 use crate::render::gpu::readback::read_words;
 use crate::render::renderer::{PIPELINE_WINDOW, RenderError};

@@ -9,11 +9,10 @@ use glam::{DAffine3, DVec3};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
-use crate::flat::reference::image::FILE_MATERIAL;
-use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use crate::flat::standpoint::ray_origin_depth;
+use crate::flat::{FILE_SPECULAR, FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::Camera;
 use crate::mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
-use crate::render::frame::standpoint::ray_origin_depth;
 use crate::render::resources::buffers::SyncedBuffer;
 use crate::render::resources::layouts::*;
 use crate::render::resources::targets::{BACKGROUND, Targets};
@@ -347,7 +346,7 @@ impl PlacedInstance {
             normal_y: normal_row(1),
             normal_z: normal_row(2),
             albedo: material.map_or([1.0; 3], |m| m.albedo),
-            specular: material.map_or(FILE_MATERIAL.specular as f32, |m| m.specular),
+            specular: material.map_or(FILE_SPECULAR as f32, |m| m.specular),
             visibility: MESH_BIT | index as u32,
             overridden: u32::from(material.is_some()),
             mirrored: u32::from(m.matrix3.determinant() < 0.0),

@@ -2,8 +2,7 @@
 
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
-use crate::flat::reference::image::FILE_MATERIAL;
-use crate::flat::{FlatMaterial, FlatScene};
+use crate::flat::{FILE_SHININESS, FlatMaterial, FlatScene};
 use crate::render::frame::plan::Dispatch;
 use crate::render::resources::layouts::*;
 use crate::render::resources::targets::Targets;
@@ -81,6 +80,6 @@ pub fn mesh_emissions(flat: &FlatScene) -> Vec<[f32; 4]> {
         let [r, g, b] = material.emission;
         [r, g, b, material.shininess]
     };
-    let own = [0.0, 0.0, 0.0, FILE_MATERIAL.shininess as f32];
+    let own = [0.0, 0.0, 0.0, FILE_SHININESS as f32];
     flat.meshes.iter().map(|m| m.material.map_or(own, |i| of(&flat.materials[i as usize]))).collect()
 }

@@ -9,7 +9,7 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::flat::{Component, FlatScene};
-use crate::render::pipelines::cache::EvalStrategy;
+use crate::render::pipelines::strategy::EvalStrategy;
 use crate::render::wgsl::{OpSet, ShapeSet, Structure, tapes_are_cheaper};
 
 /// What a component's pipeline is for.

@@ -3,3 +3,4 @@
 pub mod cache;
 pub mod key;
 pub mod prewarm;
+pub mod strategy;

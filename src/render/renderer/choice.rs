@@ -7,8 +7,9 @@ use super::{RenderError, Renderer};
 use crate::flat::{CellTree, Component, FlatNode, FlatScene, leaf_payload};
 use crate::geometry::Camera;
 use crate::render::frame::plan::EvaluationCost;
-use crate::render::pipelines::cache::{EvalMode, EvalStrategy, PipelineChoice};
+use crate::render::pipelines::cache::{EvalMode, PipelineChoice};
 use crate::render::pipelines::key::PipelineKey;
+use crate::render::pipelines::strategy::EvalStrategy;
 use crate::render::wgsl::shape_loops;
 use crate::scene::ShapeKind;
 

@@ -12,7 +12,7 @@ use crate::render::gpu::Gpu;
 use crate::render::gpu::readback::read_buffers;
 use crate::render::passes::debug_view::DebugViewPass;
 use crate::render::passes::overlay::OverlaySettings;
-use crate::render::pipelines::cache::EvalStrategy;
+use crate::render::pipelines::strategy::EvalStrategy;
 use crate::render::wgsl::Options;
 
 impl Renderer {

@@ -6,10 +6,10 @@ use wgpu::BindGroup;
 
 use super::unfinished::{NO_RAYS, NO_SUBTILES};
 use super::{PIPELINE_WINDOW, Renderer, SUBTILE_BYTES};
+use crate::flat::standpoint::{Standpoint, Standpoints};
 use crate::flat::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT, gpu_lights};
 use crate::geometry::Camera;
 use crate::render::frame::plan::{FramePlan, TILE};
-use crate::render::frame::standpoint::{Standpoint, Standpoints};
 use crate::render::gpu::Gpu;
 use crate::render::passes::field::{FieldBuffers, FieldGroups};
 use crate::render::passes::shade::mesh_emissions;

@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
+use crate::flat::standpoint::Standpoint;
 use crate::flat::{CellTree, Component, FlatScene};
 use crate::geometry::Camera;
-use crate::render::frame::standpoint::Standpoint;
 
 /// Who looks, from where. One a frame.
 #[repr(C)]

@@ -9,7 +9,9 @@
 //! At kinks the derivative is that of one side. Tangents are finite where values are.
 
 mod activity;
+mod error;
 mod rules;
+mod statements;
 mod tangent_writer;
 #[cfg(test)]
 mod tests;
@@ -19,9 +21,9 @@ use std::collections::HashMap;
 
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Expression, Function, Handle, MathFunction, Module};
-use thiserror::Error;
 
 use activity::Activity;
+pub use error::DualError;
 use tangent_writer::TangentWriter;
 
 /// What dual functions need, once before the first of them: values with their derivatives along x, y and z.
@@ -31,25 +33,6 @@ struct DualVec2 { v: vec2f, x: vec2f, y: vec2f, z: vec2f }
 struct DualVec3 { v: vec3f, x: vec3f, y: vec3f, z: vec3f }
 struct DualVec4 { v: vec4f, x: vec4f, y: vec4f, z: vec4f }
 ";
-
-/// Why a function has no dual function.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-pub enum DualError {
-    /// The source is no WGSL.
-    #[error("the distance function cannot be read: {0}")]
-    Source(String),
-    /// The source holds no function of this name.
-    #[error("there is no function {0}")]
-    NoFunction(String),
-    /// The function uses something that has no rule here.
-    #[error("{function}: no derivative of {construct}")]
-    Unsupported {
-        /// The function, which the one asked for may call.
-        function: String,
-        /// What it uses.
-        construct: String,
-    },
-}
 
 /// The dual functions of `function`, named `dual_…`, and of what it calls with values that follow its point.
 ///

@@ -14,8 +14,9 @@ use naga::proc::TypeResolution;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{BinaryOperator, Block, Expression, Function, Handle, MathFunction, Module, Statement, TypeInner};
 
-use super::assemble::{assemble_plain, shape_loops};
+use super::files::library;
 use super::gradients::with_rows;
+use super::op_set::shape_loops;
 use crate::flat::{Component, FlatNode, FlatScene, has_tape, leaf_payload};
 use crate::scene::ShapeKind;
 
@@ -76,7 +77,7 @@ impl Instructions {
     /// shaders refuse.
     fn of(kind: ShapeKind) -> Option<Self> {
         let shape = kind.function().trim_start_matches("sdf_");
-        let text = with_rows(assemble_plain(&format!("sdf/{shape}.wgsl")).ok()?);
+        let text = with_rows(library(&format!("sdf/{shape}.wgsl")).ok()?);
         let module = naga::front::wgsl::parse_str(&text).ok()?;
         let info = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module).ok()?;
         let named = |(_, f): &(Handle<Function>, &Function)| f.name.as_deref() == Some(kind.function());

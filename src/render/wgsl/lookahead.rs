@@ -10,8 +10,9 @@
 //! The same is true before the two values, and so an overstep to where the surface is expected can be proven afterward: see
 //! `shaders/common/march.wgsl`.
 
+use super::evaluator::Evaluator;
+use super::options::{Options, SkipMode};
 use super::structure::{EntryKind, Structure, StructureEntry};
-use super::{Evaluator, Options, SkipMode};
 use crate::flat::Join;
 use crate::scene::{BlendKernel, ShapeKind};
 

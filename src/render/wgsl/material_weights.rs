@@ -9,8 +9,8 @@
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use super::SkipMode;
-use super::specialize::{arguments, select_by_shape};
+use super::calls::{arguments, select_by_shape};
+use super::options::SkipMode;
 use super::structure::{EntryKind, Structure, StructureEntry};
 use crate::flat::{Join, MATERIAL_ROWS};
 use crate::scene::ShapeKind;

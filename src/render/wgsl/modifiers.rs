@@ -3,9 +3,6 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::assemble::assemble_plain;
-use super::dual::dual;
-use super::gradients::with_rows;
 use crate::flat::{FlatNode, is_copying, modifier_payload_row, modifier_rows};
 use crate::scene::ModifierKind;
 
@@ -83,43 +80,6 @@ pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let name = "modifier_slopes(kind: u32, f: f32, p: vec3f, row: u32) -> vec4f";
     choice(&mut out, name, "vec4f(0.0, 0.0, 0.0, 1.0)", &changing, &slopes);
     out
-}
-
-/// The derivatives of one of three functions of a modifier: `pull_mod_x`, of the point in the copy along a vector;
-/// `along_mod_x`, of the value by the point; `through_mod_x`, of the value by the field of the content.
-pub fn derived(function: &str) -> Option<String> {
-    let (way, name) = function.split_once("_mod_")?;
-    let kind = ModifierKind::ALL.iter().copied().find(|kind| file(*kind) == name)?;
-    // All three may differentiate the same function by other arguments: each has its own copy of the source.
-    let text = renamed(&assemble_plain(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
-    let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
-    let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
-    let passed = own_rows(kind, &|i| format!("r{i}"), &|_| "data".to_owned());
-    let wrapper = match way {
-        "pull" => format!(
-            "fn {function}(p: vec3f, v: vec3f, k: u32{rows}) -> f32 {{\n    return dot(v, \
-             mod_{name}_point_pull_{name}(p, k{passed}));\n}}\n"
-        ),
-        "along" => format!(
-            "fn {function}(p: vec3f, f: f32{rows}) -> f32 {{\n    return mod_{name}_value_along_{name}(f, p{passed});\n}}\n"
-        ),
-        "through" => format!(
-            "fn {function}(f: vec3f, p: vec3f{rows}) -> f32 {{\n    return mod_{name}_value_through_{name}(f.x, \
-             p{passed});\n}}\n"
-        ),
-        _ => return None,
-    };
-    let source = format!("{text}\n{wrapper}");
-    let derived = dual(&with_rows(source.clone()), function).ok()?;
-    Some(format!("{source}{derived}"))
-}
-
-/// The source with every function's name followed by `_suffix`.
-fn renamed(source: &str, suffix: &str) -> String {
-    let mut names: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).collect();
-    // Longer ones first: a name may begin another.
-    names.sort_unstable_by_key(|name| std::cmp::Reverse(name.len()));
-    names.iter().fold(source.to_owned(), |text, name| text.replace(&format!("{name}("), &format!("{name}_{suffix}(")))
 }
 
 /// The arguments of a modifier's function: `first`, then its rows read from `row` on.

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use super::calls::{arguments, data_argument, gradient_include, select_by_shape, shape_include};
 use super::lookahead;
 use super::material_weights::material_weights;
 use super::modifiers::{self, file, has_point, has_value, modifier_include};
+use super::options::{Options, SkipMode};
 use super::structure::{EntryKind, ShapeSet, Structure, StructureEntry};
-use super::{Options, SkipMode};
-use crate::flat::{GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, is_copying, payload_row};
+use crate::flat::{GROUP_ROWS, Join, MODIFIER_ROWS, is_copying};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
@@ -63,9 +64,9 @@ impl FoldWriter<'_> {
             self.line(&modifier_include(kind));
         }
         for shape in self.structure.shapes().shapes() {
-            self.line(&super::assemble::shape_include(shape));
+            self.line(&shape_include(shape));
             if self.fold == Fold::Surface {
-                self.line(&super::assemble::gradient_include(shape));
+                self.line(&gradient_include(shape));
             }
         }
         if self.fold == Fold::Surface {
@@ -321,45 +322,8 @@ fn lookahead_minimum(level: usize, at: usize, entry: &StructureEntry) -> String 
     if entry.is_leaf() { format!("a{at}") } else { format!("h{}", level + 1) }
 }
 
-/// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row.
-pub(super) fn select_by_shape(
-    shapes: ShapeSet,
-    at: usize,
-    row: usize,
-    name: &str,
-    call: &dyn Fn(ShapeKind) -> String,
-    skip_mode: SkipMode,
-) -> String {
-    let mut out = String::new();
-    for kind in shapes.shapes() {
-        let (code, value) = (kind as u32, call(kind));
-        let is_it = format!("q{row}.w == {code}.0");
-        out += &match skip_mode {
-            SkipMode::Branches | SkipMode::Never => format!("    if {is_it} {{ {name}{at} = {value}; }}\n"),
-            SkipMode::Selects => format!("    {name}{at} = select({name}{at}, {value}, {is_it});\n"),
-        };
-    }
-    out
-}
-
 /// A modifier's own rows as further arguments.
 fn own_rows(kind: ModifierKind, row: usize) -> String {
     let at = row + MODIFIER_ROWS;
     modifiers::own_rows(kind, &|i| format!("q{}", at + i), &|i| data_argument(at + i))
-}
-
-/// The place of `point` in the leaf's own space, the parameters of its shape, and where its data begin.
-pub(super) fn arguments(point: &str, entry: &StructureEntry, shape: ShapeKind, row: usize) -> String {
-    let placed = if entry.moved { "placed_moved" } else { "placed" };
-    let parameter = |i: usize| {
-        if i < shape.parameter_rows() { format!("q{}", row + LEAF_ROWS + i) } else { "vec4f(0.0)".to_owned() }
-    };
-    let (a, b) = (parameter(0), parameter(1));
-    let data = payload_row(shape).map_or(String::new(), |i| format!(", {}", data_argument(row + i)));
-    format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
-}
-
-/// The first of the data that the row at `at` of the component's says where to find.
-fn data_argument(at: usize) -> String {
-    format!("first_row + {at}u + u32(q{at}.y)")
 }

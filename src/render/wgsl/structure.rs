@@ -1,6 +1,6 @@
 //! What of a component decides its pipeline: everything but its numbers.
 
-use super::assemble::{Extended, OpSet, fits_templates};
+use super::op_set::{Extended, OpSet, fits_templates};
 use crate::flat::{
     Component, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MATERIAL_ROWS, MODIFIER_ROWS,
     ParamRow, modifier_rows,
@@ -332,7 +332,7 @@ mod tests {
     use crate::gallery;
 
     #[test]
-    fn what_is_modified_or_joined_by_extended_operators_has_no_form() {
+    fn what_is_modified_or_joined_by_extended_operators_has_no_template() {
         let mut without = 0;
         for (name, scene) in gallery::all() {
             let flat = flatten(&scene, 0.0).unwrap_or_else(|e| panic!("{name}: {e}"));

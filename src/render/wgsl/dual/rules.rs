@@ -5,7 +5,7 @@
 
 use naga::{BinaryOperator, Expression, Handle, MathFunction, TypeInner, UnaryOperator};
 
-use super::DualError;
+use super::error::DualError;
 use super::tangent_writer::{AXES, TangentWriter, Tangents, construct};
 
 /// The functions that rules call; a source that gives these names to its own could not be read.

@@ -1,16 +1,17 @@
-//! Writes the dual function of one function, statement for statement.
+//! A dual function while it is written: what stands for each expression, and the names and types of its values.
 //!
-//! Every expression becomes a `let` where it was evaluated before, its tangents follow it with their
+//! Its text is written in layers, each in a file that calls only those before it: values, rules, statements. Every expression becomes a `let` where it was evaluated before, its tangents follow it with their
 //! axis as the last letter: `_d_8`, `_d_8x`, `_d_8y`, `_d_8z`. Names of dual functions begin with an underscore.
 
 use std::collections::HashMap;
-use std::fmt::{Debug, Write as _};
+use std::fmt::Debug;
 
+use naga::common::wgsl::TypeContext as _;
 use naga::valid::FunctionInfo;
-use naga::{Block, Expression, Function, Handle, Module, Statement, SwitchCase, SwitchValue};
+use naga::{Expression, Function, Handle, LocalVariable, Module, Type, TypeInner};
 
-use super::DualError;
-use super::activity::{Activity, root};
+use super::activity::Activity;
+use super::error::DualError;
 
 /// The last letters of tangents, and the fields of the prelude's structs.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
@@ -26,23 +27,23 @@ pub struct Carried {
 }
 
 /// The tangents of what does not follow the point.
-const PASSIVE: Tangents = [const { None }; 3];
+pub const PASSIVE: Tangents = [const { None }; 3];
 
 /// The dual function of a function while it is written.
 pub struct TangentWriter<'a> {
     pub module: &'a Module,
     pub info: &'a FunctionInfo,
     pub function: &'a Function,
-    handle: Handle<Function>,
-    activity: Activity,
+    pub handle: Handle<Function>,
+    pub activity: Activity,
     /// The active arguments of every function that has a dual function.
-    active: &'a HashMap<Handle<Function>, Vec<bool>>,
+    pub active: &'a HashMap<Handle<Function>, Vec<bool>>,
     /// Whether this is the dual function asked for, which takes the point and returns a vector.
     pub is_entry: bool,
     /// By index of the expression; `None` where it was not evaluated yet.
     pub carried: Vec<Option<Carried>>,
-    out: String,
-    depth: usize,
+    pub out: String,
+    pub depth: usize,
 }
 
 impl<'a> TangentWriter<'a> {
@@ -58,229 +59,6 @@ impl<'a> TangentWriter<'a> {
         let function = &module.functions[handle];
         let carried = vec![None; function.expressions.len()];
         Self { module, info, function, handle, activity, active, is_entry, carried, out: String::new(), depth: 1 }
-    }
-
-    /// The text of the dual function.
-    pub fn write(mut self) -> Result<String, DualError> {
-        for (handle, expression) in self.function.expressions.iter() {
-            if let Expression::FunctionArgument(i) = expression {
-                self.carried[handle.index()] = Some(self.argument(*i as usize));
-            }
-        }
-        self.head()?;
-        self.locals()?;
-        self.block(&self.function.body)?;
-        self.out.push_str("}\n");
-        Ok(self.out)
-    }
-
-    fn head(&mut self) -> Result<(), DualError> {
-        let mut arguments = Vec::new();
-        for (argument, active) in self.function.arguments.iter().zip(&self.active[&self.handle]) {
-            let ty = if *active && !self.is_entry { self.dual_type(argument.ty)? } else { self.type_name(argument.ty) };
-            arguments.push(format!("{}: {ty}", argument.name.as_deref().unwrap_or_default()));
-        }
-        let result = self.function.result.as_ref().map(|result| self.type_name(result.ty));
-        let takes_point = arguments.first().is_some_and(|first| first.ends_with(": vec3f"));
-        let result = match (&self.function.result, result.as_deref()) {
-            (_, Some("f32")) if self.is_entry && takes_point => "vec4f".to_owned(),
-            (Some(result), _) if !self.is_entry => self.dual_type(result.ty)?,
-            _ => return Err(self.unsupported("a function that takes no vec3f first or returns no f32")),
-        };
-        let name = self.function.name.as_deref().unwrap_or_default();
-        writeln!(self.out, "\nfn dual_{name}({}) -> {result} {{", arguments.join(", ")).expect("strings take all");
-        Ok(())
-    }
-
-    fn argument(&self, index: usize) -> Carried {
-        let name = self.function.arguments[index].name.clone().unwrap_or_default();
-        if !self.active[&self.handle][index] {
-            return Carried { value: name, tangents: PASSIVE };
-        }
-        if self.is_entry {
-            let unit = ["1.0, 0.0, 0.0", "0.0, 1.0, 0.0", "0.0, 0.0, 1.0"];
-            return Carried { value: name, tangents: unit.map(|unit| Some(format!("vec3f({unit})"))) };
-        }
-        fields(&name)
-    }
-
-    fn locals(&mut self) -> Result<(), DualError> {
-        for (handle, local) in self.function.local_variables.iter() {
-            let ty = self.type_name(local.ty);
-            let start = match local.init {
-                Some(init) => format!(" = {}", self.value(init)?),
-                None => String::new(),
-            };
-            let name = self.local_name(handle);
-            self.line(&format!("var {name}: {ty}{start};"));
-            if self.activity.locals[handle.index()] {
-                for axis in AXES {
-                    self.line(&format!("var {name}{axis}: {ty};"));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn block(&mut self, block: &'a Block) -> Result<(), DualError> {
-        block.iter().try_for_each(|statement| self.statement(statement))
-    }
-
-    fn indented(&mut self, block: &'a Block) -> Result<(), DualError> {
-        self.depth += 1;
-        self.block(block)?;
-        self.depth -= 1;
-        Ok(())
-    }
-
-    fn statement(&mut self, statement: &'a Statement) -> Result<(), DualError> {
-        match statement {
-            Statement::Emit(range) => range.clone().try_for_each(|handle| self.emit(handle))?,
-            Statement::Block(inner) => {
-                self.line("{");
-                self.indented(inner)?;
-                self.line("}");
-            }
-            Statement::If { condition, accept, reject } => {
-                let condition = self.value(*condition)?;
-                self.line(&format!("if {condition} {{"));
-                self.indented(accept)?;
-                if !reject.is_empty() {
-                    self.line("} else {");
-                    self.indented(reject)?;
-                }
-                self.line("}");
-            }
-            Statement::Switch { selector, cases } => self.switch(*selector, cases)?,
-            Statement::Loop { body, continuing, break_if } => {
-                self.line("loop {");
-                self.indented(body)?;
-                self.line("    continuing {");
-                self.depth += 1;
-                self.indented(continuing)?;
-                if let Some(condition) = break_if {
-                    let condition = self.value(*condition)?;
-                    self.line(&format!("    break if {condition};"));
-                }
-                self.line("}");
-                self.depth -= 1;
-                self.line("}");
-            }
-            Statement::Break => self.line("break;"),
-            Statement::Continue => self.line("continue;"),
-            Statement::Return { value: Some(value) } => self.give_back(*value)?,
-            Statement::Store { pointer, value } => self.store(*pointer, *value)?,
-            Statement::Call { function, arguments, result: Some(result) } => {
-                self.call(*function, arguments, *result)?
-            }
-            other => return Err(self.unsupported(&construct(other))),
-        }
-        Ok(())
-    }
-
-    fn switch(&mut self, selector: Handle<Expression>, cases: &'a [SwitchCase]) -> Result<(), DualError> {
-        let selector = self.value(selector)?;
-        self.line(&format!("switch {selector} {{"));
-        let mut labels = Vec::new();
-        for case in cases {
-            labels.push(match case.value {
-                SwitchValue::I32(value) => format!("{value}i"),
-                SwitchValue::U32(value) => format!("{value}u"),
-                SwitchValue::Default => "default".to_owned(),
-            });
-            if case.fall_through && case.body.is_empty() {
-                continue;
-            }
-            if case.fall_through {
-                return Err(self.unsupported("a case that falls through"));
-            }
-            self.line(&format!("case {}: {{", labels.join(", ")));
-            self.indented(&case.body)?;
-            self.line("}");
-            labels.clear();
-        }
-        self.line("}");
-        Ok(())
-    }
-
-    fn give_back(&mut self, value: Handle<Expression>) -> Result<(), DualError> {
-        let text = self.value(value)?;
-        let [x, y, z] = self.filled(value);
-        let result = match &self.function.result {
-            Some(result) if !self.is_entry => format!("{}({text}, {x}, {y}, {z})", self.dual_type(result.ty)?),
-            _ => format!("vec4f({x}, {y}, {z}, {text})"),
-        };
-        self.line(&format!("return {result};"));
-        Ok(())
-    }
-
-    fn store(&mut self, pointer: Handle<Expression>, value: Handle<Expression>) -> Result<(), DualError> {
-        let text = self.value(value)?;
-        let place = self.place(pointer, "")?;
-        self.line(&format!("{place} = {text};"));
-        if root(self.function, pointer).is_some_and(|local| self.activity.locals[local.index()]) {
-            for (axis, tangent) in AXES.iter().zip(self.filled(value)) {
-                let place = self.place(pointer, axis)?;
-                self.line(&format!("{place} = {tangent};"));
-            }
-        }
-        Ok(())
-    }
-
-    fn call(
-        &mut self,
-        callee: Handle<Function>,
-        arguments: &[Handle<Expression>],
-        result: Handle<Expression>,
-    ) -> Result<(), DualError> {
-        if arguments.iter().any(|argument| self.is_pointer(*argument)) {
-            return Err(self.unsupported("pointers as arguments"));
-        }
-        let here = self.name(result);
-        let name = self.module.functions[callee].name.as_deref().unwrap_or_default();
-        let mut texts = arguments.iter().map(|argument| self.value(*argument)).collect::<Result<Vec<_>, _>>()?;
-        if !self.is_active(result) {
-            self.line(&format!("let {here} = {name}({});", texts.join(", ")));
-            self.carried[result.index()] = Some(Carried { value: here, tangents: PASSIVE });
-            return Ok(());
-        }
-        let parameters = &self.module.functions[callee].arguments;
-        for (i, text) in texts.iter_mut().enumerate().filter(|(i, _)| self.active[&callee][*i]) {
-            let [x, y, z] = self.filled(arguments[i]);
-            *text = format!("{}({text}, {x}, {y}, {z})", self.dual_type(parameters[i].ty)?);
-        }
-        self.line(&format!("let {here} = dual_{name}({});", texts.join(", ")));
-        self.carried[result.index()] = Some(fields(&here));
-        Ok(())
-    }
-
-    /// Evaluates an expression here, unless it is only a part of one that stands already.
-    fn emit(&mut self, handle: Handle<Expression>) -> Result<(), DualError> {
-        if self.is_pointer(handle) {
-            return Ok(());
-        }
-        let expression = &self.function.expressions[handle];
-        let name = self.name(handle);
-        let is_part = matches!(
-            expression,
-            Expression::Access { .. } | Expression::AccessIndex { .. } | Expression::Swizzle { .. }
-        );
-        let text = self.text(handle)?;
-        let value = if is_part { text } else { self.define(&name, &text) };
-        self.carried[handle.index()] = Some(Carried { value, tangents: PASSIVE });
-        if self.is_active(handle) {
-            let mut tangents = self.tangents(handle)?;
-            // A variable may change later; what else is as simple as a name needs no other.
-            let is_variable = matches!(expression, Expression::Load { .. });
-            for (axis, tangent) in AXES.iter().zip(&mut tangents) {
-                *tangent = tangent.take().map(|text| {
-                    let stands = is_part || (is_simple(&text) && !is_variable);
-                    if stands { text } else { self.define(&format!("{name}{axis}"), &text) }
-                });
-            }
-            self.carried[handle.index()].as_mut().expect("was written above").tangents = tangents;
-        }
-        Ok(())
     }
 
     /// Writes a `let` and gives back its name.
@@ -320,7 +98,60 @@ impl<'a> TangentWriter<'a> {
         DualError::Unsupported { function, construct: construct.to_owned() }
     }
 
-    fn line(&mut self, text: &str) {
+    /// The name of a local variable; its number keeps it apart from others.
+    pub fn local_name(&self, local: Handle<LocalVariable>) -> String {
+        let name = self.function.local_variables[local].name.as_deref().unwrap_or("e");
+        let name = name.trim_start_matches('_');
+        format!("_{name}_v{}", local.index())
+    }
+
+    /// The name of an expression.
+    pub fn name(&self, handle: Handle<Expression>) -> String {
+        let name = self.function.named_expressions.get(&handle).map_or("e", String::as_str);
+        let name = name.trim_start_matches('_');
+        format!("_{name}_{}", handle.index())
+    }
+
+    /// The type of an expression.
+    pub fn inner(&self, handle: Handle<Expression>) -> &TypeInner {
+        self.info[handle].ty.inner_with(&self.module.types)
+    }
+
+    /// Whether an expression leads to a variable.
+    pub fn is_pointer(&self, handle: Handle<Expression>) -> bool {
+        matches!(self.inner(handle), TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
+    }
+
+    /// Whether an expression is the point.
+    pub fn is_point(&self, handle: Handle<Expression>) -> bool {
+        self.is_entry && matches!(self.function.expressions[handle], Expression::FunctionArgument(0))
+    }
+
+    /// The name of an expression's type.
+    pub fn type_of(&self, handle: Handle<Expression>) -> String {
+        short(&self.module.types.type_resolution_to_string(&self.info[handle].ty))
+    }
+
+    /// The name of a type.
+    pub fn type_name(&self, ty: Handle<Type>) -> String {
+        short(&self.module.types.type_to_string(ty))
+    }
+
+    /// The name of the prelude's struct that carries a type.
+    pub fn dual_type(&self, ty: Handle<Type>) -> Result<String, DualError> {
+        let name = self.type_name(ty);
+        Ok(match name.as_str() {
+            "f32" => "DualF32",
+            "vec2f" => "DualVec2",
+            "vec3f" => "DualVec3",
+            "vec4f" => "DualVec4",
+            _ => return Err(self.unsupported(&format!("a call that hands over {name}"))),
+        }
+        .to_owned())
+    }
+
+    /// Writes a line.
+    pub fn line(&mut self, text: &str) {
         for _ in 0..self.depth {
             self.out.push_str("    ");
         }
@@ -329,17 +160,11 @@ impl<'a> TangentWriter<'a> {
     }
 }
 
-/// The fields of a value of the prelude's structs.
-fn fields(name: &str) -> Carried {
-    Carried { value: format!("{name}.v"), tangents: AXES.map(|axis| Some(format!("{name}.{axis}"))) }
-}
-
-/// Whether a text is a name or a part of a named value.
-fn is_simple(text: &str) -> bool {
-    text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
-}
-
 /// The name of a construct, from how it is printed for debugging.
 pub fn construct(of: &impl Debug) -> String {
     format!("{of:?}").split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()
+}
+
+fn short(name: &str) -> String {
+    name.replace("<f32>", "f")
 }

@@ -1,12 +1,10 @@
-//! Expressions, types and places as text.
+//! Expressions and places as text.
 
 use naga::back::binary_operation_str;
-use naga::common::wgsl::{TryToWgsl as _, TypeContext as _};
-use naga::{
-    Expression, Handle, Literal, LocalVariable, RelationalFunction, SwizzleComponent, Type, TypeInner, UnaryOperator,
-};
+use naga::common::wgsl::TryToWgsl as _;
+use naga::{Expression, Handle, Literal, RelationalFunction, SwizzleComponent, TypeInner, UnaryOperator};
 
-use super::DualError;
+use super::error::DualError;
 use super::tangent_writer::{TangentWriter, construct};
 
 impl TangentWriter<'_> {
@@ -112,62 +110,6 @@ impl TangentWriter<'_> {
             _ => Err(self.unsupported("pointers as arguments")),
         }
     }
-
-    /// The name of a local variable; its number keeps it apart from others.
-    pub fn local_name(&self, local: Handle<LocalVariable>) -> String {
-        let name = self.function.local_variables[local].name.as_deref().unwrap_or("e");
-        let name = name.trim_start_matches('_');
-        format!("_{name}_v{}", local.index())
-    }
-
-    /// The name of an expression.
-    pub fn name(&self, handle: Handle<Expression>) -> String {
-        let name = self.function.named_expressions.get(&handle).map_or("e", String::as_str);
-        let name = name.trim_start_matches('_');
-        format!("_{name}_{}", handle.index())
-    }
-
-    /// The type of an expression.
-    pub fn inner(&self, handle: Handle<Expression>) -> &TypeInner {
-        self.info[handle].ty.inner_with(&self.module.types)
-    }
-
-    /// Whether an expression leads to a variable.
-    pub fn is_pointer(&self, handle: Handle<Expression>) -> bool {
-        matches!(self.inner(handle), TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
-    }
-
-    /// Whether an expression is the point.
-    pub fn is_point(&self, handle: Handle<Expression>) -> bool {
-        self.is_entry && matches!(self.function.expressions[handle], Expression::FunctionArgument(0))
-    }
-
-    /// The name of an expression's type.
-    pub fn type_of(&self, handle: Handle<Expression>) -> String {
-        short(&self.module.types.type_resolution_to_string(&self.info[handle].ty))
-    }
-
-    /// The name of a type.
-    pub fn type_name(&self, ty: Handle<Type>) -> String {
-        short(&self.module.types.type_to_string(ty))
-    }
-
-    /// The name of the prelude's struct that carries a type.
-    pub fn dual_type(&self, ty: Handle<Type>) -> Result<String, DualError> {
-        let name = self.type_name(ty);
-        Ok(match name.as_str() {
-            "f32" => "DualF32",
-            "vec2f" => "DualVec2",
-            "vec3f" => "DualVec3",
-            "vec4f" => "DualVec4",
-            _ => return Err(self.unsupported(&format!("a call that hands over {name}"))),
-        }
-        .to_owned())
-    }
-}
-
-fn short(name: &str) -> String {
-    name.replace("<f32>", "f")
 }
 
 fn letter(component: SwizzleComponent) -> char {

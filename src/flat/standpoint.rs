@@ -1,11 +1,13 @@
-//! Relative to which points the GPU is given what it draws, so that f32 is fine enough for what is seen.
+//! The points that the GPU gets the numbers of components relative to, so that f32 is fine enough for what is seen. The
+//! renderer gets them with the arrays: it evaluates no field itself.
 
 use std::borrow::Cow;
 
 use glam::DVec3;
 
-use crate::flat::eval::field;
-use crate::flat::{Component, FlatScene, ParamRow, move_params};
+use super::arrays::{Component, FlatScene, ParamRow};
+use super::eval::field;
+use super::moved::move_params;
 use crate::geometry::{Aabb, Camera};
 
 /// How a component stands to the eye.

@@ -1,0 +1,101 @@
+//! The files of `shaders/`, put together by what they include.
+
+use std::collections::BTreeSet;
+
+use thiserror::Error;
+
+/// Every file of `shaders/`, by its path there.
+pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+/// Why a shader could not be put together.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum ShaderError {
+    /// An include names no file.
+    #[error("{from}: includes {name}, which does not exist")]
+    NoFile {
+        /// The including file.
+        from: String,
+        /// What it includes.
+        name: String,
+    },
+}
+
+/// The text of `entry` with all that it includes, each file once, before its first user. It may use nothing that is generated.
+pub fn library(entry: &str) -> Result<String, ShaderError> {
+    resolve(entry, false, &|_| None)
+}
+
+/// The same where `generated` holds the text of what has no file. What stands between `#if MODIFIERS` and `#end` is kept
+/// for scenes that have some.
+pub fn resolve(
+    entry: &str,
+    has_modifiers: bool,
+    generated: &dyn Fn(&str) -> Option<String>,
+) -> Result<String, ShaderError> {
+    let mut resolver = Resolver { has_modifiers, generated, seen: BTreeSet::new(), out: String::new() };
+    resolver.include(entry, entry)?;
+    Ok(resolver.out)
+}
+
+struct Resolver<'a> {
+    has_modifiers: bool,
+    generated: &'a dyn Fn(&str) -> Option<String>,
+    seen: BTreeSet<String>,
+    out: String,
+}
+
+impl Resolver<'_> {
+    fn include(&mut self, name: &str, from: &str) -> Result<(), ShaderError> {
+        if !self.seen.insert(name.to_owned()) {
+            return Ok(());
+        }
+        let mut generated = (self.generated)(name);
+        if let Some(text) = generated.as_mut().filter(|_| name.starts_with("generated/dual/")) {
+            // Dual functions of functions that several shapes call stand in each of their texts, and are written once.
+            let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));
+            *text = fresh.collect::<Vec<_>>().join("\n\n");
+        }
+        let text = match &generated {
+            Some(text) => text,
+            None => {
+                let missing = || ShaderError::NoFile { from: from.to_owned(), name: name.to_owned() };
+                FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
+            }
+        };
+        let mut is_wanted = true;
+        for line in text.lines() {
+            match line {
+                "#if MODIFIERS" => is_wanted = self.has_modifiers,
+                "#end" => is_wanted = true,
+                _ if is_wanted => self.line(line, name)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: &str, name: &str) -> Result<(), ShaderError> {
+        match line.strip_prefix("#include \"").and_then(|rest| rest.strip_suffix('"')) {
+            Some(included) => self.include(included, name),
+            None => {
+                self.out.push_str(line);
+                self.out.push('\n');
+                Ok(())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_named_with_what_includes_it() {
+        assert!(library("sdf/sphere.wgsl").is_ok_and(|text| text.contains("fn sdf_sphere")));
+        let error = library("no_such.wgsl").expect_err("there is no such file");
+        assert!(error.to_string().contains("no_such.wgsl"), "{error}");
+        let error = library("field/tape_surface.wgsl").expect_err("it needs what is generated");
+        assert!(error.to_string().contains("generated/"), "{error}");
+    }
+}
