@@ -1,5 +1,6 @@
 //! Joins editor and renderer in one window, and opens the window again when the graphics device is lost.
 
+mod shared_app;
 mod viewport_renderer;
 mod window;
 
@@ -18,7 +19,8 @@ use crate::editor::{Editor, Example, Message};
 use crate::gallery;
 use crate::render::{AdapterChoice, Gpu};
 use crate::scene::Scene;
-use window::Window;
+use shared_app::SharedApp;
+use window::{SMALLEST, Window};
 
 /// Why the window closed otherwise than by the artist's wish.
 #[derive(Debug, Error)]
@@ -31,14 +33,6 @@ pub enum AppError {
     Lost(usize),
 }
 
-/// What outlives a window.
-#[derive(Clone)]
-struct SharedApp {
-    editor: Rc<RefCell<Editor>>,
-    /// The device of the window that is open or was last.
-    gpu: Rc<RefCell<Option<Gpu>>>,
-}
-
 /// What the window left behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
@@ -47,9 +41,6 @@ enum Ending {
     /// The device was lost: another window is to be opened.
     DeviceLost,
 }
-
-/// The smallest that the window can be made, in points.
-const SMALLEST: egui::Vec2 = egui::vec2(800.0, 500.0);
 
 /// Most losses of the device within a minute before the program gives up.
 const MAX_LOSSES: usize = 5;

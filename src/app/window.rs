@@ -4,10 +4,13 @@ use std::time::Duration;
 
 use egui::{Vec2, vec2};
 
-use super::SharedApp;
+use super::shared_app::SharedApp;
 use super::viewport_renderer::ViewportRenderer;
 use crate::editor::{Editor, Message};
 use crate::render::{Gpu, RenderError};
+
+/// The smallest that the window can be made, in points.
+pub(super) const SMALLEST: Vec2 = vec2(800.0, 500.0);
 
 /// The window's content, as eframe runs it.
 pub(super) struct Window {
@@ -59,7 +62,7 @@ fn fit_to_screen(ctx: &egui::Context) {
 
 /// The size that fits a monitor, where this one does not; never less than a window can be.
 fn fitting(inner: Vec2, monitor: Vec2) -> Option<Vec2> {
-    let most = (monitor - AROUND).max(super::SMALLEST);
+    let most = (monitor - AROUND).max(SMALLEST);
     (inner.x > most.x || inner.y > most.y).then(|| inner.min(most))
 }
 
@@ -100,7 +103,7 @@ mod tests {
         assert_eq!(fitting(wanted, vec2(1920.0, 1080.0)), None);
         assert_eq!(fitting(wanted, vec2(1366.0, 768.0)), Some(vec2(1350.0, 696.0)));
         assert_eq!(fitting(wanted, vec2(1440.0, 900.0)), Some(vec2(1424.0, 828.0)));
-        assert_eq!(fitting(wanted, vec2(640.0, 480.0)), Some(super::super::SMALLEST));
+        assert_eq!(fitting(wanted, vec2(640.0, 480.0)), Some(SMALLEST));
         assert_eq!(fitting(vec2(900.0, 600.0), vec2(1024.0, 768.0)), None);
     }
 }

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::failure::Failure;
-use super::say;
+use super::text::say;
 use crate::render::{AdapterChoice, GpuError, adapters};
 
 /// Arguments of `isolith adapters`.

@@ -9,7 +9,7 @@ use super::adapters::AdapterArguments;
 use super::failure::Failure;
 use super::outputs::write_bytes;
 use super::progress::{Interrupts, Progress};
-use super::{complain, say};
+use super::text::{complain, say};
 use crate::bench::{
     Baseline, Bench, BenchError, BenchRow, BenchScene, Metrics, ReferenceCache, cases, csv, first_of_each, growth,
     markdown, noise, stress_sheet, stress_table, time_against_error, worst_first,

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::failure::Failure;
 use super::input::{folder, read_scene, shown};
-use super::{complain, say};
+use super::text::{complain, say};
 use crate::flat::{self, Cancel, FlatScene, Usage, flatten_until};
 use crate::mesh::MeshLibrary;
 use crate::scene::Scene;

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::text::complain;
 use crate::flat::Cancel;
 
 /// Where standard error is no terminal, a line is written this often instead of a bar.
@@ -51,7 +52,7 @@ impl Progress {
             bar.set_position((share * 1000.0) as u64);
         } else if !self.quiet && self.last_line.elapsed() > LINE_EVERY {
             self.last_line = Instant::now();
-            super::complain(&format!("{}: {:.0} %", self.task, share * 100.0));
+            complain(&format!("{}: {:.0} %", self.task, share * 100.0));
         }
         !is_canceled()
     }

@@ -12,7 +12,7 @@ use super::failure::Failure;
 use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
-use super::{complain, say};
+use super::text::{complain, say};
 use crate::flat::debug_view::{DepthRange, ViewMode};
 use crate::flat::mesh_rays::Meshes;
 use crate::flat::reference::image::render_reference;

@@ -9,8 +9,9 @@ use std::collections::HashMap;
 use glam::DMat3;
 
 use super::arrays::Join;
+use super::composition::group_of;
 use super::lower_bound::fold_bounds;
-use super::operands::{Operand, Value, group_of};
+use super::operand::{Operand, Value};
 use crate::geometry::Aabb;
 use crate::scene::Blend;
 

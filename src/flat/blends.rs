@@ -4,7 +4,8 @@ use std::collections::{HashMap, HashSet};
 
 use super::arrays::Join;
 use super::budget::Budget;
-use super::operands::{Operand, begin_with, group_of, join, size_of_fold};
+use super::composition::{begin_with, group_of, join, size_of_fold};
+use super::operand::Operand;
 use crate::geometry::Aabb;
 use crate::scene::{Blend, BlendKernel, BlendOverride, Group, Node, NodeId};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::arrays::{MAX_FLAT_NODES, MAX_FLAT_ROWS, MAX_FLAT_STEPS};
-use super::flatten::FlattenError;
+use super::error::FlattenError;
 use crate::scene::{Node, NodeId};
 
 /// Shapes and modifiers, each copy counted; entries of groups come on top.

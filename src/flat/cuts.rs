@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::arrays::Join;
 use super::budget::Budget;
 use super::lower_bound::fold_bounds;
-use super::operands::Operand;
+use super::operand::Operand;
 use crate::geometry::Aabb;
 use crate::scene::Blend;
 

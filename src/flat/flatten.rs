@@ -10,19 +10,20 @@
 use std::collections::HashMap;
 
 use glam::{DAffine3, DVec3};
-use thiserror::Error;
 
 use super::arrays::*;
 use super::batch::{batched, united};
 use super::budget::{BYTES, Budget, Cancel, FlattenLimits, LEVELS, ROWS, STACK, Usage};
 use super::collect::{Components, collect};
+use super::composition::size_of_fold;
 use super::emit::emit;
+use super::error::FlattenError;
 use super::lower_bound::fold_bounds;
-use super::operands::{Operand, size_of_fold};
+use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
 use crate::geometry::Camera;
-use crate::scene::{CameraNode, MaterialId, Node, NodeId, NodeKind, Scene};
+use crate::scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].
 const TOGETHER: &str = "the number of shapes that are blended or cut together";
@@ -32,28 +33,6 @@ const APART: &str = "the number of parts that meet others by hard union only, co
 
 /// See [`MAX_COPIES`].
 const COPIES: &str = "the number of copies of copies that are evaluated for one point";
-
-/// Why a scene has no arrays.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{name} ({node}): {what} is {value}, more than the limit of {limit}")]
-pub struct FlattenError {
-    /// The node that hit the limit.
-    pub node: NodeId,
-    /// Its name.
-    pub name: String,
-    /// What is limited.
-    pub what: &'static str,
-    /// The value reached.
-    pub value: usize,
-    /// The limit.
-    pub limit: usize,
-}
-
-impl FlattenError {
-    pub(super) fn new(node: &Node, what: &'static str, value: usize, limit: usize) -> Self {
-        Self { node: node.id, name: node.name.clone(), what, value, limit }
-    }
-}
 
 /// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node, four times as much where thousands of separate shapes
 /// are joined by place. What it takes is counted before it is done, see [`MAX_FLAT_NODES`] and the limits beside it.
@@ -288,7 +267,7 @@ fn add_component(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Attachment, Axis, Modifier, Object, ShapeKind};
+    use crate::scene::{Attachment, Axis, Modifier, NodeId, Object, ShapeKind};
 
     fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
         flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())

@@ -4,7 +4,8 @@ use glam::DAffine3;
 
 use super::blends::Joiner;
 use super::collect::{Collector, Found};
-use super::operands::{Operand, begin_with};
+use super::composition::begin_with;
+use super::operand::Operand;
 use crate::scene::{EmptyOperandResult, Group, Node, Operator};
 
 /// What stands so far.

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use glam::{DAffine3, DMat3, DVec3};
 
 use super::arrays::Join;
-use super::operands::{Operand, Value};
+use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
 use crate::geometry::singular_values;
 use crate::scene::{Blend, Node, Object, Shape};

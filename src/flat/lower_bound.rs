@@ -1,7 +1,7 @@
 //! Below what the field of a fold of operands never falls.
 
 use super::arrays::Join;
-use super::operands::Operand;
+use super::operand::Operand;
 use crate::geometry::Aabb;
 
 /// Where the surface of a fold is, and below what its field never falls.

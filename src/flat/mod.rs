@@ -6,6 +6,7 @@
 //! | `batch` | small components joined by place |
 //! | `prepare` | shape → the parameters that it is evaluated with |
 //! | `budget`, `survey`, `usage` | what flattening may take, counted before it is done |
+//! | `operand`, `composition` | what folds are made of, and how it is put together |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
 //! | `modify` | what modifiers do to bounds and steps |
@@ -28,9 +29,11 @@ mod batch;
 mod blends;
 mod budget;
 mod collect;
+mod composition;
 mod cuts;
 pub mod debug_view;
 mod emit;
+mod error;
 pub mod eval;
 mod flatten;
 mod fold;
@@ -42,7 +45,7 @@ pub mod mesh_rays;
 mod meshes;
 mod modify;
 mod moved;
-mod operands;
+mod operand;
 pub mod pick;
 mod prepare;
 pub mod reference;
@@ -57,7 +60,8 @@ pub mod view;
 
 pub use arrays::*;
 pub use budget::{Cancel, Usage};
-pub use flatten::{FlattenError, flatten, flatten_until, flatten_whole};
+pub use error::FlattenError;
+pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
 pub use modify::{MAX_NEIGHBORS, REPEAT_REACH, is_copying};

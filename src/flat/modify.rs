@@ -12,6 +12,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::arrays::modifier_rows;
 use super::lower_bound::LowerBound;
+use super::operand::Modified;
 use super::prepare::spline;
 use crate::geometry::Aabb;
 use crate::scene::{Axis, Heights, Modifier, ModifierKind};
@@ -23,25 +24,6 @@ pub(super) enum ModifierRefusal {
     Cannot(String),
     /// So many copies would have to be evaluated for one point, more than [`MAX_NEIGHBORS`].
     TooMany(usize),
-}
-
-/// A modifier that stays in the arrays, with what it makes of its content.
-#[derive(Clone, Debug)]
-pub(super) struct Modified {
-    /// Its rows, see `shaders/mod/`.
-    pub rows: Vec<[f64; 4]>,
-    /// Its data; nothing for most.
-    pub data: Rc<[[f64; 4]]>,
-    /// Around the result, in the node's own space.
-    pub bounds: Aabb,
-    /// The field is at least `bound_slope` times the distance to this.
-    pub cull_box: Aabb,
-    /// See `cull_box`.
-    pub bound_slope: f64,
-    /// How often the content may be evaluated for one point.
-    pub copies: u32,
-    /// What the artist should know.
-    pub warning: Option<String>,
 }
 
 /// The rows of images that displace, with their steepest slopes, by the modifier: all copies share them.

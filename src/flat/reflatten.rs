@@ -7,9 +7,10 @@ use super::batch::{may_be_joined, united};
 use super::budget::Cancel;
 use super::collect::{component_of, is_opened};
 use super::emit::emit;
-use super::flatten::{FlattenError, flatten_with_cuts};
+use super::error::FlattenError;
+use super::flatten::flatten_with_cuts;
 use super::lower_bound::fold_bounds;
-use super::operands::Operand;
+use super::operand::Operand;
 use crate::scene::{Material, Node, NodeKind, Scene};
 
 /// Keeps the arrays of the last scene, and makes those of the next one from them where little has

@@ -9,7 +9,8 @@
 use std::rc::Rc;
 
 use super::arrays::Join;
-use super::operands::{Operand, Value, group_of};
+use super::composition::group_of;
+use super::operand::{Operand, Value};
 
 /// Folds that need no more are left as they are: their kernels stay alike.
 const SHALLOW: u32 = 8;

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::arrays::{MAX_FLAT_LEVELS, MAX_STACK};
 use super::budget::{ENTRIES, FlattenLimits, LEVELS, STACK, STEPS};
-use super::flatten::FlattenError;
+use super::error::FlattenError;
 use super::modify::is_idle;
 use crate::scene::{Modifier, Node, NodeKind, Object, Scene, Shape};
 

@@ -3,9 +3,11 @@
 use glam::DVec3;
 use skrifa::outline::OutlinePen;
 
-use super::{MAX_TEXT_ARCS, TOLERANCE};
+use super::limits::MAX_TEXT_ARCS;
 use crate::geometry::{ArcPiece, biarc};
 
+/// How far arcs may leave the curves of the font, in heights of the font (em).
+pub const TOLERANCE: f64 = 5e-4;
 /// A curve is halved no more often than this; what is left then is off by far less than the tolerance.
 const MOST_HALVINGS: u32 = 6;
 

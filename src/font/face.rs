@@ -12,13 +12,17 @@ use skrifa::raw::{FontRef, TableProvider};
 use skrifa::{GlyphId, Tag};
 
 use super::bend::ArcPen;
-use super::{Outlines, work};
+use super::limits::MAX_TEXT_ARCS;
+use super::work;
 use crate::geometry::ArcPiece;
 
 /// Texts whose outlines are kept for each font; when there are more all are made again as they are needed.
 const KEPT_TEXTS: usize = 256;
 /// How many units the height of a font may have, as its format says.
 const EM: std::ops::RangeInclusive<i32> = 16..=16_384;
+
+/// Outlines of a text; or why it is not drawn.
+pub type Outlines = Result<Arc<[ArcPiece]>, String>;
 
 /// A glyph as it was made, or why it is not drawn.
 type Made = Result<Arc<[ArcPiece]>, String>;
@@ -121,8 +125,7 @@ impl Face {
             return self.glyph(GlyphId::NOTDEF).map(|arcs| arcs.to_vec());
         }
         let id = glyph.to_u32();
-        pen.finish()
-            .ok_or_else(|| format!("the outlines of its glyph {id} take more than {} arcs", super::MAX_TEXT_ARCS))
+        pen.finish().ok_or_else(|| format!("the outlines of its glyph {id} take more than {} arcs", MAX_TEXT_ARCS))
     }
 
     /// The outlines of a text, made by `make` if they are not known.

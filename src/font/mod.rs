@@ -6,27 +6,25 @@
 //! | `work` | counts what a glyph costs before it is drawn |
 //! | `shaping` | from letters to glyphs at places: direction, joining, kerning, other fonts for what one lacks |
 //! | `bend` | curves of fonts as arcs |
+//! | `limits` | how much a text may become |
 
 mod bend;
 mod face;
+mod limits;
 mod shaping;
 mod work;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 use glam::DVec3;
 
 use crate::geometry::{ArcPiece, arc_union};
 
-pub use face::Face;
+pub use bend::TOLERANCE;
+pub use face::{Face, Outlines};
+pub use limits::{MAX_GLYPHS, MAX_TEXT_ARCS};
 
-/// How far arcs may leave the curves of the font, in heights of the font (em).
-pub const TOLERANCE: f64 = 5e-4;
-/// Most glyphs that a text may become: fonts can make many of one letter.
-pub const MAX_GLYPHS: usize = 1_024;
-/// Most arcs that the outlines of a text may take.
-pub const MAX_TEXT_ARCS: usize = 32_768;
 /// From line to line, in heights of the font.
 const LINE: f64 = 1.2;
 /// Half the height of a capital letter: what lies half-way between base line and top, in heights of the font.
@@ -34,9 +32,6 @@ const MIDDLE: f64 = 0.347;
 /// Ends of outlines that are nearer to each other than this are one, in heights of the font: less than a hundredth of
 /// the finest grid that fonts are drawn on.
 const SNAP: f64 = 1e-6;
-
-/// Outlines of a text; or why it is not drawn.
-pub type Outlines = Result<Arc<[ArcPiece]>, String>;
 
 /// The fonts that come with the program. The second one knows more letters.
 static FONTS: LazyLock<[Face; 2]> = LazyLock::new(|| {
@@ -87,6 +82,8 @@ fn outlines(text: &str, face: Option<&Face>) -> Outlines {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
 
     fn curve(text: &str, face: Option<&Face>) -> Arc<[ArcPiece]> {

@@ -8,7 +8,7 @@ use harfrust::{BufferFlags, Direction, Script, ShapeOptions, UnicodeBuffer, scri
 use skrifa::GlyphId;
 use unicode_bidi::BidiInfo;
 
-use super::Face;
+use super::face::Face;
 
 /// A glyph at its place.
 #[derive(Clone, Copy, Debug)]

@@ -40,30 +40,14 @@ fn add(builder: &mut SceneBuilder, stand: NodeId, kind: ModifierKind, [clay, sla
             builder.add(half, object("Foot", sphere(0.19), slate).at(v(0.16, 0.19, 0.0)));
         }
         ModifierKind::Repeat => {
-            let modifier = Modifier::Repeat {
-                counts: [3, 1, 3],
-                spacing: [0.42, 1.0, 0.42],
-                offset: [0.0; 3],
-                turn: 15.0,
-                mirrored: [false; 3],
-                carve_from: [1, 0, 1],
-                carve_to: [2, 1, 2],
-            };
-            put(object("Posts", cuboid(0.2, 0.5, 0.2, 0.03), clay).at(v(-0.42, 0.25, -0.42)).modified(modifier));
+            put(object("Posts", cuboid(0.2, 0.5, 0.2, 0.03), clay).at(v(-0.42, 0.25, -0.42)).modified(grid()));
         }
         ModifierKind::Polar => {
             let modifier = Modifier::Polar { count: 9, radius: 0.5, mirrored: false };
             put(object("Ring", cuboid(0.1, 0.5, 0.22, 0.03), clay).at(v(0.0, 0.25, 0.0)).modified(modifier));
         }
         ModifierKind::Recursion => {
-            let modifier = Modifier::Recursion {
-                count: 6,
-                offset: [0.0, 0.42, 0.0],
-                rotation: [0.0, 50.0, 35.0],
-                scale: 0.72,
-                mirrored: [true, false, false],
-            };
-            put(object("Tree", capsule([0.0; 3], [0.0, 0.42, 0.0], 0.07), clay).modified(modifier));
+            put(object("Tree", capsule([0.0; 3], [0.0, 0.42, 0.0], 0.07), clay).modified(branches()));
         }
         ModifierKind::Twist => {
             let twist = Modifier::Twist { angle: 150.0 };
@@ -112,6 +96,30 @@ fn add(builder: &mut SceneBuilder, stand: NodeId, kind: ModifierKind, [clay, sla
             let node = object("Wall", cuboid(1.0, 0.8, 0.2, 0.02), clay).at(v(0.0, 0.45, 0.0));
             put(node.rotated(turn_x(-25.0)).modified(bricks));
         }
+    }
+}
+
+/// Rows and columns of turned copies around a hole.
+fn grid() -> Modifier {
+    Modifier::Repeat {
+        counts: [3, 1, 3],
+        spacing: [0.42, 1.0, 0.42],
+        offset: [0.0; 3],
+        turn: 15.0,
+        mirrored: [false; 3],
+        carve_from: [1, 0, 1],
+        carve_to: [2, 1, 2],
+    }
+}
+
+/// Two smaller copies at the end of each.
+fn branches() -> Modifier {
+    Modifier::Recursion {
+        count: 6,
+        offset: [0.0, 0.42, 0.0],
+        rotation: [0.0, 50.0, 35.0],
+        scale: 0.72,
+        mirrored: [true, false, false],
     }
 }
 

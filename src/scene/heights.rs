@@ -12,8 +12,8 @@ use image::{
 };
 
 use super::attachment::{Attachment, Content};
-use super::image_budget::spend;
-use super::limits::{MAX_HEIGHTS, MAX_IMAGE_BYTES, MAX_IMAGE_SIDE};
+use super::decode_budget::{check_size, spend};
+use super::limits::{MAX_HEIGHTS, MAX_IMAGE_BYTES};
 
 /// A grid of heights from 0 to 1, line by line; each stands in the middle of its cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,18 +108,6 @@ fn passes(bytes: &[u8], format: ImageFormat) -> u64 {
     }
     let scans = bytes.windows(2).filter(|pair| *pair == [0xff, 0xda]).count() as u64;
     scans.div_ceil(USUAL_SCANS).max(1)
-}
-
-/// Refuses an image of this size that takes so many bytes as pixels; else how many pixels it has.
-fn check_size([width, height]: [u64; 2], bytes: u64) -> Result<u64, String> {
-    let most = u64::from(MAX_IMAGE_SIDE);
-    if width > most || height > most {
-        return Err(format!("it must be at most {most} pixels wide and high, not {width} by {height}"));
-    }
-    if bytes > MAX_IMAGE_BYTES {
-        return Err(format!("its pixels take more than {} MiB", MAX_IMAGE_BYTES >> 20));
-    }
-    Ok(width * height)
 }
 
 impl Heights {

@@ -2,9 +2,11 @@
 //!
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
 
+mod attached;
 mod attachment;
 mod axis;
 pub mod check;
+mod decode_budget;
 mod drawn;
 mod empty_set;
 mod error;
@@ -21,7 +23,8 @@ mod shape;
 mod table;
 mod whole;
 
-pub use attachment::{Attached, Attachment, Content};
+pub use attached::Attached;
+pub use attachment::{Attachment, Content};
 pub use axis::Axis;
 pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
 pub use empty_set::EmptyOperandResult;

@@ -9,7 +9,8 @@ use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::attachment::{Attached, Attachment};
+use super::attached::Attached;
+use super::attachment::Attachment;
 use super::heights::Heights;
 use super::limits::{
     AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, COUNT, CURVATURE, DISPLACEMENT, POSITION, SIZE, SPACING, TAPER, THICKNESS,

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use glam::{DQuat, DVec3};
-use isolith::flat::reference::accuracy::GRAZING_ANGLE;
 use isolith::flat::reference::image::{ReferenceImage, render_reference};
+use isolith::flat::reference::tolerance::GRAZING_ANGLE;
 use isolith::flat::{GBuffer, Warning};
 use isolith::geometry::Camera;
 use isolith::render::wgsl::{Options, SkipMode};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::metrics::Allowed;
+use super::allowed::Allowed;
 use super::node::{StressNode, StressPlacement, usual_blend};
 use super::place::StressView;
 use crate::scene::{

@@ -13,6 +13,7 @@ mod sheet;
 pub use ball::{sdf_cut_sphere, sdf_death_star, sdf_hollow_cut_sphere, sdf_solid_angle, sdf_vesica};
 pub use cone::{sdf_cone, sdf_infinite_cylinder, sdf_pyramid};
 pub use fractal::{sdf_julia, sdf_kleinian, sdf_mandelbulb, sdf_menger_sponge};
+pub use planar::Data;
 pub use prism::{sdf_prism, sdf_rhombus, sdf_star, sdf_triangular_prism};
 pub use ring::{sdf_capped_torus, sdf_link, sdf_polygon_ring};
 pub use sheet::{sdf_quad, sdf_triangle};
@@ -25,9 +26,6 @@ use super::tube::sdf_tube;
 use crate::scene::{ShapeKind, for_each_shape};
 use planar::{clamp, from_segment, trapezoid};
 pub(super) use planar::{extruded, length2, length3};
-
-/// The data of a shape: the row at an index.
-pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
 
 /// Calls the function of a shape, with the data if it takes any.
 macro_rules! call {

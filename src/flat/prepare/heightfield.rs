@@ -7,7 +7,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::PreparedParams;
+use super::prepared_params::PreparedParams;
 use crate::scene::Heights;
 
 /// The steepest slope of one layer of noise with heights and cells of 1: heights differ by at most 2 between two

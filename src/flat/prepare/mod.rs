@@ -5,13 +5,15 @@
 //! | `tube` | arcs of a curve with radii |
 //! | `profile` | arcs of a profile, cut so that each only rises |
 //! | `heightfield` | layers of noise, waves, heights of an image |
+//! | `prepared_params` | the numbers that each of them makes |
 
 mod heightfield;
+mod prepared_params;
 mod profile;
 mod tube;
 
-use glam::DVec3;
 pub(super) use heightfield::spline;
+use prepared_params::{PreparedParams, bounding_sphere};
 
 use crate::geometry::Aabb;
 use crate::scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
@@ -59,26 +61,4 @@ impl PreparedShape {
         }
         Self { kind, parameters, payload, bounds }
     }
-}
-
-/// Parameters and payload of a prepared shape.
-struct PreparedParams {
-    parameters: [f64; SHAPE_FLOATS],
-    payload: Vec<[f64; 4]>,
-}
-
-impl PreparedParams {
-    /// The parameters as they stand in their first rows.
-    fn new(first: [f64; 4], second: [f64; 4], payload: Vec<[f64; 4]>) -> Self {
-        let mut parameters = [0.0; SHAPE_FLOATS];
-        parameters[..4].copy_from_slice(&first);
-        parameters[4..8].copy_from_slice(&second);
-        Self { parameters, payload }
-    }
-}
-
-/// A row with a sphere, a little larger so that f32 may round.
-fn bounding_sphere(center: DVec3, radius: f64) -> [f64; 4] {
-    let room = 1e-6 * (radius + center.abs().max_element());
-    [center.x, center.y, center.z, radius + room]
 }

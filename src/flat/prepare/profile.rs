@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::PreparedParams;
+use super::prepared_params::PreparedParams;
 use crate::geometry::{Aabb, ArcPiece};
 use crate::scene::profile_curve;
 

@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use super::{PreparedParams, bounding_sphere};
+use super::prepared_params::{PreparedParams, bounding_sphere};
 use crate::geometry::{Aabb, ArcPiece};
 use crate::scene::tube_curve;
 

@@ -6,13 +6,15 @@
 //! - *Where two nodes meet*, rounding decides which one is shown: the depth is right within [`MEETING`] footprints, and either
 //!   the reference shows that node in one of the eight pixels around, or both weigh the same in a blend, within
 //!   [`TIE`](crate::flat::eval::TIE).
-//! - *Where the ray grazes*, rounding decides what it meets: a ray that is turned by [`GRAZING_ANGLE`], which is what 32-bit
-//!   numbers can tell apart, truly shows what the picture shows. Such pixels are counted apart.
+//! - *Where the ray grazes*, rounding decides what it meets: a ray that is turned by
+//!   [`GRAZING_ANGLE`](super::tolerance::GRAZING_ANGLE), which is what 32-bit numbers can tell apart, truly shows what the
+//!   picture shows. Such pixels are counted apart.
 //!
 //! What the ray passes face on shows the same from every side: a sheet of no thickness that is drawn is wrong.
 
-use super::image::ReferenceImage;
-use crate::flat::{FlatScene, GBuffer, HitTarget};
+use super::image::{ReferenceImage, node_of};
+use super::tolerance::{MEETING, WRONG_DEPTH};
+use crate::flat::{FlatScene, GBuffer};
 use crate::scene::NodeId;
 
 /// Most pixels that may be wrong, as a share of all.
@@ -21,14 +23,6 @@ pub const MAX_WRONG_SHARE: f64 = 1e-4;
 pub const MAX_DEPTH_P99: f64 = 0.05;
 /// Largest median error of the normal, in degrees.
 pub const MAX_NORMAL_P50: f64 = 0.1;
-
-/// An error of the depth, in pixel footprints, from which on a pixel is wrong.
-pub const WRONG_DEPTH: f64 = 1.0;
-/// Two nodes meet in a pixel where both are seen at the same depth, within so many footprints.
-pub const MEETING: f64 = 0.05;
-/// By how much rounding turns a ray, in radians: the eye, the direction, their product and their sum are each rounded to 24
-/// bits.
-pub const GRAZING_ANGLE: f64 = 4.0 * f32::EPSILON as f64;
 
 /// What is to be said of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,15 +73,6 @@ pub struct Accuracy {
     pub normal_p50: f64,
     /// The same, 99th percentile.
     pub normal_p99: f64,
-}
-
-/// The node that a number in [`GBuffer::leaf`] stands for; nothing for the background.
-pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
-    match HitTarget::from_code(code) {
-        HitTarget::Background => None,
-        HitTarget::Leaf(leaf) => flat.ids.get(leaf).copied(),
-        HitTarget::Mesh(mesh) => flat.meshes.get(mesh).map(|mesh| mesh.id),
-    }
 }
 
 /// Which node a number in [`GBuffer::leaf`] stands for.

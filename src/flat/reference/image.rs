@@ -7,13 +7,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
-use super::accuracy::{GRAZING_ANGLE, WRONG_DEPTH, node_of};
 use super::shade::{shade_background, shade_decode, shade_encode, shade_surface};
+use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
 use crate::flat::eval::{SurfaceMaterial, surface};
 use crate::flat::lights::{GpuLight, gpu_lights};
 use crate::flat::mesh_rays::{Meshes, trace_meshes};
-use crate::flat::{BACKGROUND_DEPTH, FILE_SHININESS, FILE_SPECULAR, FlatScene, GBuffer, MESH_BIT, NO_LEAF};
+use crate::flat::{BACKGROUND_DEPTH, FILE_SHININESS, FILE_SPECULAR, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
 use crate::geometry::{Camera, Ray};
 use crate::mesh::{MeshHit, TriangleMesh};
 use crate::scene::NodeId;
@@ -44,6 +44,15 @@ pub struct Glimpse {
     pub depth: f32,
     /// The node.
     pub node: Option<NodeId>,
+}
+
+/// The node that a number in [`GBuffer::leaf`] stands for; nothing for the background.
+pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
+    match HitTarget::from_code(code) {
+        HitTarget::Background => None,
+        HitTarget::Leaf(leaf) => flat.ids.get(leaf).copied(),
+        HitTarget::Mesh(mesh) => flat.meshes.get(mesh).map(|mesh| mesh.id),
+    }
 }
 
 /// Rays that are turned, evenly around the one of the pixel.

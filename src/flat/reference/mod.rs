@@ -6,8 +6,10 @@
 //! | `shade` | light on surfaces, counterpart of `shaders/light` |
 //! | `image` | the whole picture by `eval`, `trace` and `shade` |
 //! | `accuracy` | how wrong a picture is, against the reference |
+//! | `tolerance` | which differences are left to rounding |
 
 pub mod accuracy;
 pub mod image;
 pub mod shade;
+pub mod tolerance;
 pub mod trace;

@@ -1,57 +1,25 @@
-//! The grids of a component, and their top cells as one array.
+//! The top cells of a component as one array.
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use rayon::prelude::*;
 
+use super::cell_encoding::{HEADER_WORDS, LEVELS};
+use super::cell_tree::{CellTree, Lengths};
 use super::domain::{Domain, domains_of};
 use super::entry::Entries;
+use super::grid::Grid;
 use super::program::full_tape;
-use super::top_cell::{CellContext, CellTreeBuilder, Cube, TapeStats, TopCell, moved};
-use super::{BRANCHES, CellTree, Grid, HEADER_WORDS, LEVELS, Lengths, MARGIN_SHARE};
-use crate::flat::{Component, FlatScene, ModifierDomain};
-use crate::geometry::Aabb;
+use super::top_cell::{CellContext, CellTreeBuilder, TapeStats, TopCell, moved};
+use crate::flat::{Component, FlatScene};
 
 /// Components of fewer entries have no cells of the finest kind: they would cost more than they save.
 const LEAST_FOR_ALL_LEVELS: u32 = 48;
 
-impl Grid {
-    /// Around what is in a domain whose field must be exact up to `exact` meters; one cell where that has no end.
-    pub(super) fn around(content: &ModifierDomain, exact: f64) -> Self {
-        let bounds = match content.bound_slope {
-            _ if exact == 0.0 => content.bounds,
-            bound_slope if bound_slope > 0.0 => content.bounds.union(&content.cull_box.expanded(exact / bound_slope)),
-            _ => Aabb::EVERYTHING,
-        };
-        let largest = 2.0 * bounds.half().max_element();
-        if !bounds.is_finite() || bounds.is_empty() || largest <= 0.0 || largest > Self::ONE_CELL.side {
-            return Self::ONE_CELL;
-        }
-        let margin = MARGIN_SHARE * largest;
-        let side = (largest + 2.0 * margin) / f64::from(BRANCHES);
-        // The largest extent falls into as many cells exactly, whatever is rounded.
-        let counts = (2.0 * (bounds.half() + margin) / side).to_array().map(|n| (n.ceil() as u32).clamp(1, BRANCHES));
-        Self { low: bounds.min - margin, side, counts, clear: exact + margin }
-    }
-
-    fn cells(&self) -> usize {
-        self.counts.iter().product::<u32>() as usize
-    }
-
-    fn cube(&self, index: usize) -> Cube {
-        let [nx, ny, _] = self.counts.map(|n| n as usize);
-        let at = DVec3::new((index % nx) as f64, (index / nx % ny) as f64, (index / nx / ny) as f64);
-        Cube { low: self.low + at * self.side, side: self.side }
-    }
-
-    /// How the GPU reads it: its numbers as bits of f32, and where its top cells stand.
-    fn header(&self, at: u32) -> [[u32; 2]; HEADER_WORDS] {
-        let [x, y, z] = self.low.as_vec3().to_array().map(f32::to_bits);
-        let [nx, ny, nz] = self.counts;
-        // A little less, so that f32 may round.
-        let clear = (self.clear * (1.0 - 1e-4)) as f32;
-        [[x, y], [z, (self.side as f32).to_bits()], [nx | ny << 8 | nz << 16, at], [clear.to_bits(), 0]]
+impl CellTree {
+    /// The tapes of a component, which must be one that may have some, however small it is.
+    pub fn build(flat: &FlatScene, component: &Component) -> Self {
+        Build::new(flat, component).fresh().0
     }
 }
 

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::CellTree;
 use super::build::{Build, TopCells};
+use super::cell_tree::CellTree;
 use super::domain::{Domain, domains_of};
 use crate::flat::eval::BlendParams;
 use crate::flat::{

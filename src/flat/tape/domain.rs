@@ -7,10 +7,16 @@
 
 use std::ops::Range;
 
-use super::{Grid, SIZE_SLACK, least_entries};
+use super::grid::{Grid, SIZE_SLACK};
+use super::tape_entry::{MAX_TAPE_DOMAINS, MAX_TAPE_ENTRIES};
 use crate::flat::eval::BlendParams;
 use crate::flat::{Component, FlatNode, FlatScene, Join, MODIFIER_ROWS, ModifierDomain, ParamRow};
 use crate::scene::ModifierKind;
+
+/// Components of at least so many entries have tapes: those of fewer are walked as fast without.
+const LEAST_TAPE_ENTRIES: u32 = 5;
+/// The same with modifiers, whose kernel has more to do for a tape.
+const LEAST_MODIFIED_ENTRIES: u32 = 24;
 
 /// A space that has tapes.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +31,28 @@ pub(super) struct Domain {
     pub copies: u32,
 }
 
+/// Whether a component has tapes: it, or what a modifier in it holds, must be bounded and large enough for them to pay.
+pub fn has_tape(flat: &FlatScene, component: &Component) -> bool {
+    let least = least_entries(component);
+    component.count >= least && has_domains(flat, component, least)
+}
+
+/// So many entries of its own space, or of what a modifier holds, have tapes.
+fn least_entries(component: &Component) -> u32 {
+    if component.is_modified() { LEAST_MODIFIED_ENTRIES } else { LEAST_TAPE_ENTRIES }
+}
+
+/// Whether a component may have tapes, however small it is.
+pub(super) fn can_have_tape(flat: &FlatScene, component: &Component) -> bool {
+    has_domains(flat, component, 1)
+}
+
+fn has_domains(flat: &FlatScene, component: &Component, least: u32) -> bool {
+    component.count <= MAX_TAPE_ENTRIES
+        && component.modifier_domains.len() <= MAX_TAPE_DOMAINS
+        && domains(flat, component, least).is_some()
+}
+
 /// The domains of a component that has tapes, because it is large or because all should have some.
 pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
     domains(flat, component, least_entries(component)).or_else(|| domains(flat, component, 1))
@@ -32,7 +60,7 @@ pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<
 
 /// The domains of a component: its own, then those of its contents; those of `least` entries have a grid. Nothing where
 /// none has.
-pub(super) fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Domain>> {
+fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Domain>> {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let rows = |node: &FlatNode| &flat.params[node.params as usize..];
     let mut exact = vec![0.0; component.modifier_domains.len()];

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
+use super::cell_tree::{Cell, CellTree};
 use super::entry::Leaf;
 use super::tape_entry::{TapeEntry, TapeOp};
-use super::{Cell, CellTree};
 use crate::flat::eval::{BlendParams, modified_field, op_join};
 use crate::flat::{Component, FlatScene, Join};
 

@@ -1,6 +1,5 @@
 //! The words of a tape. An interpreter holds an accumulator and walks them in order.
 
-use super::MAX_TAPE_DOMAINS;
 use crate::flat::{FlatNode, Join, MAX_FLAT_ROWS};
 use crate::scene::{BlendKernel, ModifierKind, ShapeKind};
 
@@ -31,6 +30,9 @@ pub struct TapeEntry(pub [u32; 2]);
 
 /// Most entries of a component that has tapes: what a tape entry can name.
 pub const MAX_TAPE_ENTRIES: u32 = 1 << (32 - ENTRY_SHIFT);
+
+/// Most contents of a component that has tapes: what a tape entry can name.
+pub const MAX_TAPE_DOMAINS: usize = 255;
 
 /// The first of the shape codes that stand for modifiers.
 pub const MODIFIED: u32 = 0xc0;

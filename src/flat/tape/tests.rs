@@ -8,7 +8,7 @@ use std::time::Duration;
 use glam::{DQuat, DVec3};
 
 use super::*;
-use crate::flat::{FlatNode, Join, eval, flatten};
+use crate::flat::{Component, FlatNode, FlatScene, Join, eval, flatten};
 use crate::scene::{
     Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
 };
@@ -411,7 +411,7 @@ fn the_largest_components_have_tapes_where_there_are_too_many() {
     let many = crate::flat::MAX_CACHED_ENTRIES / first.count as usize;
     flat.components = vec![Component { count: first.count - 1, ..first.clone() }; 2];
     flat.components.extend(vec![first; many]);
-    let found: Vec<(usize, super::tape_cache::ComponentKey)> =
+    let found: Vec<(usize, super::worker::ComponentKey)> =
         (0..flat.components.len()).map(|i| (i, (flat.ids[0], i as u32))).collect();
     let mut kept = found.clone();
     super::tape_cache::within_room(&flat, &mut kept);

@@ -6,11 +6,12 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
-
+use super::cell_encoding::{
+    BLOCK_CELLS, BRANCHES, CELL_EMPTY, CELL_REFINED, CELL_SHIFT, CELL_TAPE, LEVELS, OFFSET_MASK,
+};
 use super::entry::Entries;
+use super::grid::{Cube, SIZE_SLACK};
 use super::program::{Simplifier, Step};
-use super::{BLOCK_CELLS, BRANCHES, CELL_EMPTY, CELL_REFINED, CELL_SHIFT, CELL_TAPE, LEVELS, OFFSET_MASK, SIZE_SLACK};
 
 /// Cells with tapes no longer than this are not refined; by level, the top cells first.
 const LONGEST_UNREFINED: [usize; LEVELS as usize] = [6, 12, usize::MAX];
@@ -52,26 +53,6 @@ impl CellContext<'_> {
 
     fn has_changed(&self, tape: &[Step]) -> bool {
         tape.iter().any(|step| self.changed[step.tape_entry.entry()])
-    }
-}
-
-/// A cube: its lower corner and its edge, in meters.
-#[derive(Clone, Copy)]
-pub(super) struct Cube {
-    pub low: DVec3,
-    pub side: f64,
-}
-
-impl Cube {
-    fn center(&self) -> DVec3 {
-        self.low + 0.5 * self.side
-    }
-
-    /// The piece at `index` (x fastest) of those that it falls into when each edge is cut into `pieces`.
-    fn piece(&self, index: usize, pieces: u32) -> Self {
-        let (side, n) = (self.side / f64::from(pieces), pieces as usize);
-        let at = DVec3::new((index % n) as f64, (index / n % n) as f64, (index / n / n) as f64);
-        Self { low: self.low + at * side, side }
     }
 }
 

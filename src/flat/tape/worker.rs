@@ -6,9 +6,12 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use super::cached_tree::CachedTree;
-use super::tape_cache::ComponentKey;
 use crate::flat::FlatScene;
 use crate::guard::guarded;
+use crate::scene::NodeId;
+
+/// The node at the top of a component, and which one of those with this node it is.
+pub(super) type ComponentKey = (NodeId, u32);
 
 /// A tree that was made, or what its making panicked with.
 pub(super) type Finished = (ComponentKey, Result<CachedTree, String>);

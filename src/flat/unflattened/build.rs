@@ -1,9 +1,10 @@
 //! Nodes → parts.
 
 use glam::{DAffine3, DMat3, DVec3};
+use thiserror::Error;
 
-use super::modifier::{Deformation, Deformed};
-use super::{Leaf, Link, Part, Unsupported};
+use super::modifier::Deformation;
+use super::part::{Deformed, Leaf, Link, Part};
 use crate::flat::Join;
 use crate::flat::eval::BlendParams;
 use crate::flat::modify::is_idle;
@@ -13,6 +14,16 @@ use crate::scene::{
     Blend, BlendKernel, BlendOverride, Group, Modifier, ModifierSlot, Node, NodeId, NodeKind, Operator, RadiusUnit,
     Scene, Shape,
 };
+
+/// Why a scene has no such field.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{node}: {reason}")]
+pub struct Unsupported {
+    /// Which node.
+    pub node: NodeId,
+    /// What is not evaluated without flattening.
+    pub reason: &'static str,
+}
 
 /// The whole scene: its top is a hard union.
 pub(super) fn whole(scene: &Scene) -> Result<Part, Unsupported> {
@@ -79,8 +90,8 @@ impl Builder<'_> {
             }
             other => {
                 let Some(content) = self.modified(node, rest, &DAffine3::IDENTITY)? else { return Ok(None) };
-                let deformation =
-                    Deformation::new(other, &content).map_err(|reason| Unsupported { node: node.id, reason })?;
+                let deformation = Deformation::new(other, || content.bounds())
+                    .map_err(|reason| Unsupported { node: node.id, reason })?;
                 Ok(Some(Part::Deformed(Deformed {
                     local_from_outer: outer.inverse(),
                     scale: singular_values(&outer.matrix3).0,

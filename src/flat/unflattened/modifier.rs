@@ -1,10 +1,10 @@
 //! What modifiers do to points and values.
 
-use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+use glam::{DMat3, DQuat, DVec3, EulerRot};
 
-use super::Part;
 use crate::flat::eval::{noise_value, sdf_heights};
 use crate::flat::prepare::spline;
+use crate::geometry::Aabb;
 use crate::scene::{Axis, Modifier};
 
 /// Along an axis without end, and where there are too many cells to look at all, so many cells to either side are looked at.
@@ -15,16 +15,6 @@ const FARTHEST: f64 = 1e15;
 const MOST_CELLS: u64 = 4_096;
 /// A taper narrows to no less than this here; what is so thin is beyond the content.
 const NARROWEST: f64 = 1e-3;
-
-/// A part in a deformed space.
-#[derive(Clone)]
-pub(super) struct Deformed {
-    pub local_from_outer: DAffine3,
-    /// Factor on the local value.
-    pub scale: f64,
-    pub deformation: Deformation,
-    pub content: Box<Part>,
-}
 
 /// A modifier with all that its evaluation needs.
 #[derive(Clone)]
@@ -65,8 +55,8 @@ pub(super) struct Displacement {
 }
 
 impl Deformation {
-    /// A modifier that is neither mirror nor ring.
-    pub fn new(modifier: &Modifier, content: &Part) -> Result<Self, &'static str> {
+    /// A modifier that is neither mirror nor ring; `bounds` are those of its content.
+    pub fn new(modifier: &Modifier, bounds: impl FnOnce() -> Aabb) -> Result<Self, &'static str> {
         let radians = f64::to_radians;
         Ok(match modifier {
             Modifier::Mirror { .. } | Modifier::Polar { .. } => return Err("it is written as copies"),
@@ -112,7 +102,7 @@ impl Deformation {
                 let turn = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x));
                 let offset = DVec3::from(*offset);
                 // Both sides show what stands on the side of the next copy.
-                let bounds = content.bounds();
+                let bounds = bounds();
                 let middle = if bounds.is_finite() { offset + turn * (bounds.center() * *scale) } else { offset };
                 let side = |axis: usize| if middle[axis] < 0.0 { -1.0 } else { 1.0 };
                 let sides = [0, 1, 2].map(|axis| if mirrored[axis] { side(axis) } else { 0.0 });
@@ -120,58 +110,48 @@ impl Deformation {
             }
         })
     }
-}
 
-impl Deformed {
-    /// Whether its value follows from that of the content.
+    /// Whether the value follows from that of the content.
     pub fn is_exact(&self) -> bool {
-        let is_plain = matches!(
-            self.deformation,
-            Deformation::Elongate { .. } | Deformation::Round { .. } | Deformation::Onion { .. } | Deformation::Idle
-        );
-        is_plain && self.content.is_exact()
+        matches!(self, Self::Elongate { .. } | Self::Round { .. } | Self::Onion { .. } | Self::Idle)
     }
 
-    pub fn value(&self, p: DVec3) -> f64 {
-        self.local(self.local_from_outer.transform_point3(p)) * self.scale
-    }
-
-    fn local(&self, p: DVec3) -> f64 {
-        let content = |q: DVec3| self.content.value(q);
-        match &self.deformation {
-            Deformation::Idle => content(p),
-            Deformation::Elongate { half } => content(p - p.clamp(-*half, *half)),
-            Deformation::Round { radius } => content(p) - radius,
-            Deformation::Onion { half, walls, spacing } => {
+    /// The value at a point, with the values of the content.
+    pub fn value(&self, p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
+        match self {
+            Self::Idle => content(p),
+            Self::Elongate { half } => content(p - p.clamp(-*half, *half)),
+            Self::Round { radius } => content(p) - radius,
+            Self::Onion { half, walls, spacing } => {
                 let f = content(p);
                 // The nearest of the walls, which lie inward from the surface.
                 let nearest = (-f / spacing).round_ties_even().clamp(0.0, walls - 1.0);
                 (f + nearest * spacing).abs() - half
             }
-            Deformation::Twist { angle } => content(DQuat::from_rotation_y(-angle * p.y) * p),
-            Deformation::Bend { radius, sign } => {
+            Self::Twist { angle } => content(DQuat::from_rotation_y(-angle * p.y) * p),
+            Self::Bend { radius, sign } => {
                 // From the center of the arc, which lies at `radius` to that side.
                 let down = radius - sign * p.y;
                 content(DVec3::new(p.x.atan2(down) * radius, sign * (radius - p.x.hypot(down)), p.z))
             }
-            Deformation::Taper { change } => {
+            Self::Taper { change } => {
                 let width = (1.0 + change * p.y).max(NARROWEST);
                 content(DVec3::new(p.x / width, p.y, p.z / width))
             }
-            Deformation::Waves { amplitude, frequency, phase } => {
+            Self::Waves { amplitude, frequency, phase } => {
                 let wave = |x: f64| (x * frequency + phase).sin();
                 content(p) + amplitude * wave(p.x) * wave(p.y) * wave(p.z)
             }
-            Deformation::Noise { amplitude, frequency, octaves, seed } => {
+            Self::Noise { amplitude, frequency, octaves, seed } => {
                 let layer = |i: u32| {
                     let finer = 2.0_f64.powi(i as i32);
                     noise_value((p * *frequency * finer).to_array(), seed + i) * amplitude / finer
                 };
                 content(p) + (0..*octaves).map(layer).sum::<f64>()
             }
-            Deformation::Displacement(image) => content(p) - image.height(p),
-            Deformation::Repeat(cells) => cells.value(p, &content),
-            Deformation::Recursion { count, offset, inverse, scale, sides } => {
+            Self::Displacement(image) => content(p) - image.height(p),
+            Self::Repeat(cells) => cells.value(p, content),
+            Self::Recursion { count, offset, inverse, scale, sides } => {
                 let (mut q, mut size, mut least) = (p, 1.0, content(p));
                 for _ in 1..*count {
                     let fold = |x: f64, side: f64| if side == 0.0 { x } else { x.abs() * side };

@@ -4,6 +4,7 @@ mod backup;
 mod leftovers;
 mod stamp;
 mod target;
+mod write_step;
 mod writer;
 
 use std::fs::{self, File};
@@ -17,7 +18,9 @@ pub use backup::{KEPT_BACKUPS, backup_path};
 pub use leftovers::{keep_records_in, random_name, remove_leftovers};
 pub use stamp::Stamp;
 pub use target::{create_private_folder, is_same_place};
-pub use writer::{WriteError, WriteStep, check_writable, replace};
+use write_step::plain;
+pub use write_step::{WriteError, WriteStep};
+pub use writer::{check_writable, replace};
 
 /// Reads a scene file.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
@@ -88,13 +91,4 @@ fn is_same(scene: &Scene, again: &Scene) -> bool {
         && scene.materials() == again.materials()
         && scene.nodes().len() == again.nodes().len()
         && nodes().all(|(a, b)| a == b || check::settled((**a).clone()) == **b)
-}
-
-/// The message without the number that the system has for it.
-fn plain(error: &io::Error) -> String {
-    let text = error.to_string();
-    match text.find(" (os error") {
-        Some(end) => text[..end].to_owned(),
-        None => text,
-    }
 }

@@ -14,7 +14,7 @@ use super::format::{NodeV1, SceneV1, VERSION};
 use super::place;
 use super::weight::weigh;
 use crate::scene::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
-use crate::scene::{Material, Node, NodeId, Scene, check, image_budget, whole};
+use crate::scene::{Material, Node, NodeId, Scene, check, decode_budget, whole};
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
@@ -34,7 +34,7 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
         if let Some(id) = found.id { error.of_node(&found.name, NodeId(id)) } else { error }
     })?;
     match version(text, file)? {
-        1 => scene_from_v1(image_budget::within(|| typed(text, file))?, file),
+        1 => scene_from_v1(decode_budget::within(|| typed(text, file))?, file),
         0 => Err(FileError::new(file, "there is no version 0 of the format").at("isolith")),
         newer => {
             let reason = format!("version {newer} is newer than this program, which reads up to {VERSION}");

@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::font::Face;
-use crate::scene::attachment::{Attached, Attachment};
+use crate::scene::attached::Attached;
+use crate::scene::attachment::Attachment;
 use crate::scene::drawn::{Corners, Points};
 use crate::scene::heights::Heights;
 use crate::scene::limits::{CORNERS, Limits, POINTS, SIZE};

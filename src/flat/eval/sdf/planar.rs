@@ -1,6 +1,9 @@
-//! Distances in the plane, from which bodies of revolution and prisms are made.
+//! Distances in the plane, from which bodies of revolution and prisms are made, and what shapes with data read.
 
 use crate::flat::eval::Real;
+
+/// The data of a shape: the row at an index.
+pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
 
 /// Distance to a prism or a body of revolution, from the distances to its profile and to its caps.
 pub fn extruded<T: Real>(d: [T; 2]) -> T {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use super::leftovers::Temporary;
 use super::stamp::hash;
 use super::target::is_one_file;
-use super::writer::{Calls, WriteError, WriteStep};
+use super::write_step::{Calls, WriteError, WriteStep};
 
 /// Backups kept of a scene.
 pub const KEPT_BACKUPS: usize = 3;

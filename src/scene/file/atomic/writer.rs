@@ -1,68 +1,14 @@
 //! The one way in which this program writes a file: beside it, synced, renamed, the folder synced. Whoever reads, and
 //! whenever it is cut off, sees the old file or the new one.
 
-use std::fmt;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::backup;
 use super::leftovers::Temporary;
 use super::target::{existing, folder_of, keep_owner_and_mode, resolved, sync_folder};
-use super::{backup, plain};
-
-/// What writing does, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WriteStep {
-    /// Follow links and look at the file that stands there.
-    Resolve,
-    /// Make the temporary file beside it.
-    Create,
-    /// Write the bytes.
-    Write,
-    /// Give it owner and mode of the old file.
-    Mode,
-    /// Have them on the disk.
-    Sync,
-    /// Keep the old contents under another name.
-    Backup,
-    /// Put the new in the place of the old.
-    Rename,
-    /// Have the names on the disk.
-    SyncFolder,
-}
-
-impl WriteStep {
-    /// For messages.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Resolve => "looking at the file",
-            Self::Create => "making a temporary file beside it",
-            Self::Write => "writing the temporary file",
-            Self::Mode => "giving the temporary file the old one's mode",
-            Self::Sync => "flushing to the disk",
-            Self::Backup => "keeping the old file as a backup",
-            Self::Rename => "replacing the old file",
-            Self::SyncFolder => "flushing the folder to the disk",
-        }
-    }
-}
-
-/// Why a file was not written. Unless it is the last step that failed, the file is what it was.
-#[derive(Debug)]
-pub struct WriteError {
-    /// What failed.
-    pub step: WriteStep,
-    /// What the system says.
-    pub error: io::Error,
-}
-
-impl fmt::Display for WriteError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.step.label(), plain(&self.error))
-    }
-}
-
-impl std::error::Error for WriteError {}
+use super::write_step::{Calls, WriteError, WriteStep};
 
 /// Puts `bytes` in the place of a file, and keeps this many generations of what was there before.
 ///
@@ -77,17 +23,6 @@ pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let (target, _) = look(calls, path)?;
     let temporary = calls.call(WriteStep::Create, || Temporary::beside(&target))?;
     calls.call(WriteStep::Create, || temporary.create(true)).map(|_| ())
-}
-
-/// Every call to the system that writing consists of goes through this. Tests let any of them fail.
-pub(super) struct Calls<'a> {
-    before: &'a mut dyn FnMut(WriteStep) -> io::Result<()>,
-}
-
-impl Calls<'_> {
-    pub fn call<T>(&mut self, step: WriteStep, work: impl FnOnce() -> io::Result<T>) -> Result<T, WriteError> {
-        (self.before)(step).and_then(|()| work()).map_err(|error| WriteError { step, error })
-    }
 }
 
 fn look(calls: &mut Calls<'_>, path: &Path) -> Result<(PathBuf, Option<fs::Metadata>), WriteError> {

@@ -1,0 +1,81 @@
+//! Attachments of any kind.
+
+use super::attachment::{Attachment, Content};
+use super::heights::Heights;
+use crate::font::Face;
+
+/// An attachment of any kind, as the value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attached {
+    /// An image of heights.
+    Heights(Attachment<Heights>),
+    /// A font.
+    Font(Attachment<Face>),
+}
+
+impl Attached {
+    /// The file's name.
+    pub fn name(&self) -> Option<&str> {
+        match self {
+            Self::Heights(file) => file.name(),
+            Self::Font(file) => file.name(),
+        }
+    }
+
+    /// The file's name; or what a shape uses where there is none.
+    pub fn label(&self) -> &str {
+        let without = match self {
+            Self::Heights(_) => Heights::WITHOUT,
+            Self::Font(_) => Face::WITHOUT,
+        };
+        self.name().unwrap_or(without)
+    }
+
+    /// How the names of files that can be chosen end.
+    pub fn endings(&self) -> &'static [&'static str] {
+        match self {
+            Self::Heights(_) => Heights::ENDINGS,
+            Self::Font(_) => Face::ENDINGS,
+        }
+    }
+
+    /// The same without a file.
+    pub fn without(&self) -> Self {
+        match self {
+            Self::Heights(_) => Self::Heights(Attachment::NONE),
+            Self::Font(_) => Self::Font(Attachment::NONE),
+        }
+    }
+
+    /// The same with another file; or why it cannot be used.
+    pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
+        Ok(match self {
+            Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
+            Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::limits::MAX_ATTACHMENT_BYTES;
+
+    fn font() -> Vec<u8> {
+        epaint_default_fonts::HACK_REGULAR.to_vec()
+    }
+
+    #[test]
+    fn what_is_no_such_file_is_refused_with_a_reason() {
+        let font_as_image = Attachment::<Heights>::new("x.png", font()).unwrap_err();
+        assert!(font_as_image.starts_with("\"x.png\" must be a PNG, JPEG or EXR image"), "{font_as_image}");
+        let half = font()[..2000].to_vec();
+        let broken = Attachment::<Face>::new("x.ttf", half).unwrap_err();
+        assert!(broken.starts_with("\"x.ttf\" must be a TrueType or OpenType font"), "{broken}");
+        let huge = Attachment::<Face>::new("x.ttf", vec![0; MAX_ATTACHMENT_BYTES + 1]).unwrap_err();
+        assert!(huge.contains("at most 16 MiB"), "{huge}");
+        for bad in [r#"{"name": "x", "base64": "?"}"#, r#"{"name": "x"}"#, r#"{"name": "x", "base64": ""}"#, "7"] {
+            assert!(serde_json::from_str::<Attachment<Heights>>(bad).is_err(), "{bad}");
+        }
+    }
+}
