@@ -7,11 +7,13 @@
 //! | `sdf` and its folder, `ellipsoid`, `tube`, `profile`, `heightfield` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
 //! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |
+//! | `mixture` | mixtures of materials | `shaders/common/mixture.wgsl`, `shaders/light/material.wgsl` |
 //! | `component` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
 
 mod component;
 mod ellipsoid;
 mod heightfield;
+mod mixture;
 mod modifier;
 mod op;
 mod profile;
@@ -19,10 +21,13 @@ mod real;
 mod sdf;
 mod tube;
 
-pub use component::{SurfaceMaterial, SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
+pub use component::{SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
 pub use ellipsoid::sdf_ellipsoid;
 pub use heightfield::{
     heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,
+};
+pub use mixture::{
+    MIXED, Mixture, SurfaceMaterial, mixture_add, mixture_decoded, mixture_joined, mixture_material, mixture_of,
 };
 pub use modifier::*;
 pub use op::{

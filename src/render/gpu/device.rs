@@ -161,7 +161,7 @@ pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
 /// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default is four.
 const STORAGE_TEXTURES: u32 = 6;
 
-/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows.
+/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows, and its clock where it has one.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let required_limits = wgpu::Limits {
@@ -171,7 +171,8 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
         ..wgpu::Limits::default()
     };
-    wgpu::DeviceDescriptor { label: Some("isolith"), required_limits, ..Default::default() }
+    let required_features = adapter.op_set() & wgpu::OpSet::TIMESTAMP_QUERY;
+    wgpu::DeviceDescriptor { label: Some("isolith"), required_features, required_limits, ..Default::default() }
 }
 
 #[cfg(test)]
