@@ -19,7 +19,6 @@ struct Instance {
     texture_x: vec4f,
     texture_y: vec4f,
     albedo: vec3f,
-    specular: f32,
     visibility: u32,
     // 1: `albedo` stands for the mesh's own colors. What these cut out stays cut out.
     overridden: u32,
@@ -29,9 +28,6 @@ struct Instance {
     alpha_cutoff: f32,
     // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
     ray_origin_depth: f32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
@@ -58,7 +54,7 @@ struct Written {
     @location(0) depth: f32,
     @location(1) visibility: u32,
     @location(2) normal: vec4f,
-    @location(3) diffuse: vec4f,
+    @location(3) base_color: vec4f,
 }
 
 // The near limit is a distance along the ray. Clipped is by the depth along the view axis, which is less, by no more than this
@@ -111,5 +107,5 @@ fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     // point away though the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));
     let albedo = select(color.rgb, instance.albedo, instance.overridden == 1u);
-    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(albedo, instance.specular));
+    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(albedo, 1.0));
 }

@@ -3,15 +3,15 @@
 #include "generated/surface.wgsl"
 #include "common/probe.wgsl"
 
-// For each point the gradient with the distance, then the diffuse color.
-@group(2) @binding(1) var<storage, read_write> surfaces: array<vec4f>;
+// For each point the bits of the gradient with the distance, then the materials as they are stored.
+@group(2) @binding(1) var<storage, read_write> surfaces: array<vec4u>;
 
 @compute @workgroup_size(64)
 fn probe_surface(@builtin(global_invocation_id) id: vec3u) {
     if id.x < probe.count {
         surface_begin(subject);
         let found = surface(points[id.x].xyz);
-        surfaces[2u * id.x] = vec4f(found.gradient, found.distance);
-        surfaces[2u * id.x + 1u] = found.diffuse;
+        surfaces[2u * id.x] = bitcast<vec4u>(vec4f(found.gradient, found.distance));
+        surfaces[2u * id.x + 1u] = mixture_encoded(found.materials);
     }
 }

@@ -7,14 +7,18 @@
 #include "common/light.wgsl"
 
 @group(1) @binding(0) var<storage, read> lights: array<Light>;
-// Emission and shininess of each mesh.
-@group(1) @binding(1) var<storage, read> mesh_emissions: array<vec4f>;
+@group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
+// What each mesh is made of, but for its color.
+@group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
-@group(2) @binding(2) var diffuse_target: texture_2d<f32>;
-@group(2) @binding(3) var emission_target: texture_2d<f32>;
+// Of meshes.
+@group(2) @binding(2) var base_color_target: texture_2d<f32>;
+// Of fields: mixtures.
+@group(2) @binding(3) var material_target: texture_2d<u32>;
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
+#include "light/material.wgsl"
 #include "light/shade.wgsl"
 
 @fragment
@@ -25,16 +29,14 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let visibility = textureLoad(visibility_target, pixel, 0).x;
     var color = shade_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
-        let diffuse = textureLoad(diffuse_target, pixel, 0);
-        var emission = textureLoad(emission_target, pixel, 0);
-        if (visibility & MESH_BIT) != 0u {
-            emission = mesh_emissions[visibility & ~MESH_BIT];
+        let is_mesh = (visibility & MESH_BIT) != 0u;
+        var material = mixture_material(select(textureLoad(material_target, pixel, 0), vec4u(0u), is_mesh));
+        if is_mesh {
+            material = mesh_materials[visibility & ~MESH_BIT];
+            material.albedo = textureLoad(base_color_target, pixel, 0).rgb;
         }
         color = shade_surface(
-            diffuse.rgb,
-            diffuse.a,
-            emission.rgb,
-            emission.a,
+            material,
             direction * depth,
             textureLoad(normal_target, pixel, 0).xyz,
             -direction,

@@ -10,13 +10,12 @@
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var visibility_target: texture_2d<u32>;
 @group(2) @binding(2) var normal_target: texture_storage_2d<rgba32float, write>;
-@group(2) @binding(3) var diffuse_target: texture_storage_2d<rgba16float, write>;
-@group(2) @binding(4) var emission_target: texture_storage_2d<rgba16float, write>;
-@group(2) @binding(5) var leaf_target: texture_storage_2d<r32uint, write>;
+@group(2) @binding(3) var material_target: texture_storage_2d<rgba32uint, write>;
+@group(2) @binding(4) var leaf_target: texture_storage_2d<r32uint, write>;
 // Those in which something was hit begin at `dispatch.hits`.
-@group(2) @binding(6) var<storage, read> subtiles: array<Subtile>;
+@group(2) @binding(5) var<storage, read> subtiles: array<Subtile>;
 // RAY_COUNTS for each list.
-@group(2) @binding(7) var<storage, read> ray_counts: array<u32>;
+@group(2) @binding(6) var<storage, read> ray_counts: array<u32>;
 
 @compute @workgroup_size(8, 8)
 fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -35,8 +34,7 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     let normal = select(-ray.direction, surface.gradient / max(size, 1e-30), size > 0.0);
     if seen {
         textureStore(normal_target, pixel, vec4f(normal, size));
-        textureStore(diffuse_target, pixel, surface.diffuse);
-        textureStore(emission_target, pixel, surface.emission);
+        textureStore(material_target, pixel, mixture_encoded(surface.materials));
         textureStore(leaf_target, pixel, vec4u(surface.leaf));
     }
 }

@@ -275,6 +275,6 @@ fn data_are_found_below_blends_and_modifiers() {
     let [component] = &flat.components[..] else { panic!("one component") };
     assert!(component.is_modified() && rows == component.payload_rows as usize);
     let structure = Structure::of(&flat, component).unwrap();
-    assert_eq!(structure.rows() + structure.material_rows(), (component.param_rows - component.payload_rows) as usize);
+    assert_eq!(structure.rows(), (component.param_rows - component.payload_rows) as usize);
     agree("data", &scene, &mut random);
 }

@@ -4,6 +4,7 @@
 use std::time::{Duration, Instant};
 
 use isolith::document::{Document, Edit};
+use isolith::flat::debug_view::{Look, Span};
 use isolith::flat::{FlatScene, Flattener, GBuffer, flatten};
 use isolith::gallery;
 use isolith::geometry::Camera;
@@ -232,4 +233,42 @@ fn tapes_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     assert!(uploaded_once >= uploaded);
     assert!(picture(&mut renderer, &flat, &camera) == last);
     assert_eq!(renderer.uploaded(), uploaded_once, "what has not changed is not uploaded");
+}
+
+/// Passes that every picture has, and those that only some have.
+const ALWAYS: [&str; 5] = ["mesh", "cone", "trace", "surface", "shade"];
+const SOMETIMES: [&str; 3] = ["farthest", "inspect", "overlay"];
+
+#[test]
+fn each_pass_has_a_row_with_its_time() {
+    let bench_scene = bench_scene();
+    let (gpu, mut renderer) = own_renderer();
+    let untimed = draw(&mut renderer, &bench_scene).expect("a picture");
+    assert!(renderer.timings().is_none(), "nobody has asked");
+    renderer.set_timing(true);
+    let started = Instant::now();
+    assert!(draw(&mut renderer, &bench_scene).expect("a picture") == untimed, "taking time changes nothing");
+    let whole = started.elapsed().as_secs_f64();
+    if !gpu.device.features().contains(wgpu::Features::TIMESTAMP_QUERY) {
+        assert!(renderer.timings().is_none(), "the device has no clock");
+        return;
+    }
+    let rows = renderer.timings().expect("the device has a clock");
+    let runs = |label: &str| rows.iter().find(|row| row.label == label).unwrap_or_else(|| panic!("no {label}")).runs;
+    assert_eq!(rows.len(), ALWAYS.len() + SOMETIMES.len());
+    assert!(ALWAYS.iter().all(|label| runs(label) > 0) && SOMETIMES.iter().all(|label| runs(label) == 0), "{rows:?}");
+    let sum: f64 = rows.iter().map(|row| row.seconds).sum();
+    assert!(sum > 0.0 && sum <= whole, "{sum} of {whole} s: {rows:?}");
+    // Grid and look are passes over the finished picture.
+    let BenchScene { flat, meshes, camera, .. } = &bench_scene;
+    let grid = OverlaySettings { grid: true, ..OverlaySettings::default() };
+    let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], grid).expect("a frame");
+    let span = Span::of(&flat.content(meshes), camera.position);
+    renderer.debug_view(&mut frame, Look::Normals, flat, &span).expect("a look");
+    renderer.advance(&mut frame, Duration::MAX).expect("a picture");
+    let rows = renderer.timings().expect("the device has a clock");
+    let ran = |label: &str| rows.iter().any(|row| row.label == label && row.runs > 0);
+    assert!(ran("inspect") && ran("overlay") && !ran("farthest"), "{rows:?}");
+    renderer.set_timing(false);
+    assert!(renderer.timings().is_none());
 }

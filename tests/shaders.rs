@@ -198,15 +198,11 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 texture_x,
                 texture_y,
                 albedo,
-                specular,
                 visibility,
                 overridden,
                 mirrored,
                 alpha_cutoff,
-                ray_origin_depth,
-                padding_0,
-                padding_1,
-                padding_2
+                ray_origin_depth
             }
         ),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),

@@ -8,13 +8,6 @@ struct FlatNode {
     material: u32,
 }
 
-struct FlatMaterial {
-    albedo: vec3f,
-    specular: f32,
-    emission: vec3f,
-    shininess: f32,
-}
-
 // A component, as it stands to the eye.
 struct Component {
     // The point that `ray_origin_depth` puts before the eye on the view axis, relative to the component's origin.
@@ -55,7 +48,6 @@ const MODIFIER_ROWS: u32 = 6u;
 @group(1) @binding(1) var params: texture_storage_2d<rgba32float, read>;
 // The component that a dispatch is about: its first word at a place that the CPU chooses.
 @group(1) @binding(2) var<uniform> subject: Component;
-@group(1) @binding(3) var<storage, read> materials: array<FlatMaterial>;
 
 // Rows and words stand in textures of this width, line after line.
 const LINE: u32 = 4096u;

@@ -30,7 +30,7 @@ fn surface_begin(component: Component) {
 
 fn surface(p: vec3f) -> Surface {
     var q = p;
-    var so_far = Surface(0.0, surface_first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+    var so_far = Surface(0.0, surface_first, vec3f(0.0), mixture_none());
     var depth = 0u;
     var at = surface_first;
     while at < surface_end {
@@ -50,7 +50,7 @@ fn surface(p: vec3f) -> Surface {
                     let copy = modifier_next(kind, local, 0u, least, row);
                     surface_outside[depth] = q;
                     surface_local[depth] = local;
-                    surface_least[depth] = Surface(least, at, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+                    surface_least[depth] = Surface(least, at, vec3f(0.0), mixture_none());
                     surface_copy[depth] = copy;
                     has_content = copy < NO_COPY;
                     if has_content {

@@ -16,8 +16,7 @@ fn joined_surface(join: u32, kernel: u32, blend_params: vec4f, before: Surface, 
         joined.x,
         select(before.leaf, so_far.leaf, w > 0.5),
         before.gradient * joined.y + so_far.gradient * joined.z,
-        mix(before.diffuse, so_far.diffuse, w),
-        mix(before.emission, so_far.emission, w),
+        mixture_joined(before.materials, so_far.materials, w),
     );
 }
 
@@ -36,10 +35,9 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
     so_far.distance = joined.x;
     so_far.leaf = select(before.leaf, at, w > 0.5);
     if w > 0.0 || joined.z != 0.0 {
-        let m = materials[nodes[at].material];
         so_far.gradient += joined_surface_gradient(shape, row, blend_params, p) * joined.z;
-        so_far.diffuse = mix(before.diffuse, vec4f(m.albedo, m.specular), w);
-        so_far.emission = mix(before.emission, vec4f(m.emission, m.shininess), w);
+        let left = Mixture(before.materials.ids, before.materials.weights * (1.0 - w));
+        so_far.materials = mixture_add(left, nodes[at].material, w);
     }
     return so_far;
 }

@@ -5,7 +5,7 @@
 #include "sdf/op.wgsl"
 
 // The component's rows; a specialized pipeline knows at which of them each leaf begins.
-@group(1) @binding(4) var<uniform> rows: array<vec4f, ROW_COUNT>;
+@group(1) @binding(3) var<uniform> rows: array<vec4f, ROW_COUNT>;
 
 fn placed(p: vec3f, x: vec4f, y: vec4f, z: vec4f) -> vec3f {
     return vec3f(dot(x.xyz, p) + x.w, dot(y.xyz, p) + y.w, dot(z.xyz, p) + z.w);

@@ -1,12 +1,13 @@
 // What a surface is like at a point.
 
+#include "common/mixture.wgsl"
+
 struct Surface {
     distance: f32,
     // The leaf that outweighs the others at each blend: entry of the subtree-extent array.
     leaf: u32,
     // Of the field: not of unit length where space is stretched.
     gradient: vec3f,
-    // Albedo and specular, emission and shininess: mixed by the blends' weights.
-    diffuse: vec4f,
-    emission: vec4f,
+    // By the blends' weights.
+    materials: Mixture,
 }

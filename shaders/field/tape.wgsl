@@ -3,7 +3,7 @@
 #include "common/walked.wgsl"
 
 // Headers, cells, then tape entries, two words each; see `CellTree` on the CPU.
-@group(1) @binding(5) var tapes: texture_storage_2d<rg32uint, read>;
+@group(1) @binding(4) var tapes: texture_storage_2d<rg32uint, read>;
 
 fn tape_word(at: u32) -> vec2u {
     return textureLoad(tapes, vec2u(at % LINE, at / LINE)).xy;

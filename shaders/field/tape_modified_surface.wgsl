@@ -36,7 +36,7 @@ fn surface_joined(tape_entry: vec2u, before: Surface, so_far: Surface) -> Surfac
 }
 
 fn surface_at(distance: f32) -> Surface {
-    return Surface(distance, tape_component.first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+    return Surface(distance, tape_component.first, vec3f(0.0), mixture_none());
 }
 
 // The modifier that a tape entry stands for, at its first copy.

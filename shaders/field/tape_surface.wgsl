@@ -12,7 +12,7 @@ fn surface_begin(component: Component) {
 
 fn surface(p: vec3f) -> Surface {
     tape_find(tape_own_grid(), p);
-    var so_far = Surface(tape_bound, tape_component.first, vec3f(0.0), vec4f(0.0), vec4f(0.0));
+    var so_far = Surface(tape_bound, tape_component.first, vec3f(0.0), mixture_none());
     var depth = 0u;
     for (var at = tape_range.x; at < tape_range.y; at += 1u) {
         let tape_entry = tape_word(at);

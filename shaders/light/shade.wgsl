@@ -1,27 +1,24 @@
 // Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from everywhere.
-// Needs `lights: array<Light>`. All colors are linear until `shade_encode`.
+// Needs `lights: array<Light>` and `light/material.wgsl`. All colors are linear until `shade_encode`.
 
 // `position` is relative to the eye; `normal` and `to_eye` have unit length.
 fn shade_surface(
-    albedo: vec3f,
-    specular: f32,
-    emission: vec3f,
-    shininess: f32,
+    material: FlatMaterial,
     position: vec3f,
     normal: vec3f,
     to_eye: vec3f,
     ambient: vec3f,
     light_count: u32,
 ) -> vec3f {
-    var color = emission + albedo * shade_ambient(normal.y, ambient);
+    var color = material.emission + material.albedo * shade_ambient(normal.y, ambient);
     for (var i = 0u; i < light_count; i++) {
         let light = lights[i];
         let incoming = shade_incoming(light, position);
         let facing = max(dot(normal, incoming.xyz), 0.0);
         let halfway = incoming.xyz + to_eye;
         let alignment = max(dot(normal, halfway), 0.0) / max(length(halfway), 1e-6);
-        let highlight = specular * pow(alignment, shininess);
-        color += (albedo + highlight) * light.color * (facing * incoming.w);
+        let highlight = material.specular * pow(alignment, material.shininess);
+        color += (material.albedo + highlight) * light.color * (facing * incoming.w);
     }
     return color;
 }

@@ -115,9 +115,10 @@ impl From<RenderError> for Failure {
             RenderError::Canceled => Self::Canceled,
             RenderError::Gpu(error) => error.into(),
             RenderError::Size(..) => Self::Usage(error.to_string()),
-            RenderError::Shader(_) | RenderError::Counts(..) | RenderError::TooManyDispatches(..) => {
-                Self::Other(error.to_string())
-            }
+            RenderError::Shader(_)
+            | RenderError::Counts(..)
+            | RenderError::TooManyDispatches(..)
+            | RenderError::FieldBuffers { .. } => Self::Other(error.to_string()),
         }
     }
 }

@@ -168,17 +168,12 @@ pub const FIRST_EXTENDED_KERNEL: u32 = 3;
 /// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
 /// space. A run has the same rows: the largest support of its operands, and bounds
 /// and slope that hold for the field of each of them.
-///
-/// Behind the rows of all entries of a component stand those of the materials of its leaves, [`MATERIAL_ROWS`] for each
-/// leaf in their order, once more: kernels that know the structure know where they are.
 pub type ParamRow = [f32; 4];
 
 /// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
 pub const ROW_ALIGNMENT: usize = 16;
 /// Rows of a leaf before its parameters.
 pub const LEAF_ROWS: usize = 4;
-/// Rows of the material of a leaf.
-pub const MATERIAL_ROWS: usize = 2;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
 
@@ -241,14 +236,6 @@ pub struct FlatMaterial {
     pub emission: [f32; 3],
     /// Blinn-Phong exponent.
     pub shininess: f32,
-}
-
-impl FlatMaterial {
-    /// As rows: albedo and specular, emission and shininess.
-    pub fn rows(&self) -> [ParamRow; MATERIAL_ROWS] {
-        let ([r, g, b], [red, green, blue]) = (self.albedo, self.emission);
-        [[r, g, b, self.specular], [red, green, blue, self.shininess]]
-    }
 }
 
 /// A light with its place in the world.

@@ -23,7 +23,6 @@ pub(super) fn emit(
     let params = flat.params.len().next_multiple_of(ROW_ALIGNMENT);
     flat.params.resize(params, [0.0; 4]);
     let stack = emit_fold(flat, operands, origin, material);
-    emit_materials(flat, first);
     let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
     let mut modifier_domains = Vec::new();
@@ -60,13 +59,6 @@ fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
         Some(placing.iter().fold(0.0_f64, |most, row| most.max(f64::from(row[3].abs()))))
     };
     flat.nodes[first..].iter().filter_map(farthest).fold(size, f64::max)
-}
-
-/// Appends the materials of the leaves from the entry `first` on.
-fn emit_materials(flat: &mut FlatScene, first: usize) {
-    for node in flat.nodes[first..].iter().filter(|node| node.is_leaf()) {
-        flat.params.extend(flat.materials[node.material as usize].rows());
-    }
 }
 
 /// How often a leaf of the operand may be evaluated for one point.

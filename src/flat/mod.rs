@@ -19,6 +19,7 @@
 //! | `reference` | the reference renderer: a whole picture in f64, and how wrong another one is |
 //! | `pick` | which node a ray hits |
 //! | `tape` | which entries of a large component matter where |
+//! | `mixture` | materials of a pixel with their weights; counterpart of `shaders/common/mixture.wgsl` |
 //! | `meshes` | the meshes that a scene names, loaded |
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
@@ -43,6 +44,7 @@ mod lights;
 mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
+pub mod mixture;
 mod modify;
 mod moved;
 mod operand;

@@ -2,19 +2,19 @@
 //!
 //! | lives as long as | types |
 //! |---|---|
-//! | the device | [`Gpu`], `Layouts`, the pipelines of passes without fields |
+//! | the device | [`Gpu`], `Layouts`, `Passes` with the pipelines of passes without fields |
 //! | a structure or template | [`PipelineCache`]: the interpreter, and specialized pipelines as they become ready |
-//! | the scene | `SyncedBuffer` buffers: nodes, numbers, materials; meshes by their own life |
-//! | the picture's size | `Targets` |
-//! | the frame | [`Frame`]: the dispatches that are still to be done; view, components, lights |
+//! | the scene | `SceneResources`: nodes, numbers, materials, lists; meshes by their own life |
+//! | the picture's size | `Targets`, one set for each [`Slot`] |
+//! | the frame | `FrameResources`: view, lights, dispatches; [`Frame`]: what is still to be done |
 //!
-//! The frame, in order: mesh (clears, then triangles), hiz (only with meshes), cone and
-//! trace (each component, front to back), surface, shade, debug_view (only where a view mode is asked for), overlay. See `frame::plan` for how it is cut into dispatches.
+//! In which order the passes of a frame come stands in `recipe`. See `frame::plan` for how it is cut into dispatches.
 
 mod frame;
 mod gpu;
 mod passes;
 mod pipelines;
+mod recipe;
 mod renderer;
 mod resources;
 pub mod wgsl;
@@ -29,6 +29,6 @@ pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
 pub use pipelines::cache::PipelineCache;
 pub use pipelines::strategy::EvalStrategy;
-pub use renderer::{Counts, Distribution, Frame, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
+pub use renderer::{Counts, Distribution, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

@@ -1,71 +1,49 @@
 //! The renderer: takes a flat scene and a camera, delivers a picture, in dispatches that can be waited for.
 
 mod choice;
+mod error;
+pub(super) mod evaluation;
 mod frame;
 mod measure;
-mod picture;
 mod pixel_counts;
-mod record;
+pub(super) mod recorder;
+pub(super) mod resources;
+pub(super) mod scene;
+pub(super) mod timings;
 mod unfinished;
-mod upload;
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use thiserror::Error;
-
-use super::passes::debug_view::DebugViewPass;
-use super::passes::hiz::HizPass;
-use super::passes::mesh::MeshPass;
-use super::passes::overlay::{OverlayPass, OverlaySettings};
-use super::passes::shade::ShadePass;
-use crate::flat::debug_view::ViewMode;
+use super::passes::overlay::OverlaySettings;
+use super::passes::{Building, Passes};
+use super::recipe::{Extent, Pass};
+use crate::flat::debug_view::{DepthRange, ViewMode};
 use crate::flat::standpoint::Standpoints;
-use crate::flat::{Cancel, FlatScene, ParamRow, TapeCache};
+use crate::flat::{Cancel, FlatScene, GBuffer, TapeCache, Warning};
 use crate::geometry::Camera;
 use crate::mesh::TriangleMesh;
 use crate::render::frame::cost_model::CostModel;
-use crate::render::frame::plan::{EvaluationCost, FramePlan, TooLong, plan};
-use crate::render::gpu::{Gpu, GpuError};
+use crate::render::frame::plan::{FramePlan, Room, TooMuch, plan};
+use crate::render::gpu::Gpu;
+use crate::render::gpu::readback::{read_buffers, read_color, read_words_at};
 use crate::render::pipelines::cache::PipelineCache;
 use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT};
-use crate::render::resources::tape_texture::TapeTexture;
-use crate::render::resources::targets::{Target, Targets};
+use crate::render::resources::layouts::Layouts;
 use crate::render::resources::uniforms::UNIFORM_STRIDE;
-use crate::render::wgsl::{MAX_PIPELINE_ROWS, Options, ShaderError, SkipMode};
-use crate::scene::NodeId;
+use crate::render::wgsl::{Options, SkipMode};
 
-use choice::Chosen;
+use choice::{Chosen, Evaluators, check};
+pub use error::RenderError;
 pub use frame::Frame;
 pub use measure::Counts;
 pub use pixel_counts::{Distribution, PixelCounts, TraceCounts};
-use unfinished::GoingOn;
-use upload::{Groups, template_windows};
-
-/// Why there is no picture.
-#[derive(Debug, Error)]
-pub enum RenderError {
-    /// The device.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// A shader could not be put together.
-    #[error(transparent)]
-    Shader(#[from] ShaderError),
-    /// The picture is larger than the device allows.
-    #[error("a picture of {0} by {1} pixels is not possible; the device's limit is {2} a side")]
-    Size(u32, u32, u32),
-    /// What each pixel takes cannot be counted in one buffer of the device.
-    #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
-    Counts(u32, u32),
-    /// What is to be done is more than one buffer of the device lists: most of it for this node.
-    #[error("a picture of {0} by {1} pixels takes too many steps for this device, most of them for node {2}")]
-    TooManyDispatches(u32, u32, NodeId),
-    /// The caller asked to stop.
-    #[error("canceled")]
-    Canceled,
-}
+use recorder::{Recorder, meet};
+use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
+use scene::SceneResources;
+pub use timings::PassTime;
+use timings::PassTimings;
 
 /// What a frame is expected to take that cannot be drawn yet.
 const LONGEST: Duration = Duration::from_secs(1_000_000);
@@ -79,67 +57,26 @@ pub enum Slot {
     Preview,
 }
 
-/// Targets of a picture with the bind groups that lead to them; remade when its size changes or a
-/// buffer or pipeline is replaced.
-#[derive(Debug)]
-struct SlotState {
-    targets: Targets,
-    /// What the picture is enlarged to where marks are drawn over it that it is too coarse for.
-    enlarged: Option<Target>,
-    groups: Option<Groups>,
-}
-
 /// Draws flat scenes.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
-    layouts: Layouts,
+    scene: SceneResources,
+    resources: FrameResources,
+    passes: Passes,
     pipelines: PipelineCache,
-    strategy: EvalStrategy,
-    hiz: HizPass,
-    shade: ShadePass,
-    mesh: MeshPass,
-    overlay: OverlayPass,
-    /// Built where somebody looks.
-    debug_view: Option<DebugViewPass>,
-    nodes: SyncedBuffer,
-    /// For the windows of specialized pipelines.
-    rows: SyncedBuffer,
-    /// For those of pipelines for templates.
-    template_rows: SyncedBuffer,
-    /// The same numbers once more, for pipelines that walk.
-    params: DataTexture,
-    tapes: TapeTexture,
     tape_cache: TapeCache,
-    cancel: Cancel,
-    components: SyncedBuffer,
-    materials: SyncedBuffer,
-    view: SyncedBuffer,
-    lights: SyncedBuffer,
-    mesh_emissions: SyncedBuffer,
-    dispatch_params: SyncedBuffer,
-    subtiles: SyncedBuffer,
-    subtile_counts: SyncedBuffer,
-    rays: SyncedBuffer,
-    ray_counts: SyncedBuffer,
-    nothing: SyncedBuffer,
-    march_counts: SyncedBuffer,
-    /// Whether pipelines count.
-    counting: bool,
-    slots: [Option<SlotState>; 2],
+    strategy: EvalStrategy,
     cost_model: CostModel,
+    timings: PassTimings,
+    cancel: Cancel,
 }
 
-/// Bytes of a pipeline's window on the rows of its component. As much room is kept behind the last row, so
-/// that the window on the last component does not end outside the buffer.
-pub(super) const PIPELINE_WINDOW: usize = MAX_PIPELINE_ROWS as usize * size_of::<ParamRow>();
-/// Bytes of a subtile in a list.
-const SUBTILE_BYTES: usize = 12;
-/// Words of a list of subtiles, and of a list of what its rays leave: see `shaders/common/subtiles.wgsl`.
-const SUBTILE_COUNTS: usize = 5;
-const RAY_COUNTS: usize = 7;
-/// Invocations in a workgroup of the cone pass.
-const CONE_GROUP: u32 = 64;
+/// What is to be done for a picture, before anything is uploaded for it.
+struct Prepared {
+    chosen: Chosen,
+    plan: FramePlan,
+}
 
 impl Renderer {
     /// A renderer on `gpu`. Its interpreter knows no shape until a scene brings one.
@@ -153,42 +90,30 @@ impl Renderer {
         Options { skip_mode, ..Options::default() }
     }
 
-    /// The same with pipelines of these options.
+    /// A renderer for looks that count: its pipelines count, and components are walked by tapes, so that none
+    /// has to be compiled for a view mode.
+    pub fn counting(gpu: &Gpu) -> Result<Self, RenderError> {
+        let mut renderer = Self::with_options(gpu, Options { counting: true, ..Self::options(gpu) })?;
+        renderer.set_strategy(EvalStrategy::Tape);
+        Ok(renderer)
+    }
+
+    /// A renderer with pipelines of these options.
     pub fn with_options(gpu: &Gpu, options: Options) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
-        let storage = |label| SyncedBuffer::storage(device, label);
+        let pipelines = PipelineCache::new(gpu, &layouts, options)?;
+        let building = Building { device, layouts: &layouts, field: pipelines.field() };
         let renderer = Self {
-            pipelines: PipelineCache::new(gpu, &layouts, options)?,
-            strategy: EvalStrategy::Auto,
-            hiz: HizPass::new(device, &layouts)?,
-            shade: ShadePass::new(device, &layouts)?,
-            mesh: MeshPass::new(device, &layouts)?,
-            overlay: OverlayPass::new(device, &layouts)?,
-            debug_view: None,
-            nodes: storage("nodes"),
-            rows: SyncedBuffer::uniform(device, "rows"),
-            template_rows: SyncedBuffer::uniform(device, "rows of templates"),
-            params: DataTexture::new(device, "params", PARAMS_FORMAT),
-            tapes: TapeTexture::new(device),
+            passes: Passes::new(building)?,
+            pipelines,
+            scene: SceneResources::new(device, layouts.scene.clone()),
+            resources: FrameResources::new(device, layouts, options.counting),
             tape_cache: TapeCache::default(),
-            cancel: Cancel::default(),
-            components: SyncedBuffer::uniform(device, "components"),
-            materials: storage("materials"),
-            view: SyncedBuffer::uniform(device, "view"),
-            lights: storage("lights"),
-            mesh_emissions: storage("mesh emissions"),
-            dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
-            subtiles: storage("subtiles"),
-            subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
-            rays: storage("rays"),
-            nothing: storage("nothing"),
-            ray_counts: SyncedBuffer::indirect(device, "ray counts"),
-            march_counts: SyncedBuffer::read_back(device, "march counts"),
-            counting: options.counting,
-            slots: [None, None],
+            strategy: EvalStrategy::Auto,
             cost_model: CostModel::new(gpu.is_software()),
-            layouts,
+            timings: PassTimings::default(),
+            cancel: Cancel::default(),
             gpu: gpu.clone(),
         };
         gpu.check()?;
@@ -206,8 +131,15 @@ impl Renderer {
         self.tape_cache.set_cancel(cancel);
     }
 
-    fn check_cancel(&self) -> Result<(), RenderError> {
-        if self.cancel.is_canceled() { Err(RenderError::Canceled) } else { Ok(()) }
+    /// Takes the time of each pass from now on, or no more. That takes time itself: each component has passes of its own then.
+    pub fn set_timing(&mut self, is_on: bool) {
+        self.timings = if is_on { PassTimings::new(&self.gpu) } else { PassTimings::default() };
+    }
+
+    /// What each pass of the recipe has taken in the frame that was begun last; `None` where no time is taken, or the device
+    /// has no clock.
+    pub fn timings(&self) -> Option<&[PassTime]> {
+        self.timings.rows()
     }
 
     /// How many pipelines are being built.
@@ -242,42 +174,52 @@ impl Renderer {
 
     /// Bytes of scene data uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        let buffers = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials]
-            .map(SyncedBuffer::uploaded);
-        buffers.iter().sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
+        self.scene.uploaded()
     }
 
     /// How long a whole frame is expected to take. While tapes are being made it may be more than can be drawn at all.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        let Chosen { evaluations, .. } = self.choose(flat, camera)?;
-        match self.plan(flat, camera, size, &evaluations) {
+        match self.prepare(flat, camera, size) {
             Err(RenderError::TooManyDispatches(..)) if self.tape_cache.building() > 0 => Ok(LONGEST),
-            plan => {
-                Ok(Duration::from_secs_f64(self.cost_model.seconds_of_frame(plan?.cost()).min(LONGEST.as_secs_f64())))
+            prepared => {
+                let seconds = self.cost_model.seconds_of_frame(prepared?.plan.cost());
+                Ok(Duration::from_secs_f64(seconds.min(LONGEST.as_secs_f64())))
             }
         }
     }
 
-    /// The dispatches of a frame, no more than the device holds. A component of a thousand leaves that is walked without tapes on
-    /// a driver that ends loops early makes it long.
-    fn plan(
-        &self,
-        flat: &FlatScene,
-        camera: &Camera,
-        size: [u32; 2],
-        evaluations: &[EvaluationCost],
-    ) -> Result<FramePlan, RenderError> {
-        let refused = |TooLong { component }| {
-            RenderError::TooManyDispatches(size[0], size[1], flat.ids[flat.components[component].first as usize])
-        };
-        plan(flat, camera, size, evaluations, &self.cost_model, self.max_dispatches()).map_err(refused)
+    /// What evaluates each component.
+    fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
+        let room = self.scene.most_words(&self.gpu.device);
+        let Self { pipelines, tape_cache, strategy, cancel, .. } = self;
+        Evaluators { pipelines, tape_cache, strategy: *strategy, room }.choose(flat, camera, cancel)
     }
 
-    /// How many dispatches the device can be told of.
-    fn max_dispatches(&self) -> usize {
+    /// What evaluates each component, and the work of a frame, no more than the device holds. A component of a thousand
+    /// leaves that is walked without tapes on a driver that ends loops early makes it long.
+    fn prepare(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let chosen = self.choose(flat, camera)?;
+        let (room, limit) = self.room();
+        let node = |component: usize| flat.ids[flat.components[component].first as usize];
+        let refused = |error| match error {
+            TooMuch::Pieces { component } => RenderError::TooManyDispatches(size[0], size[1], node(component)),
+            TooMuch::Subtiles { component, subtiles } => {
+                RenderError::FieldBuffers { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
+            }
+        };
+        let plan = plan(flat, camera, size, &chosen.evaluations, &self.cost_model, room).map_err(refused)?;
+        check(&self.cancel)?;
+        Ok(Prepared { chosen, plan })
+    }
+
+    /// What the device can be told of in one frame, and how many bytes of lists it binds.
+    fn room(&self) -> (Room, u64) {
+        let limits = self.gpu.device.limits();
         // Buffers grow by powers of two.
-        let bytes = self.gpu.device.limits().max_buffer_size.checked_ilog2().map_or(0, |bits| 1_usize << bits);
-        bytes / UNIFORM_STRIDE
+        let whole = |bytes: u64| bytes.checked_ilog2().map_or(0, |bits| 1_u64 << bits);
+        let bound = whole(limits.max_buffer_size.min(limits.max_storage_buffer_binding_size));
+        let dispatches = whole(limits.max_buffer_size) as usize / UNIFORM_STRIDE;
+        (Room { dispatches, subtiles: bound / bytes_of_subtiles(1) }, bound)
     }
 
     /// Uploads what has changed and plans the dispatches. `meshes` stands beside `flat.meshes`.
@@ -290,66 +232,55 @@ impl Renderer {
         size: [u32; 2],
         overlay: OverlaySettings,
     ) -> Result<Frame, RenderError> {
-        let limit = self.gpu.device.limits().max_texture_dimension_2d;
+        let limits = self.gpu.device.limits();
+        let limit = limits.max_texture_dimension_2d;
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
             return Err(RenderError::Size(size[0], size[1], limit));
         }
-        self.check_counts(flat.components.len(), size)?;
-        let Chosen { keys, choices, evaluations, trees } = self.choose(flat, camera)?;
-        self.check_cancel()?;
-        let plan = self.plan(flat, camera, size, &evaluations)?;
-        self.check_cancel()?;
+        if !self.resources.counts.fit(flat.components.len(), size, limits.max_storage_buffer_binding_size) {
+            return Err(RenderError::Counts(size[0], size[1]));
+        }
+        let Prepared { chosen, plan } = self.prepare(flat, camera, size)?;
         self.gpu.check()?;
-        if self.slots[slot as usize].as_ref().is_none_or(|s| s.targets.size != size) {
-            let targets = Targets::new(&self.gpu.device, size);
-            self.slots[slot as usize] = Some(SlotState { targets, enlarged: None, groups: None });
-        }
+        let Gpu { device, queue, .. } = &self.gpu;
+        self.resources.resize(device, slot, size, &overlay);
         let standpoints = Standpoints::new(flat, camera, size);
-        let (template_rows, templates) = template_windows(flat, &standpoints.params, &keys);
-        let templates_are_new = self.template_rows.set(&self.gpu.device, &self.gpu.queue, &templates);
-        if self.upload(flat, &standpoints, &trees, camera, size, &plan) || templates_are_new {
-            for state in self.slots.iter_mut().flatten() {
-                state.groups = None;
-            }
+        let (scene_is_new, template_rows) =
+            self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
+        if self.resources.upload(&self.gpu, flat, camera, size, &plan) || scene_is_new {
+            self.resources.forget_groups();
         }
-        if self.slot(slot).groups.is_none() {
-            let groups = self.bind_all(&self.slot(slot).targets);
-            if let Some(state) = &mut self.slots[slot as usize] {
-                state.groups = Some(groups);
-            }
-        }
-        self.mesh.prepare(&self.gpu.device, &self.gpu.queue, flat, meshes, camera, size);
-        if let Some(state) = &mut self.slots[slot as usize] {
-            let shown = overlay.enlarged(size);
-            let kept = state.enlarged.take().filter(|target| shown == Some(target.size()));
-            state.enlarged = kept.or_else(|| shown.map(|size| Target::shown(&self.gpu.device, size)));
-        }
+        self.passes.mesh.prepare(device, queue, flat, meshes, camera, size);
         if !overlay.is_empty() {
-            self.overlay.prepare(&self.gpu.device, &self.gpu.queue, flat, &overlay, size, camera.position);
+            self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
-        let mut frame = Frame {
-            cost_model: self.cost_model,
-            seconds: self.cost_model.seconds(plan.cost()),
-            plan,
-            keys,
-            choices,
-            next: 0,
-            seconds_done: 0.0,
-            measured: Some(Duration::ZERO),
-            relaunches_at_once: 0,
-            slot,
-            overlay,
-            view_mode: ViewMode::Shaded,
-            going_on: GoingOn::default(),
-            template_rows,
-            rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
-            origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
-        };
+        self.resources.bind(device, slot, &self.scene, &self.passes);
+        self.timings.begin();
+        let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
+        frame.template_rows = template_rows;
         if slot == Slot::Preview {
             // It is to be there at once, and the full one comes after it.
             frame.end_as_planned();
         }
         Ok(frame)
+    }
+
+    /// Has the frame end as this look; distances are colored within `depth_range`. For looks that count the renderer must be
+    /// one that does: others have counted nothing that could be shown.
+    pub fn debug_view(
+        &mut self,
+        frame: &mut Frame,
+        view_mode: ViewMode,
+        flat: &FlatScene,
+        depth_range: &DepthRange,
+    ) -> Result<(), RenderError> {
+        assert!(self.resources.counts.is_on || !view_mode.counts(), "{} needs pipelines that count", view_mode.name());
+        frame.view_mode = view_mode;
+        if view_mode != ViewMode::Shaded {
+            let Gpu { device, queue, .. } = &self.gpu;
+            self.passes.debug_view.prepare((device, queue), flat, view_mode, depth_range);
+        }
+        Ok(())
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
@@ -365,7 +296,7 @@ impl Renderer {
             let (dispatches, cost, relaunches) = frame.next_batch(&self.cost_model);
             let submitted = Instant::now();
             frame.seconds_done += frame.cost_model.seconds(cost);
-            self.submit(frame, dispatches.clone());
+            self.submit(frame, dispatches.clone())?;
             self.gpu.wait()?;
             let elapsed = submitted.elapsed();
             // The first dispatch of a pipeline may include its compilation, and a later relaunch marches an unknown
@@ -390,68 +321,178 @@ impl Renderer {
         }
     }
 
-    /// The picture in a slot: complete once its frame is done, and another texture after a
-    /// [`Renderer::begin`] of another size.
-    pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
-        self.slots[slot as usize].as_ref().map(|s| {
-            let shown = s.enlarged.as_ref().unwrap_or(&s.targets.color);
-            (&shown.view, shown.size())
-        })
-    }
-
-    fn slot(&self, slot: Slot) -> &SlotState {
-        self.slots[slot as usize].as_ref().expect("begin makes the targets")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flat::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
-    use crate::render::frame::plan::{SUBTILES, TILE};
-    use crate::render::resources::buffers::DataTexture;
-    use crate::render::wgsl::assemble_plain;
-
-    /// The value of a constant in a shader.
-    fn constant(file: &str, name: &str) -> u32 {
-        let text = assemble_plain(file).unwrap_or_else(|error| panic!("{error}"));
-        let start = format!("const {name}: u32 = ");
-        let line =
-            text.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{file}: no {name}"));
-        let digits = line.trim_end_matches(';').trim_end_matches('u');
-        let number = digits.strip_prefix("0x").map_or_else(|| digits.parse(), |hex| u32::from_str_radix(hex, 16));
-        number.unwrap_or_else(|error| panic!("{file}: {name}: {digits}: {error}"))
-    }
-
-    #[test]
-    fn shaders_have_the_same_constants() {
-        let counterparts = [
-            ("common/subtiles.wgsl", "SUBTILE_COUNTS", SUBTILE_COUNTS as u32),
-            ("common/subtiles.wgsl", "RAY_COUNTS", RAY_COUNTS as u32),
-            ("common/subtiles.wgsl", "SUBTILE", TILE / SUBTILES),
-            ("common/dispatch.wgsl", "TILE", TILE),
-            ("common/depth.wgsl", "VISIBILITY_NONE", NO_LEAF),
-            ("common/depth.wgsl", "MESH_BIT", MESH_BIT),
-            ("common/scene.wgsl", "LEAF_ROWS", LEAF_ROWS as u32),
-            ("common/scene.wgsl", "MODIFIER_ROWS", MODIFIER_ROWS as u32),
-            ("common/scene.wgsl", "GROUP", FlatNode::GROUP),
-            ("common/scene.wgsl", "RUN", FlatNode::RUN),
-            ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
-            ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
-            ("common/counts.wgsl", "COMPONENT_COUNTS", pixel_counts::COMPONENT_COUNTS as u32),
-            ("common/counts.wgsl", "PIXEL_COUNTS", pixel_counts::PIXEL_COUNTS as u32),
-        ];
-        for (file, name, ours) in counterparts {
-            assert_eq!(constant(file, name), ours, "{file}: {name}");
+    /// Hands these dispatches to the device, by the recipe. With the last of all go the passes over the finished picture.
+    fn submit(&mut self, frame: &Frame, range: Range<usize>) -> Result<(), RenderError> {
+        let dispatches = &frame.plan.dispatches;
+        let mut at = range.start;
+        loop {
+            let mut recorder = Recorder::new(&self.gpu, frame, &self.resources, self.timings.stamps());
+            while at < range.end && recorder.has_room() {
+                let field_pass = dispatches[at].pass;
+                let end = (at..range.end).find(|i| dispatches[*i].pass != field_pass).unwrap_or(range.end);
+                self.passes.record(field_pass, &mut recorder, at..end);
+                at = end;
+            }
+            if at == dispatches.len() {
+                for field_pass in Pass::ALL.iter().filter(|field_pass| field_pass.extent() == Extent::Finished) {
+                    self.passes.record(*field_pass, &mut recorder, at..at);
+                }
+            }
+            let timed = recorder.submit();
+            if !timed.is_empty() {
+                self.timings.add(&self.gpu, &timed)?;
+            }
+            if at == range.end {
+                return Ok(());
+            }
         }
     }
 
-    #[test]
-    fn subtiles_have_room() {
-        let text = assemble_plain("trace.wgsl").unwrap_or_else(|error| panic!("{error}"));
-        let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{error}"));
-        let (_, subtile) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Subtile")).expect("a subtile");
-        let naga::TypeInner::Struct { span, .. } = subtile.inner else { panic!("{subtile:?}") };
-        assert_eq!(span as usize, SUBTILE_BYTES);
+    /// Where rays of a frame that is done have not ended, has them go on.
+    fn go_on(&mut self, frame: &mut Frame) -> Result<(), RenderError> {
+        if !frame.may_go_on() {
+            return Ok(());
+        }
+        let unfinished = self.count_unfinished(frame)?;
+        let Some((planned, meant)) = unfinished::go_on(frame, unfinished, self.room().0.dispatches) else {
+            return Ok(());
+        };
+        if self.resources.restart(&self.gpu, frame, planned, &|component| meant[component as usize]) {
+            self.resources.forget_groups();
+            self.resources.bind(&self.gpu.device, frame.slot, &self.scene, &self.passes);
+        }
+        Ok(())
+    }
+
+    fn count_unfinished(&self, frame: &Frame) -> Result<Vec<u32>, RenderError> {
+        let counts = self.resources.counts.of_components(&self.gpu, frame.origins.len())?;
+        Ok(counts.iter().map(|counts| counts[0]).collect())
+    }
+
+    /// Which components had rays that did not come to an end within the steps allowed.
+    pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
+        Ok(match frame.unfinished() {
+            Some(counts) => frame.warnings(counts),
+            None => frame.warnings(&self.count_unfinished(frame)?),
+        })
+    }
+
+    /// Dispatches pipelines that have become ready over nothing, for this long: lavapipe compiles a pipeline, or reads what it
+    /// has compiled, when it meets it, which would hold up the next picture. Whether there are more.
+    pub fn prewarm_pipelines(
+        &mut self,
+        flat: &FlatScene,
+        camera: &Camera,
+        time: Duration,
+    ) -> Result<bool, RenderError> {
+        if !self.gpu.is_software() {
+            return Ok(false);
+        }
+        let (start, mut has_prewarmed) = (Instant::now(), false);
+        let choices = self.choose(flat, camera)?.choices;
+        let Some(groups) = self.resources.any_groups() else { return Ok(false) };
+        for choice in choices {
+            if has_prewarmed && start.elapsed() > time {
+                return Ok(true);
+            }
+            if meet(&self.gpu, groups, &choice.pipelines) {
+                has_prewarmed = true;
+                self.gpu.wait()?;
+            }
+        }
+        Ok(false)
+    }
+
+    /// The picture of a whole scene. `progress` is told the share that is done, between dispatches, and
+    /// answers whether to go on.
+    pub fn render(
+        &mut self,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        camera: &Camera,
+        size: [u32; 2],
+        progress: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
+    }
+
+    /// The same by another view mode; for those that count the renderer must be one that does.
+    pub fn render_as(
+        &mut self,
+        view_mode: ViewMode,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        camera: &Camera,
+        size: [u32; 2],
+        progress: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
+        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
+        self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
+        while !frame.is_done() {
+            if !progress(frame.progress()) {
+                return Err(RenderError::Canceled);
+            }
+            self.advance(&mut frame, Duration::ZERO)?;
+        }
+        progress(1.0);
+        Ok((self.read(&frame)?, self.unfinished_rays(&frame)?))
+    }
+
+    /// The picture in a slot: complete once its frame is done, and another texture after a
+    /// [`Renderer::begin`] of another size.
+    pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
+        self.resources.begun(slot).map(|state| (&state.shown().view, state.shown().size()))
+    }
+
+    /// Depth, normals and leaves of a finished frame, and its picture if it was shaded.
+    pub fn read(&self, frame: &Frame) -> Result<GBuffer, RenderError> {
+        Ok(read_buffers(&self.gpu, &self.resources.slot(frame.slot).targets)?)
+    }
+
+    /// The picture in a slot as it is shown, enlarged where [`OverlaySettings::shown_at`] says so.
+    pub fn read_shown(&self, slot: Slot) -> Result<Vec<[u8; 4]>, RenderError> {
+        Ok(read_color(&self.gpu, self.resources.slot(slot).shown())?)
+    }
+
+    /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
+    /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
+    pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
+        let limit = measure::limit(frame);
+        self.resources.set_work(&self.gpu, &limit.plan.dispatches);
+        let targets = &self.resources.slot(frame.slot).targets;
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("depths of the limit") };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        let [from, to] = [&targets.depth, &targets.march].map(|target| target.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, targets.depth.texture.size());
+        self.gpu.queue.submit([encoder.finish()]);
+        limit
+    }
+
+    /// Sets what a frame has counted to nothing.
+    pub fn forget_counts(&mut self, frame: &Frame) {
+        let size = self.resources.slot(frame.slot).targets.size;
+        self.resources.counts.reset(&self.gpu, frame.origins.len(), size);
+        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("forget counts") };
+        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
+        self.resources.counts.clear_pixels(&mut encoder, size);
+        self.gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// What a frame has counted, with pipelines that count.
+    pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
+        let words = self.resources.counts.of_components(&self.gpu, frame.origins.len())?;
+        let lists = self.resources.subtile_counts.buffer();
+        let lists = read_words_at(&self.gpu, lists, 0, frame.plan.lists as usize * SUBTILE_COUNTS)?;
+        Ok(Counts::new(frame, &words, &lists))
+    }
+
+    /// Bytes that hold what is counted.
+    pub fn counts_bytes(&self) -> u64 {
+        self.resources.counts.buffer().size()
+    }
+
+    /// What each pixel of the frame took that was drawn last; empty where pipelines do not count.
+    pub fn pixel_counts(&self, frame: &Frame) -> Result<PixelCounts, RenderError> {
+        Ok(self.resources.counts.of_pixels(&self.gpu, self.resources.slot(frame.slot).targets.size)?)
     }
 }

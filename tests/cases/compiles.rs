@@ -6,9 +6,12 @@ use std::time::{Duration, Instant};
 
 use isolith::flat::flatten;
 use isolith::flat::reference::image::render_reference;
-use isolith::render::EvalStrategy;
+use isolith::geometry::Camera;
 use isolith::render::wgsl::tapes_are_cheaper;
-use isolith::scene::{ShapeKind, file};
+use isolith::render::{EvalStrategy, Gpu, OverlaySettings, Renderer, Slot, coarse_size};
+use isolith::scene::{
+    Blend, BlendKernel, Group, MaterialId, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind, file,
+};
 
 use crate::gpu::{BenchScene, scenes};
 
@@ -82,5 +85,76 @@ fn nothing_waits_long_for_compiling() {
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
         // 2 to 4 s on two quiet cores; other tests run at the same time.
         assert!(started.elapsed() < Duration::from_secs(20), "{name}: {:?}", started.elapsed());
+    }
+}
+
+/// Groups in groups, each the second child of the one before, by operators in turn; a ball in each.
+fn nested(groups: usize) -> Scene {
+    let mut scene = Scene::new();
+    let mut parent = None;
+    for level in 0..groups {
+        let operator = [Operator::Union, Operator::Intersection, Operator::Difference][level % 3];
+        let group = Group::new(operator, Blend::new(BlendKernel::Quadratic, 0.02));
+        let mut add = |node: Node| scene.insert(parent, usize::MAX, node).expect("room");
+        let ball = Object { shape: Shape::Sphere { radius: 0.5 }, material: MaterialId(1) };
+        let angle = level as f64;
+        let at = glam::DVec3::new(0.3 * angle.cos(), 0.3 * angle.sin(), 0.01 * angle);
+        if level > 0 {
+            add(Node::new("", NodeKind::Object(ball.clone())).at(at));
+        }
+        let inner = add(Node::new("", NodeKind::Group(group)));
+        scene.insert(Some(inner), usize::MAX, Node::new("", NodeKind::Object(ball)).at(at)).expect("room");
+        parent = Some(inner);
+    }
+    scene
+}
+
+/// The window's pictures are these, in pixels.
+const WINDOW: [u32; 2] = [641, 401];
+/// What the window waits for: see `app::canvas`.
+const AT_ONCE: Duration = Duration::from_millis(60);
+const WORTH_WAITING: [Duration; 2] = [Duration::from_millis(1500), Duration::from_millis(300)];
+
+/// Draws as the window does when a scene is opened, with a device that was just opened. Until the first coarse picture, and
+/// until the full one.
+fn first_pictures(scene: &Scene) -> [Duration; 2] {
+    let flat = flatten(scene, 0.0).expect("within the limits");
+    let camera: Camera = flat.default_camera(&[], f64::from(WINDOW[0]) / f64::from(WINDOW[1]));
+    let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+    let mut renderer = Renderer::new(&gpu).expect("a renderer");
+    let started = Instant::now();
+    let mut full = renderer.estimate(&flat, &camera, WINDOW).expect("an estimate");
+    let draw = |renderer: &mut Renderer, slot, size| {
+        let frame = renderer.begin(slot, &flat, &[], &camera, size, OverlaySettings::default());
+        renderer.advance(&mut frame.expect("a frame"), Duration::MAX).expect("a picture");
+        started.elapsed()
+    };
+    let coarse = draw(&mut renderer, Slot::Preview, coarse_size(WINDOW, full, AT_ONCE));
+    loop {
+        renderer.pipelines().collect();
+        let waits = full > WORTH_WAITING[0] && renderer.pipelines_building() > 0;
+        if !waits && !(full > WORTH_WAITING[1] && renderer.tape_cache().building() > 0) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+        full = renderer.estimate(&flat, &camera, WINDOW).expect("an estimate");
+    }
+    [coarse, draw(&mut renderer, Slot::Full, WINDOW)]
+}
+
+/// What the first picture may take where a driver has compiled nothing yet, coarse and full: 2 and 10 s on a quiet machine, of
+/// which it takes a third. Other tests run at the same time, and made it five times as long; it was 16 s for 40 nested groups
+/// and 250 s for 100.
+const FIRST: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(50)];
+
+/// Run with `MESA_SHADER_CACHE_DISABLE=true` it tells what a cold driver takes.
+#[test]
+#[expect(clippy::print_stdout, reason = "a test has no other way to say how long something took")]
+fn the_first_pictures_of_nested_groups_wait_for_no_compiler() {
+    let case = file::load(&case("deep_nest_100_alternating.json")).unwrap_or_else(|error| panic!("{error}"));
+    for (name, scene) in [("40 nested", nested(40)), ("100 nested", nested(100)), ("the case", case)] {
+        let [coarse, full] = first_pictures(&scene);
+        println!("{name}: coarse after {:.2} s, full after {:.2} s", coarse.as_secs_f64(), full.as_secs_f64());
+        assert!(coarse < FIRST[0] && full < FIRST[1], "{name}: {coarse:?}, {full:?}");
     }
 }

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::modifier::*;
 use super::{BlendParams, BlendResult, Dual, Real, op_join, shape_distance};
-use crate::flat::{Component, FlatMaterial, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, ParamRow, leaf_payload};
+use crate::flat::mixture::{Mixture, SurfaceMaterial, mixture_joined, mixture_material, mixture_of};
+use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, ParamRow, leaf_payload};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// The field at `p`, in meters; `p` is relative to the component's origin.
@@ -40,51 +41,17 @@ pub struct SurfacePoint {
     pub leaf: u32,
     /// Whether at a blend another one weighs as much, within [`TIE`].
     pub tied: bool,
-    /// The materials, mixed by the weights of the blends.
+    /// The materials, by the weights of the blends.
+    pub materials: Mixture,
+    /// What they are, mixed.
     pub material: SurfaceMaterial,
 }
 
 /// The field at `p` with everything that the surface there needs.
 pub fn surface(flat: &FlatScene, component: &Component, p: DVec3) -> SurfacePoint {
-    let Surface { distance, leaf, tied, material } = fold(flat, component, entries(component), at(p));
-    SurfacePoint { distance: distance.v, gradient: distance.d, leaf, tied, material }
-}
-
-/// A mixture of materials; see [`FlatMaterial`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceMaterial {
-    /// Linear diffuse reflectance.
-    pub albedo: DVec3,
-    /// Strength of the highlight.
-    pub specular: f64,
-    /// Linear emitted color.
-    pub emission: DVec3,
-    /// Blinn-Phong exponent.
-    pub shininess: f64,
-}
-
-impl SurfaceMaterial {
-    fn mix(self, other: Self, weight: f64) -> Self {
-        let mix = |a: f64, b: f64| a + (b - a) * weight;
-        Self {
-            albedo: self.albedo.lerp(other.albedo, weight),
-            specular: mix(self.specular, other.specular),
-            emission: self.emission.lerp(other.emission, weight),
-            shininess: mix(self.shininess, other.shininess),
-        }
-    }
-}
-
-impl From<&FlatMaterial> for SurfaceMaterial {
-    fn from(m: &FlatMaterial) -> Self {
-        let color = |c: [f32; 3]| DVec3::from(c.map(f64::from));
-        Self {
-            albedo: color(m.albedo),
-            specular: m.specular.into(),
-            emission: color(m.emission),
-            shininess: m.shininess.into(),
-        }
-    }
+    let Surface { distance, leaf, tied, materials } = fold(flat, component, entries(component), at(p));
+    let material = mixture_material(&materials, &flat.materials);
+    SurfacePoint { distance: distance.v, gradient: distance.d, leaf, tied, materials, material }
 }
 
 fn entries(component: &Component) -> Range<usize> {
@@ -128,14 +95,14 @@ struct Surface {
     distance: Dual,
     leaf: u32,
     tied: bool,
-    material: SurfaceMaterial,
+    materials: Mixture,
 }
 
 impl Operand for Surface {
     type Number = Dual;
     fn leaf(flat: &FlatScene, index: usize, distance: Dual) -> Self {
-        let material = &flat.materials[flat.nodes[index].material as usize];
-        Self { distance, leaf: index as u32, tied: false, material: material.into() }
+        let materials = mixture_of(flat.nodes[index].material);
+        Self { distance, leaf: index as u32, tied: false, materials }
     }
     fn distance(&self) -> Dual {
         self.distance
@@ -149,7 +116,7 @@ impl Operand for Surface {
             distance: result.value,
             leaf: heavier.leaf,
             tied: heavier.tied || (result.weight - 0.5).abs() <= TIE,
-            material: self.material.mix(operand.material, result.weight),
+            materials: mixture_joined(self.materials, operand.materials, result.weight),
         }
     }
 }

@@ -19,7 +19,10 @@ mod real;
 mod sdf;
 mod tube;
 
-pub use component::{SurfaceMaterial, SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
+pub use crate::flat::mixture::{
+    MIXED, Mixture, SurfaceMaterial, mixture_add, mixture_decoded, mixture_joined, mixture_material, mixture_of,
+};
+pub use component::{SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
 pub use ellipsoid::sdf_ellipsoid;
 pub use heightfield::{
     heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,

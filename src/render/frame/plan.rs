@@ -8,9 +8,11 @@ use std::time::Duration;
 use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3, UVec2};
 
-use crate::flat::{CellTree, Component, FlatScene};
+use crate::flat::{Component, FlatScene};
 use crate::geometry::Camera;
 use crate::render::frame::cost_model::{Cost, CostModel};
+use crate::render::recipe::{Extent, Pass};
+use crate::render::renderer::evaluation::EvaluationCost;
 use crate::render::resources::uniforms::DispatchParams;
 
 /// Pixels along a side of a tile: what a cone begins with.
@@ -37,23 +39,6 @@ const MOST_PIXELS: f64 = 1048576.0;
 /// needed, which in one dispatch took two seconds.
 pub const STEPS_UNBOUNDED: u32 = 512;
 
-/// Which pass a dispatch belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pass {
-    /// Clear the targets and draw the meshes.
-    Mesh,
-    /// The farthest depth of each subtile after the meshes.
-    Hiz,
-    /// Find the subtiles that a component touches.
-    Cone,
-    /// March one component within these subtiles.
-    Trace,
-    /// Normals and materials of its hits.
-    Surface,
-    /// Light.
-    Shade,
-}
-
 /// One dispatch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dispatch {
@@ -71,55 +56,6 @@ impl Dispatch {
         [0, 1].map(|i| (self.params.end[i] - self.params.origin[i]).div_ceil(TILE))
     }
 }
-
-/// Loop iterations for each copy of an entry, about: a modifier's own loops (layers of noise, steps of a recursion).
-const LOOPS_OF_COPIES: u32 = 2;
-
-impl EvaluationCost {
-    /// Of a component that is walked through, entry by entry, by code that holds `loops` besides; `loop_trips` is
-    /// how many its own leaves take.
-    pub fn of_entries(component: &Component, loops: u32, loop_trips: u32) -> Self {
-        // For each entry an iteration, one for the choice of its shape, one for a group that ends. Of copies most are
-        // out of reach.
-        let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
-        Self {
-            straight: false,
-            iterations: ((4 + loops) * component.count + loop_trips + 2).saturating_mul(copies),
-            leaves: leaves(component, loop_trips) * f64::from(component.copies).sqrt(),
-        }
-    }
-
-    /// Of straight-line code for a component: loops are only in modifiers, at most one for each entry, and in leaves;
-    /// `loop_trips` as in [`EvaluationCost::of_entries`].
-    pub fn of_straight_line(component: &Component, loop_trips: u32) -> Self {
-        let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
-        Self {
-            straight: true,
-            iterations: (2 + component.count + loop_trips).saturating_mul(copies),
-            leaves: leaves(component, loop_trips) * f64::from(component.copies).sqrt(),
-        }
-    }
-
-    /// Of a component with tapes.
-    pub fn of_tapes(component: &Component, tree: &CellTree, loops: u32, loop_trips: u32) -> Self {
-        // Two iterations find the cell.
-        Self {
-            straight: false,
-            iterations: (4 + loops) * tree.longest() + loop_trips + 8,
-            leaves: tree.mean_length() * leaves(component, loop_trips) / f64::from(component.count) + 2.0,
-        }
-    }
-}
-
-/// Entries of a component, the loops of its leaves counted in: a loop trip takes a part of what a leaf takes, and most loops
-/// end early.
-fn leaves(component: &Component, loop_trips: u32) -> f64 {
-    f64::from(component.count) + f64::from(loop_trips) * LOOP_TRIP
-}
-
-/// Leaves that a loop trip counts as. With 0 single batches took 0.55 s in `fractals`, now 0.16; its stills take a tenth longer,
-/// with 1 those of `drawn` took a third longer.
-const LOOP_TRIP: f64 = 0.25;
 
 /// All dispatches of a frame.
 #[derive(Clone, Debug, Default)]
@@ -139,36 +75,49 @@ const CONE_EVALUATIONS: f64 = 0.2;
 const TRACE_EVALUATIONS: f64 = 4.0;
 const SURFACE_EVALUATIONS: f64 = 3.0;
 
-/// What evaluating a component means for its pipeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EvaluationCost {
-    /// Whether the pipeline is straight-line code.
-    pub straight: bool,
-    /// Most loop iterations of one evaluation.
-    pub iterations: u32,
-    /// Leaves that one evaluation visits, about.
-    pub leaves: f64,
-}
-
-/// A frame would have too many dispatches, most of them for this component.
+/// What a device can be told of in one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TooLong {
-    /// Which.
-    pub component: usize,
+pub struct Room {
+    /// Pieces of work.
+    pub dispatches: usize,
+    /// Subtiles in the lists of all components together.
+    pub subtiles: u64,
 }
 
-/// Plans a frame of at most `most` dispatches. `evaluations` stand beside the components.
+impl Room {
+    /// Room for everything.
+    pub const UNLIMITED: Self = Self { dispatches: usize::MAX, subtiles: u64::MAX };
+}
+
+/// A frame would have too much to do, most of it for this component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TooMuch {
+    /// Too many dispatches.
+    Pieces {
+        /// Which component.
+        component: usize,
+    },
+    /// Its lists would hold too many subtiles.
+    Subtiles {
+        /// Which component.
+        component: usize,
+        /// How many they would hold.
+        subtiles: u64,
+    },
+}
+
+/// Plans a frame that has room on the device. `evaluations` stand beside the components.
 ///
 /// # Errors
-/// It would have more: known before any is made, since there may be millions.
+/// It would take more: known before any dispatch is made, since there may be millions.
 pub fn plan(
     flat: &FlatScene,
     camera: &Camera,
     size: [u32; 2],
     evaluations: &[EvaluationCost],
     cost_model: &CostModel,
-    most: usize,
-) -> Result<FramePlan, TooLong> {
+    room: Room,
+) -> Result<FramePlan, TooMuch> {
     let whole = Rect { origin: [0, 0], end: size };
     let projection = ScreenProjection::new(camera, size);
     let seen: Vec<(usize, Rect, Marching)> = front_to_back(flat, camera)
@@ -183,32 +132,45 @@ pub fn plan(
     let shading = 0.3 + 0.2 * flat.lights.len() as f64;
     let most_shading = cost_model.cost_in(DISPATCH_TARGET, false);
     let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading);
-    if seen.iter().map(dispatches).fold(others, usize::saturating_add) > most {
+    if seen.iter().map(dispatches).fold(others, usize::saturating_add) > room.dispatches {
         let component = seen.iter().max_by_key(|one| dispatches(one)).map_or(0, |one| one.0);
-        return Err(TooLong { component });
+        return Err(TooMuch::Pieces { component });
+    }
+    let subtiles = |one: &(usize, Rect, Marching)| u64::from(one.1.tiles() * SUBTILES * SUBTILES);
+    let all: u64 = seen.iter().map(subtiles).sum();
+    if all > room.subtiles {
+        let component = seen.iter().max_by_key(|one| subtiles(one)).map_or(0, |one| one.0);
+        return Err(TooMuch::Subtiles { component, subtiles: all });
     }
     let mut plan = FramePlan::default();
-    plan.push(Pass::Mesh, whole.params(0), Cost::default());
-    if !flat.meshes.is_empty() {
-        plan.push(Pass::Hiz, whole.params(0), Cost::new(false, whole.pixels() * 0.05));
+    let parts: Vec<Part> =
+        seen.into_iter().flat_map(|(index, rect, marching)| plan.parts(index, rect, marching)).collect();
+    // Passes over parts take turns: each part goes through all of them before the next one.
+    for stages in Pass::ALL.chunk_by(|a, b| a.extent().is_of_parts() && b.extent().is_of_parts()) {
+        match stages[0].extent() {
+            Extent::Picture => plan.push(stages[0], whole.params(0), Cost::default()),
+            Extent::Meshes if flat.meshes.is_empty() => {}
+            Extent::Meshes => plan.push(stages[0], whole.params(0), Cost::new(false, whole.pixels() * 0.05)),
+            Extent::Parts | Extent::Rounds | Extent::Hits => {
+                parts.iter().for_each(|part| stages.iter().for_each(|pass| plan.part(*pass, part)));
+            }
+            Extent::Light => whole.cut(shading, most_shading, |rect| {
+                plan.push(stages[0], rect.params(0), Cost::new(false, rect.pixels() * shading));
+            }),
+            // No dispatches: recorded with the last one.
+            Extent::Finished => {}
+        }
     }
-    let mut surfaces = Vec::new();
-    for (index, rect, marching) in seen {
-        plan.component(index, rect, marching, &mut surfaces);
-    }
-    // The rays that are left stand behind how many they are; one list after the other uses the same place.
-    let rays = plan.lists;
-    plan.dispatches.iter_mut().for_each(|dispatch| dispatch.params.rays = rays);
-    surfaces
-        .iter_mut()
-        .chain(&mut plan.dispatches)
-        .for_each(|dispatch: &mut Dispatch| dispatch.params.hits = plan.subtiles);
-    // Normals only of what is still seen when all components are there.
-    plan.dispatches.append(&mut surfaces);
-    whole.cut(shading, most_shading, |rect| {
-        plan.push(Pass::Shade, rect.params(0), Cost::new(false, rect.pixels() * shading));
-    });
     Ok(plan)
+}
+
+/// A part of a component's image, with a list of subtiles of its own.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    rect: Rect,
+    marching: Marching,
+    /// What its dispatches have in common.
+    params: DispatchParams,
 }
 
 /// How the rays through a component are cut into dispatches.
@@ -282,30 +244,41 @@ impl FramePlan {
         self.dispatches.push(Dispatch { pass, params, cost });
     }
 
-    fn component(&mut self, index: usize, rect: Rect, marching: Marching, surfaces: &mut Vec<Dispatch>) {
-        let Marching { evaluation: EvaluationCost { straight, leaves, .. }, steps, relaunches, per_pixel, most } =
-            marching;
-        rect.cut(per_pixel, most, |rect| {
-            let list = DispatchParams {
-                max_steps: steps,
-                list: self.lists,
-                first_subtile: self.subtiles,
-                ..rect.params(index as u32)
-            };
-            let cost = |evaluations: f64| Cost::new(straight, rect.pixels() * leaves * evaluations);
-            self.push(Pass::Cone, list, cost(CONE_EVALUATIONS));
-            for relaunch in 0..relaunches {
-                let last_relaunch = u32::from(relaunch + 1 == relaunches);
-                let params = DispatchParams { relaunch, last_relaunch, compacted: u32::from(relaunch > 0), ..list };
-                // Most rays have ended long before the last relaunch.
-                let cost = if relaunch == 0 { cost(TRACE_EVALUATIONS) } else { Cost { dispatches: 0.0, ..cost(0.1) } };
-                self.push(Pass::Trace, params, cost);
-            }
-            surfaces.push(Dispatch { pass: Pass::Surface, params: list, cost: cost(SURFACE_EVALUATIONS) });
+    /// The parts of a component's image within `rect`; makes room for their lists.
+    fn parts(&mut self, index: usize, rect: Rect, marching: Marching) -> Vec<Part> {
+        let mut parts = Vec::new();
+        rect.cut(marching.per_pixel, marching.most, |rect| {
+            let place = DispatchParams { list: self.lists, first_subtile: self.subtiles, ..rect.params(index as u32) };
+            parts.push(Part { rect, marching, params: DispatchParams { max_steps: marching.steps, ..place } });
             self.lists += 1;
             self.subtiles += rect.tiles() * SUBTILES * SUBTILES;
             self.longest = self.longest.max(rect.tiles());
         });
+        parts
+    }
+
+    /// The dispatches of a pass over a part.
+    fn part(&mut self, pass: Pass, part: &Part) {
+        let Marching { evaluation: EvaluationCost { straight, leaves, .. }, relaunches, .. } = part.marching;
+        let cost = |evaluations: f64| Cost::new(straight, part.rect.pixels() * leaves * evaluations);
+        // The rays that are left stand behind how many they are; one list after the other uses the same place. Subtiles with
+        // hits stand behind all others.
+        let params = DispatchParams { rays: self.lists, hits: self.subtiles, ..part.params };
+        if pass.extent() != Extent::Rounds {
+            let evaluations = if pass.extent() == Extent::Hits { SURFACE_EVALUATIONS } else { CONE_EVALUATIONS };
+            return self.push(pass, params, cost(evaluations));
+        }
+        for relaunch in 0..relaunches {
+            let params = DispatchParams {
+                relaunch,
+                last_relaunch: u32::from(relaunch + 1 == relaunches),
+                compacted: u32::from(relaunch > 0),
+                ..params
+            };
+            // Most rays have ended long before the last relaunch.
+            let later = Cost { dispatches: 0.0, ..cost(0.1) };
+            self.push(pass, params, if relaunch == 0 { cost(TRACE_EVALUATIONS) } else { later });
+        }
     }
 }
 

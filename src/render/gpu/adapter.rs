@@ -54,7 +54,7 @@ impl AdapterChoice {
     }
 
     /// The chosen one of `adapters`, of those that `fits`.
-    pub(super) fn pick(
+    pub fn pick(
         &self,
         adapters: &[wgpu::Adapter],
         fits: impl Fn(&wgpu::Adapter) -> bool,
@@ -97,11 +97,13 @@ pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
     descriptor
 }
 
-pub(super) fn instance() -> wgpu::Instance {
+/// An instance with what [`instance_descriptor`] says.
+pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(instance_descriptor())
 }
 
-pub(super) fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
+/// Every adapter of the instance.
+pub fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 

@@ -119,7 +119,7 @@ fn one_line(message: &str) -> String {
 /// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default is four.
 const STORAGE_TEXTURES: u32 = 6;
 
-/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows.
+/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows, and its clock where it has one.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let required_limits = wgpu::Limits {
@@ -129,7 +129,8 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size,
         ..wgpu::Limits::default()
     };
-    wgpu::DeviceDescriptor { label: Some("isolith"), required_limits, ..Default::default() }
+    let required_features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+    wgpu::DeviceDescriptor { label: Some("isolith"), required_features, required_limits, ..Default::default() }
 }
 
 #[cfg(test)]

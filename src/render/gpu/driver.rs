@@ -20,9 +20,10 @@ pub fn loop_iterations(gpu: &Gpu) -> Result<u32, GpuError> {
     let mut counted = SyncedBuffer::read_back(device, "counted");
     counted.set(device, &gpu.queue, bytemuck::cast_slice(&[0, TRIED, 0, 0]));
     let group = bind(device, "driver", &group_layout, &[counted.binding()]);
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let label = Some("driver");
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
     {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
         pass.set_pipeline(&pipeline);
         pass.set_bind_group(0, &group, &[]);
         pass.dispatch_workgroups(1, 1, 1);

@@ -1,6 +1,6 @@
 //! The device: which adapter, its limits, its errors, and what is read back from it.
 
-mod adapter;
+pub mod adapter;
 mod device;
 pub mod driver;
 mod error;

@@ -3,15 +3,17 @@
 use glam::DVec3;
 use wgpu::ShaderStages;
 
+use crate::flat::mixture::{Mixture, mixture_decoded, mixture_material};
 use crate::flat::standpoint::Standpoint;
 use crate::flat::{CellTree, FlatScene, ParamRow, ROW_ALIGNMENT};
 use crate::render::gpu::Gpu;
 use crate::render::gpu::readback::read_words;
-use crate::render::renderer::{PIPELINE_WINDOW, RenderError};
+use crate::render::renderer::RenderError;
+use crate::render::renderer::scene::PIPELINE_WINDOW;
 use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::render::resources::layouts::{
-    Layouts, PARAMS_FORMAT, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform, window,
-    write_storage,
+    Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
+    window, write_storage,
 };
 use crate::render::resources::uniforms::GpuComponent;
 use crate::render::wgsl::{Evaluator, Options, assemble, template_rows};
@@ -30,7 +32,7 @@ pub fn field(
     options: Options,
 ) -> Result<Vec<f32>, RenderError> {
     let probe = Probe { file: "probe.wgsl", entry: "probe_field", words: 1, evaluator, options };
-    probe.run(gpu, flat, index, points)
+    Ok(probe.run(gpu, flat, index, points)?.into_iter().map(f32::from_bits).collect())
 }
 
 /// What the surface near a point is like.
@@ -40,7 +42,9 @@ pub struct ProbedSurface {
     pub gradient: DVec3,
     /// The field, in meters.
     pub distance: f64,
-    /// Linear diffuse reflectance.
+    /// The materials, as they are stored for shading.
+    pub materials: Mixture,
+    /// Linear diffuse reflectance of their mixture.
     pub albedo: DVec3,
 }
 
@@ -58,9 +62,11 @@ pub fn surface(
 ) -> Result<Vec<ProbedSurface>, RenderError> {
     let probe = Probe { file: "probe_surface.wgsl", entry: "probe_surface", words: 8, evaluator, options };
     let found = probe.run(gpu, flat, index, points)?;
-    let read = |v: &[f32; 8]| {
-        let [x, y, z, distance, r, g, b, _] = v.map(f64::from);
-        ProbedSurface { gradient: DVec3::new(x, y, z), distance, albedo: DVec3::new(r, g, b) }
+    let read = |&[x, y, z, distance, materials @ ..]: &[u32; 8]| {
+        let [x, y, z, distance] = [x, y, z, distance].map(|bits| f64::from(f32::from_bits(bits)));
+        let materials = mixture_decoded(materials);
+        let albedo = mixture_material(&materials, &flat.materials).albedo;
+        ProbedSurface { gradient: DVec3::new(x, y, z), distance, materials, albedo }
     };
     Ok(found.as_chunks().0.iter().map(read).collect())
 }
@@ -80,7 +86,8 @@ pub fn lookahead(
     options: Options,
 ) -> Result<Vec<[f32; 4]>, RenderError> {
     let probe = Probe { file: "probe_lookahead.wgsl", entry: "probe_lookahead", words: 2, evaluator, options };
-    Ok(probe.run(gpu, flat, index, pairs)?.as_chunks().0.to_vec())
+    let words = probe.run(gpu, flat, index, pairs)?;
+    Ok(words.as_chunks().0.iter().map(|found| found.map(f32::from_bits)).collect())
 }
 
 /// What is run at each point.
@@ -94,7 +101,7 @@ struct Probe<'a> {
 }
 
 impl Probe<'_> {
-    fn run(&self, gpu: &Gpu, flat: &FlatScene, index: usize, points: &[DVec3]) -> Result<Vec<f32>, RenderError> {
+    fn run(&self, gpu: &Gpu, flat: &FlatScene, index: usize, points: &[DVec3]) -> Result<Vec<u32>, RenderError> {
         let Gpu { device, queue, .. } = gpu;
         let (evaluator, count) = (self.evaluator, points.len() * self.words);
         let stage = ShaderStages::COMPUTE;
@@ -116,7 +123,6 @@ impl Probe<'_> {
         let scene = [
             uploaded(bytemuck::cast_slice(&flat.nodes)),
             uploaded(bytemuck::bytes_of(&component)),
-            uploaded(bytemuck::cast_slice(&flat.materials)),
             uploaded(bytemuck::cast_slice(&rows)),
         ];
         let texture = |label, format, bytes: &[u8]| {
@@ -128,21 +134,25 @@ impl Probe<'_> {
         let params = texture("params", PARAMS_FORMAT, bytemuck::cast_slice(&flat.params));
         let words = tree.as_ref().map_or(&[][..], |tree| bytemuck::cast_slice(&tree.words));
         let tapes = texture("tapes", TAPES_FORMAT, words);
-        let [nodes, materials] = [0, 2].map(|i: usize| scene[i].binding());
-        let subject = window(scene[1].buffer(), size_of::<GpuComponent>());
-        let rows_window = window(scene[3].buffer(), PIPELINE_WINDOW);
-        let bindings = [nodes, params.binding(), subject, materials, rows_window, tapes.binding()];
+        let bindings = SceneBindings {
+            nodes: scene[0].binding(),
+            params: params.binding(),
+            subject: window(scene[1].buffer(), size_of::<GpuComponent>()),
+            rows: window(scene[2].buffer(), PIPELINE_WINDOW),
+            tapes: tapes.binding(),
+        };
         let positions: Vec<[f32; 4]> = points.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32, 0.0]).collect();
         let (positions, values) = (uploaded(bytemuck::cast_slice(&positions)), uploaded(&vec![0; count * 4]));
         let groups = [
             bind(device, "probe", &own, &[settings.binding()]),
-            bind(device, "scene", &layouts.scene, &bindings),
+            bindings.bind(device, &layouts.scene),
             bind(device, "probe data", &data, &[positions.binding(), values.binding()]),
         ];
         debug_assert_eq!(flat.components[index].params as usize % ROW_ALIGNMENT, 0);
-        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let label = Some(self.entry);
+        let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
             pass.set_pipeline(&pipeline);
             pass.set_bind_group(0, &groups[0], &[]);
             pass.set_bind_group(1, &groups[1], &[0, rows_at]);
@@ -150,7 +160,7 @@ impl Probe<'_> {
             pass.dispatch_workgroups((points.len() as u32).div_ceil(64), 1, 1);
         }
         queue.submit([encoder.finish()]);
-        Ok(read_words(gpu, values.buffer(), count)?.into_iter().map(f32::from_bits).collect())
+        Ok(read_words(gpu, values.buffer(), count)?)
     }
 }
 

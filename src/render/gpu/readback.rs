@@ -37,7 +37,7 @@ fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<
     let row = (size.width * bytes_per_texel) as usize;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
     let buffer = landing(gpu, (padded * size.height as usize) as u64);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     let layout = wgpu::TexelCopyBufferLayout {
         offset: 0,
         bytes_per_row: Some(padded as u32),
@@ -65,7 +65,7 @@ pub fn read_words_at(gpu: &Gpu, source: &wgpu::Buffer, first: usize, count: usiz
     }
     let size = count as u64 * 4;
     let buffer = landing(gpu, size);
-    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("read back") });
     encoder.copy_buffer_to_buffer(source, first as u64 * 4, &buffer, 0, size);
     gpu.queue.submit([encoder.finish()]);
     Ok(bytemuck::pod_collect_to_vec(&read_mapped(gpu, &buffer)?))

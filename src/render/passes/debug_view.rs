@@ -1,15 +1,39 @@
 //! Pass `debug_view`: what was found or counted, as colors over the finished picture; only where a view mode is asked for.
 
-use bytemuck::{Pod, Zeroable};
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
+
+use super::{Bound, Building, FramePass};
 use crate::flat::FlatScene;
 use crate::flat::debug_view::{DepthRange, ViewMode, id_color};
 use crate::render::frame::plan::TILE;
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
 use crate::render::resources::buffers::SyncedBuffer;
 use crate::render::resources::layouts::*;
-use crate::render::resources::targets::Targets;
 use crate::render::wgsl::{ShaderError, assemble_plain};
+
+bindings! {
+    /// Group 1.
+    DebugViewBindings, "debug view", COMPUTE {
+        settings: uniform(false),
+        counted: read_storage(),
+        colors: read_storage(),
+    }
+}
+
+bindings! {
+    /// Group 2.
+    DebugViewTargets, "debug view targets", COMPUTE {
+        depth: read_texture(false),
+        normal: read_texture(false),
+        visibility: read_texture(true),
+        leaf: read_texture(true),
+        color: write_texture(TextureFormat::Rgba8Unorm),
+    }
+}
 
 /// What the shader reads.
 #[repr(C)]
@@ -44,31 +68,6 @@ pub struct DebugViewPass {
 }
 
 impl DebugViewPass {
-    /// Builds the pipeline.
-    ///
-    /// # Errors
-    /// A shader file is missing.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
-        let numbered = |types: &[wgpu::BindingType]| -> Vec<_> {
-            types.iter().enumerate().map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, *ty)).collect()
-        };
-        let own = layout(device, "debug view", &numbered(&[uniform(false), read_storage(), read_storage()]));
-        let types = [
-            read_texture(false),
-            read_texture(false),
-            read_texture(true),
-            read_texture(true),
-            write_texture(TextureFormat::Rgba8Unorm),
-        ];
-        let targets = layout(device, "debug view targets", &numbered(&types));
-        let groups = [&layouts.view, &own, &targets];
-        let pipeline =
-            compute_pipeline(device, "debug view", assemble_plain("debug_view.wgsl")?, "debug_view", &groups);
-        let (uniform, colors) =
-            (SyncedBuffer::uniform(device, "debug view"), SyncedBuffer::storage(device, "debug view colors"));
-        Ok(Self { pipeline, own, targets, uniform, colors })
-    }
-
     /// Uploads what the view mode needs; distances are colored within `depth_range`.
     pub fn prepare(
         &mut self,
@@ -98,27 +97,46 @@ impl DebugViewPass {
             self.colors.set(device, queue, bytemuck::cast_slice(&colors));
         }
     }
+}
 
-    /// Writes over `targets.color`. `counts` is the buffer of counts.
-    pub fn record(
-        &self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
-        view: &BindGroup,
-        counts: &wgpu::Buffer,
-    ) {
-        let own = [self.uniform.binding(), counts.as_entire_binding(), self.colors.binding()];
-        let own = bind(device, "debug view", &self.own, &own);
-        let textures = [&targets.depth, &targets.normal, &targets.visibility, &targets.leaf, &targets.color];
-        let textures = textures.map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let textures = bind(device, "debug view targets", &self.targets, &textures);
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+impl FramePass for DebugViewPass {
+    fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
+        let (own, targets) = (DebugViewBindings::layout(device), DebugViewTargets::layout(device));
+        let (text, groups) = (assemble_plain(Pass::DebugView.file())?, [&layouts.view, &own, &targets]);
+        let pipeline = compute_pipeline(device, Pass::DebugView.label(), text, "debug view", &groups);
+        let (uniform, colors) =
+            (SyncedBuffer::uniform(device, "debug view"), SyncedBuffer::storage(device, "debug view colors"));
+        Ok(Self { pipeline, own, targets, uniform, colors })
+    }
+
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        let textures = DebugViewTargets {
+            depth: bound.targets.depth.binding(),
+            normal: bound.targets.normal.binding(),
+            visibility: bound.targets.visibility.binding(),
+            leaf: bound.targets.leaf.binding(),
+            color: bound.targets.color.binding(),
+        };
+        vec![textures.bind(device, &self.targets)]
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, _: Range<usize>) {
+        if recorder.frame.view_mode == ViewMode::Shaded {
+            return;
+        }
+        // What a view mode needs is uploaded when it is asked for, after groups are bound.
+        let own = DebugViewBindings {
+            settings: self.uniform.binding(),
+            counted: recorder.resources.counts.buffer().as_entire_binding(),
+            colors: self.colors.binding(),
+        };
+        let own = own.bind(&recorder.gpu.device, &self.own);
+        let ([_, textures], size) = (recorder.groups(0), recorder.targets.size);
+        let pass = recorder.open();
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, view, &[]);
         pass.set_bind_group(1, &own, &[]);
-        pass.set_bind_group(2, &textures, &[]);
-        let [x, y] = targets.size.map(|side| side.div_ceil(TILE));
+        pass.set_bind_group(2, textures, &[]);
+        let [x, y] = size.map(|side| side.div_ceil(TILE));
         pass.dispatch_workgroups(x, y, 1);
     }
 }

@@ -3,11 +3,58 @@
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+use std::ops::Range;
 
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
+
+use super::{Bound, Building, FramePass};
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
+use crate::render::renderer::resources::{RAY_COUNTS, SUBTILE_COUNTS};
 use crate::render::resources::layouts::*;
 use crate::render::resources::targets::Targets;
 use crate::render::wgsl::{Evaluator, Options, ShaderError, assemble};
+
+/// Invocations in a workgroup of the cone pass.
+const CONE_GROUP: u32 = 64;
+
+bindings! {
+    /// Group 2 of the cone pass.
+    ConeBindings, "cone targets", COMPUTE {
+        hiz: read_texture(false),
+        subtiles: write_storage(),
+        subtile_counts: write_storage(),
+        march_counts: write_storage(),
+    }
+}
+
+bindings! {
+    /// Group 2 of the trace pass.
+    TraceBindings, "trace targets", COMPUTE {
+        depth: read_write_texture(TextureFormat::R32Float),
+        visibility: write_texture(TextureFormat::R32Uint),
+        march: read_write_texture(TextureFormat::R32Float),
+        hiz: write_texture(TextureFormat::R32Float),
+        subtiles: write_storage(),
+        march_counts: write_storage(),
+        rays: write_storage(),
+        ray_counts: write_storage(),
+        subtile_counts: read_storage(),
+    }
+}
+
+bindings! {
+    /// Group 2 of the surface pass.
+    SurfaceBindings, "surface targets", COMPUTE {
+        depth: read_texture(false),
+        visibility: read_texture(true),
+        normal: write_texture(TextureFormat::Rgba32Float),
+        material: write_texture(TextureFormat::Rgba32Uint),
+        leaf: write_texture(TextureFormat::R32Uint),
+        subtiles: read_storage(),
+        ray_counts: read_storage(),
+    }
+}
 
 /// The pipelines of one evaluator.
 #[derive(Debug)]
@@ -23,6 +70,19 @@ pub struct FieldPipelines {
 }
 
 impl FieldPipelines {
+    /// The passes that it has a pipeline for.
+    pub const STAGES: [Pass; 3] = [Pass::Cone, Pass::Trace, Pass::Surface];
+
+    /// Its pipeline for one of these.
+    pub fn pipeline(&self, stage: Pass) -> &ComputePipeline {
+        match stage {
+            Pass::Cone => &self.cone,
+            Pass::Trace => &self.trace,
+            Pass::Surface => &self.surface,
+            _ => unreachable!("{stage:?} evaluates no field"),
+        }
+    }
+
     /// Marks a pass as dispatched; true the first time.
     pub fn first_use(&self, pass: usize) -> bool {
         let bit = 1 << pass;
@@ -31,24 +91,11 @@ impl FieldPipelines {
 }
 
 /// Layouts of the targets of the three passes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FieldLayouts {
     cone: BindGroupLayout,
     trace: BindGroupLayout,
     surface: BindGroupLayout,
-}
-
-/// Bind groups for the targets of the three passes.
-#[derive(Debug)]
-pub struct FieldGroups {
-    /// Of [`FieldPipelines::cone`].
-    pub cone: BindGroup,
-    /// Of [`FieldPipelines::trace`].
-    pub trace: BindGroup,
-    /// The same where the rays that are left are dispatched: what says how many must not be written then.
-    pub compacted: BindGroup,
-    /// Of [`FieldPipelines::surface`].
-    pub surface: BindGroup,
 }
 
 /// Buffers that the passes hand on to each other.
@@ -71,36 +118,10 @@ pub struct FieldBuffers<'a> {
 impl FieldLayouts {
     /// Makes them.
     pub fn new(device: &wgpu::Device) -> Self {
-        let numbered = |types: &[wgpu::BindingType]| -> Vec<_> {
-            let stage = ShaderStages::COMPUTE;
-            types.iter().enumerate().map(|(i, ty)| entry(i as u32, stage, *ty)).collect()
-        };
-        let cone = [read_texture(false), write_storage(), write_storage(), write_storage()];
-        let trace = [
-            read_write_texture(TextureFormat::R32Float),
-            write_texture(TextureFormat::R32Uint),
-            read_write_texture(TextureFormat::R32Float),
-            write_texture(TextureFormat::R32Float),
-            write_storage(),
-            write_storage(),
-            write_storage(),
-            write_storage(),
-            read_storage(),
-        ];
-        let surface = [
-            read_texture(false),
-            read_texture(true),
-            write_texture(TextureFormat::Rgba32Float),
-            write_texture(TextureFormat::Rgba16Float),
-            write_texture(TextureFormat::Rgba16Float),
-            write_texture(TextureFormat::R32Uint),
-            read_storage(),
-            read_storage(),
-        ];
         Self {
-            cone: layout(device, "cone targets", &numbered(&cone)),
-            trace: layout(device, "trace targets", &numbered(&trace)),
-            surface: layout(device, "surface targets", &numbered(&surface)),
+            cone: ConeBindings::layout(device),
+            trace: TraceBindings::layout(device),
+            surface: SurfaceBindings::layout(device),
         }
     }
 
@@ -115,56 +136,135 @@ impl FieldLayouts {
         evaluator: &Evaluator,
         options: Options,
     ) -> Result<FieldPipelines, ShaderError> {
-        let pipeline = |name: &str, entry_point: &str, targets: &BindGroupLayout| {
+        let pipeline = |stage: Pass, entry_point: &str, targets: &BindGroupLayout| {
             let groups = [&layouts.view, &layouts.scene, targets, &layouts.dispatch_params];
-            let text = assemble(&format!("{name}.wgsl"), evaluator, options)?;
-            Ok(compute_pipeline(device, name, text, entry_point, &groups))
+            let text = assemble(stage.file(), evaluator, options)?;
+            Ok(compute_pipeline(device, stage.label(), text, entry_point, &groups))
         };
         Ok(FieldPipelines {
-            cone: pipeline("cone", "cone", &self.cone)?,
-            trace: pipeline("trace", "trace", &self.trace)?,
-            surface: pipeline("surface", "surface_pass", &self.surface)?,
+            cone: pipeline(Pass::Cone, "cone", &self.cone)?,
+            trace: pipeline(Pass::Trace, "trace", &self.trace)?,
+            surface: pipeline(Pass::Surface, "surface_pass", &self.surface)?,
             used: AtomicU32::new(0),
         })
     }
 
-    /// Binds the targets.
-    pub fn bind(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> FieldGroups {
-        let texture = wgpu::BindingResource::TextureView;
-        let cone = [
-            texture(&targets.hiz.view),
-            lists.subtiles.as_entire_binding(),
-            lists.subtile_counts.as_entire_binding(),
-            lists.march_counts.as_entire_binding(),
-        ];
-        let trace = [
-            texture(&targets.depth.view),
-            texture(&targets.visibility.view),
-            texture(&targets.march.view),
-            texture(&targets.hiz.view),
-            lists.subtiles.as_entire_binding(),
-            lists.march_counts.as_entire_binding(),
-            lists.rays.as_entire_binding(),
-            lists.ray_counts.as_entire_binding(),
-            lists.subtile_counts.as_entire_binding(),
-        ];
-        let mut compacted = trace.clone();
-        compacted[7] = lists.nothing.as_entire_binding();
-        let surface = [
-            texture(&targets.depth.view),
-            texture(&targets.visibility.view),
-            texture(&targets.normal.view),
-            texture(&targets.diffuse.view),
-            texture(&targets.emission.view),
-            texture(&targets.leaf.view),
-            lists.subtiles.as_entire_binding(),
-            lists.ray_counts.as_entire_binding(),
-        ];
-        FieldGroups {
-            cone: bind(device, "cone targets", &self.cone, &cone),
-            trace: bind(device, "trace targets", &self.trace, &trace),
-            compacted: bind(device, "trace targets", &self.trace, &compacted),
-            surface: bind(device, "surface targets", &self.surface, &surface),
+    /// Binds what the cone pass works on.
+    pub fn bind_cone(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> BindGroup {
+        let group = ConeBindings {
+            hiz: targets.hiz.binding(),
+            subtiles: lists.subtiles.as_entire_binding(),
+            subtile_counts: lists.subtile_counts.as_entire_binding(),
+            march_counts: lists.march_counts.as_entire_binding(),
+        };
+        group.bind(device, &self.cone)
+    }
+
+    /// Binds what the trace pass works on; then the same where the rays that are left are dispatched: what says how many
+    /// must not be written then.
+    pub fn bind_trace(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> [BindGroup; 2] {
+        [lists.ray_counts, lists.nothing].map(|ray_counts| {
+            let group = TraceBindings {
+                depth: targets.depth.binding(),
+                visibility: targets.visibility.binding(),
+                march: targets.march.binding(),
+                hiz: targets.hiz.binding(),
+                subtiles: lists.subtiles.as_entire_binding(),
+                march_counts: lists.march_counts.as_entire_binding(),
+                rays: lists.rays.as_entire_binding(),
+                ray_counts: ray_counts.as_entire_binding(),
+                subtile_counts: lists.subtile_counts.as_entire_binding(),
+            };
+            group.bind(device, &self.trace)
+        })
+    }
+
+    /// Binds what the surface pass works on.
+    pub fn bind_surface(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> BindGroup {
+        let group = SurfaceBindings {
+            depth: targets.depth.binding(),
+            visibility: targets.visibility.binding(),
+            normal: targets.normal.binding(),
+            material: targets.material.binding(),
+            leaf: targets.leaf.binding(),
+            subtiles: lists.subtiles.as_entire_binding(),
+            ray_counts: lists.ray_counts.as_entire_binding(),
+        };
+        group.bind(device, &self.surface)
+    }
+}
+
+/// Which subtiles of the picture a component touches, and from where on.
+#[derive(Debug)]
+pub struct ConePass(FieldLayouts);
+
+impl FramePass for ConePass {
+    fn new(building: Building<'_>) -> Result<Self, ShaderError> {
+        Ok(Self(building.field.clone()))
+    }
+
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        vec![self.0.bind_cone(device, bound.targets, bound.lists)]
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+        for at in dispatches {
+            let [x, y] = recorder.frame.plan.dispatches[at].tiles();
+            recorder.component(at, 0, |pipelines| &pipelines.cone).dispatch_workgroups(
+                (x * y).div_ceil(CONE_GROUP),
+                1,
+                1,
+            );
+        }
+    }
+}
+
+/// Hits within these subtiles.
+#[derive(Debug)]
+pub struct TracePass(FieldLayouts);
+
+impl FramePass for TracePass {
+    fn new(building: Building<'_>) -> Result<Self, ShaderError> {
+        Ok(Self(building.field.clone()))
+    }
+
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        self.0.bind_trace(device, bound.targets, bound.lists).to_vec()
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+        for at in dispatches {
+            let (dispatch_params, resources) = (recorder.frame.plan.dispatches[at].params, recorder.resources);
+            let (list, compacted) = (dispatch_params.list as usize, dispatch_params.compacted as usize);
+            let (counts, word) = match compacted {
+                0 => (&resources.subtile_counts, list * SUBTILE_COUNTS),
+                _ => (&resources.ray_counts, list * RAY_COUNTS),
+            };
+            let pass = recorder.component(at, compacted, |pipelines| &pipelines.trace);
+            pass.dispatch_workgroups_indirect(counts.buffer(), word as u64 * 4);
+        }
+    }
+}
+
+/// Normal, material and leaf of the hits.
+#[derive(Debug)]
+pub struct SurfacePass(FieldLayouts);
+
+impl FramePass for SurfacePass {
+    fn new(building: Building<'_>) -> Result<Self, ShaderError> {
+        Ok(Self(building.field.clone()))
+    }
+
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        vec![self.0.bind_surface(device, bound.targets, bound.lists)]
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+        for at in dispatches {
+            let list = recorder.frame.plan.dispatches[at].params.list as usize;
+            let counts = recorder.resources.ray_counts.buffer();
+            let pass = recorder.component(at, 0, |pipelines| &pipelines.surface);
+            pass.dispatch_workgroups_indirect(counts, (list * RAY_COUNTS + 3) as u64 * 4);
         }
     }
 }

@@ -1,44 +1,56 @@
 //! Pass `hiz`: the farthest depth in each subtile after the meshes; only where there are meshes.
 
-use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages, TextureFormat};
+use std::ops::Range;
 
+use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
+
+use super::{Bound, Building, FramePass};
+use crate::render::frame::plan::{SUBTILES, TILE};
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
 use crate::render::resources::layouts::*;
-use crate::render::resources::targets::Targets;
 use crate::render::wgsl::{ShaderError, assemble_plain};
+
+bindings! {
+    /// Group 2.
+    FarthestBindings, "hiz targets", COMPUTE {
+        depth: read_texture(false),
+        hiz: write_texture(TextureFormat::R32Float),
+    }
+}
 
 /// The pass.
 #[derive(Debug)]
 pub struct HizPass {
     pipeline: ComputePipeline,
+    /// Group 1, which is empty.
     scene: BindGroup,
     targets: BindGroupLayout,
 }
 
-impl HizPass {
-    /// Builds the pipeline.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
-        let stage = ShaderStages::COMPUTE;
-        let entries = [read_texture(false), write_texture(TextureFormat::R32Float)];
-        let targets = layout(device, "hiz targets", &[entry(0, stage, entries[0]), entry(1, stage, entries[1])]);
-        let nothing = layout(device, "nothing", &[]);
+impl FramePass for HizPass {
+    fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
+        let (targets, nothing) = (FarthestBindings::layout(device), layout(device, "nothing", &[]));
         let groups = [&layouts.view, &nothing, &targets, &layouts.dispatch_params];
-        let pipeline = compute_pipeline(device, "hiz", assemble_plain("hiz.wgsl")?, "hiz", &groups);
+        let text = assemble_plain(Pass::Hiz.file())?;
+        let pipeline = compute_pipeline(device, Pass::Hiz.label(), text, "hiz", &groups);
         Ok(Self { pipeline, scene: bind(device, "nothing", &nothing, &[]), targets })
     }
 
-    /// The pass's own bind group.
-    pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let resources = [&targets.depth, &targets.hiz].map(|t| wgpu::BindingResource::TextureView(&t.view));
-        bind(device, "hiz targets", &self.targets, &resources)
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        let (depth, hiz) = (bound.targets.depth.binding(), bound.targets.hiz.binding());
+        vec![FarthestBindings { depth, hiz }.bind(device, &self.targets)]
     }
 
-    /// The pipeline.
-    pub fn pipeline(&self) -> &ComputePipeline {
-        &self.pipeline
-    }
-
-    /// Group 1, which is empty.
-    pub fn scene(&self) -> &BindGroup {
-        &self.scene
+    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+        for at in dispatches {
+            let [x, y] = recorder.frame.plan.dispatches[at].tiles().map(|tiles| (tiles * SUBTILES).div_ceil(TILE));
+            let [_, targets] = recorder.groups(0);
+            let pass = recorder.compute(at);
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(1, &self.scene, &[]);
+            pass.set_bind_group(2, targets, &[]);
+            pass.dispatch_workgroups(x, y, 1);
+        }
     }
 }

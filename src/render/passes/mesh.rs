@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::{Arc, Weak};
 
 use bytemuck::{Pod, Zeroable};
@@ -9,10 +10,14 @@ use glam::{DAffine3, DVec3};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
+use super::{Building, FramePass};
 use crate::flat::standpoint::ray_origin_depth;
-use crate::flat::{FILE_SPECULAR, FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
 use crate::geometry::Camera;
 use crate::mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
+use crate::render::renderer::timings::Stamps;
 use crate::render::resources::buffers::SyncedBuffer;
 use crate::render::resources::layouts::*;
 use crate::render::resources::targets::{BACKGROUND, Targets};
@@ -57,8 +62,6 @@ pub struct Instance {
     pub texture_y: [f32; 4],
     /// See `overridden`.
     pub albedo: [f32; 3],
-    /// Strength of the highlight.
-    pub specular: f32,
     /// Goes to the visibility target.
     pub visibility: u32,
     /// 1: `albedo` stands for the mesh's own colors.
@@ -69,12 +72,6 @@ pub struct Instance {
     pub alpha_cutoff: f32,
     /// How far the point that positions are relative to is before the eye, see `shaders/common/ray.wgsl`.
     pub ray_origin_depth: f32,
-    /// Unused.
-    pub padding_0: u32,
-    /// Unused.
-    pub padding_1: u32,
-    /// Unused.
-    pub padding_2: u32,
 }
 
 /// What to draw.
@@ -99,12 +96,11 @@ struct Uploaded {
     colors: wgpu::Buffer,
     uvs: wgpu::Buffer,
     indices: wgpu::Buffer,
-    parts: Vec<(std::ops::Range<u32>, BindGroup)>,
+    parts: Vec<(Range<u32>, BindGroup)>,
 }
 
-impl MeshPass {
-    /// Builds the pipeline.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
+impl FramePass for MeshPass {
+    fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let instance_layout = layout(device, "mesh instance", &[entry(0, both, uniform(true))]);
         let filtered = wgpu::BindingType::Texture {
@@ -131,6 +127,18 @@ impl MeshPass {
         })
     }
 
+    fn record(&self, recorder: &mut Recorder<'_>, _: Range<usize>) {
+        let (lists, resources) = (recorder.frame.plan.lists, recorder.resources);
+        let (targets, view) = (recorder.targets, recorder.view());
+        let (encoder, stamps) = recorder.drawing();
+        resources.clear(encoder, lists, targets.size);
+        self.draw(encoder, targets, view, stamps);
+        let [from, to] = [&targets.visibility, &targets.leaf].map(|target| target.texture.as_image_copy());
+        encoder.copy_texture_to_texture(from, to, targets.visibility.texture.size());
+    }
+}
+
+impl MeshPass {
     /// Puts on the device what is to be drawn: `meshes` stands beside `flat.meshes`, with `None` where a
     /// file could not be read.
     pub fn prepare(
@@ -176,33 +184,35 @@ impl MeshPass {
     }
 
     /// Clears the shared targets and draws.
-    pub fn record(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
-        self.draw(encoder, targets, view);
-        let [from, to] = [&targets.visibility, &targets.leaf].map(|target| target.texture.as_image_copy());
-        encoder.copy_texture_to_texture(from, to, targets.visibility.texture.size());
-    }
-
-    fn draw(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, view: &BindGroup) {
+    fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        targets: &Targets,
+        view: &BindGroup,
+        stamps: Option<Stamps<'_>>,
+    ) {
+        let [first, last] = stamps.map_or([None, None], |stamps| stamps.of_several().map(Some));
         // Another size, so another render pass; it only clears.
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("clear hiz"),
             color_attachments: &[cleared(&targets.hiz.view, f64::from(BACKGROUND))],
+            timestamp_writes: first,
             ..Default::default()
         }));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("mesh"),
+            label: Some(Pass::Mesh.label()),
             color_attachments: &[
                 cleared(&targets.depth.view, f64::from(BACKGROUND)),
                 cleared(&targets.visibility.view, f64::from(NO_LEAF)),
                 cleared(&targets.normal.view, 0.0),
-                cleared(&targets.diffuse.view, 0.0),
+                cleared(&targets.base_color.view, 0.0),
             ],
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.hardware_depth.view,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
                 stencil_ops: None,
             }),
-            timestamp_writes: None,
+            timestamp_writes: last,
             occlusion_query_set: None,
             multiview_mask: None,
         });
@@ -346,7 +356,6 @@ impl PlacedInstance {
             normal_y: normal_row(1),
             normal_z: normal_row(2),
             albedo: material.map_or([1.0; 3], |m| m.albedo),
-            specular: material.map_or(FILE_SPECULAR as f32, |m| m.specular),
             visibility: MESH_BIT | index as u32,
             overridden: u32::from(material.is_some()),
             mirrored: u32::from(m.matrix3.determinant() < 0.0),
@@ -381,7 +390,7 @@ impl PlacedInstance {
 fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
-        source: wgpu::ShaderSource::Wgsl(assemble_plain("mesh.wgsl")?.into()),
+        source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Mesh.file())?.into()),
     });
     use wgpu::VertexFormat::{Float32x2, Float32x3, Float32x4};
     // Position, normal, color, texture coordinate.

@@ -1,14 +1,18 @@
 //! Pass `overlay`: grid and outline of the selection, over the finished picture; only the editor asks for it.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, UVec2};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
+use super::{Bound, Building, FramePass};
 use crate::flat::FlatScene;
 use crate::render::frame::plan::FramePlan;
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
 use crate::render::resources::buffers::SyncedBuffer;
 use crate::render::resources::layouts::*;
-use crate::render::resources::targets::{Target, Targets};
 use crate::render::wgsl::{ShaderError, assemble_plain};
 use crate::scene::NodeId;
 
@@ -74,9 +78,8 @@ pub struct OverlayPass {
     own_group: Option<BindGroup>,
 }
 
-impl OverlayPass {
-    /// Builds the pipeline.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
+impl FramePass for OverlayPass {
+    fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let stage = ShaderStages::FRAGMENT;
         let own = layout(device, "overlay", &[entry(0, stage, uniform(false)), entry(1, stage, read_storage())]);
         let targets = layout(
@@ -85,8 +88,8 @@ impl OverlayPass {
             &[entry(0, stage, read_texture(false)), entry(1, stage, read_texture(true))],
         );
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("overlay"),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain("overlay.wgsl")?.into()),
+            label: Some(Pass::Overlay.label()),
+            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Overlay.file())?.into()),
         });
         let picture = layout(device, "overlay picture", &[entry(0, stage, read_texture(false))]);
         let over = pipeline_layout(device, "overlay", &[&layouts.view, &own, &targets]);
@@ -114,6 +117,48 @@ impl OverlayPass {
         })
     }
 
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        let inputs = [bound.targets.depth.binding(), bound.targets.leaf.binding()];
+        let picture = [bound.targets.color.binding()];
+        vec![
+            bind(device, "overlay targets", &self.targets, &inputs),
+            bind(device, "overlay picture", &self.picture, &picture),
+        ]
+    }
+
+    fn record(&self, recorder: &mut Recorder<'_>, _: Range<usize>) {
+        let Some(own) = self.own_group.as_ref().filter(|_| !recorder.frame.overlay.is_empty()) else { return };
+        let ([view, inputs], [_, picture]) = (recorder.groups(0), recorder.groups(1));
+        let (targets, enlarged, plan) = (recorder.targets, recorder.enlarged, &recorder.frame.plan);
+        let (encoder, stamps) = recorder.drawing();
+        let stamps = stamps.map(|stamps| stamps.of_drawing());
+        let color = &enlarged.unwrap_or(&targets.color).view;
+        let mut pass = screen_pass(encoder, Pass::Overlay.label(), color, stamps);
+        pass.set_bind_group(0, view, &[]);
+        pass.set_bind_group(1, own, &[]);
+        pass.set_bind_group(2, inputs, &[]);
+        if enlarged.is_some() {
+            pass.set_bind_group(3, picture, &[]);
+            pass.set_pipeline(&self.enlarge);
+            pass.draw(0..3, 0..1);
+        }
+        if self.draws_grid {
+            pass.set_pipeline(&self.grid);
+            pass.draw(0..3, 0..1);
+        }
+        if let Some([low, high]) = self.outlined.around(plan, targets.size.into()) {
+            let (low, high) = match enlarged {
+                None => (low, high),
+                Some(target) => larger(low, high, targets.size.into(), target.size().into()),
+            };
+            pass.set_scissor_rect(low.x, low.y, high.x - low.x, high.y - low.y);
+            pass.set_pipeline(if enlarged.is_some() { &self.coarse_outline } else { &self.outline });
+            pass.draw(0..3, 0..1);
+        }
+    }
+}
+
+impl OverlayPass {
     /// Uploads what is to be drawn over a picture of `size` pixels, seen from `eye`.
     pub fn prepare(
         &mut self,
@@ -145,44 +190,6 @@ impl OverlayPass {
         if changed || self.own_group.is_none() {
             let resources = [self.uniform.binding(), self.selected.binding()];
             self.own_group = Some(bind(device, "overlay", &self.own, &resources));
-        }
-    }
-
-    /// Draws over `targets.color`, or over what it is enlarged to.
-    pub fn record(
-        &self,
-        device: &wgpu::Device,
-        encoder: &mut wgpu::CommandEncoder,
-        targets: &Targets,
-        enlarged: Option<&Target>,
-        view: &BindGroup,
-        plan: &FramePlan,
-    ) {
-        let Some(own) = &self.own_group else { return };
-        let inputs = [&targets.depth, &targets.leaf].map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let inputs = bind(device, "overlay targets", &self.targets, &inputs);
-        let mut pass = screen_pass(encoder, "overlay", &enlarged.unwrap_or(&targets.color).view);
-        pass.set_bind_group(0, view, &[]);
-        pass.set_bind_group(1, own, &[]);
-        pass.set_bind_group(2, &inputs, &[]);
-        if enlarged.is_some() {
-            let color = wgpu::BindingResource::TextureView(&targets.color.view);
-            pass.set_bind_group(3, &bind(device, "overlay picture", &self.picture, &[color]), &[]);
-            pass.set_pipeline(&self.enlarge);
-            pass.draw(0..3, 0..1);
-        }
-        if self.draws_grid {
-            pass.set_pipeline(&self.grid);
-            pass.draw(0..3, 0..1);
-        }
-        if let Some([low, high]) = self.outlined.around(plan, targets.size.into()) {
-            let (low, high) = match enlarged {
-                None => (low, high),
-                Some(target) => larger(low, high, targets.size.into(), target.size().into()),
-            };
-            pass.set_scissor_rect(low.x, low.y, high.x - low.x, high.y - low.y);
-            pass.set_pipeline(if enlarged.is_some() { &self.coarse_outline } else { &self.outline });
-            pass.draw(0..3, 0..1);
         }
     }
 }

@@ -1,13 +1,36 @@
 //! Pass `shade`: light on what the passes before have found, and the background.
 
-use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
+use std::ops::Range;
 
-use crate::flat::{FILE_SHININESS, FlatMaterial, FlatScene};
-use crate::render::frame::plan::Dispatch;
+use wgpu::{BindGroup, BindGroupLayout};
+
+use super::{Bound, Building, FramePass};
+use crate::flat::{FILE_SHININESS, FILE_SPECULAR, FlatMaterial, FlatScene};
+use crate::render::recipe::Pass;
+use crate::render::renderer::recorder::Recorder;
 use crate::render::resources::layouts::*;
-use crate::render::resources::targets::Targets;
 use crate::render::resources::uniforms::DispatchParams;
 use crate::render::wgsl::{ShaderError, assemble_plain};
+
+bindings! {
+    /// Group 1.
+    LightBindings, "lights", FRAGMENT {
+        lights: read_storage(),
+        materials: read_storage(),
+        mesh_materials: read_storage(),
+    }
+}
+
+bindings! {
+    /// Group 2.
+    ShadeBindings, "shade targets", FRAGMENT {
+        depth: read_texture(false),
+        normal: read_texture(false),
+        base_color: read_texture(false),
+        material: read_texture(true),
+        visibility: read_texture(true),
+    }
+}
 
 /// The pass.
 #[derive(Debug)]
@@ -17,69 +40,60 @@ pub struct ShadePass {
     targets: BindGroupLayout,
 }
 
-impl ShadePass {
-    /// Builds the pipeline.
-    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Result<Self, ShaderError> {
-        let stage = ShaderStages::FRAGMENT;
-        let lights = layout(device, "lights", &[entry(0, stage, read_storage()), entry(1, stage, read_storage())]);
-        let targets = layout(
-            device,
-            "shade targets",
-            &[
-                entry(0, stage, read_texture(false)),
-                entry(1, stage, read_texture(false)),
-                entry(2, stage, read_texture(false)),
-                entry(3, stage, read_texture(false)),
-                entry(4, stage, read_texture(true)),
-            ],
-        );
+impl FramePass for ShadePass {
+    fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
+        let (lights, targets) = (LightBindings::layout(device), ShadeBindings::layout(device));
         let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("shade"),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain("shade.wgsl")?.into()),
+            label: Some(Pass::Shade.label()),
+            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
         });
-        let layout = pipeline_layout(device, "shade", &[&layouts.view, &lights, &targets]);
+        let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
         let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
         Ok(Self { pipeline, lights, targets })
     }
 
-    /// The pass's own bind group.
-    pub fn bind(&self, device: &wgpu::Device, targets: &Targets) -> BindGroup {
-        let views = [&targets.depth, &targets.normal, &targets.diffuse, &targets.emission, &targets.visibility];
-        let resources = views.map(|t| wgpu::BindingResource::TextureView(&t.view));
-        bind(device, "shade targets", &self.targets, &resources)
+    fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
+        let lights = LightBindings {
+            lights: bound.lights.clone(),
+            materials: bound.materials.clone(),
+            mesh_materials: bound.mesh_materials.clone(),
+        };
+        let targets = ShadeBindings {
+            depth: bound.targets.depth.binding(),
+            normal: bound.targets.normal.binding(),
+            base_color: bound.targets.base_color.binding(),
+            material: bound.targets.material.binding(),
+            visibility: bound.targets.visibility.binding(),
+        };
+        vec![lights.bind(device, &self.lights), targets.bind(device, &self.targets)]
     }
 
-    /// The bind group of the lights and of what [`mesh_emissions`] gives.
-    pub fn bind_lights(&self, device: &wgpu::Device, resources: [wgpu::BindingResource<'_>; 2]) -> BindGroup {
-        bind(device, "lights", &self.lights, &resources)
-    }
-
-    /// Draws the pixels of these dispatches.
-    pub fn record<'p>(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        color: &wgpu::TextureView,
-        groups: [&BindGroup; 3],
-        dispatches: impl Iterator<Item = &'p Dispatch>,
-    ) {
-        let mut pass = screen_pass(encoder, "shade", color);
+    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+        let (frame, targets) = (recorder.frame, recorder.targets);
+        let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
+        let (encoder, stamps) = recorder.drawing();
+        let stamps = stamps.map(|stamps| stamps.of_drawing());
+        let mut pass = screen_pass(encoder, Pass::Shade.label(), &targets.color.view, stamps);
         pass.set_pipeline(&self.pipeline);
-        for (at, group) in (0..).zip(groups) {
+        for (at, group) in (0..).zip([view, lights, textures]) {
             pass.set_bind_group(at, group, &[]);
         }
-        for DispatchParams { origin, end, .. } in dispatches.map(|dispatch| dispatch.params) {
+        for DispatchParams { origin, end, .. } in
+            frame.plan.dispatches[dispatches].iter().map(|dispatch| dispatch.params)
+        {
             pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
             pass.draw(0..3, 0..1);
         }
     }
 }
 
-/// Emission and shininess of each mesh: of the material that stands for its own ones, where there is one.
-pub fn mesh_emissions(flat: &FlatScene) -> Vec<[f32; 4]> {
-    let of = |material: &FlatMaterial| {
-        let [r, g, b] = material.emission;
-        [r, g, b, material.shininess]
+/// What each mesh is made of: the material that stands for its own ones, where there is one. Its color stands in a target.
+pub fn mesh_materials(flat: &FlatScene) -> Vec<FlatMaterial> {
+    let own = FlatMaterial {
+        albedo: [1.0; 3],
+        specular: FILE_SPECULAR as f32,
+        emission: [0.0; 3],
+        shininess: FILE_SHININESS as f32,
     };
-    let own = [0.0, 0.0, 0.0, FILE_SHININESS as f32];
-    flat.meshes.iter().map(|m| m.material.map_or(own, |i| of(&flat.materials[i as usize]))).collect()
+    flat.meshes.iter().map(|mesh| mesh.material.map_or(own, |i| flat.materials[i as usize])).collect()
 }

@@ -1,9 +1,9 @@
 //! Has a driver compile pipelines before they are needed, on a device of its own.
 
 use crate::render::gpu::{Gpu, GpuError};
-use crate::render::passes::field::{FieldBuffers, FieldGroups, FieldLayouts};
+use crate::render::passes::field::{FieldBuffers, FieldLayouts, FieldPipelines};
 use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT, TAPES_FORMAT, bind, window};
+use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
 use crate::render::resources::targets::Targets;
 use crate::render::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
 use crate::render::wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
@@ -18,7 +18,8 @@ pub struct Prewarmer {
     view: wgpu::BindGroup,
     scene: wgpu::BindGroup,
     dispatch_params: wgpu::BindGroup,
-    groups: FieldGroups,
+    /// Of the passes of a pipeline.
+    own: [wgpu::BindGroup; FieldPipelines::STAGES.len()],
 }
 
 impl Prewarmer {
@@ -47,25 +48,27 @@ impl Prewarmer {
         };
         let [params, tapes_texture] =
             [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT)].map(|(l, f)| DataTexture::new(device, l, f));
-        let scene = [
-            small.binding(),
-            params.binding(),
-            window(small.buffer(), size_of::<GpuComponent>()),
-            small.binding(),
-            window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
-            tapes_texture.binding(),
-        ];
+        let scene = SceneBindings {
+            nodes: small.binding(),
+            params: params.binding(),
+            subject: window(small.buffer(), size_of::<GpuComponent>()),
+            rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
+            tapes: tapes_texture.binding(),
+        };
+        // Sides that are no powers of two, as in most windows: what lavapipe compiles depends on it.
+        let targets = Targets::new(device, [24, 24]);
+        let [trace, _] = field.bind_trace(device, &targets, lists);
+        let own = [field.bind_cone(device, &targets, lists), trace, field.bind_surface(device, &targets, lists)];
         Ok(Self {
             view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<GpuView>())]),
-            scene: bind(device, "scene", &layouts.scene, &scene),
+            scene: scene.bind(device, &layouts.scene),
             dispatch_params: bind(
                 device,
                 "dispatch_params",
                 &layouts.dispatch_params,
                 &[window(small.buffer(), size_of::<DispatchParams>())],
             ),
-            // Sides that are no powers of two, as in most windows: what lavapipe compiles depends on it.
-            groups: field.bind(device, &Targets::new(device, [24, 24]), lists),
+            own,
             layouts,
             field,
             options,
@@ -81,19 +84,15 @@ impl Prewarmer {
         let Ok(pipelines) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else {
             return Ok(());
         };
-        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let label = Some("pipelines ahead of their use");
+        let mut encoder = self.gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
             pass.set_bind_group(0, &self.view, &[]);
             pass.set_bind_group(1, &self.scene, &[0, 0]);
             pass.set_bind_group(3, &self.dispatch_params, &[0]);
-            let passes = [
-                (&pipelines.cone, &self.groups.cone),
-                (&pipelines.trace, &self.groups.trace),
-                (&pipelines.surface, &self.groups.surface),
-            ];
-            for (pipeline, targets) in passes {
-                pass.set_pipeline(pipeline);
+            for (stage, targets) in FieldPipelines::STAGES.into_iter().zip(&self.own) {
+                pass.set_pipeline(pipelines.pipeline(stage));
                 pass.set_bind_group(2, targets, &[]);
                 pass.dispatch_workgroups(1, 1, 1);
             }

@@ -3,42 +3,50 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{RenderError, Renderer};
-use crate::flat::{CellTree, Component, FlatNode, FlatScene, leaf_payload};
+use super::RenderError;
+use super::evaluation::EvaluationCost;
+use crate::flat::{Cancel, CellTree, Component, FlatNode, FlatScene, TapeCache, leaf_payload};
 use crate::geometry::Camera;
-use crate::render::frame::plan::EvaluationCost;
-use crate::render::pipelines::cache::{EvalMode, PipelineChoice};
+use crate::render::pipelines::cache::{EvalMode, PipelineCache, PipelineChoice};
 use crate::render::pipelines::key::PipelineKey;
 use crate::render::pipelines::strategy::EvalStrategy;
 use crate::render::wgsl::shape_loops;
 use crate::scene::ShapeKind;
 
-/// What [`Renderer::choose`] finds, beside the components.
-pub(super) struct Chosen {
-    pub(super) keys: Vec<Option<PipelineKey>>,
-    pub(super) choices: Vec<PipelineChoice>,
-    pub(super) evaluations: Vec<EvaluationCost>,
-    pub(super) trees: Vec<Option<Arc<CellTree>>>,
+/// What [`Evaluators::choose`] finds, beside the components.
+pub struct Chosen {
+    pub keys: Vec<Option<PipelineKey>>,
+    pub choices: Vec<PipelineChoice>,
+    pub evaluations: Vec<EvaluationCost>,
+    pub trees: Vec<Option<Arc<CellTree>>>,
 }
 
 /// Tapes that are expected within this time are waited for: walking without them would cost more. Others come
 /// with a later frame.
 const TAPES_AT_ONCE: Duration = Duration::from_millis(25);
 
-impl Renderer {
+/// What evaluates components.
+pub struct Evaluators<'a> {
+    pub pipelines: &'a mut PipelineCache,
+    pub tape_cache: &'a mut TapeCache,
+    pub strategy: EvalStrategy,
+    /// Words of tapes that the device can hold.
+    pub room: usize,
+}
+
+impl Evaluators<'_> {
     /// Pipelines, and what they need to know, for each component.
-    pub(super) fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
-        let keys = self.pipelines.keys(flat, self.strategy);
+    pub fn choose(self, flat: &FlatScene, camera: &Camera, cancel: &Cancel) -> Result<Chosen, RenderError> {
+        let Self { pipelines, tape_cache, strategy, mut room } = self;
+        let keys = pipelines.keys(flat, strategy);
         // Tapes are made only for what no specialized pipeline is to draw.
-        let wanted: Vec<bool> =
-            keys.iter().map(|key| key.is_none() && self.strategy != EvalStrategy::Interpreter).collect();
-        let mut trees = match self.strategy {
-            EvalStrategy::Auto => self.tape_cache.ready_trees(flat, &wanted, TAPES_AT_ONCE),
-            _ => self.tape_cache.trees(flat, &wanted),
+        let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && strategy != EvalStrategy::Interpreter).collect();
+        let mut trees = match strategy {
+            EvalStrategy::Auto => tape_cache.ready_trees(flat, &wanted, TAPES_AT_ONCE),
+            _ => tape_cache.trees(flat, &wanted),
         };
-        self.check_cancel()?;
+        check(cancel)?;
         // What has no room on the device is walked without tapes.
-        let mut room = self.tapes.most_words(&self.gpu.device);
         for tree in &mut trees {
             let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
             match room.checked_sub(needed) {
@@ -47,8 +55,8 @@ impl Renderer {
             }
         }
         let has_tapes: Vec<bool> = trees.iter().map(Option::is_some).collect();
-        let choices = self.pipelines.choose(flat, &keys, self.strategy, &has_tapes, &largest_first(flat, camera))?;
-        let loops = self.pipelines.loops();
+        let choices = pipelines.choose(flat, &keys, strategy, &has_tapes, &largest_first(flat, camera))?;
+        let loops = pipelines.loops();
         let evaluation = |i: usize| {
             let loop_trips = loop_trips(flat, &flat.components[i]);
             let straight = || EvaluationCost::of_straight_line(&flat.components[i], loop_trips);
@@ -64,8 +72,14 @@ impl Renderer {
             now
         };
         let evaluations = (0..flat.components.len()).map(evaluation).collect();
+        check(cancel)?;
         Ok(Chosen { keys, choices, evaluations, trees })
     }
+}
+
+/// An error where the caller asks to stop.
+pub fn check(cancel: &Cancel) -> Result<(), RenderError> {
+    if cancel.is_canceled() { Err(RenderError::Canceled) } else { Ok(()) }
 }
 
 /// Components in the order of how large they are seen.

@@ -3,18 +3,22 @@
 use std::time::Duration;
 
 use super::Slot;
+use super::choice::Chosen;
 use super::unfinished::GoingOn;
 use crate::flat::debug_view::ViewMode;
+use crate::flat::{FlatScene, ParamRow};
 use crate::render::frame::cost_model::{Cost, CostModel};
-use crate::render::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER, Pass};
+use crate::render::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
+use crate::render::passes::field::FieldPipelines;
 use crate::render::passes::overlay::OverlaySettings;
 use crate::render::pipelines::cache::{EvalMode, PipelineChoice};
 use crate::render::pipelines::key::PipelineKey;
+use crate::render::recipe::Pass;
 
 /// A frame under way.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    pub(super) plan: FramePlan,
+    pub(in crate::render) plan: FramePlan,
     pub(super) keys: Vec<Option<PipelineKey>>,
     pub(super) choices: Vec<PipelineChoice>,
     pub(super) next: usize,
@@ -27,8 +31,8 @@ pub struct Frame {
     pub(super) relaunches_at_once: u32,
     pub(super) seconds: f64,
     pub(super) slot: Slot,
-    pub(super) overlay: OverlaySettings,
-    pub(super) view_mode: ViewMode,
+    pub(in crate::render) overlay: OverlaySettings,
+    pub(in crate::render) view_mode: ViewMode,
     /// How its rays go on.
     pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
@@ -41,6 +45,35 @@ pub struct Frame {
 const MAX_RELAUNCHES_AT_ONCE: u32 = 64;
 
 impl Frame {
+    /// What is to be done for a picture in `slot`.
+    pub(super) fn new(
+        slot: Slot,
+        flat: &FlatScene,
+        Chosen { keys, choices, .. }: Chosen,
+        plan: FramePlan,
+        cost_model: CostModel,
+        overlay: OverlaySettings,
+    ) -> Self {
+        Self {
+            cost_model,
+            seconds: cost_model.seconds(plan.cost()),
+            plan,
+            keys,
+            choices,
+            next: 0,
+            seconds_done: 0.0,
+            measured: Some(Duration::ZERO),
+            relaunches_at_once: 0,
+            slot,
+            overlay,
+            view_mode: ViewMode::Shaded,
+            going_on: GoingOn::default(),
+            template_rows: Vec::new(),
+            rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
+            origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
+        }
+    }
+
     /// Share that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
@@ -79,7 +112,7 @@ impl Frame {
 
     /// Whether a pipeline is dispatched for the first time among these dispatches.
     pub(super) fn uses_fresh_pipelines(&self, dispatches: std::ops::Range<usize>) -> bool {
-        let field = |p: &&Dispatch| matches!(p.pass, Pass::Cone | Pass::Trace | Pass::Surface);
+        let field = |p: &&Dispatch| FieldPipelines::STAGES.contains(&p.pass);
         let pipelines = self.plan.dispatches[dispatches]
             .iter()
             .filter(field)

@@ -1,15 +1,16 @@
 //! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without pipelines
 //! that count there is no room for them, and nothing is written.
 
-use super::{Frame, RenderError, Renderer};
 use crate::render::frame::plan::TILE;
 use crate::render::gpu::readback::read_words_at;
+use crate::render::gpu::{Gpu, GpuError};
+use crate::render::resources::buffers::SyncedBuffer;
 
 /// Words that are counted for each component: rays without an end, evaluations by rays, rays started, and by rays and
 /// cones cells and tape entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
-pub(super) const COMPONENT_COUNTS: usize = 5;
+pub const COMPONENT_COUNTS: usize = 5;
 /// Words that are counted for each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
-pub(super) const PIXEL_COUNTS: usize = 4;
+pub const PIXEL_COUNTS: usize = 4;
 
 /// What rays or cones took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,52 +73,65 @@ impl PixelCounts {
     }
 }
 
-impl Renderer {
+/// The buffer of counts: of components at its beginning; where pipelines count, of pixels and tiles at its end.
+#[derive(Debug)]
+pub struct MarchCounts {
+    words: SyncedBuffer,
+    /// Whether pipelines count.
+    pub is_on: bool,
+}
+
+impl MarchCounts {
+    /// No counts yet.
+    pub fn new(device: &wgpu::Device, is_on: bool) -> Self {
+        Self { words: SyncedBuffer::read_back(device, "march counts"), is_on }
+    }
+
+    /// The buffer.
+    pub fn buffer(&self) -> &wgpu::Buffer {
+        self.words.buffer()
+    }
+
     /// Words that a picture of this size needs for its pixels and tiles; none where nobody counts.
     fn pixel_words(&self, size: [u32; 2]) -> usize {
         let of = |sides: [u32; 2]| sides[0] as usize * sides[1] as usize;
-        if self.counting { (of(size) + of(size.map(|side| side.div_ceil(TILE)))) * PIXEL_COUNTS } else { 0 }
+        if self.is_on { (of(size) + of(size.map(|side| side.div_ceil(TILE)))) * PIXEL_COUNTS } else { 0 }
     }
 
-    /// Bytes that hold what is counted.
-    pub fn counts_bytes(&self) -> u64 {
-        self.march_counts.buffer().size()
-    }
-
-    /// Whether the device can hold the counts of such a picture.
-    pub(super) fn check_counts(&self, components: usize, size: [u32; 2]) -> Result<(), RenderError> {
-        let most = self.gpu.device.limits().max_storage_buffer_binding_size;
+    /// Whether a binding of so many bytes can hold the counts of such a picture.
+    pub fn fit(&self, components: usize, size: [u32; 2], most: u64) -> bool {
         let words = components * COMPONENT_COUNTS + self.pixel_words(size);
-        if (words as u64 * 4).next_power_of_two() > most {
-            return Err(RenderError::Counts(size[0], size[1]));
-        }
-        Ok(())
+        (words as u64 * 4).next_power_of_two() <= most
     }
 
     /// Makes room for the counts of so many components and a picture of this size, and sets those of the components
     /// to nothing. True where the buffer is another one.
-    pub(super) fn reset_counts(&mut self, components: usize, size: [u32; 2]) -> bool {
+    pub fn reset(&mut self, gpu: &Gpu, components: usize, size: [u32; 2]) -> bool {
         let nothing = vec![0; components * COMPONENT_COUNTS * 4];
         let bytes = nothing.len() + self.pixel_words(size) * 4;
-        let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let grown = self.march_counts.reserve(device, bytes);
-        self.march_counts.reset(device, queue, &nothing) || grown
+        let grown = self.words.reserve(&gpu.device, bytes);
+        self.words.reset(&gpu.device, &gpu.queue, &nothing) || grown
     }
 
     /// Sets what pixels and tiles took to nothing.
-    pub(super) fn clear_pixel_counts(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
+    pub fn clear_pixels(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
         let bytes = self.pixel_words(size) as u64 * 4;
         if bytes > 0 {
-            encoder.clear_buffer(self.march_counts.buffer(), self.counts_bytes() - bytes, Some(bytes));
+            encoder.clear_buffer(self.buffer(), self.buffer().size() - bytes, Some(bytes));
         }
     }
 
-    /// What each pixel of the frame took that was drawn last; empty where pipelines do not count.
-    pub fn pixel_counts(&self, frame: &Frame) -> Result<PixelCounts, RenderError> {
-        let size = self.slot(frame.slot).targets.size;
+    /// What was counted for each component.
+    pub fn of_components(&self, gpu: &Gpu, components: usize) -> Result<Vec<[u32; COMPONENT_COUNTS]>, GpuError> {
+        let words = read_words_at(gpu, self.buffer(), 0, components * COMPONENT_COUNTS)?;
+        Ok(words.as_chunks().0.to_vec())
+    }
+
+    /// What each pixel of a picture of this size took; empty where pipelines do not count.
+    pub fn of_pixels(&self, gpu: &Gpu, size: [u32; 2]) -> Result<PixelCounts, GpuError> {
         let count = self.pixel_words(size);
-        let first = self.march_counts.buffer().size() as usize / 4 - count;
-        let words = read_words_at(&self.gpu, self.march_counts.buffer(), first, count)?;
+        let first = self.buffer().size() as usize / 4 - count;
+        let words = read_words_at(gpu, self.buffer(), first, count)?;
         let counted = |w: &[u32]| TraceCounts { evaluations: w[0], rays: w[1], cells: w[2], entries: w[3] };
         let mut pixels: Vec<TraceCounts> = words.chunks_exact(PIXEL_COUNTS).map(counted).collect();
         let tiles = pixels.split_off(if count == 0 { 0 } else { size[0] as usize * size[1] as usize });

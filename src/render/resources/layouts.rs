@@ -1,4 +1,6 @@
 //! Bind group layouts. Group 0 is the view, 1 the scene, 2 the pass's own targets, 3 the dispatch.
+//!
+//! What a group binds is declared once, by `bindings!`: the layout and the bind group follow from it.
 
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
@@ -8,13 +10,54 @@ pub const PARAMS_FORMAT: Format = Format::Rgba32Float;
 /// Of the texture of tapes.
 pub const TAPES_FORMAT: Format = Format::Rg32Uint;
 
+/// Declares a group: a struct of resources whose fields stand in the order of the bindings, with its layout.
+macro_rules! bindings {
+    ($(#[$doc:meta])* $name:ident, $label:literal, $stages:ident { $($(#[$field_doc:meta])* $field:ident: $type:expr,)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub struct $name<'a> {
+            $($(#[$field_doc])* pub $field: wgpu::BindingResource<'a>,)*
+        }
+
+        impl $name<'_> {
+            /// The layout of the group.
+            pub fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+                let types = [$($type),*];
+                let entries: Vec<_> = (0..).zip(types).map(|(at, ty)| entry(at, wgpu::ShaderStages::$stages, ty)).collect();
+                layout(device, $label, &entries)
+            }
+
+            /// The group.
+            pub fn bind(self, device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
+                bind(device, $label, layout, &[$(self.$field),*])
+            }
+        }
+    };
+}
+pub(crate) use bindings;
+
+bindings! {
+    /// Group 1 of the field passes.
+    SceneBindings, "scene", COMPUTE {
+        /// The subtree-extent array.
+        nodes: read_storage(),
+        /// All rows.
+        params: storage_texture(PARAMS_FORMAT, Access::ReadOnly),
+        /// The component, at a dynamic offset.
+        subject: uniform(true),
+        /// The component's own rows once more, at a dynamic offset.
+        rows: uniform(true),
+        /// Tapes.
+        tapes: storage_texture(TAPES_FORMAT, Access::ReadOnly),
+    }
+}
+
 /// Layouts that several passes share.
 #[derive(Clone, Debug)]
 pub struct Layouts {
     /// Group 0: `View`.
     pub view: BindGroupLayout,
-    /// Group 1 of the field passes: nodes, numbers, the component at a dynamic offset, materials, the component's own
-    /// rows once more as a uniform at a dynamic offset, tapes.
+    /// Group 1 of the field passes: [`SceneBindings`].
     pub scene: BindGroupLayout,
     /// Group 3: `DispatchParams`, at a dynamic offset.
     pub dispatch_params: BindGroupLayout,
@@ -26,22 +69,7 @@ impl Layouts {
         let everywhere = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
         Self {
             view: layout(device, "view", &[entry(0, everywhere, uniform(false))]),
-            scene: layout(
-                device,
-                "scene",
-                &[
-                    read_storage(),
-                    storage_texture(PARAMS_FORMAT, Access::ReadOnly),
-                    uniform(true),
-                    read_storage(),
-                    uniform(true),
-                    storage_texture(TAPES_FORMAT, Access::ReadOnly),
-                ]
-                .iter()
-                .enumerate()
-                .map(|(b, ty)| entry(b as u32, ShaderStages::COMPUTE, *ty))
-                .collect::<Vec<_>>(),
-            ),
+            scene: SceneBindings::layout(device),
             dispatch_params: layout(device, "dispatch_params", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }
     }
@@ -191,12 +219,14 @@ pub fn screen_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     label: &str,
     color: &wgpu::TextureView,
+    timestamp_writes: Option<wgpu::RenderPassTimestampWrites<'_>>,
 ) -> wgpu::RenderPass<'e> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
     let color = wgpu::RenderPassColorAttachment { view: color, depth_slice: None, resolve_target: None, ops };
     encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
         label: Some(label),
         color_attachments: &[Some(color)],
+        timestamp_writes,
         ..Default::default()
     })
 }

@@ -7,8 +7,8 @@
 //! | march | R32Float | trace | where a march goes on in the next relaunch |
 //! | hiz | R32Float | hiz, trace | the farthest depth in each subtile of 4 by 4 pixels; it may be wider |
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
-//! | diffuse | Rgba16Float | mesh, surface | albedo, specular |
-//! | emission | Rgba16Float | surface | emission, shininess |
+//! | base color | Rgba16Float | mesh | linear color of meshes |
+//! | material | Rgba32Uint | surface | of fields: the mixture of materials, see `shaders/common/mixture.wgsl` |
 //! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; where no field is, as visibility |
 //! | color | Rgba8Unorm | shade, debug_view, overlay | the picture, sRGB encoded |
 //! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
@@ -38,9 +38,9 @@ pub struct Targets {
     /// See the module's table.
     pub normal: Target,
     /// See the module's table.
-    pub diffuse: Target,
+    pub base_color: Target,
     /// See the module's table.
-    pub emission: Target,
+    pub material: Target,
     /// See the module's table.
     pub leaf: Target,
     /// See the module's table.
@@ -72,8 +72,8 @@ impl Targets {
             march: target("march", TextureFormat::R32Float, compute | TextureUsages::COPY_DST),
             hiz: Target::new(device, "hiz", subtiles, TextureFormat::R32Float, both),
             normal: target("normal", TextureFormat::Rgba32Float, both),
-            diffuse: target("diffuse", TextureFormat::Rgba16Float, both),
-            emission: target("emission", TextureFormat::Rgba16Float, compute),
+            base_color: target("base color", TextureFormat::Rgba16Float, both),
+            material: target("material", TextureFormat::Rgba32Uint, compute),
             leaf: target("leaf", TextureFormat::R32Uint, compute | TextureUsages::COPY_DST),
             color: target("color", TextureFormat::Rgba8Unorm, both),
             hardware_depth: target("hardware depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT),
@@ -92,6 +92,11 @@ impl Target {
     pub fn shown(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | TextureUsages::RENDER_ATTACHMENT;
         Self::new(device, "shown", size, TextureFormat::Rgba8Unorm, usage)
+    }
+
+    /// All of it, as a resource.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(&self.view)
     }
 
     /// Its size in pixels.

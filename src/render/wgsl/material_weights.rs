@@ -1,7 +1,8 @@
 //! The second half of a specialized surface: what each leaf has its share in. The fold has left the weight
 //! of every blend in `w…`; gradient and material are the sums over the leaves of what they are there, each
 //! times the product of the weights on its way (reverse mode: a blend's weight is its derivative). So only
-//! leaves that the surface really follows are looked at, most often one.
+//! leaves that the surface really follows are looked at, most often one. Materials are only weighed here; see
+//! `shaders/common/mixture.wgsl`.
 //!
 //! With operators beyond the first three a blend has two derivatives of any sign, and a share of the material that is
 //! neither. `w…` holds them all then, and `wear…` is carried along beside `share…`.
@@ -12,33 +13,38 @@ use std::ops::Range;
 use super::calls::{arguments, select_by_shape};
 use super::options::SkipMode;
 use super::structure::{EntryKind, Structure, StructureEntry};
-use crate::flat::{Join, MATERIAL_ROWS};
+use crate::flat::Join;
 use crate::scene::ShapeKind;
 
-/// The text that declares and sums `gradient`, `diffuse` and `emission`.
-pub fn material_weights(structure: &Structure, baked: bool, skip_mode: SkipMode) -> String {
+/// The text that declares and sums `gradient` and `materials`.
+pub fn material_weights(structure: &Structure, skip_mode: SkipMode) -> String {
     let rows = structure.entries.iter().scan(0, |row, entry| {
         let first = *row;
         *row += entry.rows();
         Some(first)
     });
     let general = structure.has_extended_joins();
-    let mut writer = MaterialWeights { structure, rows: rows.collect(), baked, skip_mode, general, out: String::new() };
-    writer.out.push_str(
-        "    var gradient = vec3f(0.0);\n    var diffuse = vec4f(0.0);\n    var emission = vec4f(0.0);\n    \
-         var rest0 = 1.0;\n",
-    );
+    let mut writer = MaterialWeights { structure, rows: rows.collect(), skip_mode, general, out: String::new() };
+    let entries = structure.entries.len();
+    writer.line(&format!("    var gradient = vec3f(0.0);\n    var weights: array<f32, {entries}>;"));
+    writer.line("    var heaviest = 0.0;\n    var rest0 = 1.0;");
     if general {
         writer.line("    var worn0 = 1.0;");
     }
-    writer.siblings(0..structure.entries.len(), 0, 1.0);
+    writer.siblings(0..entries, 0, 1.0);
+    // Mostly one leaf has it all. A loop, since lavapipe would compile and compute the same for each leaf.
+    writer.line("    var materials = mixture_of(nodes[surface_first + l0].material);");
+    writer.line("    if heaviest < 1.0 { materials = mixture_none(); }");
+    writer.line(&format!("    var weighed = select({entries}u, 0u, heaviest < 1.0);"));
+    writer.line(&format!("    while weighed < {entries}u {{"));
+    writer.line("    let material = nodes[surface_first + weighed].material;");
+    writer.line("    materials = mixture_add(materials, material, weights[weighed]);\n    weighed += 1u;\n    }");
     writer.out
 }
 
 struct MaterialWeights<'a> {
     structure: &'a Structure,
     rows: Vec<usize>,
-    baked: bool,
     skip_mode: SkipMode,
     general: bool,
     out: String,
@@ -118,12 +124,7 @@ impl MaterialWeights<'_> {
                 // A leaf without a share may have no gradient here.
                 SkipMode::Selects => format!("    gradient += select(vec3f(0.0), {part}, {has});"),
             });
-            let leaves_before = self.structure.entries[..at].iter().filter(|entry| entry.is_leaf()).count();
-            let material = self.structure.rows() + leaves_before * MATERIAL_ROWS;
-            for (what, row) in [("diffuse", material), ("emission", material + 1)] {
-                let row = if self.baked { format!("q{row}") } else { format!("rows[{row}u]") };
-                self.line(&format!("    {what} += {wear}{at} * {row};"));
-            }
+            self.line(&format!("    weights[{at}u] = {wear}{at};\n    heaviest = max(heaviest, {wear}{at});"));
         } else {
             self.line(&format!("    var rest{} = share{at};", level + 1));
             if self.general {

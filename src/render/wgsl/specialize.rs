@@ -53,10 +53,7 @@ impl FoldWriter<'_> {
 
     fn head(&mut self) {
         let rows = self.structure.rows();
-        self.line(&format!(
-            "const ROW_COUNT: u32 = {}u;",
-            if self.baked.is_some() { 1 } else { rows + self.structure.material_rows() }
-        ));
+        self.line(&format!("const ROW_COUNT: u32 = {}u;", if self.baked.is_some() { 1 } else { rows }));
         self.line("#include \"field/placed.wgsl\"");
         let modifier = |e: &StructureEntry| if let EntryKind::Modified(kind) = e.kind { Some(kind) } else { None };
         let modifiers: BTreeSet<_> = self.structure.entries.iter().filter_map(modifier).collect();
@@ -172,9 +169,9 @@ impl FoldWriter<'_> {
             }
         }
         if surface {
-            let text = material_weights(self.structure, self.baked.is_some(), self.options.skip_mode);
+            let text = material_weights(self.structure, self.options.skip_mode);
             self.line(&text);
-            self.line("    return Surface(s0, surface_first + l0, gradient, diffuse, emission);\n}");
+            self.line("    return Surface(s0, surface_first + l0, gradient, materials);\n}");
         } else {
             if self.lookahead {
                 self.line("    lookahead_minimum = h0;");

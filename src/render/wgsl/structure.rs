@@ -2,8 +2,8 @@
 
 use super::op_set::{Extended, OpSet, fits_templates};
 use crate::flat::{
-    Component, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MATERIAL_ROWS, MODIFIER_ROWS,
-    ParamRow, modifier_rows,
+    Component, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GROUP_ROWS, Join, LEAF_ROWS, MODIFIER_ROWS, ParamRow,
+    modifier_rows,
 };
 use crate::scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
@@ -246,14 +246,9 @@ impl Structure {
         ops
     }
 
-    /// Rows of the entries of a component of this structure; those of the materials of its leaves come next.
+    /// Rows of the entries of a component of this structure.
     pub fn rows(&self) -> usize {
         self.entries.iter().map(StructureEntry::rows).sum()
-    }
-
-    /// Rows of the materials of its leaves.
-    pub fn material_rows(&self) -> usize {
-        self.entries.iter().filter(|entry| entry.is_leaf()).count() * MATERIAL_ROWS
     }
 }
 
@@ -274,8 +269,6 @@ pub fn template_rows(flat: &FlatScene, params: &[ParamRow], component: &Componen
         out.resize(first + TEMPLATE_LEAF_ROWS, [0.0; 4]);
         out[first][3] = code as f32;
     }
-    let leaves = flat.nodes[component.first as usize..][..component.count as usize].iter().filter(|n| n.is_leaf());
-    out.extend(leaves.flat_map(|leaf| flat.materials[leaf.material as usize].rows()));
 }
 
 /// FNV-1a of 128 bits.

@@ -34,7 +34,8 @@ fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
     let camera = flat.default_camera(&[], 1.0);
     let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
     let evaluations = vec![slow; flat.components.len()];
-    let plan = plan(&flat, &camera, [64, 64], &evaluations, &CostModel::new(true), usize::MAX).expect("room for all");
+    let plan =
+        plan(&flat, &camera, [64, 64], &evaluations, &CostModel::new(true), Room::UNLIMITED).expect("room for all");
     let of = |dispatches: &[Dispatch], pass: Pass| dispatches.iter().filter(|dispatch| dispatch.pass == pass).count();
     let again = plan.again(|component| component == 2, 8);
     let meant: Vec<Dispatch> =
@@ -59,9 +60,22 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     // Of the third one few steps fit in a dispatch.
     let mut evaluations = vec![cheap; flat.components.len()];
     evaluations[2].iterations = MAX_ITERATIONS / 4;
-    let planned = |most| plan(&flat, &camera, [640, 480], &evaluations, &CostModel::new(true), most);
-    let count = planned(usize::MAX).expect("room for all").dispatches.len();
+    let planned = |room| plan(&flat, &camera, [640, 480], &evaluations, &CostModel::new(true), room);
+    let whole = planned(Room::UNLIMITED).expect("room for all");
+    let (count, subtiles) = (whole.dispatches.len(), u64::from(whole.subtiles));
     assert!(count > 1_000, "{count}");
-    assert_eq!(planned(count).expect("just enough room").dispatches.len(), count);
-    assert_eq!(planned(count - 1).expect_err("too many"), TooLong { component: 2 });
+    let just_enough = Room { dispatches: count, subtiles };
+    assert_eq!(planned(just_enough).expect("just enough room").dispatches.len(), count);
+    let error = planned(Room { dispatches: count - 1, ..just_enough }).expect_err("too many dispatches");
+    assert_eq!(error, TooMuch::Pieces { component: 2 });
+    // Of all components the one that covers the most of the picture has the longest lists.
+    let of_component = |index: usize| {
+        let cones = whole.dispatches.iter().filter(|p| p.pass == Pass::Cone && p.params.component as usize == index);
+        cones.map(|dispatch| dispatch.tiles().iter().product::<u32>() * SUBTILES * SUBTILES).sum::<u32>()
+    };
+    let error = planned(Room { subtiles: subtiles - 1, ..just_enough }).expect_err("too many subtiles");
+    let TooMuch::Subtiles { component, subtiles: needed } = error else { panic!("{error:?}") };
+    assert_eq!(needed, subtiles);
+    let longest = (0..flat.components.len()).map(of_component).max().expect("there are some");
+    assert_eq!(of_component(component), longest);
 }

@@ -1,0 +1,201 @@
+//! Writes the passes of a frame down, each under its label and, where time is taken, between two timestamps.
+
+use super::Frame;
+use super::resources::{FrameResources, Groups, SlotState};
+use super::timings::Stamps;
+use crate::render::gpu::Gpu;
+use crate::render::passes::field::FieldPipelines;
+use crate::render::recipe::{Extent, Pass};
+use crate::render::resources::targets::{Target, Targets};
+use crate::render::resources::uniforms::UNIFORM_STRIDE;
+
+/// Passes that evaluate fields share one pass of the device where no time is taken: beginning one for each of thousands of
+/// components would cost more than some of them take.
+const SHARED_LABEL: &str = "fields";
+
+/// See the module.
+#[derive(Debug)]
+pub struct Recorder<'a> {
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// The frame.
+    pub frame: &'a Frame,
+    /// The buffers that the passes work on.
+    pub resources: &'a FrameResources,
+    /// The textures that the passes work on.
+    pub targets: &'a Targets,
+    /// What a coarse picture is enlarged to.
+    pub enlarged: Option<&'a Target>,
+    groups: &'a Groups,
+    encoder: wgpu::CommandEncoder,
+    /// The compute pass that is being written.
+    open: Option<wgpu::ComputePass<'static>>,
+    frame_pass: Pass,
+    stamps: Option<Stamps<'a>>,
+    /// Passes between timestamps, in order.
+    timed: Vec<Pass>,
+}
+
+impl<'a> Recorder<'a> {
+    /// For the slot of `frame`. Time is taken of as many passes as `stamps` has room for.
+    pub fn new(gpu: &'a Gpu, frame: &'a Frame, resources: &'a FrameResources, stamps: Option<Stamps<'a>>) -> Self {
+        let SlotState { targets, enlarged, groups } = resources.slot(frame.slot);
+        let groups = groups.as_ref().expect("begin binds");
+        let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        let (open, frame_pass, timed) = (None, Pass::ALL[0], Vec::new());
+        let enlarged = enlarged.as_ref();
+        Self { gpu, frame, resources, targets, enlarged, groups, encoder, open, frame_pass, stamps, timed }
+    }
+
+    /// Whether another pass, and those over the finished picture, have a place for their time.
+    pub fn has_room(&self) -> bool {
+        self.stamps.is_none_or(|stamps| self.timed.len() + Pass::ALL.len() <= stamps.room())
+    }
+
+    /// What comes next is of this pass of the frame.
+    pub fn begin(&mut self, frame_pass: Pass) {
+        if self.stamps.is_some() || frame_pass.extent() == Extent::Finished {
+            self.open = None;
+        }
+        self.frame_pass = frame_pass;
+    }
+
+    /// The groups of the view and, of the pass's own ones, the one with this index.
+    pub fn groups(&self, own: usize) -> [&'a wgpu::BindGroup; 2] {
+        [&self.groups.view, &self.groups.own[self.frame_pass as usize][own]]
+    }
+
+    /// The group of the view.
+    pub fn view(&self) -> &'a wgpu::BindGroup {
+        &self.groups.view
+    }
+
+    /// Where a dispatch for `at`, a dispatch of the frame, is to be written. Group 0 is the view, 3 the dispatch.
+    pub fn compute(&mut self, at: usize) -> &mut wgpu::ComputePass<'static> {
+        let groups = self.groups;
+        let pass = self.open();
+        pass.set_bind_group(3, &groups.dispatch_params, &[(at * UNIFORM_STRIDE) as u32]);
+        pass
+    }
+
+    /// The same for a dispatch over the finished picture.
+    pub fn open(&mut self) -> &mut wgpu::ComputePass<'static> {
+        if self.open.is_none() {
+            let timestamp_writes = self.stamp().map(|stamps| stamps.of_compute());
+            let label = if self.stamps.is_some() || self.frame_pass.extent() == Extent::Finished {
+                self.frame_pass.label()
+            } else {
+                SHARED_LABEL
+            };
+            let descriptor = wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes };
+            let mut pass = self.encoder.begin_compute_pass(&descriptor).forget_lifetime();
+            pass.set_bind_group(0, &self.groups.view, &[]);
+            self.open = Some(pass);
+        }
+        self.open.as_mut().expect("opened above")
+    }
+
+    /// The same for a dispatch over a component, by the pipeline of its pipeline and the pass's own group `own`.
+    pub fn component(
+        &mut self,
+        at: usize,
+        own: usize,
+        pipeline: impl FnOnce(&FieldPipelines) -> &wgpu::ComputePipeline,
+    ) -> &mut wgpu::ComputePass<'static> {
+        let (frame, groups) = (self.frame, self.groups);
+        let component = frame.plan.dispatches[at].params.component as usize;
+        let [_, targets] = self.groups(own);
+        let pass = self.compute(at);
+        pass.set_pipeline(pipeline(&frame.choices[component].pipelines));
+        let subject = (component * UNIFORM_STRIDE) as u32;
+        match frame.template_window(component) {
+            Some(window) => pass.set_bind_group(1, &groups.templates, &[subject, window]),
+            None => pass.set_bind_group(1, &groups.scene, &[subject, frame.rows[component]]),
+        }
+        pass.set_bind_group(2, targets, &[]);
+        pass
+    }
+
+    /// Where passes that draw are to be written, with what takes their time.
+    pub fn drawing(&mut self) -> (&mut wgpu::CommandEncoder, Option<Stamps<'a>>) {
+        self.open = None;
+        let stamps = self.stamp();
+        (&mut self.encoder, stamps)
+    }
+
+    /// The next two timestamps.
+    fn stamp(&mut self) -> Option<Stamps<'a>> {
+        let stamps = self.stamps?.at(self.timed.len())?;
+        self.timed.push(self.frame_pass);
+        Some(stamps)
+    }
+
+    /// Hands everything to the device. The passes whose time is taken, in order.
+    pub fn submit(mut self) -> Vec<Pass> {
+        self.open = None;
+        if let Some(stamps) = self.stamps {
+            stamps.resolve(&mut self.encoder, self.timed.len());
+        }
+        self.gpu.queue.submit([self.encoder.finish()]);
+        self.timed
+    }
+}
+
+/// Dispatches the pipelines of a pipeline over nothing that were never used: lavapipe compiles them then. Whether there were any.
+pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
+    let fresh: Vec<Pass> =
+        FieldPipelines::STAGES.into_iter().filter(|frame_pass| pipelines.first_use(*frame_pass as usize)).collect();
+    if fresh.is_empty() {
+        return false;
+    }
+    let label = Some("needs_prewarm pipelines");
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
+    let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
+    pass.set_bind_group(0, &groups.view, &[]);
+    pass.set_bind_group(1, &groups.scene, &[0, 0]);
+    pass.set_bind_group(3, &groups.dispatch_params, &[0]);
+    for frame_pass in fresh {
+        pass.set_pipeline(pipelines.pipeline(frame_pass));
+        pass.set_bind_group(2, &groups.own[frame_pass as usize][0], &[]);
+        pass.dispatch_workgroups(0, 0, 0);
+    }
+    drop(pass);
+    gpu.queue.submit([encoder.finish()]);
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::super::{Renderer, Slot};
+    use crate::flat::flatten;
+    use crate::gallery;
+    use crate::render::pipelines::cache::EvalMode;
+    use crate::render::{Gpu, OverlaySettings};
+
+    #[test]
+    fn prewarmed_pipelines_are_not_first_used_by_a_picture() {
+        let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
+        let flat = flatten(&gallery::random(32, 3), 0.0).expect("within the limits");
+        let camera = flat.default_camera(&[], 1.0);
+        let is_fresh = |met: bool| {
+            let mut renderer = Renderer::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
+            let mut begin = || {
+                let frame = renderer.begin(Slot::Full, &flat, &[], &camera, [40, 40], OverlaySettings::default());
+                (frame.expect("a frame"), renderer.is_preparing())
+            };
+            while begin().1 {
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            let (frame, _) = begin();
+            // One after the other, as between two paintings of the window.
+            while met && renderer.prewarm_pipelines(&flat, &camera, Duration::ZERO).expect("a device that answers") {}
+            assert!(frame.choices.iter().any(|choice| choice.mode == EvalMode::StraightLine));
+            frame.uses_fresh_pipelines(0..frame.plan.dispatches.len())
+        };
+        assert!(is_fresh(false));
+        // Elsewhere drivers compile when a pipeline is built.
+        assert_eq!(is_fresh(true), !gpu.is_software());
+    }
+}

@@ -1,0 +1,272 @@
+//! What a frame works on beside the scene: who looks, its dispatches, what passes hand on to each other, and the targets
+//! of its slot.
+
+use wgpu::BindGroup;
+
+use super::pixel_counts::MarchCounts;
+use super::scene::SceneResources;
+use super::{Frame, Slot};
+use crate::flat::{FlatScene, gpu_lights};
+use crate::geometry::Camera;
+use crate::render::frame::plan::{Dispatch, FramePlan, TILE};
+use crate::render::gpu::Gpu;
+use crate::render::passes::field::FieldBuffers;
+use crate::render::passes::overlay::OverlaySettings;
+use crate::render::passes::shade::mesh_materials;
+use crate::render::passes::{Bound, Passes};
+use crate::render::recipe::Pass;
+use crate::render::resources::buffers::SyncedBuffer;
+use crate::render::resources::layouts::{Layouts, bind, window};
+use crate::render::resources::targets::{Target, Targets};
+use crate::render::resources::uniforms::{DispatchParams, GpuView, strided};
+
+/// Bytes of a subtile in a list.
+const SUBTILE_BYTES: usize = 12;
+/// Bytes of the lists that hold so many subtiles: as cones leave them, and once more those with hits.
+pub fn bytes_of_subtiles(subtiles: u64) -> u64 {
+    2 * subtiles * SUBTILE_BYTES as u64
+}
+
+/// Words of a list of subtiles, and of a list of what its rays leave: see `shaders/common/subtiles.wgsl`.
+pub const SUBTILE_COUNTS: usize = 5;
+pub const RAY_COUNTS: usize = 7;
+/// Of a list of subtiles before its cones, and of what its rays leave.
+const NO_SUBTILES: [u32; SUBTILE_COUNTS] = [0, 1, 1, 0, 0];
+const NO_RAYS: [u32; RAY_COUNTS] = [0, 1, 1, 0, 1, 1, 0];
+
+/// Bind groups for the targets of a slot.
+#[derive(Debug)]
+pub struct Groups {
+    pub view: BindGroup,
+    pub scene: BindGroup,
+    /// The same with the rows of templates.
+    pub templates: BindGroup,
+    pub dispatch_params: BindGroup,
+    /// Of each pass, in the order of the frame.
+    pub own: Vec<Vec<BindGroup>>,
+}
+
+/// Targets of a picture with the bind groups that lead to them; remade when its size changes or a
+/// buffer or pipeline is replaced.
+#[derive(Debug)]
+pub struct SlotState {
+    pub targets: Targets,
+    /// What the picture is enlarged to where marks are drawn over it that it is too coarse for.
+    pub enlarged: Option<Target>,
+    pub groups: Option<Groups>,
+}
+
+impl SlotState {
+    /// What is shown of it.
+    pub fn shown(&self) -> &Target {
+        self.enlarged.as_ref().unwrap_or(&self.targets.color)
+    }
+}
+
+/// See the module.
+#[derive(Debug)]
+pub struct FrameResources {
+    layouts: Layouts,
+    view: SyncedBuffer,
+    lights: SyncedBuffer,
+    mesh_materials: SyncedBuffer,
+    dispatch_params: SyncedBuffer,
+    subtiles: SyncedBuffer,
+    pub subtile_counts: SyncedBuffer,
+    rays: SyncedBuffer,
+    pub ray_counts: SyncedBuffer,
+    nothing: SyncedBuffer,
+    pub counts: MarchCounts,
+    slots: [Option<SlotState>; 2],
+}
+
+impl FrameResources {
+    /// Nothing yet. `counting`: whether pipelines count.
+    pub fn new(device: &wgpu::Device, layouts: Layouts, counting: bool) -> Self {
+        let storage = |label| SyncedBuffer::storage(device, label);
+        Self {
+            layouts,
+            view: SyncedBuffer::uniform(device, "view"),
+            lights: storage("lights"),
+            mesh_materials: storage("mesh materials"),
+            dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
+            subtiles: storage("subtiles"),
+            subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
+            rays: storage("rays"),
+            nothing: storage("nothing"),
+            ray_counts: SyncedBuffer::indirect(device, "ray counts"),
+            counts: MarchCounts::new(device, counting),
+            slots: [None, None],
+        }
+    }
+
+    /// A slot that a frame has begun in.
+    pub fn slot(&self, slot: Slot) -> &SlotState {
+        self.begun(slot).expect("begin makes the targets")
+    }
+
+    /// A slot, if a frame has begun in it.
+    pub fn begun(&self, slot: Slot) -> Option<&SlotState> {
+        self.slots[slot as usize].as_ref()
+    }
+
+    /// The groups of any slot that has some.
+    pub fn any_groups(&self) -> Option<&Groups> {
+        self.slots.iter().flatten().find_map(|state| state.groups.as_ref())
+    }
+
+    /// Gives the slot targets of this size, and what its picture is enlarged to.
+    pub fn resize(&mut self, device: &wgpu::Device, slot: Slot, size: [u32; 2], overlay: &OverlaySettings) {
+        let state = &mut self.slots[slot as usize];
+        if state.as_ref().is_none_or(|state| state.targets.size != size) {
+            *state = Some(SlotState { targets: Targets::new(device, size), enlarged: None, groups: None });
+        }
+        if let Some(state) = state {
+            let shown = overlay.enlarged(size);
+            let kept = state.enlarged.take().filter(|target| shown == Some(target.size()));
+            state.enlarged = kept.or_else(|| shown.map(|size| Target::shown(device, size)));
+        }
+    }
+
+    /// Uploads what has changed and makes room for what the plan takes. Returns whether a buffer was replaced.
+    pub fn upload(&mut self, gpu: &Gpu, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &FramePlan) -> bool {
+        let Gpu { device, queue, .. } = gpu;
+        let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
+        let no_rays = vec![NO_RAYS; plan.lists as usize];
+        let lights = gpu_lights(flat, camera);
+        let view = GpuView::new(camera, size, flat, lights.len() as u32);
+        let uploads = [
+            self.view.set(device, queue, bytemuck::bytes_of(&view)),
+            self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
+            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&mesh_materials(flat))),
+            self.set_work(gpu, &plan.dispatches),
+            self.subtiles.reserve(device, bytes_of_subtiles(plan.subtiles.into()) as usize),
+            self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
+            self.subtile_counts.reset(device, queue, bytemuck::cast_slice(&no_subtiles)),
+            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
+            self.counts.reset(gpu, flat.components.len(), size),
+        ];
+        uploads.contains(&true)
+    }
+
+    /// Uploads dispatches. Returns whether the buffer was replaced.
+    pub fn set_work(&mut self, gpu: &Gpu, dispatches: &[Dispatch]) -> bool {
+        self.dispatch_params.set(&gpu.device, &gpu.queue, &strided(dispatches.iter().map(|dispatch| dispatch.params)))
+    }
+
+    /// Has all bind groups be made anew.
+    pub fn forget_groups(&mut self) {
+        self.slots.iter_mut().flatten().for_each(|state| state.groups = None);
+    }
+
+    /// Makes the bind groups of the slot that it lacks.
+    pub fn bind(&mut self, device: &wgpu::Device, slot: Slot, scene: &SceneResources, passes: &Passes) {
+        let state = self.slot(slot);
+        if state.groups.is_some() {
+            return;
+        }
+        let bound = Bound {
+            targets: &state.targets,
+            lists: FieldBuffers {
+                subtiles: self.subtiles.buffer(),
+                subtile_counts: self.subtile_counts.buffer(),
+                rays: self.rays.buffer(),
+                ray_counts: self.ray_counts.buffer(),
+                nothing: self.nothing.buffer(),
+                march_counts: self.counts.buffer(),
+            },
+            lights: self.lights.binding(),
+            materials: scene.materials(),
+            mesh_materials: self.mesh_materials.binding(),
+        };
+        let [of_scene, templates] = scene.bind(device);
+        let dispatch_params = window(self.dispatch_params.buffer(), size_of::<DispatchParams>());
+        let groups = Groups {
+            view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
+            scene: of_scene,
+            templates,
+            dispatch_params: bind(device, "dispatch_params", &self.layouts.dispatch_params, &[dispatch_params]),
+            own: passes.bind(device, &bound),
+        };
+        if let Some(state) = &mut self.slots[slot as usize] {
+            state.groups = Some(groups);
+        }
+    }
+
+    /// Sets to nothing what a frame of so many lists leaves over and counts.
+    pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, lists: u32, size: [u32; 2]) {
+        encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(lists.max(1)) * 4));
+        self.counts.clear_pixels(encoder, size);
+    }
+
+    /// Uploads the dispatches of the frame, which goes on with those from `planned` on; nothing has been found and counted for what
+    /// they trace.
+    pub fn restart(&mut self, gpu: &Gpu, frame: &Frame, planned: usize, is_meant: &dyn Fn(u32) -> bool) -> bool {
+        let write = |buffer: &wgpu::Buffer, word: usize, words: &[u32]| {
+            gpu.queue.write_buffer(buffer, word as u64 * 4, bytemuck::cast_slice(words));
+        };
+        for component in (0..frame.origins.len()).filter(|at| is_meant(*at as u32)) {
+            write(self.counts.buffer(), component * super::pixel_counts::COMPONENT_COUNTS, &[0]);
+        }
+        for dispatch in frame.plan.dispatches[planned..].iter().filter(|dispatch| dispatch.pass == Pass::Cone) {
+            let list = dispatch.params.list as usize;
+            write(self.subtile_counts.buffer(), list * SUBTILE_COUNTS, &NO_SUBTILES);
+            write(self.ray_counts.buffer(), list * RAY_COUNTS, &NO_RAYS);
+            write(self.rays.buffer(), list, &[0]);
+        }
+        self.set_work(gpu, &frame.plan.dispatches)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flat::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
+    use crate::render::frame::plan::{SUBTILES, TILE};
+    use crate::render::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
+    use crate::render::resources::buffers::DataTexture;
+    use crate::render::wgsl::assemble_plain;
+
+    /// The value of a constant in a shader.
+    fn constant(file: &str, name: &str) -> u32 {
+        let text = assemble_plain(file).unwrap_or_else(|error| panic!("{error}"));
+        let start = format!("const {name}: u32 = ");
+        let line =
+            text.lines().find_map(|line| line.strip_prefix(&start)).unwrap_or_else(|| panic!("{file}: no {name}"));
+        let digits = line.trim_end_matches(';').trim_end_matches('u');
+        let number = digits.strip_prefix("0x").map_or_else(|| digits.parse(), |hex| u32::from_str_radix(hex, 16));
+        number.unwrap_or_else(|error| panic!("{file}: {name}: {digits}: {error}"))
+    }
+
+    #[test]
+    fn shaders_have_the_same_constants() {
+        let twins = [
+            ("common/subtiles.wgsl", "SUBTILE_COUNTS", SUBTILE_COUNTS as u32),
+            ("common/subtiles.wgsl", "RAY_COUNTS", RAY_COUNTS as u32),
+            ("common/subtiles.wgsl", "SUBTILE", TILE / SUBTILES),
+            ("common/dispatch.wgsl", "TILE", TILE),
+            ("common/depth.wgsl", "VISIBILITY_NONE", NO_LEAF),
+            ("common/depth.wgsl", "MESH_BIT", MESH_BIT),
+            ("common/scene.wgsl", "LEAF_ROWS", LEAF_ROWS as u32),
+            ("common/scene.wgsl", "MODIFIER_ROWS", MODIFIER_ROWS as u32),
+            ("common/scene.wgsl", "GROUP", FlatNode::GROUP),
+            ("common/scene.wgsl", "RUN", FlatNode::RUN),
+            ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
+            ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
+            ("common/counts.wgsl", "COMPONENT_COUNTS", COMPONENT_COUNTS as u32),
+            ("common/counts.wgsl", "PIXEL_COUNTS", PIXEL_COUNTS as u32),
+        ];
+        for (file, name, ours) in twins {
+            assert_eq!(constant(file, name), ours, "{file}: {name}");
+        }
+    }
+
+    #[test]
+    fn subtiles_have_room() {
+        let text = assemble_plain("trace.wgsl").unwrap_or_else(|error| panic!("{error}"));
+        let module = naga::front::wgsl::parse_str(&text).unwrap_or_else(|error| panic!("{error}"));
+        let (_, subtile) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some("Subtile")).expect("a subtile");
+        let naga::TypeInner::Struct { span, .. } = subtile.inner else { panic!("{subtile:?}") };
+        assert_eq!(span as usize, SUBTILE_BYTES);
+    }
+}

@@ -1,0 +1,138 @@
+//! The scene on the device: arrays, rows, lists, and the bind groups that lead to them.
+
+use std::sync::Arc;
+
+use wgpu::{BindGroup, BindGroupLayout};
+
+use crate::flat::standpoint::{Standpoint, Standpoints};
+use crate::flat::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT};
+use crate::render::gpu::Gpu;
+use crate::render::pipelines::key::PipelineKey;
+use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::render::resources::layouts::{PARAMS_FORMAT, SceneBindings, window};
+use crate::render::resources::tape_texture::TapeTexture;
+use crate::render::resources::uniforms::{GpuComponent, strided};
+use crate::render::wgsl::{MAX_PIPELINE_ROWS, template_rows};
+
+/// Bytes of a pipeline's window on the rows of its component. As much room is kept behind the last row, so
+/// that the window on the last component does not end outside the buffer.
+pub const PIPELINE_WINDOW: usize = MAX_PIPELINE_ROWS as usize * size_of::<ParamRow>();
+
+/// See the module.
+#[derive(Debug)]
+pub struct SceneResources {
+    layout: BindGroupLayout,
+    nodes: SyncedBuffer,
+    /// For the windows of specialized pipelines.
+    rows: SyncedBuffer,
+    /// For those of pipelines for templates.
+    template_rows: SyncedBuffer,
+    /// The same numbers once more, for pipelines that walk.
+    params: DataTexture,
+    tapes: TapeTexture,
+    components: SyncedBuffer,
+    materials: SyncedBuffer,
+}
+
+impl SceneResources {
+    /// Nothing yet.
+    pub fn new(device: &wgpu::Device, layout: BindGroupLayout) -> Self {
+        Self {
+            layout,
+            nodes: SyncedBuffer::storage(device, "nodes"),
+            rows: SyncedBuffer::uniform(device, "rows"),
+            template_rows: SyncedBuffer::uniform(device, "rows of templates"),
+            params: DataTexture::new(device, "params", PARAMS_FORMAT),
+            tapes: TapeTexture::new(device),
+            components: SyncedBuffer::uniform(device, "components"),
+            materials: SyncedBuffer::storage(device, "materials"),
+        }
+    }
+
+    /// Bytes uploaded so far.
+    pub fn uploaded(&self) -> u64 {
+        let buffers = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials]
+            .map(SyncedBuffer::uploaded);
+        buffers.iter().sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
+    }
+
+    /// Most words of lists that the device can hold.
+    pub fn most_words(&self, device: &wgpu::Device) -> usize {
+        self.tapes.most_words(device)
+    }
+
+    /// Uploads what has changed. Returns whether a buffer was replaced, and where the rows of each component's pipeline begin
+    /// that is for a template, in bytes.
+    pub fn upload(
+        &mut self,
+        gpu: &Gpu,
+        flat: &FlatScene,
+        standpoints: &Standpoints<'_>,
+        trees: &[Option<Arc<CellTree>>],
+        keys: &[Option<PipelineKey>],
+    ) -> (bool, Vec<Option<u32>>) {
+        let Gpu { device, queue, .. } = gpu;
+        let (windows, templates) = template_windows(flat, &standpoints.params, keys);
+        let mut is_new = self.template_rows.set(device, queue, &templates);
+        is_new |= self.tapes.hold(device, queue, trees);
+        let placed = |((component, at), tree): ((&Component, &Standpoint), &Option<Arc<CellTree>>)| {
+            let gpu = GpuComponent::new(component, at);
+            let place = tree.as_ref().and_then(|tree| Some((tree, self.tapes.place(tree)?)));
+            place.map_or(gpu, |(tree, lists)| gpu.with_grid(tree, lists, at))
+        };
+        let components = strided(flat.components.iter().zip(&standpoints.all).zip(trees).map(placed));
+        let params: &[u8] = bytemuck::cast_slice(&standpoints.params);
+        let (rows_are_new, changed) =
+            self.rows.set_with_room(device, queue, params, PIPELINE_WINDOW, size_of::<ParamRow>());
+        let texture_is_new = self.params.reserve(device, params.len());
+        if let Some(range) = if texture_is_new { Some(0..params.len()) } else { changed } {
+            self.params.write(queue, range.start, &params[range]);
+        }
+        is_new |= rows_are_new || texture_is_new;
+        let uploads = [
+            self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
+            self.components.set(device, queue, &components),
+            self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
+        ];
+        (is_new || uploads.contains(&true), windows)
+    }
+
+    /// All materials.
+    pub fn materials(&self) -> wgpu::BindingResource<'_> {
+        self.materials.binding()
+    }
+
+    /// The group with the rows of all components, and the same with those of templates.
+    pub fn bind(&self, device: &wgpu::Device) -> [BindGroup; 2] {
+        [&self.rows, &self.template_rows].map(|rows| {
+            let group = SceneBindings {
+                nodes: self.nodes.binding(),
+                params: self.params.binding(),
+                subject: window(self.components.buffer(), size_of::<GpuComponent>()),
+                rows: window(rows.buffer(), PIPELINE_WINDOW),
+                tapes: self.tapes.binding(),
+            };
+            group.bind(device, &self.layout)
+        })
+    }
+}
+
+/// The rows of components whose pipelines are for templates, and where those of each begin, in bytes. As much room as a window
+/// takes is behind the last.
+fn template_windows(
+    flat: &FlatScene,
+    params: &[ParamRow],
+    keys: &[Option<PipelineKey>],
+) -> (Vec<Option<u32>>, Vec<u8>) {
+    let mut rows: Vec<ParamRow> = Vec::new();
+    let window = |(component, key): (&Component, &Option<PipelineKey>)| {
+        key.and_then(|key| key.template)?;
+        rows.resize(rows.len().next_multiple_of(ROW_ALIGNMENT), [0.0; 4]);
+        let first = rows.len();
+        template_rows(flat, params, component, &mut rows);
+        Some((first * size_of::<ParamRow>()) as u32)
+    };
+    let windows = flat.components.iter().zip(keys).map(window).collect();
+    rows.resize(rows.len() + MAX_PIPELINE_ROWS as usize, [0.0; 4]);
+    (windows, bytemuck::cast_slice(&rows).to_vec())
+}
