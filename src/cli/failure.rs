@@ -118,7 +118,7 @@ impl From<RenderError> for Failure {
             RenderError::Shader(_)
             | RenderError::Counts(..)
             | RenderError::TooManyDispatches(..)
-            | RenderError::Lists { .. } => Self::Other(error.to_string()),
+            | RenderError::ListBytes { .. } => Self::Other(error.to_string()),
         }
     }
 }

@@ -34,7 +34,7 @@ macro_rules! bindings {
         }
     };
 }
-pub(super) use bindings;
+pub(crate) use bindings;
 
 bindings! {
     /// Group 1 of the field passes.
