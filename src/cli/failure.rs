@@ -86,7 +86,7 @@ impl Failure {
         })
     }
 
-    /// The program's exit code; `--help` and `src/cli/README.md` list them.
+    /// The program's exit code; `--help` and the README list them.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Other(_) => 1,
@@ -118,7 +118,7 @@ impl From<RenderError> for Failure {
             RenderError::Shader(_)
             | RenderError::Counts(..)
             | RenderError::TooManyDispatches(..)
-            | RenderError::FieldBuffers { .. } => Self::Other(error.to_string()),
+            | RenderError::ListBytes { .. } => Self::Other(error.to_string()),
         }
     }
 }

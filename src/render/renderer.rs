@@ -204,7 +204,7 @@ impl Renderer {
         let refused = |error| match error {
             TooMuch::Pieces { component } => RenderError::TooManyDispatches(size[0], size[1], node(component)),
             TooMuch::Subtiles { component, subtiles } => {
-                RenderError::FieldBuffers { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
+                RenderError::ListBytes { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
             }
         };
         let plan = plan(flat, camera, size, &chosen.evaluations, &self.cost_model, room).map_err(refused)?;

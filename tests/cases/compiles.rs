@@ -142,9 +142,9 @@ fn first_pictures(scene: &Scene) -> [Duration; 2] {
     [coarse, draw(&mut renderer, Slot::Full, WINDOW)]
 }
 
-/// What the first picture may take where a driver has compiled nothing yet, coarse and full: 2 and 10 s on a quiet machine, of
-/// which it takes a third. Other tests run at the same time, and made it five times as long; it was 16 s for 40 nested groups
-/// and 250 s for 100.
+/// What the first picture may take where a driver has compiled nothing yet, coarse and full: 2 and 10 s on a quiet machine, where
+/// both together take 1.2 s of processor time. Other tests run at the same time, and made it five times as long. It was
+/// 16 s for 40 nested groups and 250 s for 100.
 const FIRST: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(50)];
 
 /// Run with `MESA_SHADER_CACHE_DISABLE=true` it tells what a cold driver takes.

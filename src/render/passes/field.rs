@@ -204,7 +204,7 @@ impl FramePass for ConePass {
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
-        vec![self.0.bind_cone(device, bound.targets, bound.lists)]
+        vec![self.0.bind_cone(device, bound.targets, bound.resources.lists())]
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
@@ -229,13 +229,13 @@ impl FramePass for TracePass {
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
-        self.0.bind_trace(device, bound.targets, bound.lists).to_vec()
+        self.0.bind_trace(device, bound.targets, bound.resources.lists()).to_vec()
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
         for at in dispatches {
-            let (dispatch_params, resources) = (recorder.frame.plan.dispatches[at].params, recorder.resources);
-            let (list, compacted) = (dispatch_params.list as usize, dispatch_params.compacted as usize);
+            let (dispatch, resources) = (&recorder.frame.plan.dispatches[at], recorder.resources);
+            let (list, compacted) = (dispatch.params.list as usize, dispatch.params.compacted as usize);
             let (counts, word) = match compacted {
                 0 => (&resources.subtile_counts, list * SUBTILE_COUNTS),
                 _ => (&resources.ray_counts, list * RAY_COUNTS),
@@ -256,12 +256,13 @@ impl FramePass for SurfacePass {
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
-        vec![self.0.bind_surface(device, bound.targets, bound.lists)]
+        vec![self.0.bind_surface(device, bound.targets, bound.resources.lists())]
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
         for at in dispatches {
-            let list = recorder.frame.plan.dispatches[at].params.list as usize;
+            let dispatch = &recorder.frame.plan.dispatches[at];
+            let list = dispatch.params.list as usize;
             let counts = recorder.resources.ray_counts.buffer();
             let pass = recorder.component(at, 0, |pipelines| &pipelines.surface);
             pass.dispatch_workgroups_indirect(counts, (list * RAY_COUNTS + 3) as u64 * 4);

@@ -11,11 +11,12 @@ use std::ops::Range;
 
 use super::recipe::{Pass, recipe};
 use super::renderer::recorder::Recorder;
+use super::renderer::resources::FrameResources;
 use crate::render::resources::layouts::Layouts;
 use crate::render::resources::targets::Targets;
 use crate::render::wgsl::ShaderError;
 use debug_view::DebugViewPass;
-use field::{ConePass, FieldBuffers, FieldLayouts, SurfacePass, TracePass};
+use field::{ConePass, FieldLayouts, SurfacePass, TracePass};
 use hiz::HizPass;
 use mesh::MeshPass;
 use overlay::OverlayPass;
@@ -37,14 +38,10 @@ pub struct Building<'a> {
 pub struct Bound<'a> {
     /// The textures of the picture.
     pub targets: &'a Targets,
-    /// Buffers that passes hand on to each other.
-    pub lists: FieldBuffers<'a>,
-    /// The lights.
-    pub lights: wgpu::BindingResource<'a>,
+    /// The buffers that passes work on.
+    pub resources: &'a FrameResources,
     /// The materials of the scene.
     pub materials: wgpu::BindingResource<'a>,
-    /// See [`shade::mesh_materials`].
-    pub mesh_materials: wgpu::BindingResource<'a>,
 }
 
 /// A pass of the frame.

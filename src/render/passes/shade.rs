@@ -54,9 +54,9 @@ impl FramePass for ShadePass {
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
         let lights = LightBindings {
-            lights: bound.lights.clone(),
+            lights: bound.resources.lights(),
             materials: bound.materials.clone(),
-            mesh_materials: bound.mesh_materials.clone(),
+            mesh_materials: bound.resources.mesh_materials(),
         };
         let targets = ShadeBindings {
             depth: bound.targets.depth.binding(),

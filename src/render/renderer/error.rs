@@ -30,7 +30,7 @@ pub enum RenderError {
          for node {node}; this device binds at most {limit} bytes",
         size[0], size[1]
     )]
-    FieldBuffers {
+    ListBytes {
         /// Width and height of the picture.
         size: [u32; 2],
         /// What takes the most.
@@ -72,7 +72,7 @@ mod tests {
         renderer.set_strategy(EvalStrategy::Interpreter);
         let mut draw = |side| renderer.render(&flat, &[], &camera, [side; 2], &mut |_| true).map(|_| ());
         let error = draw(512).expect_err("its lists are too large");
-        let RenderError::FieldBuffers { size, node, needed, limit } = error else { panic!("{error}") };
+        let RenderError::ListBytes { size, node, needed, limit } = error else { panic!("{error}") };
         assert!(size == [512; 2] && flat.ids.contains(&node) && needed > limit && limit == LIMIT, "{error}");
         let text = error.to_string();
         for part in ["512 by 512", &format!("node {node}"), &needed.to_string(), "at most 65536 bytes"] {

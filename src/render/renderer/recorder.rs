@@ -30,7 +30,8 @@ pub struct Recorder<'a> {
     encoder: wgpu::CommandEncoder,
     /// The compute pass that is being written.
     open: Option<wgpu::ComputePass<'static>>,
-    frame_pass: Pass,
+    /// The pass of the frame that is being written.
+    current: Pass,
     stamps: Option<Stamps<'a>>,
     /// Passes between timestamps, in order.
     timed: Vec<Pass>,
@@ -42,9 +43,9 @@ impl<'a> Recorder<'a> {
         let SlotState { targets, enlarged, groups } = resources.slot(frame.slot);
         let groups = groups.as_ref().expect("begin binds");
         let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
-        let (open, frame_pass, timed) = (None, Pass::ALL[0], Vec::new());
+        let (open, current, timed) = (None, Pass::ALL[0], Vec::new());
         let enlarged = enlarged.as_ref();
-        Self { gpu, frame, resources, targets, enlarged, groups, encoder, open, frame_pass, stamps, timed }
+        Self { gpu, frame, resources, targets, enlarged, groups, encoder, open, current, stamps, timed }
     }
 
     /// Whether another pass, and those over the finished picture, have a place for their time.
@@ -53,16 +54,16 @@ impl<'a> Recorder<'a> {
     }
 
     /// What comes next is of this pass of the frame.
-    pub fn begin(&mut self, frame_pass: Pass) {
-        if self.stamps.is_some() || frame_pass.extent() == Extent::Finished {
+    pub fn begin(&mut self, field_pass: Pass) {
+        if self.stamps.is_some() || field_pass.extent() == Extent::Finished {
             self.open = None;
         }
-        self.frame_pass = frame_pass;
+        self.current = field_pass;
     }
 
     /// The groups of the view and, of the pass's own ones, the one with this index.
     pub fn groups(&self, own: usize) -> [&'a wgpu::BindGroup; 2] {
-        [&self.groups.view, &self.groups.own[self.frame_pass as usize][own]]
+        [&self.groups.view, &self.groups.own[self.current as usize][own]]
     }
 
     /// The group of the view.
@@ -82,8 +83,8 @@ impl<'a> Recorder<'a> {
     pub fn open(&mut self) -> &mut wgpu::ComputePass<'static> {
         if self.open.is_none() {
             let timestamp_writes = self.stamp().map(|stamps| stamps.of_compute());
-            let label = if self.stamps.is_some() || self.frame_pass.extent() == Extent::Finished {
-                self.frame_pass.label()
+            let label = if self.stamps.is_some() || self.current.extent() == Extent::Finished {
+                self.current.label()
             } else {
                 SHARED_LABEL
             };
@@ -103,7 +104,8 @@ impl<'a> Recorder<'a> {
         pipeline: impl FnOnce(&FieldPipelines) -> &wgpu::ComputePipeline,
     ) -> &mut wgpu::ComputePass<'static> {
         let (frame, groups) = (self.frame, self.groups);
-        let component = frame.plan.dispatches[at].params.component as usize;
+        let dispatch = &frame.plan.dispatches[at];
+        let component = dispatch.params.component as usize;
         let [_, targets] = self.groups(own);
         let pass = self.compute(at);
         pass.set_pipeline(pipeline(&frame.choices[component].pipelines));
@@ -126,7 +128,7 @@ impl<'a> Recorder<'a> {
     /// The next two timestamps.
     fn stamp(&mut self) -> Option<Stamps<'a>> {
         let stamps = self.stamps?.at(self.timed.len())?;
-        self.timed.push(self.frame_pass);
+        self.timed.push(self.current);
         Some(stamps)
     }
 
@@ -144,7 +146,7 @@ impl<'a> Recorder<'a> {
 /// Dispatches the pipelines of a pipeline over nothing that were never used: lavapipe compiles them then. Whether there were any.
 pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
     let fresh: Vec<Pass> =
-        FieldPipelines::STAGES.into_iter().filter(|frame_pass| pipelines.first_use(*frame_pass as usize)).collect();
+        FieldPipelines::STAGES.into_iter().filter(|field_pass| pipelines.first_use(*field_pass as usize)).collect();
     if fresh.is_empty() {
         return false;
     }
@@ -154,9 +156,9 @@ pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
     pass.set_bind_group(0, &groups.view, &[]);
     pass.set_bind_group(1, &groups.scene, &[0, 0]);
     pass.set_bind_group(3, &groups.dispatch_params, &[0]);
-    for frame_pass in fresh {
-        pass.set_pipeline(pipelines.pipeline(frame_pass));
-        pass.set_bind_group(2, &groups.own[frame_pass as usize][0], &[]);
+    for field_pass in fresh {
+        pass.set_pipeline(pipelines.pipeline(field_pass));
+        pass.set_bind_group(2, &groups.own[field_pass as usize][0], &[]);
         pass.dispatch_workgroups(0, 0, 0);
     }
     drop(pass);

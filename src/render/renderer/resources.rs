@@ -165,20 +165,7 @@ impl FrameResources {
         if state.groups.is_some() {
             return;
         }
-        let bound = Bound {
-            targets: &state.targets,
-            lists: FieldBuffers {
-                subtiles: self.subtiles.buffer(),
-                subtile_counts: self.subtile_counts.buffer(),
-                rays: self.rays.buffer(),
-                ray_counts: self.ray_counts.buffer(),
-                nothing: self.nothing.buffer(),
-                march_counts: self.counts.buffer(),
-            },
-            lights: self.lights.binding(),
-            materials: scene.materials(),
-            mesh_materials: self.mesh_materials.binding(),
-        };
+        let bound = Bound { targets: &state.targets, resources: self, materials: scene.materials() };
         let [of_scene, templates] = scene.bind(device);
         let dispatch_params = window(self.dispatch_params.buffer(), size_of::<DispatchParams>());
         let groups = Groups {
@@ -191,6 +178,28 @@ impl FrameResources {
         if let Some(state) = &mut self.slots[slot as usize] {
             state.groups = Some(groups);
         }
+    }
+
+    /// The buffers that passes over components hand on to each other.
+    pub fn lists(&self) -> FieldBuffers<'_> {
+        FieldBuffers {
+            subtiles: self.subtiles.buffer(),
+            subtile_counts: self.subtile_counts.buffer(),
+            rays: self.rays.buffer(),
+            ray_counts: self.ray_counts.buffer(),
+            nothing: self.nothing.buffer(),
+            march_counts: self.counts.buffer(),
+        }
+    }
+
+    /// The lights.
+    pub fn lights(&self) -> wgpu::BindingResource<'_> {
+        self.lights.binding()
+    }
+
+    /// What the meshes are made of.
+    pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
+        self.mesh_materials.binding()
     }
 
     /// Sets to nothing what a frame of so many lists leaves over and counts.
