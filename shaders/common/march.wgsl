@@ -18,6 +18,8 @@ const STEEP: f32 = 0.2;
 // fields are convex if nothing proves afterward that there was none on the way, elsewhere if it ends outside. Where the
 // surface has bumps smaller than a pixel, a long overstep would pass some.
 const OVERSTEP_GAP: f32 = select(select(0.1, 1.0, CLOSE_IS_HIT), 3.0, VERIFIED_OVERSTEP);
+// How far behind the face that is looked for the second time, as a share of the first.
+const LEAST_ENTRY: f32 = 0.25;
 // At grazing angles, rays take steps no longer than this until they see the sign change: a ray that only
 // comes near is never taken for a hit.
 const MIN_STEP: f32 = 1e-3 * FINENESS;
@@ -61,6 +63,8 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
     var last = vec2f(NEVER, 0.0);
     // Where the surface is expected, if the field is negative at the next point, just behind; NEVER for none.
     var end = NEVER;
+    // Where that was tried first, the field there, and how far it was proven to be free behind; NEVER for none.
+    var tried = vec3f(NEVER, 0.0, 0.0);
     for (var step = 0u; step < steps; step += 1u) {
         let rounding = 2.0 * SPACING * (t + reach);
         let looks_back = VERIFIED_OVERSTEP && unverified_gap.x < NEVER;
@@ -75,11 +79,23 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
         if f < 0.0 && end < NEVER {
             return March(end, true, true, step + 1u);
         }
-        end = NEVER;
         // The way behind an overstep is free where the field is no less there than where the overstep ended.
         let is_seen = lookahead_minimum > min(select(f, last.y, t > last.x), 0.0);
         var proven = select(lookahead_free_interval(f), 0.0, looks_back);
         last = vec2f(t, f);
+        if end < NEVER && tried.x == NEVER {
+            // What is thinner than the room that rounding is given may have been passed: look once more, just behind its face.
+            tried = vec3f(t, f, proven);
+            t = end + LEAST_ENTRY * (t - end);
+            continue;
+        }
+        if end < NEVER {
+            t = tried.x;
+            f = tried.y;
+            proven = tried.z;
+            tried.x = NEVER;
+        }
+        end = NEVER;
         var advance = t - safe.x;
         if relaxed && safe.y + abs(f) < advance {
             relaxed = false;

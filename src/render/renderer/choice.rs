@@ -27,7 +27,7 @@ const TAPES_AT_ONCE: Duration = Duration::from_millis(25);
 impl Renderer {
     /// Pipelines, and what they need to know, for each component.
     pub(super) fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
-        let keys = self.pipelines.keys(flat, self.strategy);
+        let mut keys = self.pipelines.keys(flat, self.strategy, &[]);
         // Tapes are made only for what no specialized pipeline is to draw.
         let wanted: Vec<bool> =
             keys.iter().map(|key| key.is_none() && self.strategy != EvalStrategy::Interpreter).collect();
@@ -36,6 +36,11 @@ impl Renderer {
             _ => self.tape_cache.trees(flat, &wanted),
         };
         self.check_cancel()?;
+        if self.strategy == EvalStrategy::Auto && trees.iter().any(Option::is_some) {
+            // Tapes that have become long are left for straight-line code.
+            let lengths: Vec<_> = trees.iter().map(|tree| tree.as_ref().map(|tree| tree.mean_length())).collect();
+            keys = self.pipelines.keys(flat, self.strategy, &lengths);
+        }
         // What has no room on the device is walked without tapes.
         let mut room = self.tapes.most_words(&self.gpu.device);
         for tree in &mut trees {
