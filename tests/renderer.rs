@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use isolith::document::{Document, Edit};
-use isolith::flat::debug_view::{Look, Span};
+use isolith::flat::debug_view::{DepthRange, ViewMode};
 use isolith::flat::{FlatScene, Flattener, GBuffer, flatten};
 use isolith::gallery;
 use isolith::geometry::Camera;
@@ -261,8 +261,8 @@ fn each_pass_has_a_row_with_its_time() {
     let BenchScene { flat, meshes, camera, .. } = &bench_scene;
     let grid = OverlaySettings { grid: true, ..OverlaySettings::default() };
     let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], grid).expect("a frame");
-    let span = Span::of(&flat.content(meshes), camera.position);
-    renderer.debug_view(&mut frame, Look::Normals, flat, &span).expect("a look");
+    let span = DepthRange::of(&flat.content(meshes), camera.position);
+    renderer.debug_view(&mut frame, ViewMode::Normals, flat, &span).expect("a look");
     renderer.advance(&mut frame, Duration::MAX).expect("a picture");
     let rows = renderer.timings().expect("the device has a clock");
     let ran: Vec<_> = rows.iter().filter(|row| row.runs > 0).map(|row| row.label).collect();

@@ -33,6 +33,13 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
         if sample.f < 0.0 && state.end < NEVER {
             return March(state.end, true, true, step + 1u);
         }
+        if state.end < NEVER && state.tried.x == NEVER {
+            march_look_again(&state, sample);
+            continue;
+        }
+        if state.end < NEVER {
+            march_recall_tried(&state, &sample);
+        }
         state.end = NEVER;
         if state.relaxed && state.safe.y + abs(sample.f) < sample.advance {
             state.relaxed = false;

@@ -11,6 +11,8 @@ const STEEP: f32 = 0.2;
 // fields are convex if nothing proves afterward that there was none on the way, elsewhere if it ends outside. Where the
 // surface has bumps smaller than a pixel, a long overstep would pass some.
 const OVERSTEP_GAP: f32 = select(select(0.1, 1.0, CLOSE_IS_HIT), 3.0, VERIFIED_OVERSTEP);
+// How far behind the face that is looked for the second time, as a share of the first.
+const LEAST_ENTRY: f32 = 0.25;
 // At grazing angles, rays take steps no longer than this until they see the sign change: a ray that only
 // comes near is never taken for a hit.
 const MIN_STEP: f32 = 1e-3 * FINENESS;
@@ -42,6 +44,8 @@ struct MarchState {
     last: vec2f,
     // Where the surface is expected, if the field is negative at the next point, just behind; NEVER for none.
     end: f32,
+    // Where that was tried first, the field there, and how far it was proven to be free behind; NEVER for none.
+    tried: vec3f,
 }
 
 // What is known of the point that a march has come to.
@@ -60,7 +64,7 @@ fn march_begin(start: f32, first_descent: f32) -> MarchState {
     let safe = vec2f(start, 0.0);
     let slope = select(-1.0, -first_descent, first_descent > STEEP);
     let never = vec2f(NEVER, 0.0);
-    return MarchState(start, safe, 0.0, slope, false, false, true, 0.0, never, never, vec3f(NEVER, 0.0, 0.0), never, NEVER);
+    return MarchState(start, safe, 0.0, slope, false, false, true, 0.0, never, never, vec3f(NEVER, 0.0, 0.0), never, NEVER, vec3f(NEVER, 0.0, 0.0));
 }
 
 // The sphere here meets the one around the place where an overstep ended: the overstep was right, and what it found counts.
@@ -109,6 +113,22 @@ fn march_look_behind(state: ptr<function, MarchState>, sample: MarchSample, expe
     state.free_interval = sample.f;
     state.end = state.t + sample.f / expected;
     state.t = state.end + depth / expected;
+}
+
+// Nothing was found behind the face. What is thinner than the room that rounding is given may have been passed: look once more,
+// just behind the face.
+fn march_look_again(state: ptr<function, MarchState>, sample: MarchSample) {
+    state.tried = vec3f(state.t, sample.f, sample.proven);
+    state.t = state.end + LEAST_ENTRY * (state.t - state.end);
+}
+
+// Nothing was found there either: go on from the first of the two places.
+fn march_recall_tried(state: ptr<function, MarchState>, sample: ptr<function, MarchSample>) {
+    state.t = state.tried.x;
+    sample.f = state.tried.y;
+    sample.proven = state.tried.z;
+    sample.advance = state.t - state.safe.x;
+    state.tried.x = NEVER;
 }
 
 // Goes on from the sphere that was left too early.

@@ -5,19 +5,19 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DVec3};
 
-use super::arrays::{Join, MAX_STACK, Warning};
+use super::arrays::{MAX_STACK, Warning};
 use super::blends::has_own_radius;
 use super::budget::{Budget, Cancel, FlattenLimits, STACK};
 use super::composition::{apart, begin_with, group_of, polar_copies, size_of_fold, united};
 use super::cuts::{self, Cut};
 use super::leaf::leaf;
-use super::lower_bound::fold_bounds;
+use super::lower_bound::{LowerBound, fold_bounds};
 use super::modify::{MAX_NEIGHBORS, ModifierRefusal, Splines, modify};
 use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
 use super::survey::{Survey, active};
 use crate::geometry::singular_values;
-use crate::scene::{Blend, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
+use crate::scene::{Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
 
 /// The folds of all components, and what was noticed on the way.
 pub(super) struct Components<'a> {
@@ -349,26 +349,16 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
         let (least, greatest) = singular_values(&world.matrix3);
         let cull_box = modified.cull_box.transformed(world);
-        let (entries, depth) = size_of_fold(&content);
-        let operand = Operand {
-            node,
-            outermost,
-            join: Join::First,
-            blend: Blend::HARD,
-            detail: [0.0; 2],
-            bounds: modified.bounds.transformed(world),
-            cull_box,
-            bound_slope: if cull_box.is_finite() { modified.bound_slope * least / greatest } else { 0.0 },
-            entries: entries.saturating_add(1),
-            depth: depth + 1,
-            value: Value::Modified {
-                local_from_world: world.inverse(),
-                distance_scale: least,
-                kind: last.kind(),
-                modified,
-                content: Rc::new(content),
-            },
+        let bounds = modified.bounds.transformed(world);
+        let bound_slope = if cull_box.is_finite() { modified.bound_slope * least / greatest } else { 0.0 };
+        let value = Value::Modified {
+            local_from_world: world.inverse(),
+            distance_scale: least,
+            kind: last.kind(),
+            modified,
+            content: Rc::new(content),
         };
+        let operand = Operand::first(node, outermost, LowerBound::new(bounds, cull_box, bound_slope), value);
         self.is_nested(&operand).then_some(operand)
     }
 

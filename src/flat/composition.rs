@@ -9,24 +9,26 @@ use super::lower_bound::{LowerBound, fold_bounds};
 use super::operand::{Operand, Value};
 use crate::scene::{Blend, Node};
 
+impl<'a> Operand<'a> {
+    /// The first operand of a fold, which joins nothing. Where it belongs stands in `node` and `outermost`.
+    pub fn first(node: &'a Node, outermost: &'a Node, lower_bound: LowerBound, value: Value<'a>) -> Self {
+        let LowerBound { bounds, cull_box, bound_slope, .. } = lower_bound;
+        let (entries, depth) = match &value {
+            Value::Leaf { .. } => (1, 0),
+            Value::Fold(inner) | Value::Modified { content: inner, .. } => {
+                let (entries, depth) = size_of_fold(inner);
+                (entries.saturating_add(1), depth + 1)
+            }
+        };
+        let (join, blend, detail) = (Join::First, Blend::HARD, [0.0; 2]);
+        Self { node, outermost, join, blend, detail, bounds, cull_box, bound_slope, entries, depth, value }
+    }
+}
+
 /// A fold as one operand, named after its first one.
 pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
-    let LowerBound { bounds, cull_box, bound_slope } = fold_bounds(&fold);
     let Operand { node, outermost, .. } = fold[0];
-    let (entries, depth) = size_of_fold(&fold);
-    Operand {
-        node,
-        outermost,
-        join: Join::First,
-        blend: Blend::HARD,
-        detail: [0.0; 2],
-        bounds,
-        cull_box,
-        bound_slope,
-        entries: entries.saturating_add(1),
-        depth: depth + 1,
-        value: Value::Fold(Rc::new(fold)),
-    }
+    Operand::first(node, outermost, fold_bounds(&fold), Value::Fold(Rc::new(fold)))
 }
 
 /// The entries of all operands, and how deep the deepest is.

@@ -173,7 +173,7 @@ fn collect_domains(
         match &operand.value {
             Value::Fold(inner) => collect_domains(inner, copies, entries, out),
             Value::Modified { content, modified, .. } => {
-                let LowerBound { bounds, cull_box, bound_slope } = fold_bounds(content);
+                let LowerBound { bounds, cull_box, bound_slope, .. } = fold_bounds(content);
                 let copies = copies.saturating_mul(modified.copies);
                 out.push(ModifierDomain { entry: entry as u32, bounds, cull_box, bound_slope, copies });
                 collect_domains(content, copies, entries, out);

@@ -4,11 +4,11 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DVec3};
 
-use super::arrays::Join;
+use super::lower_bound::LowerBound;
 use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
 use crate::geometry::singular_values;
-use crate::scene::{Blend, Node, Object, Shape};
+use crate::scene::{Node, Object, Shape};
 
 /// The shape of a node as an operand, still to be joined. `drawn` is what its shape is evaluated with where that has data
 /// and was made before.
@@ -27,24 +27,10 @@ pub(super) fn leaf<'a>(
     }
     let prepared = drawn.unwrap_or_else(|| Rc::new(PreparedShape::new(&shape)));
     let bounds = prepared.bounds.transformed(&world_from_local);
-    Operand {
-        node,
-        outermost,
-        join: Join::First,
-        blend: Blend::HARD,
-        detail: [0.0; 2],
-        bounds,
-        cull_box: bounds,
-        bound_slope: if bounds.is_finite() { least / greatest } else { 0.0 },
-        entries: 1,
-        depth: 0,
-        value: Value::Leaf {
-            local_from_world: world_from_local.inverse(),
-            distance_scale: least,
-            prepared,
-            material: *material,
-        },
-    }
+    let bound_slope = if bounds.is_finite() { least / greatest } else { 0.0 };
+    let local_from_world = world_from_local.inverse();
+    let value = Value::Leaf { local_from_world, distance_scale: least, prepared, material: *material };
+    Operand::first(node, outermost, LowerBound::new(bounds, bounds, bound_slope), value)
 }
 
 /// Takes the scale out of the transform and into the shape where the shape can hold it. Returns the

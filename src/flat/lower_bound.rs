@@ -1,8 +1,11 @@
 //! Below what the field of a fold of operands never falls.
 
+use glam::DAffine3;
+
 use super::arrays::Join;
-use super::operand::Operand;
+use super::operand::{Operand, Value};
 use crate::geometry::Aabb;
+use crate::scene::ModifierKind;
 
 /// Where the surface of a fold is, and below what its field never falls.
 pub(super) struct LowerBound {
@@ -12,6 +15,9 @@ pub(super) struct LowerBound {
     pub cull_box: Aabb,
     /// See `cull_box`; 0 where nothing is known.
     pub bound_slope: f64,
+    /// What is said of `cull_box` holds for a cylinder of this radius around Y as well; infinite where no such is known. Less than
+    /// what the corners of the box reach.
+    pub radius: f64,
 }
 
 /// Bounds of a fold, and the box and slope below which its field never falls.
@@ -22,7 +28,7 @@ pub(super) struct LowerBound {
 /// pipe below both of its operands by its radius.
 pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> LowerBound {
     let first = &fold[0];
-    let mut all = LowerBound { bounds: first.bounds, cull_box: first.cull_box, bound_slope: first.bound_slope };
+    let mut all = LowerBound::new(first.bounds, first.cull_box, first.bound_slope);
     let mut growth = 0.0_f64;
     for operand in &fold[1..] {
         match operand.join {
@@ -55,8 +61,7 @@ pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> LowerBound {
                 all.bounds = if all.bound_slope > 0.0 { all.bounds.union(&all.cull_box) } else { Aabb::EVERYTHING };
             }
             Join::ReverseDifference => {
-                all =
-                    LowerBound { bounds: operand.bounds, cull_box: operand.cull_box, bound_slope: operand.bound_slope };
+                all = LowerBound::new(operand.bounds, operand.cull_box, operand.bound_slope);
                 growth = 0.0;
             }
             Join::First | Join::Difference | Join::Groove | Join::Engrave | Join::Paint => {}
@@ -64,10 +69,30 @@ pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> LowerBound {
     }
     let cull_box = lowered(&all.cull_box, all.bound_slope, growth);
     let bounds = all.bounds.expanded(growth);
-    LowerBound { bounds, cull_box, bound_slope: if cull_box.is_finite() { all.bound_slope } else { 0.0 } }
+    LowerBound {
+        radius: radius_of(fold),
+        ..LowerBound::new(bounds, cull_box, if cull_box.is_finite() { all.bound_slope } else { 0.0 })
+    }
+}
+
+/// See [`LowerBound::radius`]: what is twisted, and nothing else, fills a cylinder.
+fn radius_of(fold: &[Operand<'_>]) -> f64 {
+    match fold {
+        [Operand { value: Value::Modified { kind: ModifierKind::Twist, local_from_world, modified, .. }, .. }]
+            if *local_from_world == DAffine3::IDENTITY =>
+        {
+            modified.rows[0][2]
+        }
+        _ => f64::INFINITY,
+    }
 }
 
 impl LowerBound {
+    /// Of two boxes.
+    pub fn new(bounds: Aabb, cull_box: Aabb, bound_slope: f64) -> Self {
+        Self { bounds, cull_box, bound_slope, radius: f64::INFINITY }
+    }
+
     /// The field is at least what both boxes say; the smaller one says more.
     fn keep_smaller(&mut self, cull_box: Aabb, bound_slope: f64) {
         if bound_slope > 0.0 && (self.bound_slope == 0.0 || cull_box.half().length() < self.cull_box.half().length()) {

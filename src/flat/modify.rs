@@ -72,7 +72,7 @@ pub(super) fn modify(
             let rotation = DQuat::from_euler(EulerRot::ZYX, turn[2], turn[1], turn[0]);
             recursion(count, offset.into(), DMat3::from_quat(rotation), scale, mirrored, same)
         }
-        Modifier::Twist { angle } => twist(radians(angle), bounded(content, "twisted")?, same),
+        Modifier::Twist { angle } => twist(radians(angle), bounded(content, "twisted")?, content.radius, same),
         Modifier::Bend { angle } => bend(radians(angle), bounded(content, "bent")?, same),
         Modifier::Taper { change } => taper(change, bounded(content, "tapered")?, same),
         Modifier::Elongate { length } => {
@@ -188,8 +188,8 @@ fn shear(slope: f64) -> f64 {
     0.5 * (slope + (slope * slope + 4.0).sqrt())
 }
 
-fn twist(angle: f64, content: Aabb, same: Modified) -> Modified {
-    let radius = radius_of(&content);
+fn twist(angle: f64, content: Aabb, radius: f64, same: Modified) -> Modified {
+    let radius = radius_of(&content).min(radius);
     let (middle, half) = (content.center().y, content.half().y);
     let margin = (MARGIN * radius.max(0.1 * half)).max(LEAST_MARGIN);
     let stretch = shear(angle.abs() * (radius + margin));
@@ -343,7 +343,7 @@ fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<M
     let held = if content.bound_slope > 0.0 { content.cull_box.union(&content.bounds) } else { content.bounds };
     let (mut center, mut half) = finite_box(&held);
     if turn != 0.0 {
-        let radius = radius_of(&held);
+        let radius = radius_of(&held).min(content.radius);
         (center.x, center.z, half.x, half.z) = (0.0, 0.0, radius.min(ENDLESS), radius.min(ENDLESS));
     }
     for axis in (0..3).filter(|a| mirrored[*a]) {

@@ -19,11 +19,11 @@ fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/numerics").join(name)
 }
 
-/// Every component of the scene, and whether the window draws it by tapes.
+/// Every component of the scene, and whether the window draws it by tapes at first.
 fn listed(flat: &isolith::flat::FlatScene) -> Vec<bool> {
     let leaves = flat.nodes.iter().filter(|node| node.is_leaf());
     let kinds: BTreeSet<ShapeKind> = leaves.map(|node| ShapeKind::ALL[(node.code & 0xffff) as usize]).collect();
-    flat.components.iter().map(|component| tapes_are_cheaper(flat, component, &kinds)).collect()
+    flat.components.iter().map(|component| tapes_are_cheaper(flat, component, &kinds, None)).collect()
 }
 
 /// By straight-line code these 60 blended tubes take nine times as long as by tapes.

@@ -174,9 +174,15 @@ impl PipelineCache {
         }
     }
 
-    /// What each component's pipeline is for; `None` where it gets none.
-    pub fn keys(&mut self, flat: &FlatScene, strategy: EvalStrategy) -> Vec<Option<PipelineKey>> {
-        self.templates.keys(flat, strategy)
+    /// What each component's pipeline is for; `None` where it gets none. `lengths`: how many entries the tapes of components
+    /// hold on average, as far as they are there.
+    pub fn keys(
+        &mut self,
+        flat: &FlatScene,
+        strategy: EvalStrategy,
+        lengths: &[Option<f64>],
+    ) -> Vec<Option<PipelineKey>> {
+        self.templates.keys(flat, strategy, lengths)
     }
 
     /// The pipeline for each component; `keys` from [`PipelineCache::keys`], `has_tapes` tells which components have

@@ -38,8 +38,14 @@ pub struct Templates {
 }
 
 impl Templates {
-    /// The key of each component; `None` where it gets no pipeline of its own.
-    pub fn keys(&mut self, flat: &FlatScene, strategy: EvalStrategy) -> Vec<Option<PipelineKey>> {
+    /// The key of each component; `None` where it gets no pipeline of its own. `lengths` stand beside the components: how many
+    /// entries their tapes hold on average, as far as tapes are there.
+    pub fn keys(
+        &mut self,
+        flat: &FlatScene,
+        strategy: EvalStrategy,
+        lengths: &[Option<f64>],
+    ) -> Vec<Option<PipelineKey>> {
         let structure = |bits| PipelineKey { bits, template: None };
         let components = flat.components.iter();
         match strategy {
@@ -48,9 +54,10 @@ impl Templates {
             EvalStrategy::StraightLine => components.map(|c| Structure::key(flat, c).map(structure)).collect(),
             EvalStrategy::Auto => {
                 let kinds = OpSet::of(flat).shapes;
-                let is_straight = |c: &&Component| !tapes_are_cheaper(flat, c, &kinds);
-                let keys: Vec<_> =
-                    components.map(|c| Some(c).filter(is_straight).and_then(|c| Structure::key(flat, c))).collect();
+                let length = |i: usize| lengths.get(i).copied().flatten();
+                let is_listed = |(i, c): (usize, &Component)| tapes_are_cheaper(flat, c, &kinds, length(i));
+                let key = |(i, c)| if is_listed((i, c)) { None } else { Structure::key(flat, c) };
+                let keys: Vec<_> = components.enumerate().map(key).collect();
                 match entries(flat, &keys) {
                     0..=MANY_STRUCTURE_ENTRIES => keys.into_iter().map(|key| key.map(structure)).collect(),
                     entries => self.shared(flat, &keys, entries > MAX_STRUCTURE_ENTRIES),

@@ -38,7 +38,7 @@ impl Evaluators<'_> {
     /// Pipelines, and what they need to know, for each component.
     pub fn choose(self, flat: &FlatScene, camera: &Camera, cancel: &Cancel) -> Result<Chosen, RenderError> {
         let Self { pipelines, tape_cache, strategy, mut room } = self;
-        let keys = pipelines.keys(flat, strategy);
+        let mut keys = pipelines.keys(flat, strategy, &[]);
         // Tapes are made only for what no specialized pipeline is to draw.
         let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && strategy != EvalStrategy::Interpreter).collect();
         let mut trees = match strategy {
@@ -46,6 +46,11 @@ impl Evaluators<'_> {
             _ => tape_cache.trees(flat, &wanted),
         };
         check(cancel)?;
+        if strategy == EvalStrategy::Auto && trees.iter().any(Option::is_some) {
+            // Tapes that have become long are left for straight-line code.
+            let lengths: Vec<_> = trees.iter().map(|tree| tree.as_ref().map(|tree| tree.mean_length())).collect();
+            keys = pipelines.keys(flat, strategy, &lengths);
+        }
         // What has no room on the device is walked without tapes.
         for tree in &mut trees {
             let needed = tree.as_ref().map_or(0, |tree| tree.words.len());

@@ -5,7 +5,8 @@
 //! a `switch` of which software drivers execute every arm. So tapes cost about 6 (K + 6) where K is the cost of one leaf of
 //! each kind of shape in the scene, and straight-line code the sum over all leaves, all in leaves that are spheres. Measured
 //! with leaves in one blend on lavapipe 22.3.6, where both took the same time: 45 spheres (by this rule 42), 32 boxes (34),
-//! 35 tori (39), 10 ellipsoids (10), 65 of nine kinds (70).
+//! 35 tori (39), 10 ellipsoids (10), 65 of nine kinds (70). Where leaves crowd, or are nested, tapes are longer: 80 tori of a
+//! shell 21 entries, a hundred nested balls 19. Once the tapes are there, their mean length takes the place of six.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -20,7 +21,7 @@ use super::op_set::shape_loops;
 use crate::flat::{Component, FlatNode, FlatScene, has_tape, leaf_payload};
 use crate::scene::ShapeKind;
 
-/// Entries of a tape that are evaluated at a point, about.
+/// Entries of a tape that are evaluated at a point, about, before the tapes are there.
 const EVALUATED_ENTRIES: f64 = 6.0;
 /// What an entry of a tape costs beside its shape.
 const ENTRY_COST: f64 = 6.0;
@@ -31,8 +32,14 @@ const ROW_LOAD: f64 = 12.0;
 /// Rows of data in a piece of what is drawn: what loops over data take for one iteration.
 const ROWS_OF_PIECE: f64 = 3.0;
 
-/// Whether a component, as one of its scene, is drawn faster by tapes than by straight-line code.
-pub fn tapes_are_cheaper(flat: &FlatScene, component: &Component, kinds: &BTreeSet<ShapeKind>) -> bool {
+/// Whether a component, as one of its scene, is drawn faster by tapes than by straight-line code. `entries`: how many
+/// its tapes hold on average, where they are there already.
+pub fn tapes_are_cheaper(
+    flat: &FlatScene,
+    component: &Component,
+    kinds: &BTreeSet<ShapeKind>,
+    entries: Option<f64>,
+) -> bool {
     if component.is_modified() || !has_tape(flat, component) {
         return false;
     }
@@ -44,7 +51,7 @@ pub fn tapes_are_cheaper(flat: &FlatScene, component: &Component, kinds: &BTreeS
     let straight: f64 = nodes.iter().filter(|node| node.is_leaf()).map(cost).sum();
     // Pieces are walked by tapes as well, but only those of the leaves that are near.
     let of_kinds: f64 = kinds.iter().map(|kind| leaf_cost(*kind, 0)).sum();
-    straight > EVALUATED_ENTRIES * (of_kinds + ENTRY_COST)
+    straight > entries.unwrap_or(EVALUATED_ENTRIES) * (of_kinds + ENTRY_COST)
 }
 
 /// The cost of a leaf with so many rows of data, in spheres.
@@ -176,7 +183,7 @@ impl InstructionCounter<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flat::flatten;
+    use crate::flat::{CellTree, flatten};
     use crate::scene::{Blend, Group, MaterialId, Node, NodeKind, Object, Operator, Scene, Shape};
 
     /// So many of each shape in one blend.
@@ -198,7 +205,7 @@ mod tests {
     fn cheaper(shapes: &[Shape], count: usize) -> bool {
         let flat = blend(shapes, count);
         assert_eq!(flat.components.len(), 1);
-        tapes_are_cheaper(&flat, &flat.components[0], &shapes.iter().map(Shape::kind).collect())
+        tapes_are_cheaper(&flat, &flat.components[0], &shapes.iter().map(Shape::kind).collect(), None)
     }
 
     #[test]
@@ -224,6 +231,27 @@ mod tests {
         for (shapes, few, many) in [(spheres, 24, 60), (tori, 24, 60), (&[ellipsoid], 6, 20), (&both[..], 15, 40)] {
             assert!(!cheaper(shapes, few), "{few} of {shapes:?}");
             assert!(cheaper(shapes, many), "{many} of {shapes:?}");
+        }
+    }
+
+    /// By straight-line code the shell and the nest take little more than half the time that they take by tapes, the tubes
+    /// nine times as long.
+    #[test]
+    fn long_lists_are_left_for_straight_line_code() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        for (file, is_listed) in [
+            ("scenes/deep-tree.json", false),
+            ("tests/cases/numerics/deep_nest_100_alternating.json", false),
+            ("tests/cases/numerics/auto_is_slow_60_tube.json", true),
+        ] {
+            let scene = crate::scene::file::load(&folder.join(file)).expect("a scene");
+            let flat = flatten(&scene, 0.0).expect("within the limits");
+            let leaves = flat.nodes.iter().filter(|node| node.is_leaf());
+            let kinds = leaves.map(|node| ShapeKind::ALL[(node.code & 0xffff) as usize]).collect();
+            let largest = flat.components.iter().max_by_key(|component| component.count).expect("something is there");
+            let length = CellTree::build(&flat, largest).mean_length();
+            assert!(tapes_are_cheaper(&flat, largest, &kinds, None), "{file}: its lists would never be made");
+            assert_eq!(tapes_are_cheaper(&flat, largest, &kinds, Some(length)), is_listed, "{file}: {length} entries");
         }
     }
 }
