@@ -1,11 +1,13 @@
 //! The rules of the house: who may use whom, how long a file may be, which words are not used. Each rule
 //! has a counterexample below that breaks it and must be caught.
 
+mod circles;
 mod rules;
 mod source;
 
 use std::path::{Path, PathBuf};
 
+use circles::{WITHOUT_CIRCLES, circle, imports};
 use rules::{MODULES, edges, problems};
 
 /// Folders and files that hold what people write.
@@ -62,6 +64,46 @@ fn the_table_of_modules_has_no_cycle_and_names_every_module() {
             assert!(path.ends_with(".md") || MODULES.iter().any(|(name, _)| *name == module), "{module} has no row");
         }
     }
+}
+
+/// The files below a folder with their texts; the names are relative to it, without their ending.
+fn module(root: &Path, folder: &str) -> Vec<(String, String)> {
+    let files = written_files(root).into_iter().filter(|path| path.starts_with(&format!("{folder}/")));
+    let rust = files.filter(|path| path.ends_with(".rs"));
+    rust.map(|path| {
+        let text = std::fs::read_to_string(root.join(&path)).expect("a file of the repository can be read");
+        (path[folder.len() + 1..path.len() - 3].to_owned(), text)
+    })
+    .collect()
+}
+
+#[test]
+fn files_of_a_module_import_each_other_by_file_and_in_no_circle() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for folder in WITHOUT_CIRCLES {
+        let files = module(root, folder);
+        assert!(files.len() > 3, "{folder} has only {} files", files.len());
+        assert_eq!(circle(folder, &files), None);
+    }
+}
+
+#[test]
+fn circles_of_files_are_caught() {
+    let file = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+    let [a, b] = [file("a", "use super::b::B;"), file("b", "fn f() { super::c::g() }")];
+    let sound = [a.clone(), b.clone(), file("c", "use super::d::{e::E, f};"), file("d/e", ""), file("d/f", "")];
+    assert_eq!(circle("src/m", &sound), None);
+    for back in ["use super::a::A;", "use crate::m::{x, a::A};", "use super::{a, b};"] {
+        let found = circle("src/m", &[a.clone(), b.clone(), file("c", back), file("x", "")]).expect("a circle");
+        assert!(found.contains("b uses c"), "{back}: {found}");
+    }
+    // A file in a folder climbs one step more.
+    let found = circle("src/m", &[file("a", "use super::d::e::E;"), file("d/e", "use super::super::a::A;")]);
+    assert!(found.is_some());
+    // A test uses what it likes; what the root of the module offers is for others.
+    assert_eq!(circle("src/m", &[a.clone(), file("b", "#[cfg(test)]\nmod tests { use super::super::a::A; }")]), None);
+    assert!(circle("src/m", &[file("a", "use super::Whole;"), file("mod", "mod a;")]).is_some());
+    assert_eq!(imports("src/m", "a", "use crate::n::b; use super::b;", &["b".into()]), ["b"]);
 }
 
 /// Whether the rules find something whose text contains `what` in a file of this text.
