@@ -12,6 +12,8 @@ pub mod font;
 pub mod gallery;
 pub mod geometry;
 pub mod guard;
+pub mod jobs;
 pub mod mesh;
 pub mod render;
 pub mod scene;
+pub mod session;

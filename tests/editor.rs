@@ -2,6 +2,7 @@
 
 mod attachments;
 mod fields;
+mod jobs;
 mod locks;
 mod modifiers;
 mod names;
@@ -17,6 +18,8 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::document::Document;
 use isolith::editor::{Editor, Picture};
 use isolith::scene::{Group, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};
+
+use crate::settle::Settle;
 
 /// A group with a ball and a box, and a torus beside it.
 fn scene() -> (Scene, [NodeId; 4]) {
@@ -52,7 +55,7 @@ fn open_in(document: Document, size: egui::Vec2) -> Harness<'static, Editor> {
         .with_size(size)
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &no_picture()), editor);
-    harness.run();
+    harness.settle();
     harness
 }
 
@@ -87,7 +90,7 @@ fn pointer(harness: &mut Harness<'_, Editor>, pos: Pos2, pressed: bool) {
 fn click(harness: &mut Harness<'_, Editor>, pos: Pos2) {
     pointer(harness, pos, true);
     pointer(harness, pos, false);
-    harness.run();
+    harness.settle();
 }
 
 fn select(harness: &mut Harness<'_, Editor>, name: &str) {
@@ -99,7 +102,7 @@ fn select(harness: &mut Harness<'_, Editor>, name: &str) {
 
 fn press(harness: &mut Harness<'_, Editor>, modifiers: Modifiers, key: Key) {
     harness.key_press_modifiers(modifiers, key);
-    harness.run();
+    harness.settle();
 }
 
 /// Takes back every step and counts them.

@@ -17,6 +17,7 @@ use crate::document::recovery::Recovery;
 use crate::document::{Document, state_folder};
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
+use crate::jobs::Task;
 use crate::render::{AdapterChoice, Gpu};
 use crate::scene::Scene;
 use shared_app::SharedApp;
@@ -125,8 +126,8 @@ fn options(adapter: &AdapterChoice) -> eframe::NativeOptions {
 /// The shipped scenes, for the File menu: from their files where the program is started beside them,
 /// because meshes are looked for beside the file.
 fn examples() -> Vec<Example> {
-    let open = |name: &str, scene: &Scene| match Path::new("scenes").join(name).with_extension("json") {
-        file if file.exists() => Document::open(&file).map_err(|error| error.to_string()),
+    let open = |name: &str, scene: &Scene, task: &Task| match Path::new("scenes").join(name).with_extension("json") {
+        file if file.exists() => Document::open_by(&file, task).map_err(|error| error.to_string()),
         _ => Ok(Document::new(scene.clone())),
     };
     gallery::all()
@@ -134,7 +135,7 @@ fn examples() -> Vec<Example> {
         .map(|(name, scene)| Example {
             name: name.replace('-', " "),
             is_test: gallery::is_test_scene(name),
-            open: Box::new(move || open(name, &scene)),
+            open: Arc::new(move |task| open(name, &scene, task)),
         })
         .collect()
 }

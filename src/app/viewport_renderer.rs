@@ -123,6 +123,7 @@ impl ViewportRenderer {
             texture: shown.map(|(id, _)| id),
             size_px: shown.map_or([1, 1], |(_, size)| size),
             progress: self.in_flight.as_ref().map(|(frame, _)| frame.progress()),
+            is_waiting: self.waiting && !self.navigating,
             status: self.status(),
         }
     }
@@ -137,13 +138,16 @@ impl ViewportRenderer {
     pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
         self.renderers.plain.gpu().check()?;
         self.painting = self.painting_since.take().map_or(self.painting, |since| since.elapsed());
+        if editor.take_stop_drawing() {
+            // What is shown is what is request; only another wish begins a picture.
+            (self.in_flight, self.waiting) = (None, false);
+        }
         let ViewSettings { navigating, .. } = editor.view();
         // Not part of what the picture depends on: letting go changes nothing in it.
         let view = ViewSettings { navigating: false, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
-        let (flat, library) = editor.flat_and_meshes();
-        let flat = flat.clone();
-        let (meshes, _) = flat.load_meshes(library);
+        let flat = editor.flat().clone();
+        let meshes = flat.known_meshes(editor.meshes());
         let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
         let request = RenderRequest { view, flat, meshes: addresses, outline };
         let news = self.follow_pipelines(editor, ctx);

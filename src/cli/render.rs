@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Mutex;
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -16,12 +16,13 @@ use super::text::{complain, say};
 use crate::flat::debug_view::{DepthRange, ViewMode};
 use crate::flat::mesh_rays::Meshes;
 use crate::flat::reference::image::render_reference;
-use crate::flat::{Cancel, FlatScene, GBuffer, Warning, flatten_until};
+use crate::flat::{FlatScene, GBuffer, Warning};
 use crate::geometry::Camera;
-use crate::mesh::MeshLibrary;
+use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
 use crate::render::{EvalStrategy, Gpu, Renderer};
 use crate::scene::Scene;
+use crate::session::PreparedScene;
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
@@ -153,11 +154,11 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     outputs::check_writable(&paths, &[&arguments.scene])?;
     let scene = read_scene(&arguments.scene)?;
     let cancel = cancel_by_interrupts();
-    let flat = flatten_until(&scene, arguments.time, &cancel)
-        .map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?
-        .map(|(flat, _)| flat)
-        .ok_or(Failure::Canceled)?;
-    let mut library = MeshLibrary::new(folder(&arguments.scene));
+    let task = Task::canceled_by("rendering", &cancel);
+    let PreparedScene { flat, mut library, .. } =
+        PreparedScene::of(&scene, arguments.time, folder(&arguments.scene), &task)
+            .map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?
+            .ok_or(Failure::Canceled)?;
     let (meshes, missing) = flat.load_meshes(&mut library);
     let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
     arguments.warn(&warnings)?;
@@ -166,9 +167,9 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     }
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let buffers = if arguments.reference {
-        reference_picture(arguments, &scene, &flat, &meshes, &camera)?
+        reference_picture(arguments, scene, &flat, &meshes, &camera)?
     } else {
-        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera, &cancel)?;
+        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera)?;
         arguments.warn(&unfinished)?;
         warnings.extend(unfinished);
         buffers
@@ -211,47 +212,71 @@ fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments)
     Err(Failure::Usage(format!("there is no camera \"{name}\"; the scene has {has}")))
 }
 
+/// How often the progress of a picture is told.
+const TELL_EVERY: Duration = Duration::from_millis(50);
+
+/// Makes a picture on a thread of its own while this one shows how far it is. A panic there is a failure like others.
+fn by_job<T: Send + 'static>(
+    name: &'static str,
+    arguments: &RenderArguments,
+    interrupts: Interrupts,
+    work: impl FnOnce(&Task) -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let mut progress = Progress::start(name, arguments.quiet, interrupts);
+    let task = match interrupts {
+        Interrupts::StopTheTask => Task::canceled_by(name, &cancel_by_interrupts()),
+        Interrupts::EndTheProgram => Task::without_cancel(name),
+    };
+    let end = Jobs::default().start(task, work).wait_telling(TELL_EVERY, |task| {
+        progress.update(task.progress().map_or(0.0, f64::from));
+    });
+    progress.finish();
+    match end {
+        JobEnd::Done(result) => result,
+        JobEnd::Failed(reason) => Err(Failure::Other(reason)),
+        JobEnd::Canceled => Err(Failure::Canceled),
+    }
+}
+
 fn gpu_picture(
     arguments: &RenderArguments,
-    flat: &FlatScene,
+    flat: &Arc<FlatScene>,
     meshes: &Meshes,
     camera: &Camera,
-    cancel: &Cancel,
 ) -> Result<(GBuffer, Vec<Warning>), Failure> {
-    let gpu = Gpu::open(&arguments.adapter.choice())?;
-    loop_iterations(&gpu)?;
-    let view_mode = arguments.view;
-    let mut renderer = if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
-    if !view_mode.counts() {
-        // One picture is done before pipelines of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Tapes are
-        // made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
-        renderer.set_strategy(EvalStrategy::Tape);
-    }
-    renderer.set_cancel(cancel);
-    let mut progress = Progress::start("rendering", arguments.quiet, Interrupts::StopTheTask);
-    let mut update = |share| progress.update(f64::from(share));
-    let result = renderer.render_as(view_mode, flat, meshes, camera, arguments.size, &mut update);
-    progress.finish();
-    Ok(result?)
+    let (choice, view_mode, size) = (arguments.adapter.choice(), arguments.view, arguments.size);
+    let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
+    by_job("rendering", arguments, Interrupts::StopTheTask, move |task| {
+        let gpu = Gpu::open(&choice)?;
+        loop_iterations(&gpu)?;
+        let mut renderer = if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
+        if !view_mode.counts() {
+            // One picture is done before pipelines of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Lists
+            // are made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
+            renderer.set_strategy(EvalStrategy::Tape);
+        }
+        renderer.set_cancel(task.flag());
+        let mut update = |share| {
+            task.set_progress(share);
+            !task.is_canceled()
+        };
+        Ok(renderer.render_as(view_mode, &flat, &meshes, &camera, size, &mut update)?)
+    })
 }
 
 fn reference_picture(
     arguments: &RenderArguments,
-    scene: &Scene,
-    flat: &FlatScene,
+    scene: Scene,
+    flat: &Arc<FlatScene>,
     meshes: &Meshes,
     camera: &Camera,
 ) -> Result<GBuffer, Failure> {
-    let progress = Mutex::new(Progress::start("tracing", arguments.quiet, Interrupts::EndTheProgram));
-    let reference = render_reference(flat, meshes, camera, arguments.size, &|share| {
-        if let Ok(mut progress) = progress.lock() {
-            progress.update(share);
-        }
-    });
-    if let Ok(progress) = progress.into_inner() {
-        progress.finish();
-    }
-    reference.map(|reference| reference.buffers).map_err(|error| Failure::given_up(&arguments.scene, scene, &error))
+    let (path, size) = (arguments.scene.clone(), arguments.size);
+    let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
+    by_job("tracing", arguments, Interrupts::EndTheProgram, move |task| {
+        let reference = render_reference(&flat, &meshes, &camera, size, &|share| task.set_progress(share as f32));
+        reference.map(|reference| reference.buffers).map_err(|error| Failure::given_up(&path, &scene, &error))
+    })
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -8,6 +8,7 @@ mod history;
 mod placement;
 mod recent;
 pub mod recovery;
+mod save;
 mod state_folder;
 mod structure;
 
@@ -18,8 +19,10 @@ pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
 pub use recent::{MAX_RECENT, RecentFiles};
+pub use save::{SaveOrder, Saved};
 pub use state_folder::state_folder;
 
+use crate::jobs::Task;
 use crate::scene::file::{self, FileError, Stamp};
 use crate::scene::{NodeId, Scene, SceneError};
 
@@ -65,7 +68,12 @@ impl Document {
 
     /// Reads a file, and clears away the temporaries of this user's savers that were killed.
     pub fn open(path: &Path) -> Result<Self, FileError> {
-        let (scene, stamp) = file::load_stamped(path)?;
+        Self::open_by(path, &Task::new("Opening"))
+    }
+
+    /// The same as a part of a task: it learns how far the reading is, and can cancel it.
+    pub fn open_by(path: &Path, task: &Task) -> Result<Self, FileError> {
+        let (scene, stamp) = file::load_stamped(path, task)?;
         file::remove_leftovers();
         Ok(Self { path: Some(path.to_path_buf()), stamp: Some(stamp), ..Self::new(scene) })
     }
@@ -231,24 +239,14 @@ impl Document {
 
     /// Saves to a file, which is the document's from then on. On failure nothing changes.
     pub fn save_as(&mut self, path: &Path) -> Result<(), FileError> {
-        self.stamp = Some(file::save_stamped(&self.state.scene, path)?);
-        self.path = Some(path.to_path_buf());
-        self.saved = Some(self.state.mark);
+        let saved = self.save_order(path).write()?;
+        self.take_saved(saved);
         Ok(())
     }
 
     /// What saving to this path would replace: to be asked before, because saving itself does not.
     pub fn would_replace(&self, path: &Path) -> OverwriteRisk {
-        let is_own = self.path.as_deref().is_some_and(|own| own == path || file::is_same_place(own, path));
-        if !is_own {
-            return if path.exists() { OverwriteRisk::OtherFile } else { OverwriteRisk::Nothing };
-        }
-        match self.stamp {
-            Some(stamp) if !stamp.is_outdated(path) => OverwriteRisk::Nothing,
-            // Recovered, and nobody knows any more what its file was.
-            None if !path.exists() => OverwriteRisk::Nothing,
-            _ => OverwriteRisk::ChangedByOthers,
-        }
+        self.save_order(path).would_replace()
     }
 
     /// How the file was when it was read or saved last.

@@ -10,7 +10,7 @@ use crate::scene::{Node, NodeId, NodeKind, Scene};
 const TOKEN: f64 = 0.5;
 
 /// The box around the nodes and all below them, in the world; `None` where there is nothing.
-pub fn of_nodes(scene: &Scene, meshes: &mut MeshLibrary, ids: &[NodeId]) -> Option<Aabb> {
+pub fn of_nodes(scene: &Scene, meshes: &MeshLibrary, ids: &[NodeId]) -> Option<Aabb> {
     let mut bounds = Aabb::EMPTY;
     for &id in ids {
         let Some(index) = scene.index_of(id) else { continue };
@@ -24,7 +24,7 @@ pub fn of_nodes(scene: &Scene, meshes: &mut MeshLibrary, ids: &[NodeId]) -> Opti
 
 /// The box around everything visible that has a surface; cameras and planes count only where there is nothing else,
 /// lights never: the first thing made in a scene that has only a sun is to stand at the origin.
-pub fn of_scene(scene: &Scene, meshes: &mut MeshLibrary) -> Option<Aabb> {
+pub fn of_scene(scene: &Scene, meshes: &MeshLibrary) -> Option<Aabb> {
     let (mut solid, mut rest) = (Aabb::EMPTY, Aabb::EMPTY);
     for top in scene.children(None) {
         let Some(index) = scene.index_of(top.id) else { continue };
@@ -65,24 +65,26 @@ fn has_size(node: &Node) -> bool {
     }
 }
 
-fn of_node(meshes: &mut MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aabb {
+fn of_node(meshes: &MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aabb {
     local(meshes, node).map_or(Aabb::EMPTY, |bounds| bounds.transformed(world_from_node))
 }
 
 /// The box around a node's own surface in its local space; `None` for a group.
-pub fn local(meshes: &mut MeshLibrary, node: &Node) -> Option<Aabb> {
+pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     let token = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(TOKEN));
     match &node.kind {
         NodeKind::Group(_) => None,
         NodeKind::Object(object) => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
-        NodeKind::Mesh(mesh) => Some(meshes.get(&mesh.path).map_or(token, |m| m.bounds)),
+        NodeKind::Mesh(mesh) => {
+            Some(meshes.known(&mesh.path).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))
+        }
         NodeKind::Light(_) | NodeKind::Camera(_) => Some(token),
     }
 }
 
 /// The box around a node and all below it in the node's own space, with the way to the world: an
 /// oriented box that turns with the node.
-pub fn oriented(scene: &Scene, meshes: &mut MeshLibrary, id: NodeId) -> Option<(DAffine3, Aabb)> {
+pub fn oriented(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> Option<(DAffine3, Aabb)> {
     let index = scene.index_of(id)?;
     let mut bounds = Aabb::EMPTY;
     visit(scene, index, DAffine3::IDENTITY, |node, root_from_node| {
@@ -106,21 +108,21 @@ mod tests {
     #[test]
     fn the_scene_is_as_large_as_its_solid_things() {
         let mut scene = Scene::new();
-        let mut meshes = MeshLibrary::new(None);
-        assert_eq!(of_scene(&scene, &mut meshes), None);
+        let meshes = MeshLibrary::new(None);
+        assert_eq!(of_scene(&scene, &meshes), None);
         scene.insert(None, 0, Node::new("Sun", NodeKind::Light(Light::sun())).at(DVec3::ONE)).unwrap();
-        assert_eq!(of_scene(&scene, &mut meshes), None);
+        assert_eq!(of_scene(&scene, &meshes), None);
         let plane = object(&scene, ShapeKind::Plane);
         scene.insert(None, 0, plane).unwrap();
-        assert_eq!(of_scene(&scene, &mut meshes).unwrap().half(), DVec3::splat(TOKEN));
+        assert_eq!(of_scene(&scene, &meshes).unwrap().half(), DVec3::splat(TOKEN));
         let group = Node::new("Group", NodeKind::Group(Group::UNION)).at(DVec3::X * 4.0);
         let group = scene.insert(None, 1, group).unwrap();
         let ball = object(&scene, ShapeKind::Sphere).at(DVec3::Y);
         let ball = scene.insert(Some(group), 0, ball).unwrap();
         let around = Aabb::from_center_half(DVec3::new(4.0, 1.0, 0.0), DVec3::splat(0.5));
-        assert_eq!(of_scene(&scene, &mut meshes), Some(around));
-        assert_eq!(of_nodes(&scene, &mut meshes, &[ball]), Some(around));
-        assert_eq!(of_nodes(&scene, &mut meshes, &[group]), Some(around));
-        assert_eq!(oriented(&scene, &mut meshes, group).unwrap().1.center(), DVec3::Y);
+        assert_eq!(of_scene(&scene, &meshes), Some(around));
+        assert_eq!(of_nodes(&scene, &meshes, &[ball]), Some(around));
+        assert_eq!(of_nodes(&scene, &meshes, &[group]), Some(around));
+        assert_eq!(oriented(&scene, &meshes, group).unwrap().1.center(), DVec3::Y);
     }
 }

@@ -163,7 +163,7 @@ pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (R
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, Stroke::new(1.0, border), egui::StrokeKind::Inside);
     if mixed {
         let font = egui::TextStyle::Button.resolve(ui.style());
-        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, super::widgets::MIXED, font, theme::TEXT);
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, theme::MIXED, font, theme::TEXT);
     }
     let mut changed = false;
     let close = egui::PopupCloseBehavior::CloseOnClickOutside;

@@ -2,8 +2,10 @@
 
 use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, RichText, ScrollArea, TextEdit, vec2};
 
-use super::commands::{CommandId, ICON_ROOM};
-use super::{Editor, theme};
+use super::commands::command::Command;
+use super::commands::entries::ICON_ROOM;
+use super::state::EditorState;
+use super::theme;
 
 /// What the palette remembers while it is open.
 #[derive(Default)]
@@ -26,97 +28,93 @@ impl CommandPalette {
     }
 }
 
-/// Shows the palette where it is open, and runs what is chosen.
-pub fn show(editor: &mut Editor, ctx: &Context) {
-    if !editor.command_palette.open {
-        return;
+impl CommandPalette {
+    /// Shows the palette where it is open; returns what is chosen.
+    pub fn show(&mut self, state: &EditorState, ctx: &Context) -> Option<Command> {
+        if !self.open {
+            return None;
+        }
+        let found = matches(&self.text);
+        let (up, down, enter, escape) = ctx.input_mut(|i| {
+            let mut key = |key| i.consume_key(Modifiers::NONE, key);
+            (key(Key::ArrowUp), key(Key::ArrowDown), key(Key::Enter), key(Key::Escape))
+        });
+        let last = found.len().saturating_sub(1);
+        self.chosen = (self.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
+        let mut run = found.get(self.chosen).copied().filter(|_| enter);
+        let moved = up || down;
+        // A click beside it closes it and reaches nothing else.
+        let id = Id::unique("palette");
+        let top = (ctx.content_rect().height() * 0.15).min(120.0);
+        let response = Modal::new(id)
+            .area(Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, top)))
+            .backdrop_color(Color32::TRANSPARENT)
+            .frame(Frame::popup(&ctx.global_style()).inner_margin(10.0))
+            .show(ctx, |ui| {
+                ui.set_width(420.0);
+                if let Some(command) = self.list(state, ui, &found, moved) {
+                    run = Some(command);
+                }
+            });
+        let outside = response.backdrop_response.clicked() && !self.focus;
+        self.focus = false;
+        if escape || outside || enter || run.is_some() {
+            self.open = false;
+            // The key belongs to the palette, not to the widget that had the keyboard before.
+            ctx.memory_mut(|m| m.stop_text_input());
+        }
+        run
     }
-    let found = matches(&editor.command_palette.text);
-    let (up, down, enter, escape) = ctx.input_mut(|i| {
-        let mut key = |key| i.consume_key(Modifiers::NONE, key);
-        (key(Key::ArrowUp), key(Key::ArrowDown), key(Key::Enter), key(Key::Escape))
-    });
-    let last = found.len().saturating_sub(1);
-    let palette = &mut editor.command_palette;
-    palette.chosen = (palette.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
-    let mut run = found.get(palette.chosen).copied().filter(|_| enter);
-    let moved = up || down;
-    // A click beside it closes it and reaches nothing else.
-    let id = Id::unique("palette");
-    let top = (ctx.content_rect().height() * 0.15).min(120.0);
-    let response = Modal::new(id)
-        .area(Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, top)))
-        .backdrop_color(Color32::TRANSPARENT)
-        .frame(Frame::popup(&ctx.global_style()).inner_margin(10.0))
-        .show(ctx, |ui| {
-            ui.set_width(420.0);
-            if let Some(command) = list(editor, ui, &found, moved) {
-                run = Some(command);
+
+    fn list(&mut self, state: &EditorState, ui: &mut egui::Ui, found: &[Command], moved: bool) -> Option<Command> {
+        let field = TextEdit::singleline(&mut self.text)
+            .hint_text("Find a command…")
+            .desired_width(f32::INFINITY)
+            .margin(egui::Margin::symmetric(8, 6));
+        let response = ui.add(field);
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find command"));
+        if self.focus {
+            response.request_focus();
+        }
+        if response.changed() {
+            self.chosen = 0;
+        }
+        ui.add_space(4.0);
+        let mut run = None;
+        let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 24.0).clamp(80.0, 320.0);
+        ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 1.0;
+            if found.is_empty() {
+                ui.label(RichText::new("No command has this name.").color(theme::WEAK));
+            }
+            for (index, command) in found.iter().enumerate() {
+                let (info, is_enabled) = (command.info(), command.is_enabled(state));
+                let keys = info.keys.first().map_or_else(String::new, |k| ui.ctx().format_shortcut(k));
+                let button = Button::selectable(index == self.chosen, (RichText::new(ICON_ROOM), info.label.as_str()))
+                    .min_size(vec2(ui.available_width(), 26.0))
+                    .shortcut_text(RichText::new(keys).color(theme::FAINT));
+                let response = ui.add_enabled(is_enabled, button);
+                info.paint_icon(ui, response.rect, is_enabled, None);
+                ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("Run {}", info.label)));
+                if index == self.chosen && moved {
+                    response.scroll_to_me(None);
+                }
+                if response.on_hover_text(&info.help).clicked() {
+                    run = Some(*command);
+                }
             }
         });
-    let outside = response.backdrop_response.clicked() && !editor.command_palette.focus;
-    editor.command_palette.focus = false;
-    if escape || outside || enter || run.is_some() {
-        editor.command_palette.open = false;
-        // The key belongs to the palette, not to the widget that had the keyboard before.
-        ctx.memory_mut(|m| m.stop_text_input());
-    }
-    if let Some(command) = run {
-        command.run(editor, ctx);
+        run
     }
 }
 
-fn list(editor: &mut Editor, ui: &mut egui::Ui, found: &[CommandId], moved: bool) -> Option<CommandId> {
-    let field = TextEdit::singleline(&mut editor.command_palette.text)
-        .hint_text("Find a command…")
-        .desired_width(f32::INFINITY)
-        .margin(egui::Margin::symmetric(8, 6));
-    let response = ui.add(field);
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find command"));
-    if editor.command_palette.focus {
-        response.request_focus();
-    }
-    if response.changed() {
-        editor.command_palette.chosen = 0;
-    }
-    ui.add_space(4.0);
-    let mut run = None;
-    let room = (ui.ctx().content_rect().bottom() - ui.cursor().top() - 24.0).clamp(80.0, 320.0);
-    ScrollArea::vertical().max_height(room).auto_shrink([false, true]).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = 1.0;
-        if found.is_empty() {
-            ui.label(RichText::new("No command has this name.").color(theme::WEAK));
-        }
-        for (index, id) in found.iter().enumerate() {
-            let command = id.get();
-            let keys = command.keys.first().map_or_else(String::new, |k| ui.ctx().format_shortcut(k));
-            let button = Button::selectable(
-                index == editor.command_palette.chosen,
-                (RichText::new(ICON_ROOM), command.name.as_str()),
-            )
-            .min_size(vec2(ui.available_width(), 26.0))
-            .shortcut_text(RichText::new(keys).color(theme::FAINT));
-            let response = ui.add_enabled(id.enabled(editor), button);
-            command.paint_icon(ui, response.rect, id.enabled(editor));
-            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("Run {}", command.name)));
-            if index == editor.command_palette.chosen && moved {
-                response.scroll_to_me(None);
-            }
-            if response.on_hover_text(&command.help).clicked() {
-                run = Some(*id);
-            }
-        }
-    });
-    run
-}
-
-/// The commands whose name holds every word typed; those that begin with the text first.
-fn matches(text: &str) -> Vec<CommandId> {
+/// The commands whose label holds every word typed; those that begin with the text first.
+fn matches(text: &str) -> Vec<Command> {
     let wanted = text.to_lowercase();
     let words: Vec<&str> = wanted.split_whitespace().collect();
-    let name = |id: &CommandId| id.get().name.to_lowercase();
-    let mut found: Vec<_> = CommandId::all().filter(|id| words.iter().all(|w| name(id).contains(w))).collect();
-    found.sort_by_key(|id| !name(id).starts_with(wanted.trim()));
+    let label = |command: &Command| command.info().label.to_lowercase();
+    let mut found: Vec<_> = Command::all().filter(|command| words.iter().all(|w| label(command).contains(w))).collect();
+    found.sort_by_key(|command| !label(command).starts_with(wanted.trim()));
     found
 }
 
@@ -126,10 +124,10 @@ mod tests {
 
     #[test]
     fn words_may_come_in_any_order_and_a_beginning_comes_first() {
-        let names = |text| matches(text).into_iter().map(|id| id.get().name.clone()).collect::<Vec<_>>();
+        let names = |text| matches(text).into_iter().map(|command| command.info().label.clone()).collect::<Vec<_>>();
         assert_eq!(names("view top"), ["Top view"]);
         assert_eq!(names("s").first().map(String::as_str), Some("Save"));
-        assert_eq!(names("").len(), CommandId::all().count());
+        assert_eq!(names("").len(), Command::all().count());
         assert!(names("xyzzy").is_empty());
     }
 }

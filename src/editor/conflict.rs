@@ -5,93 +5,57 @@ use std::path::{Path, PathBuf};
 use egui::{Button, Context, Id, Key, Modal, RichText, vec2};
 
 use super::dialogs::Next;
-use super::messages::Message;
-use super::{Editor, theme};
-use crate::document::{Document, OverwriteRisk};
+use super::theme;
+use crate::jobs::Job;
 use crate::scene::file::Stamp;
 
 /// A question that waits, and what has been told.
 #[derive(Default)]
-pub(super) struct Conflict {
-    question: Option<ConflictQuestion>,
-    had_focus: bool,
+pub struct Conflict {
+    /// A question that waits for its answer.
+    pub question: Option<OverwriteQuestion>,
+    /// The window had the keyboard.
+    pub had_focus: bool,
     /// What the file was when the artist was told that it is another one.
-    told: Option<Stamp>,
+    pub told: Option<Stamp>,
+    /// Looks whether the file is the one of this stamp still.
+    pub looking: Option<(Job<bool>, Stamp)>,
 }
 
 /// Whether to write over the file, and how to go on then.
-struct ConflictQuestion {
-    path: PathBuf,
-    then: Option<Next>,
+pub struct OverwriteQuestion {
+    /// Where to.
+    pub path: PathBuf,
+    /// What follows.
+    pub then: Option<Next>,
 }
 
-enum ConflictAnswer {
+/// What is answered to it.
+pub enum OverwriteAnswer {
+    /// Write over it.
     Overwrite,
+    /// Choose another file.
     SaveAs,
+    /// Read it again, and give the changes up.
     Reload,
+    /// Leave everything as it is.
     Cancel,
 }
 
 impl Conflict {
+    /// Whether a look at the file is under way.
+    pub fn is_looking(&self) -> bool {
+        self.looking.is_some()
+    }
+
     /// Whether the window waits for an answer.
     pub fn is_open(&self) -> bool {
         self.question.is_some()
     }
 }
 
-impl Editor {
-    /// Saves to the path, unless somebody else has changed the document's file: then it asks first.
-    pub(super) fn save_unless_changed(&mut self, path: &Path, then: Option<Next>, ctx: &Context) {
-        match self.session.document.would_replace(path) {
-            OverwriteRisk::ChangedByOthers => {
-                self.conflict.question = Some(ConflictQuestion { path: path.to_path_buf(), then });
-            }
-            OverwriteRisk::Nothing | OverwriteRisk::OtherFile => self.save_to(path, then, ctx),
-        }
-    }
-
-    /// Reads the document's file again. Changes are given up, so they are asked about first.
-    pub(super) fn reload(&mut self) {
-        let Some(path) = self.session.document.path().map(Path::to_path_buf) else { return };
-        match Document::open(&path) {
-            Ok(document) => {
-                self.replace_document(document);
-                self.report(Message::success(format!("Read {} again", path.display())));
-            }
-            Err(error) => self.report(Message::error(error.to_string())),
-        }
-    }
-
-    /// Looks whether the file has changed when the artist comes back to the window. Once a frame.
-    pub(super) fn watch_file(&mut self, ctx: &Context) {
-        let has_focus = ctx.input(|i| i.focused);
-        let had_focus = std::mem::replace(&mut self.conflict.had_focus, has_focus);
-        let came_back = has_focus && !had_focus;
-        let stamp = self.session.document.stamp();
-        if came_back && self.conflict.told != stamp && self.session.document.seems_outdated() {
-            self.conflict.told = stamp;
-            let name = self.session.document.title();
-            let name = name.trim_end_matches(" *");
-            let text = format!("Another program has changed {name}. File, Reload reads it again; saving asks first.");
-            self.report(Message::warning(text));
-        }
-    }
-
-    /// Shows the question.
-    pub(super) fn show_conflict(&mut self, ctx: &Context) {
-        let Some(question) = &self.conflict.question else { return };
-        let Some(answer) = ask(ctx, &question.path) else { return };
-        let Some(ConflictQuestion { path, then }) = self.conflict.question.take() else { return };
-        match answer {
-            ConflictAnswer::Overwrite => self.save_to(&path, then, ctx),
-            ConflictAnswer::SaveAs => self.choose_save_path(then, ctx),
-            ConflictAnswer::Reload => self.reload(),
-            ConflictAnswer::Cancel => {}
-        }
-    }
-}
-
-fn ask(ctx: &Context, path: &Path) -> Option<ConflictAnswer> {
+/// Shows the question; returns the answer.
+pub fn ask(ctx: &Context, path: &Path) -> Option<OverwriteAnswer> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut answer = None;
     let frame = egui::Frame::window(&ctx.global_style()).inner_margin(18.0);
@@ -107,27 +71,27 @@ fn ask(ctx: &Context, path: &Path) -> Option<ConflictAnswer> {
         ui.horizontal(|ui| {
             let size = vec2(96.0, 28.0);
             if ui.add(Button::new("Reload").min_size(size)).clicked() {
-                answer = Some(ConflictAnswer::Reload);
+                answer = Some(OverwriteAnswer::Reload);
             }
             if ui.add(Button::new("Overwrite").min_size(size)).clicked() {
-                answer = Some(ConflictAnswer::Overwrite);
+                answer = Some(OverwriteAnswer::Overwrite);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let text = RichText::new("Save as…").color(egui::Color32::BLACK);
                 if ui.add(Button::new(text).fill(theme::ACCENT).min_size(size)).clicked() {
-                    answer = Some(ConflictAnswer::SaveAs);
+                    answer = Some(OverwriteAnswer::SaveAs);
                 }
                 if ui.add(Button::new("Cancel").min_size(size)).clicked() {
-                    answer = Some(ConflictAnswer::Cancel);
+                    answer = Some(OverwriteAnswer::Cancel);
                 }
             });
         });
     });
     if ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Enter)) {
-        answer = answer.or(Some(ConflictAnswer::SaveAs));
+        answer = answer.or(Some(OverwriteAnswer::SaveAs));
     }
     if response.should_close() {
-        answer = answer.or(Some(ConflictAnswer::Cancel));
+        answer = answer.or(Some(OverwriteAnswer::Cancel));
     }
     answer
 }

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use egui::{Button, Color32, Context, Id, Key, Label, Modal, Modifiers, RichText, TextEdit, Ui, vec2};
 
 use super::dialogs::{Next, PathField, Purpose, Question};
-use super::{Editor, theme, widgets};
+use super::root::Editor;
+use super::{theme, widgets};
 
 /// What is answered to a question.
 #[derive(Clone, Copy, PartialEq)]
@@ -32,7 +33,7 @@ impl Editor {
     }
 
     fn ask_to_save(&mut self, next: Next, ctx: &Context) {
-        let title = self.session.document.title();
+        let title = self.state.session.document.title();
         let name = title.trim_end_matches(" *").to_owned();
         let shown = question(ctx, ("Save the changes to", &name, "They are lost otherwise."), Some("Discard"), "Save");
         let enter = ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Enter)) || wants_save(ctx);
@@ -51,7 +52,7 @@ impl Editor {
         let text = format!("There is a file of this name in {folder} already. What it holds is lost then.");
         match question(ctx, ("Replace", &name, &text), None, "Replace") {
             None => self.dialogs.question = Some(Question::Replace(path, then)),
-            Some(DialogAnswer::Agree) => self.save_to(&path, then, ctx),
+            Some(DialogAnswer::Agree) => self.start_saving(&path, true, then),
             Some(_) => {
                 let (purpose, text) = (Purpose::Save(then), path.display().to_string());
                 self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });

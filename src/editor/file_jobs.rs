@@ -1,91 +1,147 @@
-//! Files that nodes are to keep are read on threads of their own: decoding an image may take a second.
+//! Files that are read and written beside what is shown: those that nodes are to keep, because decoding an image may take a
+//! second, and the list of recent files, because a disk may sleep.
 
-use std::path::Path;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use egui::Context;
-
-use super::Editor;
-use super::edit_session::WantedFile;
+use super::edit_session::{EditSession, WantedFile};
 use super::messages::Message;
-use crate::document::Edit;
-use crate::guard::guarded;
+use crate::document::{Edit, RecentFiles};
+use crate::jobs::{Job, JobEnd, Jobs, Task};
 use crate::scene::{Attached, Node, file};
 
-/// A file on its way.
-pub struct FileJob {
+/// See the module.
+#[derive(Default)]
+pub struct FileJobs {
+    /// Files that nodes are to keep, on their way.
+    attachments: Vec<Attachment>,
+    recent: RecentFiles,
+    /// Writes the list, and gives it back with what other windows have added.
+    noting: Option<Job<RecentFiles>>,
+    /// Files that are to be noted after that.
+    to_note: Vec<PathBuf>,
+}
+
+/// A file on its way to a node.
+struct Attachment {
     wanted: WantedFile,
     /// For people.
     name: String,
-    answer: Receiver<Result<Attached, String>>,
+    job: Job<Result<Attached, String>>,
 }
 
 /// How soon a file that has been read is looked for again while a value is being changed.
 const LATER: Duration = Duration::from_millis(100);
 
-impl Editor {
+impl FileJobs {
+    /// Remembers files between runs in this list.
+    pub fn set_recent(&mut self, recent: RecentFiles) {
+        self.recent = recent;
+    }
+
+    /// The files opened and saved lately.
+    pub fn recent(&self) -> &RecentFiles {
+        &self.recent
+    }
+
     /// The names of the files that are being read.
     pub fn files_being_read(&self) -> impl Iterator<Item = &str> {
-        self.file_jobs.iter().map(|job| &*job.name)
+        self.attachments.iter().map(|attachment| &*attachment.name)
+    }
+
+    /// Whether anything is on its way.
+    pub fn is_busy(&self) -> bool {
+        !self.attachments.is_empty() || self.noting.is_some()
     }
 
     /// Reads a file for those that want it.
-    pub(super) fn read_file(&mut self, wanted: WantedFile, path: &Path, ctx: &Context) {
+    pub fn read(&mut self, jobs: &Jobs, wanted: WantedFile, path: &Path) {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (sender, answer) = channel();
-        let (ctx, path, instead_of) = (ctx.clone(), path.to_path_buf(), wanted.instead_of.clone());
-        let spawned = std::thread::Builder::new().name("file to keep".into()).spawn(move || {
-            // The receiver is gone when the document is another one: then nobody waits for the file.
-            let _ = sender.send(guarded(|| read(&path, &instead_of)).flatten());
-            ctx.request_repaint();
-        });
-        match spawned {
-            Ok(_) => self.file_jobs.push(FileJob { wanted, name, answer }),
-            Err(error) => self.refuse(&wanted, &format!("{name:?} cannot be read: {error}")),
+        let (path, instead_of) = (path.to_path_buf(), wanted.instead_of.clone());
+        let job = jobs.start(Task::new(format!("Reading {name}")), move |_| read(&path, &instead_of));
+        self.attachments.push(Attachment { wanted, name, job });
+    }
+
+    /// The document is another one: nobody waits for its files.
+    pub fn forget_attachments(&mut self) {
+        self.attachments.clear();
+    }
+
+    /// Puts a file first in the list of recent ones.
+    pub fn note_recent(&mut self, jobs: &Jobs, path: &Path) {
+        self.to_note.push(path.to_path_buf());
+        self.write_recent(jobs);
+    }
+
+    fn write_recent(&mut self, jobs: &Jobs) {
+        if self.noting.is_some() || self.to_note.is_empty() {
+            return;
+        }
+        let (mut recent, paths) = (self.recent.clone(), std::mem::take(&mut self.to_note));
+        self.noting = Some(jobs.start(Task::hidden("Recent files"), move |_| {
+            paths.iter().for_each(|path| recent.add(path));
+            recent
+        }));
+    }
+
+    /// Waits until the list is written: the program ends.
+    pub fn finish(&mut self) {
+        if let Some(JobEnd::Done(recent)) = self.noting.take().map(Job::wait) {
+            self.recent = recent;
+        }
+        for path in std::mem::take(&mut self.to_note) {
+            self.recent.add(&path);
         }
     }
 
-    /// Gives files that have been read to their nodes. Once a frame.
-    pub(super) fn poll_file_jobs(&mut self, ctx: &Context) {
-        if self.file_jobs.is_empty() {
-            return;
+    /// Gives files that have been read to their nodes. Once a frame; returns when it wants to be called again although nothing
+    /// happens.
+    pub fn poll(&mut self, jobs: &Jobs, session: &mut EditSession) -> Option<Duration> {
+        if let Some(end) = self.noting.as_ref().and_then(Job::poll) {
+            self.noting = None;
+            if let JobEnd::Done(recent) = end {
+                self.recent = recent;
+            }
+            self.write_recent(jobs);
         }
-        if self.session.is_changing() {
+        if self.attachments.is_empty() {
+            return None;
+        }
+        if session.is_changing() {
             // An undo step would be cut in two.
-            ctx.request_repaint_after(LATER);
-            return;
+            return Some(LATER);
         }
-        for job in std::mem::take(&mut self.file_jobs) {
-            match job.answer.try_recv() {
-                Err(TryRecvError::Empty) => self.file_jobs.push(job),
-                Err(TryRecvError::Disconnected) => {
-                    self.refuse(&job.wanted, &format!("{:?} cannot be read", job.name));
-                }
-                Ok(Err(reason)) => self.refuse(&job.wanted, &reason),
-                Ok(Ok(file)) => self.attach(&job.wanted, &file),
+        for attachment in std::mem::take(&mut self.attachments) {
+            let Attachment { wanted, name, job } = &attachment;
+            match job.poll() {
+                None => self.attachments.push(attachment),
+                Some(JobEnd::Done(Ok(file))) => attach(session, wanted, &file),
+                Some(JobEnd::Done(Err(reason))) => refuse(session, wanted, &reason),
+                Some(JobEnd::Failed(reason)) => refuse(session, wanted, &format!("{name:?} cannot be read: {reason}")),
+                Some(JobEnd::Canceled) => session.messages.push(Message::info(format!("Reading {name} was canceled."))),
             }
         }
+        None
     }
+}
 
-    fn refuse(&mut self, wanted: &WantedFile, reason: &str) {
-        let node = wanted.nodes.last().and_then(|id| self.session.document.scene().node(*id));
-        let subject = node.map_or(String::new(), |node| format!("{}: ", wanted.target.label(node)));
-        self.report(Message::error(format!("{subject}{reason}")));
-    }
+fn refuse(session: &mut EditSession, wanted: &WantedFile, reason: &str) {
+    let node = wanted.nodes.last().and_then(|id| session.document.scene().node(*id));
+    let subject = node.map_or(String::new(), |node| format!("{}: ", wanted.target.label(node)));
+    session.messages.push(Message::error(format!("{subject}{reason}")));
+}
 
-    /// Gives the file to the nodes that it is wanted for, as one undo step.
-    fn attach(&mut self, wanted: &WantedFile, file: &Attached) {
-        self.session.together(|session| {
-            for &id in &wanted.nodes {
-                let Some(node) = session.document.scene().node(id) else { continue };
-                let mut node = Node::clone(node);
-                if wanted.target.set(&mut node, file) {
-                    session.apply(Edit::Replace(node));
-                }
+/// Gives the file to the nodes that it is wanted for, as one undo step.
+fn attach(session: &mut EditSession, wanted: &WantedFile, file: &Attached) {
+    session.together(|session| {
+        for &id in &wanted.nodes {
+            let Some(node) = session.document.scene().node(id) else { continue };
+            let mut node = Node::clone(node);
+            if wanted.target.set(&mut node, file) {
+                session.apply(Edit::Replace(node));
             }
-        });
-    }
+        }
+    });
 }
 
 fn read(path: &Path, instead_of: &Attached) -> Result<Attached, String> {

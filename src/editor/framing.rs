@@ -2,29 +2,31 @@
 
 use glam::DVec3;
 
-use super::{Editor, bounds};
+use super::bounds;
+use super::navigation::Navigation;
+use super::state::EditorState;
 use crate::flat::debug_view::DepthRange;
 
-impl Editor {
+impl EditorState {
     /// Shows all of the selection.
     pub(super) fn frame_selected(&mut self) {
         let selection = self.session.document.selection().to_vec();
-        if let Some(bounds) = bounds::of_nodes(self.session.document.scene(), &mut self.meshes, &selection) {
-            self.navigation.frame(&bounds, self.aspect());
+        if let Some(bounds) = bounds::of_nodes(self.session.document.scene(), self.derived.library(), &selection) {
+            self.view.navigation.frame(&bounds, self.view.aspect());
         }
     }
 
     /// Shows the whole scene.
     pub(super) fn frame_all(&mut self) {
-        if let Some(bounds) = bounds::of_scene(self.session.document.scene(), &mut self.meshes) {
-            self.navigation.frame(&bounds, self.aspect());
+        if let Some(bounds) = bounds::of_scene(self.session.document.scene(), self.derived.library()) {
+            self.view.navigation.frame(&bounds, self.view.aspect());
         }
     }
 
     /// Takes over the view of the selected camera, or of the one after the one looked through now.
     pub(super) fn look_through_camera(&mut self) {
-        let cameras = &self.flat.scene.cameras;
-        let eye = self.navigation.eye();
+        let cameras = &self.derived.flat().cameras;
+        let eye = self.view.navigation.eye();
         let selected = self.session.document.selection().last();
         let here = cameras.iter().position(|c| c.camera.position.distance(eye) < 1e-9 * (1.0 + eye.length()));
         let wanted = cameras.iter().find(|c| Some(&c.id) == selected && here.is_none());
@@ -32,14 +34,14 @@ impl Editor {
         if let Some(camera) = wanted.or_else(|| cameras.get(next)) {
             let camera = camera.camera;
             let focus = self.focus();
-            self.navigation.look_through(&camera, focus);
+            self.view.navigation.look_through(&camera, focus);
         }
     }
 
     /// The first view of a document: through its first camera, or all of it.
     pub(super) fn show_as_saved(&mut self) {
-        self.navigation = super::Navigation::default();
-        if self.flat.scene.cameras.is_empty() {
+        self.view.navigation = Navigation::default();
+        if self.derived.flat().cameras.is_empty() {
             self.frame_all();
         } else {
             self.look_through_camera();
@@ -47,18 +49,13 @@ impl Editor {
     }
 
     /// The distances at which the scene stands, in front of the eye.
-    pub(super) fn depth_range(&mut self) -> DepthRange {
-        let (meshes, _) = self.flat.scene.load_meshes(&mut self.meshes);
-        DepthRange::of(&self.flat.scene.content(&meshes), self.navigation.eye())
+    pub(super) fn depth_range(&self) -> DepthRange {
+        let meshes = self.derived.flat().known_meshes(self.derived.library());
+        DepthRange::of(&self.derived.flat().content(&meshes), self.view.navigation.eye())
     }
 
     /// The middle of the scene.
-    fn focus(&mut self) -> DVec3 {
-        bounds::of_scene(self.session.document.scene(), &mut self.meshes).map_or(DVec3::ZERO, |b| b.center())
-    }
-
-    fn aspect(&self) -> f64 {
-        let [width, height] = self.viewport.size_px();
-        f64::from(width) / f64::from(height)
+    fn focus(&self) -> DVec3 {
+        bounds::of_scene(self.session.document.scene(), self.derived.library()).map_or(DVec3::ZERO, |b| b.center())
     }
 }

@@ -2,10 +2,10 @@
 //! that faces the eye. The mathematics is pure; painting goes over the picture.
 
 use egui::{Painter, Pos2, Shape, Stroke, vec2};
-use glam::{DAffine3, DMat3, DVec2, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 use super::edit_session::EditSession;
-use super::viewport::Projection;
+use super::projection::Projection;
 use super::{selection, theme};
 use crate::geometry::Ray;
 use crate::scene::NodeId;
@@ -181,14 +181,10 @@ pub fn snap_step(distance: f64) -> f64 {
     10.0_f64.powf((distance * 0.05).log10().round()).max(1e-6)
 }
 
-/// The pixel of a point of the screen, relative to the picture's corner.
-pub fn to_pixel(pointer: Pos2, corner: Pos2, pixels_per_point: f32) -> DVec2 {
-    let p = (pointer - corner) * pixels_per_point;
-    DVec2::new(f64::from(p.x), f64::from(p.y))
-}
-
 #[cfg(test)]
 mod tests {
+    use glam::DVec2;
+
     use super::*;
     use crate::geometry::Camera;
 

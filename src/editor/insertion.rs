@@ -4,41 +4,42 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
-use super::{Editor, selection};
+use super::selection;
+use super::state::EditorState;
 use crate::document::Edit;
 use crate::scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
 
 /// Adds an object of the given kind and selects it.
-pub fn shape(editor: &mut Editor, kind: ShapeKind) {
-    editor.session.document.begin_gesture();
-    let material = material(editor);
+pub fn shape(state: &mut EditorState, kind: ShapeKind) {
+    state.session.document.begin_gesture();
+    let material = material(state);
     let object = Object { shape: kind.default_shape(), material };
-    node(editor, Node::new(kind.label(), NodeKind::Object(object)));
-    editor.session.document.end_gesture();
+    node(state, Node::new(kind.label(), NodeKind::Object(object)));
+    state.session.document.end_gesture();
 }
 
 /// Adds a node at the view's target and selects it.
-pub fn node(editor: &mut Editor, node: Node) -> Option<NodeId> {
-    node_above(editor, node, 0.0)
+pub fn node(state: &mut EditorState, node: Node) -> Option<NodeId> {
+    node_above(state, node, 0.0)
 }
 
 /// Adds a node the given number of meters above the view's target and selects it.
-pub fn node_above(editor: &mut Editor, node: Node, up: f64) -> Option<NodeId> {
-    let target = if editor.session.document.scene().nodes().is_empty() { DVec3::ZERO } else { tidy_target(editor) };
-    node_in_world(editor, node.at(target + DVec3::Y * up))
+pub fn node_above(state: &mut EditorState, node: Node, up: f64) -> Option<NodeId> {
+    let target = if state.session.document.scene().nodes().is_empty() { DVec3::ZERO } else { tidy_target(state) };
+    node_in_world(state, node.at(target + DVec3::Y * up))
 }
 
 /// Adds a node whose transform is meant in the world, and selects it.
-pub fn node_in_world(editor: &mut Editor, mut node: Node) -> Option<NodeId> {
-    let scene = editor.session.document.scene();
-    let (parent, position) = place(scene, editor.session.document.selection());
+pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> {
+    let scene = state.session.document.scene();
+    let (parent, position) = place(scene, state.session.document.selection());
     if let Some(parent) = parent {
         let local = scene.world_from_local(parent).inverse().transform_point3(node.transform.translation);
         node.transform.translation = if local.is_finite() { local } else { DVec3::ZERO };
     }
     node.name = free_name(scene, &node.name);
-    let added = editor.session.apply(Edit::Insert { parent, position, node }).first().copied()?;
-    editor.session.document.select(vec![added]);
+    let added = state.session.apply(Edit::Insert { parent, position, node }).first().copied()?;
+    state.session.document.select(vec![added]);
     Some(added)
 }
 
@@ -52,11 +53,11 @@ fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
 }
 
 /// The view's target, rounded to about a hundredth of the view's width.
-fn tidy_target(editor: &Editor) -> DVec3 {
-    let step = 10.0_f64.powf((editor.navigation.distance * 0.02).log10().floor());
+fn tidy_target(state: &EditorState) -> DVec3 {
+    let step = 10.0_f64.powf((state.view.navigation.distance * 0.02).log10().floor());
     // Dividing by the step's reciprocal gives 0.3, where multiplying by 0.1 gives 0.30000000000000004.
     let per_meter = (1.0 / step).round().max(1.0);
-    (editor.navigation.target * per_meter).round() / per_meter
+    (state.view.navigation.target * per_meter).round() / per_meter
 }
 
 /// The name itself, or with the first number that is free.
@@ -67,9 +68,9 @@ fn free_name(scene: &Scene, base: &str) -> String {
 }
 
 /// The active object's material, or the scene's first, or a new one.
-fn material(editor: &mut Editor) -> MaterialId {
-    let scene = editor.session.document.scene();
-    let active = editor.session.selected().last().and_then(|n| match &n.kind {
+fn material(state: &mut EditorState) -> MaterialId {
+    let scene = state.session.document.scene();
+    let active = state.session.selected().last().and_then(|n| match &n.kind {
         NodeKind::Object(object) => Some(object.material),
         _ => None,
     });
@@ -77,6 +78,6 @@ fn material(editor: &mut Editor) -> MaterialId {
         return id;
     }
     let id = scene.next_material_id();
-    editor.session.apply(Edit::InsertMaterial(Material::new(id, "Clay", [0.62, 0.56, 0.50])));
+    state.session.apply(Edit::InsertMaterial(Material::new(id, "Clay", [0.62, 0.56, 0.50])));
     id
 }

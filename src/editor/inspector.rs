@@ -7,6 +7,8 @@ use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICO
 
 use super::edit_session::EditSession;
 use super::multi_edit::MultiEdit;
+use super::panel::{Panel, PanelPlace};
+use super::state::EditorState;
 use super::{
     icons, inspector_blends, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
     inspector_transform, selection, theme, widgets,
@@ -21,9 +23,26 @@ pub struct Inspector {
     transform: inspector_transform::EulerMemory,
 }
 
+impl Panel for Inspector {
+    fn id(&self) -> &'static str {
+        "inspector"
+    }
+
+    fn title(&self) -> &'static str {
+        "Inspector"
+    }
+
+    fn place(&self) -> PanelPlace {
+        PanelPlace::Right(300.0, 240.0)
+    }
+
+    fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
+        widgets::fixed(ui, |ui| self.show(ui, &mut state.session));
+    }
+}
+
 impl Inspector {
-    /// Shows the panel.
-    pub fn show(&mut self, ui: &mut Ui, session: &mut EditSession) {
+    fn show(&mut self, ui: &mut Ui, session: &mut EditSession) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 8.0;
             let selected = session.selected();

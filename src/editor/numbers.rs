@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
 
-use super::widgets::MIXED;
+use super::theme::MIXED;
 use super::{expression, theme};
 use crate::scene::Limits;
 

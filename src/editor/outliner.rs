@@ -10,9 +10,12 @@ use egui_ltreeview::{
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{ICON_CLOSE, ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
-use super::commands::{self, CommandId};
+use super::commands::command::Command;
+use super::commands::entries::context_entries;
 use super::edit_session::EditSession;
 use super::messages::Message;
+use super::panel::{Panel, PanelPlace};
+use super::state::{EditorState, Request};
 use super::{icons, selection, theme, widgets};
 use crate::document::Edit;
 use crate::scene::limits::MAX_NAME;
@@ -51,25 +54,51 @@ struct Rename {
 }
 
 /// What a row asks for; done after the tree has been shown.
-enum Request {
+enum RowRequest {
     Rename(NodeId, String),
     EndRename,
     Visible(egui::Id, NodeId),
     Locked(egui::Id, NodeId),
     Select(Vec<NodeId>),
-    Run(CommandId),
+    Run(Command),
+}
+
+impl Panel for Outliner {
+    fn id(&self) -> &'static str {
+        "outliner"
+    }
+
+    fn title(&self) -> &'static str {
+        "Outliner"
+    }
+
+    fn place(&self) -> PanelPlace {
+        PanelPlace::Left(240.0, 160.0)
+    }
+
+    fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
+        if let Some(id) = state.renaming.take() {
+            self.start_rename(state.session.document.scene(), id);
+        }
+        let chosen = widgets::fixed(ui, |ui| self.show(ui, &mut state.session));
+        state.requests.extend(chosen.into_iter().map(Request::Run));
+    }
+
+    fn forget(&mut self) {
+        *self = Self::default();
+    }
 }
 
 impl Outliner {
     /// Starts renaming a node in place.
-    pub fn start_rename(&mut self, scene: &Scene, id: NodeId) {
+    fn start_rename(&mut self, scene: &Scene, id: NodeId) {
         if let Some(node) = scene.node(id) {
             self.rename = Some(Rename { id, text: node.name.clone(), focused: false });
         }
     }
 
     /// Shows the panel; returns the commands chosen from its context menu.
-    pub fn show(&mut self, ui: &mut Ui, session: &mut EditSession) -> Vec<CommandId> {
+    fn show(&mut self, ui: &mut Ui, session: &mut EditSession) -> Vec<Command> {
         self.search_field(ui);
         let scene = session.document.snapshot();
         let reveal = self.follow_selection(session, &scene);
@@ -204,11 +233,11 @@ impl Outliner {
         }
     }
 
-    fn answer(&mut self, session: &mut EditSession, requests: Vec<Request>) -> Vec<CommandId> {
+    fn answer(&mut self, session: &mut EditSession, requests: Vec<RowRequest>) -> Vec<Command> {
         let mut run = Vec::new();
         for request in requests {
             match request {
-                Request::Rename(id, name) => {
+                RowRequest::Rename(id, name) => {
                     self.rename = None;
                     let node = session.document.scene().node(id).map(|n| Node::clone(n));
                     let Some(node) = node.filter(|n| n.name != name) else { continue };
@@ -219,11 +248,11 @@ impl Outliner {
                         session.apply(Edit::Replace(Node { name, ..node }));
                     }
                 }
-                Request::EndRename => self.rename = None,
-                Request::Visible(widget, id) => session.change(widget, &[id], |n| n.visible = !n.visible),
-                Request::Locked(widget, id) => session.change(widget, &[id], |n| n.locked = !n.locked),
-                Request::Select(ids) => session.document.select(ids),
-                Request::Run(command) => run.push(command),
+                RowRequest::EndRename => self.rename = None,
+                RowRequest::Visible(widget, id) => session.change(widget, &[id], |n| n.visible = !n.visible),
+                RowRequest::Locked(widget, id) => session.change(widget, &[id], |n| n.locked = !n.locked),
+                RowRequest::Select(ids) => session.document.select(ids),
+                RowRequest::Run(command) => run.push(command),
             }
         }
         run
@@ -277,15 +306,15 @@ fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>,
     Some((ids, parent, position))
 }
 
-fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &RefCell<Vec<Request>>) {
+fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &RefCell<Vec<RowRequest>>) {
     let ids: Vec<NodeId> = rows.iter().copied().flatten().collect();
     if !ids.is_empty() && ids.iter().any(|id| !selection.contains(id)) {
-        requests.borrow_mut().push(Request::Select(ids));
+        requests.borrow_mut().push(RowRequest::Select(ids));
     }
     ui.set_min_width(210.0);
     let room = widgets::room_beside(ui.ctx());
-    if let Some(chosen) = widgets::scrolling(ui, room, commands::context_entries) {
-        requests.borrow_mut().push(Request::Run(chosen));
+    if let Some(chosen) = widgets::scrolling(ui, room, context_entries) {
+        requests.borrow_mut().push(RowRequest::Run(chosen));
         ui.close();
     }
 }
@@ -296,7 +325,7 @@ struct Rows<'a> {
     shown: Option<&'a HashSet<NodeId>>,
     /// The node to scroll to.
     reveal: Option<NodeId>,
-    requests: &'a RefCell<Vec<Request>>,
+    requests: &'a RefCell<Vec<RowRequest>>,
     /// The row of that node: the tree draws only the rows in view, so that a row itself cannot ask to be seen.
     at: Cell<Option<usize>>,
     /// How many rows there are.
@@ -406,7 +435,8 @@ impl Rows<'_> {
             state.store(ui.ctx(), response.id);
         } else if response.lost_focus() {
             let canceled = ui.input(|i| i.key_pressed(Key::Escape));
-            let request = if canceled { Request::EndRename } else { Request::Rename(rename.id, rename.text.clone()) };
+            let request =
+                if canceled { RowRequest::EndRename } else { RowRequest::Rename(rename.id, rename.text.clone()) };
             self.requests.borrow_mut().push(request);
         }
     }
@@ -423,7 +453,7 @@ impl Rows<'_> {
         };
         let eye = switch(ui, icon, &format!("{verb} {}", node.name), color);
         if eye.clicked() {
-            self.requests.borrow_mut().push(Request::Visible(eye.id, node.id));
+            self.requests.borrow_mut().push(RowRequest::Visible(eye.id, node.id));
         }
         let (icon, verb, color) = match node.locked {
             false => (ICON_LOCK_OPEN, "Lock", if hovered { rest } else { Color32::TRANSPARENT }),
@@ -431,7 +461,7 @@ impl Rows<'_> {
         };
         let lock = switch(ui, icon, &format!("{verb} {}", node.name), color);
         if lock.clicked() {
-            self.requests.borrow_mut().push(Request::Locked(lock.id, node.id));
+            self.requests.borrow_mut().push(RowRequest::Locked(lock.id, node.id));
         }
     }
 }

@@ -4,8 +4,9 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 use glam::DVec3;
 
 use super::navigation::Side;
-use super::viewport::Projection;
-use super::{Editor, bounds, icons, theme};
+use super::projection::Projection;
+use super::state::EditorState;
+use super::{bounds, icons, theme};
 use crate::scene::{Node, NodeId, NodeKind};
 
 /// Boxes are painted for so many selected nodes at most.
@@ -21,15 +22,15 @@ fn needs_box(node: &Node) -> bool {
 }
 
 /// The oriented boxes of the selected nodes that need them.
-pub fn selection_boxes(editor: &mut Editor, painter: &Painter, projection: &Projection) {
-    let selection = editor.session.document.selection().to_vec();
+pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Projection) {
+    let selection = state.session.document.selection().to_vec();
     let active = selection.last().copied();
     for id in selection.into_iter().rev().take(MOST_BOXES) {
-        let scene = editor.session.document.scene();
+        let scene = state.session.document.scene();
         if !scene.node(id).is_some_and(|n| needs_box(n)) {
             continue;
         }
-        let Some((world_from_local, bounds)) = bounds::oriented(scene, &mut editor.meshes, id) else { continue };
+        let Some((world_from_local, bounds)) = bounds::oriented(scene, state.derived.library(), id) else { continue };
         let color = if Some(id) == active { theme::ACCENT } else { theme::ACCENT.gamma_multiply(0.6) };
         let corners = bounds.corners().map(|c| projection.to_screen(world_from_local.transform_point3(c)));
         paint_box(painter, &corners, Stroke::new(1.25, color));
@@ -61,12 +62,12 @@ impl Marker {
 }
 
 /// The visible lights and cameras; none for the camera that is looked through.
-pub fn markers(editor: &Editor, projection: &Projection) -> Vec<Marker> {
-    let flat = editor.flat();
+pub fn markers(state: &EditorState, projection: &Projection) -> Vec<Marker> {
+    let flat = state.flat();
     let lights = flat.lights.iter().map(|l| (l.id, l.position));
     let cameras = flat.cameras.iter().map(|c| (c.id, c.camera.position));
-    let eye = editor.navigation.eye();
-    let near = editor.navigation.distance * 1e-2;
+    let eye = state.view.navigation.eye();
+    let near = state.view.navigation.distance * 1e-2;
     lights
         .chain(cameras)
         .filter(|(_, position)| position.distance(eye) > near)
@@ -75,11 +76,11 @@ pub fn markers(editor: &Editor, projection: &Projection) -> Vec<Marker> {
 }
 
 /// Paints the markers, with the direction in which the selected ones shine or look.
-pub fn paint_markers(editor: &Editor, painter: &Painter, projection: &Projection, markers: &[Marker]) {
+pub fn paint_markers(state: &EditorState, painter: &Painter, projection: &Projection, markers: &[Marker]) {
     for marker in markers {
-        let scene = editor.session.document.scene();
+        let scene = state.session.document.scene();
         let Some(node) = scene.node(marker.id) else { continue };
-        let selected = editor.session.document.selection().contains(&marker.id);
+        let selected = state.session.document.selection().contains(&marker.id);
         let color = icons::node_color(node);
         if selected {
             let world = scene.world_from_local(marker.id);

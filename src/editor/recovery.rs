@@ -1,67 +1,30 @@
 //! Work that is not saved is kept beside the frames, and offered again after it was lost.
 
-use std::collections::HashMap;
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
-use egui::{
-    Button, ColorImage, Context, Id, Key, Modal, Rect, RichText, ScreenshotCallback, TextureHandle, TextureOptions, Ui,
-    ViewportCommand, vec2,
-};
+use egui::Context;
 
 use super::messages::Message;
-use super::{Editor, Picture, theme};
-use crate::document::recovery::{Lost, Note, Recovered, Recovery, Rescued, Thumbnail, Unreadable};
+use super::root::Editor;
+use super::safekeeping::{RecoveryChoice, Safekeeping, take_picture};
+use crate::document::recovery::{Lost, Note, ReadSnapshot, Recovered, Recovery, Rescued, Unreadable};
+use crate::jobs::{Job, JobEnd, Task};
 
 /// How long after a change a picture is kept, in seconds: by then the change is drawn.
 const PICTURE_AFTER: f64 = 0.5;
 /// Least time between two pictures, in seconds.
 const BETWEEN_PICTURES: f64 = 10.0;
-/// Room for a picture in the list.
-const PICTURE_SIZE: egui::Vec2 = vec2(144.0, 90.0);
-
-/// See the module.
-pub(super) struct Safekeeping {
-    recovery: Recovery,
-    /// What others lost. It is ours to offer until it is let go.
-    lost: Vec<Lost>,
-    textures: HashMap<String, TextureHandle>,
-    /// Whether the list is shown.
-    is_open: bool,
-    /// The one whose button has been pressed that throws it away.
-    confirming: Option<String>,
-    seen: Option<u64>,
-    /// When the document changed first after it was pictured, and when that was, in seconds of the program's clock.
-    changed_at: f64,
-    pictured_at: f64,
-    is_pictured: bool,
-}
-
-enum RecoveryChoice {
-    Recover(usize),
-    Discard(usize),
-    Later,
-}
 
 impl Editor {
     /// From now on unsaved work is kept there; what lies there is offered.
     pub fn set_recovery(&mut self, recovery: Recovery) {
-        let lost = recovery.lost();
-        self.safekeeping = Some(Safekeeping {
-            is_open: !lost.is_empty(),
-            recovery,
-            lost,
-            textures: HashMap::new(),
-            confirming: None,
-            seen: None,
-            changed_at: 0.0,
-            pictured_at: f64::NEG_INFINITY,
-            is_pictured: true,
-        });
+        self.safekeeping = Some(Safekeeping::new(recovery));
+        self.state.can_recover = true;
     }
 
     /// The window is closed by the artist's wish: what has been given up is not kept. Otherwise it is.
     pub fn end_recovery(&mut self) {
-        let is_settled = self.wants_close() || !self.session.document.is_changed();
+        let is_settled = self.wants_close() || !self.state.session.document.is_changed();
         if let Some(mut safekeeping) = self.safekeeping.take().filter(|_| is_settled) {
             safekeeping.recovery.forget();
         }
@@ -75,9 +38,9 @@ impl Editor {
         }
     }
 
-    /// Whether there may be lost work to offer.
-    pub(super) fn has_safekeeping(&self) -> bool {
-        self.safekeeping.is_some()
+    /// Whether lost work is being read.
+    pub(super) fn is_recovering(&self) -> bool {
+        self.safekeeping.as_ref().is_some_and(|safekeeping| safekeeping.reading.is_some())
     }
 
     /// Whether the list of lost work is shown.
@@ -97,15 +60,15 @@ impl Editor {
     }
 
     /// Keeps what has changed, and passes on what other threads have to say. Once a frame, at its end.
-    pub(super) fn follow_recovery(&mut self, ctx: &Context, picture: &Picture) {
-        let is_changing = self.session.is_changing();
+    pub(super) fn follow_recovery(&mut self, ctx: &Context) {
+        let is_changing = self.state.session.is_changing();
         let is_covered = self.has_dialog();
         let Some(safekeeping) = &mut self.safekeeping else { return };
-        if let Some(after) = safekeeping.recovery.follow(&self.session.document, is_changing) {
+        if let Some(after) = safekeeping.recovery.follow(&self.state.session.document, is_changing) {
             ctx.request_repaint_after(after);
         }
         let now = ctx.input(|i| i.time);
-        let revision = self.session.document.revision();
+        let revision = self.state.session.document.revision();
         if safekeeping.seen != Some(revision) {
             safekeeping.seen = Some(revision);
             // Counted from the first change: an artist who never rests gets a picture, too.
@@ -113,12 +76,13 @@ impl Editor {
                 safekeeping.changed_at = now;
             }
         }
+        let picture = &self.state.picture;
         let is_whole = picture.texture.is_some() && picture.progress.is_none() && !is_covered && !is_changing;
         if !safekeeping.is_pictured && is_whole && safekeeping.recovery.is_keeping() {
             let due = (safekeeping.changed_at + PICTURE_AFTER).max(safekeeping.pictured_at + BETWEEN_PICTURES);
             if now >= due {
                 (safekeeping.is_pictured, safekeeping.pictured_at) = (true, now);
-                let area = self.viewport.rect() * ctx.pixels_per_point();
+                let area = self.state.view.rect * ctx.pixels_per_point();
                 take_picture(ctx, area, safekeeping.recovery.picture_taker());
             } else {
                 ctx.request_repaint_after(Duration::from_secs_f64(due - now));
@@ -138,7 +102,7 @@ impl Editor {
 
     /// Shows what can be got back.
     pub(super) fn show_recovery(&mut self, ctx: &Context) {
-        let may_open = !self.session.document.is_changed();
+        let may_open = !self.state.session.document.is_changed();
         let Some(safekeeping) = self.safekeeping.as_mut().filter(|safekeeping| safekeeping.is_open) else { return };
         let Some(choice) = safekeeping.show(ctx, may_open) else { return };
         match choice {
@@ -152,21 +116,54 @@ impl Editor {
         }
     }
 
+    /// Has a lost document read. What is open is not changed, and stays until then.
     fn recover(&mut self, index: usize) {
-        // What is open is not changed; something of it may be kept all the same, if changes were undone.
-        self.forget_kept();
+        let jobs = self.state.derived.jobs().clone();
         let Some(safekeeping) = &mut self.safekeeping else { return };
         let lost = safekeeping.lost.remove(index);
+        safekeeping.is_open = false;
+        let task = Task::without_cancel(format!("Recovering {}", lost.name()));
+        safekeeping.reading = Some(jobs.start(task, move |_| {
+            let read = lost.read();
+            (lost, read)
+        }));
+    }
+
+    /// Shows a lost document that has been read. Once a frame.
+    pub(super) fn poll_recovery(&mut self) {
+        let Some(safekeeping) = &mut self.safekeeping else { return };
+        let Some(end) = safekeeping.reading.as_ref().and_then(Job::poll) else { return };
+        safekeeping.reading = None;
+        match end {
+            JobEnd::Done((lost, read)) => self.show_recovered(lost, read),
+            // Whoever looks for lost work finds it again: nobody holds it any more.
+            JobEnd::Failed(reason) => self.report(Message::error(format!("It cannot be recovered: {reason}"))),
+            JobEnd::Canceled => {}
+        }
+    }
+
+    fn show_recovered(&mut self, lost: Lost, read: ReadSnapshot) {
+        // What is open may have been changed meanwhile, or undone so that something of it is kept all the same.
+        let is_changed = self.state.session.document.is_changed();
+        if !is_changed {
+            self.forget_kept();
+        }
+        let Some(safekeeping) = &mut self.safekeeping else { return };
+        if is_changed {
+            safekeeping.lost.insert(0, lost);
+            safekeeping.is_open = true;
+            return;
+        }
         let name = lost.name().to_owned();
-        match safekeeping.recovery.recover(lost) {
+        match safekeeping.recovery.recover_read(lost, read) {
             Err(failure) => {
                 let Unreadable { lost, error } = *failure;
-                safekeeping.lost.insert(index, lost);
+                safekeeping.lost.insert(0, lost);
+                safekeeping.is_open = true;
                 self.report(Message::error(format!("“{name}” cannot be recovered: {error}")));
             }
             Ok(Recovered { document, problem }) => {
                 let rest = safekeeping.lost.len();
-                safekeeping.is_open = false;
                 // Taken out, so that nothing of the recovered document is forgotten.
                 let safekeeping = self.safekeeping.take();
                 self.replace_document(document);
@@ -185,115 +182,6 @@ impl Editor {
     }
 }
 
-impl Safekeeping {
-    fn show(&mut self, ctx: &Context, may_open: bool) -> Option<RecoveryChoice> {
-        for lost in &self.lost {
-            if let Some(picture) = lost.picture().filter(|_| !self.textures.contains_key(&lost.id())) {
-                let image = ColorImage::from_rgb(picture.size_px().map(|side| side as usize), picture.bytes());
-                let texture = ctx.load_texture("lost work", image, TextureOptions::LINEAR);
-                self.textures.insert(lost.id(), texture);
-            }
-        }
-        let mut choice = None;
-        let frame = egui::Frame::window(&ctx.global_style()).inner_margin(18.0);
-        let response = Modal::new(Id::unique("lost work")).frame(frame).show(ctx, |ui| {
-            ui.set_width(620.0);
-            ui.label(RichText::new("Recover unsaved work?").heading().color(egui::Color32::WHITE));
-            ui.add_space(2.0);
-            let text = match may_open {
-                true => "Isolith has ended before this was saved.",
-                false => "Save or undo the changes to the open scene before you recover another one.",
-            };
-            ui.label(RichText::new(text).color(theme::WEAK));
-            ui.add_space(10.0);
-            egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
-                for index in 0..self.lost.len() {
-                    choice = self.row(ui, index, may_open).or(choice.take());
-                    ui.add_space(8.0);
-                }
-            });
-            ui.add_space(6.0);
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if ui.add(Button::new("Decide later").min_size(vec2(110.0, 28.0))).clicked() {
-                    choice = Some(RecoveryChoice::Later);
-                }
-            });
-        });
-        if may_open && ctx.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Enter)) {
-            choice = choice.or(Some(RecoveryChoice::Recover(0)));
-        }
-        if response.should_close() {
-            choice = choice.or(Some(RecoveryChoice::Later));
-        }
-        choice
-    }
-
-    fn row(&mut self, ui: &mut Ui, index: usize, may_open: bool) -> Option<RecoveryChoice> {
-        let lost = &self.lost[index];
-        let (id, name) = (lost.id(), lost.name().to_owned());
-        let mut choice = None;
-        ui.horizontal(|ui| {
-            let (space, _) = ui.allocate_exact_size(PICTURE_SIZE, egui::Sense::hover());
-            ui.painter().rect_filled(space, theme::RADIUS, theme::LINE);
-            if let Some(texture) = self.textures.get(&id) {
-                let size = texture.size_vec2() * (PICTURE_SIZE / texture.size_vec2()).min_elem();
-                let whole = Rect::from_min_max(egui::Pos2::ZERO, egui::pos2(1.0, 1.0));
-                let at = Rect::from_center_size(space.center(), size);
-                ui.painter().image(texture.id(), at, whole, egui::Color32::WHITE);
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let size = vec2(92.0, 28.0);
-                let text = RichText::new("Recover").color(egui::Color32::BLACK);
-                let button = ui.add_enabled(may_open, Button::new(text).fill(theme::ACCENT).min_size(size));
-                ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("Recover {name}")));
-                if button.clicked() {
-                    choice = Some(RecoveryChoice::Recover(index));
-                }
-                let is_asked = self.confirming.as_deref() == Some(&*id);
-                let (text, color) = if is_asked { ("Really discard", theme::ERROR) } else { ("Discard", theme::TEXT) };
-                let button = ui.add(Button::new(RichText::new(text).color(color)).min_size(size));
-                ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("{text} {name}")));
-                if button.clicked() {
-                    match is_asked {
-                        true => choice = Some(RecoveryChoice::Discard(index)),
-                        false => self.confirming = Some(id.clone()),
-                    }
-                }
-                ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
-                    ui.add_space(16.0);
-                    ui.add(egui::Label::new(RichText::new(&name).color(egui::Color32::WHITE)).truncate());
-                    let when = format!("{}, {}", age(lost.changed(), SystemTime::now()), date(lost.changed()));
-                    ui.add(egui::Label::new(RichText::new(when).color(theme::WEAK)).truncate());
-                    let path = lost.path().map_or("never saved".into(), |path| path.display().to_string());
-                    ui.add(egui::Label::new(RichText::new(path).color(theme::WEAK)).truncate());
-                });
-            });
-        });
-        choice
-    }
-}
-
-/// Has the painted window sent to `give`, as far as it lies in `area`, in pixels.
-fn take_picture(ctx: &Context, area: Rect, give: impl Fn(Thumbnail) + Send + 'static) {
-    let callback = ScreenshotCallback::new(move |image| {
-        let window = Rect::from_min_size(egui::Pos2::ZERO, vec2(image.width() as f32, image.height() as f32));
-        let area = area.intersect(window);
-        if !area.is_positive() {
-            return;
-        }
-        let corner = [area.min.x as usize, area.min.y as usize];
-        let size = [area.width() as u32, area.height() as u32];
-        let pixel = |x: u32, y: u32| {
-            let [r, g, b, _] = image[(corner[0] + x as usize, corner[1] + y as usize)].to_array();
-            [r, g, b]
-        };
-        if let Some(picture) = Thumbnail::of(size, pixel) {
-            give(picture);
-        }
-    });
-    ctx.send_viewport_cmd(ViewportCommand::Screenshot(callback));
-}
-
 fn message(note: &Note) -> Message {
     match note {
         Note::Failed(reason) => Message::error(format!(
@@ -306,66 +194,6 @@ fn message(note: &Note) -> Message {
                 Rescued::Failed(reason) => format!("Your last changes could not be kept ({reason}). Save now."),
             };
             Message::error(format!("A part of Isolith has failed: {what}. {then}"))
-        }
-    }
-}
-
-/// How long ago, in words.
-fn age(then: SystemTime, now: SystemTime) -> String {
-    let minutes = now.duration_since(then).unwrap_or_default().as_secs() / 60;
-    let (count, unit) = match minutes {
-        0 => return "just now".into(),
-        1..60 => (minutes, "minute"),
-        60..1_440 => (minutes / 60, "hour"),
-        _ => (minutes / 1_440, "day"),
-    };
-    format!("{count} {unit}{} ago", if count == 1 { "" } else { "s" })
-}
-
-/// Date and time of day. In Greenwich, because the place is not known.
-fn date(then: SystemTime) -> String {
-    let seconds = then.duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs();
-    let (days, rest) = (seconds / 86_400, seconds % 86_400);
-    // Days from 1 March of the year 0 on, in eras of 400 years, so that the leap day comes last.
-    let days = days + 719_468;
-    let (era, of_era) = (days / 146_097, days % 146_097);
-    let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;
-    let of_year = of_era - (365 * year + year / 4 - year / 100);
-    let month = (5 * of_year + 2) / 153;
-    let day = of_year - (153 * month + 2) / 5 + 1;
-    let month = if month < 10 { month + 3 } else { month - 9 };
-    let year = era * 400 + year + u64::from(month <= 2);
-    format!("{year}-{month:02}-{day:02} {:02}:{:02} UTC", rest / 3_600, rest / 60 % 60)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_told_in_words_and_by_date() {
-        let at = |seconds: u64| SystemTime::UNIX_EPOCH + Duration::from_secs(seconds);
-        for (passed, words) in [
-            (0, "just now"),
-            (59, "just now"),
-            (60, "1 minute ago"),
-            (3_599, "59 minutes ago"),
-            (3_600, "1 hour ago"),
-            (90_000, "1 day ago"),
-            (900_000, "10 days ago"),
-        ] {
-            assert_eq!(age(at(1_000), at(1_000 + passed)), words);
-        }
-        assert_eq!(age(at(2_000), at(1_000)), "just now", "a clock that was set back");
-        for (seconds, text) in [
-            (0, "1970-01-01 00:00 UTC"),
-            (951_782_399, "2000-02-28 23:59 UTC"),
-            (951_782_400, "2000-02-29 00:00 UTC"),
-            (951_868_800, "2000-03-01 00:00 UTC"),
-            (1_735_689_599, "2024-12-31 23:59 UTC"),
-            (4_107_542_400, "2100-03-01 00:00 UTC"),
-        ] {
-            assert_eq!(date(at(seconds)), text);
         }
     }
 }

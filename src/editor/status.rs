@@ -2,71 +2,148 @@
 
 use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
 
-use super::{Editor, Picture, theme};
+use super::commands::entries::hovered_help;
+use super::messages::Severity;
+use super::numbers::number_text;
+use super::panel::{Panel, PanelPlace};
+use super::state::EditorState;
+use super::theme;
+use super::view_state::{Picture, PointerActivity};
+use crate::jobs::Task;
 use crate::scene::NodeId;
 
-/// Shows the bar.
-pub fn show(editor: &mut Editor, ui: &mut Ui, picture: &Picture) {
-    ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
-    ui.horizontal(|ui| {
-        ui.set_height(20.0);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            counts(editor, ui);
-            if !picture.status.is_empty() {
-                ui.label(RichText::new("·").color(theme::RESTING));
-                ui.label(RichText::new(&picture.status).color(theme::WEAK));
-            }
-            if let Some(progress) = picture.progress {
-                ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
-            }
-            ui.with_layout(Layout::left_to_right(Align::Center), |ui| left(editor, ui));
+/// See the module.
+pub struct StatusBar;
+
+impl Panel for StatusBar {
+    fn id(&self) -> &'static str {
+        "status"
+    }
+
+    fn title(&self) -> &'static str {
+        "Status"
+    }
+
+    fn place(&self) -> PanelPlace {
+        PanelPlace::Bottom
+    }
+
+    fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
+        ui.style_mut().override_text_style = Some(egui::TextStyle::Small);
+        ui.horizontal(|ui| {
+            ui.set_height(20.0);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                counts(state, ui);
+                if !state.picture.status.is_empty() {
+                    ui.label(RichText::new("·").color(theme::RESTING));
+                    ui.label(RichText::new(&state.picture.status).color(theme::WEAK));
+                }
+                drawing(state, ui);
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| left(state, ui));
+            });
         });
-    });
+    }
 }
 
-fn counts(editor: &Editor, ui: &mut Ui) {
-    let nodes = editor.session.document.scene().nodes().len();
-    let selected = editor.session.document.selection().len();
+/// How far the picture is, and a button that leaves it as it is.
+fn drawing(state: &mut EditorState, ui: &mut Ui) {
+    let Picture { progress, is_waiting, .. } = state.picture;
+    if progress.is_none() && !is_waiting {
+        return;
+    }
+    let help = "Stops drawing: the picture stays as it is until something changes";
+    let button = ui.add(Button::new("Stop").small()).on_hover_text(help);
+    ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Stop drawing"));
+    state.view.stops_drawing |= button.clicked();
+    if let Some(progress) = progress {
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+    }
+}
+
+fn counts(state: &EditorState, ui: &mut Ui) {
+    let nodes = state.session.document.scene().nodes().len();
+    let selected = state.session.document.selection().len();
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
 }
 
-/// What is being read, a problem of the scene, or what the mouse does.
-fn left(editor: &mut Editor, ui: &mut Ui) {
-    if let Some(name) = editor.files_being_read().next() {
-        ui.add(egui::Label::new(RichText::new(format!("Reading {name}…")).color(theme::WEAK)).truncate());
+/// What is under way, a problem of the scene, or what the mouse does.
+fn left(state: &mut EditorState, ui: &mut Ui) {
+    if let Some(task) = state.derived.jobs().foremost() {
+        job(ui, &task, state.derived.jobs().listed().len());
         return;
     }
-    if editor.is_flattening(ui.ctx()) {
-        ui.label(RichText::new("Preparing the scene…").color(theme::WEAK));
-        return;
-    }
-    if let Some(problem) = &editor.flat.problem {
+    if let Some(problem) = state.derived.problem() {
         let text = format!("Not shown: {problem}");
-        ui.label(super::messages::Severity::Error.icon().size(14.0));
+        ui.label(Severity::Error.icon().size(14.0));
+        let is_canceled = state.derived.is_canceled();
+        if is_canceled && ui.small_button("Prepare again").clicked() {
+            state.derived.prepare_again();
+        }
         ui.add(egui::Label::new(RichText::new(text).color(theme::ERROR)).truncate());
         return;
     }
-    if let Some((node, text)) = warning(editor) {
-        ui.label(super::messages::Severity::Warning.icon().size(14.0));
+    if let Some((node, text)) = warning(state) {
+        ui.label(Severity::Warning.icon().size(14.0));
         let button = Button::new(RichText::new(text).color(theme::WARNING)).frame(false).truncate();
         if ui.add(button).on_hover_text("Selects the node").clicked() {
-            editor.session.document.select(vec![node]);
+            state.session.document.select(vec![node]);
         }
         return;
     }
-    let help = ui.ctx().data_mut(|d| d.remove_temp::<String>(super::commands::hovered_help()));
-    let hint = help.unwrap_or_else(|| editor.viewport.hint(&editor.session));
+    let help = ui.ctx().data_mut(|d| d.remove_temp::<String>(hovered_help()));
+    let hint = help.unwrap_or_else(|| hint_of(state));
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
 }
 
+/// What the mouse does now, in one line.
+fn hint_of(state: &EditorState) -> String {
+    match state.view.pointer {
+        PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
+        PointerActivity::Panning => "Panning".into(),
+        PointerActivity::Zooming => "Zooming · up is nearer".into(),
+        PointerActivity::Moving(offset) => {
+            let [x, y, z] = offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
+            format!("Moving by {x}, {y}, {z} m · Ctrl: snap · Shift: precise · Esc: cancel")
+        }
+        _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
+        PointerActivity::Hovering => {
+            "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame".into()
+        }
+        PointerActivity::Away => {
+            "Hover a field for help · Drag rows in the outliner to reorder · F3: find a command".into()
+        }
+    }
+}
+
+/// A task that runs: its name, how far it is, and a button that cancels it.
+fn job(ui: &mut Ui, task: &Task, count: usize) {
+    if task.can_cancel() {
+        let button = ui.add(Button::new("Cancel").small()).on_hover_text("Stops it (Escape)");
+        ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("Cancel: {}", task.name())));
+        if button.clicked() {
+            task.cancel();
+        }
+    }
+    if let Some(progress) = task.progress() {
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+    }
+    let label = |text: String| egui::Label::new(RichText::new(text).color(theme::WEAK));
+    ui.add(label(format!("{}…", task.name())).truncate());
+    let more = if count > 1 { format!("{} more", count - 1) } else { String::new() };
+    let rest = [task.stage(), &more].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ");
+    if !rest.is_empty() {
+        ui.add(label(rest).truncate());
+    }
+}
+
 /// The first thing that the artist should look at, with its node.
-fn warning(editor: &Editor) -> Option<(NodeId, String)> {
-    if let Some(problem) = &editor.flat.mesh_problem {
+fn warning(state: &EditorState) -> Option<(NodeId, String)> {
+    if let Some(problem) = state.derived.model_problem() {
         return Some(problem.clone());
     }
-    let warnings = &editor.flat().warnings;
+    let warnings = &state.flat().warnings;
     let first = warnings.first()?;
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
     Some((first.node, format!("{}: {}{more}", first.name, first.reason)))

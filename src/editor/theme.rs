@@ -47,6 +47,8 @@ pub const MESH: Color32 = Color32::from_rgb(126, 200, 160);
 pub const AXES: [Color32; 3] =
     [Color32::from_rgb(226, 94, 94), Color32::from_rgb(124, 190, 84), Color32::from_rgb(86, 142, 236)];
 
+/// What a field shows where the selected nodes differ.
+pub const MIXED: &str = "–";
 /// Height of fields and buttons in points.
 pub const ROW_HEIGHT: f32 = 24.0;
 /// Side of an icon in points.

@@ -3,14 +3,40 @@
 use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
 use egui_material_icons::icons::ICON_VISIBILITY;
 
-use super::commands::{self, CommandId, Icon, Menu};
-use super::dialogs::Intent;
-use super::{Editor, icons, legend, theme, widgets};
+use super::commands::command::Command;
+use super::commands::entries::menu_entries;
+use super::commands::info::{Icon, Menu};
+use super::intent::Intent;
+use super::panel::{Panel, PanelPlace};
+use super::state::{EditorState, PanelEntry, Request};
+use super::{icons, legend, theme, widgets};
 use crate::flat::debug_view::ViewMode;
-use crate::scene::ShapeKind;
+use crate::scene::{Operator, ShapeKind};
 
-/// Shows the bar.
-pub fn show(editor: &mut Editor, ui: &mut Ui) {
+/// See the module.
+pub struct Toolbar;
+
+impl Panel for Toolbar {
+    fn id(&self) -> &'static str {
+        "toolbar"
+    }
+
+    fn title(&self) -> &'static str {
+        "Toolbar"
+    }
+
+    fn place(&self) -> PanelPlace {
+        PanelPlace::Top
+    }
+
+    fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
+        let chosen = show(state, ui);
+        state.requests.extend(chosen.map(Request::Run));
+    }
+}
+
+/// Shows the bar; returns the command chosen.
+fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
         ui.label(RichText::new("Isolith").strong().color(theme::ACCENT));
@@ -19,65 +45,85 @@ pub fn show(editor: &mut Editor, ui: &mut Ui) {
             ui.menu_button(name, |ui| {
                 ui.set_min_width(230.0);
                 let room = widgets::room_below(ui);
-                widgets::scrolling(ui, room, |ui| menu_content(editor, ui, menu, &mut chosen));
+                widgets::scrolling(ui, room, |ui| menu_content(state, ui, menu, &mut chosen));
             });
         }
     });
     ui.add_space(3.0);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
-        buttons(editor, ui, theme::TEXT, &["Undo", "Redo"], &mut chosen);
+        buttons(state, ui, theme::TEXT, &[Command::Undo, Command::Redo], &mut chosen);
         divider(ui);
         for &kind in ShapeKind::ALL {
             if shape_button(ui, kind).clicked() {
-                chosen = Some(CommandId::named(kind.label()));
+                chosen = Some(Command::AddShape(kind));
             }
         }
         divider(ui);
-        buttons(editor, ui, theme::LIGHT, &["Sun", "Point light", "Spot light"], &mut chosen);
-        buttons(editor, ui, theme::MESH, &["Mesh…"], &mut chosen);
+        buttons(
+            state,
+            ui,
+            theme::LIGHT,
+            &[Command::AddSun, Command::AddPointLight, Command::AddSpotLight],
+            &mut chosen,
+        );
+        buttons(state, ui, theme::MESH, &[Command::AddMesh], &mut chosen);
         divider(ui);
-        buttons(editor, ui, theme::GROUP, &["Union", "Intersect", "Subtract", "Toggle subtract", "Group"], &mut chosen);
+        let [unite, intersect, subtract] =
+            [Operator::Union, Operator::Intersection, Operator::Difference].map(Command::Join);
+        let roles = [unite, intersect, subtract, Command::ToggleNegative, Command::Group];
+        buttons(state, ui, theme::GROUP, &roles, &mut chosen);
         divider(ui);
-        buttons(editor, ui, theme::TEXT, &["Duplicate", "Delete"], &mut chosen);
+        buttons(state, ui, theme::TEXT, &[Command::Duplicate, Command::Delete], &mut chosen);
         divider(ui);
-        buttons(editor, ui, theme::TEXT, &["Frame all", "Frame selected"], &mut chosen);
+        buttons(state, ui, theme::TEXT, &[Command::FrameAll, Command::FrameSelected], &mut chosen);
         divider(ui);
-        let color = if editor.view_mode == ViewMode::Shaded { theme::TEXT } else { theme::ACCENT };
-        let name = legend::capitalized(editor.view_mode.name());
+        let color = if state.view.view_mode == ViewMode::Shaded { theme::TEXT } else { theme::ACCENT };
+        let name = legend::capitalized(state.view.view_mode.name());
         let text = (ICON_VISIBILITY.rich_text().size(17.0).color(color), RichText::new(name).color(color));
-        let button = ui.menu_button(text, |ui| view_modes(editor, ui, &mut chosen)).response;
+        let button = ui.menu_button(text, |ui| view_modes(state, ui, &mut chosen)).response;
         ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Viewport shading"));
         button.on_hover_text("Viewport shading");
     });
-    if let Some(command) = chosen {
-        command.run(editor, &ui.ctx().clone());
-    }
+    chosen
 }
 
-fn menu_content(editor: &mut Editor, ui: &mut Ui, menu: Menu, chosen: &mut Option<CommandId>) {
+fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut Option<Command>) {
     if menu == Menu::File {
-        file_lists(editor, ui);
+        file_lists(state, ui);
     }
-    if let Some(command) = commands::menu_entries(ui, editor, menu) {
+    if menu == Menu::View {
+        ui.menu_button("Panels", |ui| panels(state, ui));
+        ui.separator();
+    }
+    if let Some(command) = menu_entries(ui, state, menu) {
         *chosen = Some(command);
     }
     if menu == Menu::View {
         ui.separator();
-        ui.menu_button("Viewport shading", |ui| view_modes(editor, ui, chosen));
+        ui.menu_button("Viewport shading", |ui| view_modes(state, ui, chosen));
+    }
+}
+
+/// Which panels are shown.
+fn panels(state: &mut EditorState, ui: &mut Ui) {
+    for &PanelEntry { id, title, is_open } in &state.panels {
+        if ui.add(Button::new(title).selected(is_open)).clicked() {
+            state.requests.push(Request::TogglePanel(id));
+        }
     }
 }
 
 /// The choice of what the picture shows.
-fn view_modes(editor: &Editor, ui: &mut Ui, chosen: &mut Option<CommandId>) {
+fn view_modes(state: &EditorState, ui: &mut Ui, chosen: &mut Option<Command>) {
     ui.set_min_width(190.0);
     let room = widgets::room_below(ui);
     widgets::scrolling(ui, room, |ui| {
-        *chosen = commands::menu_entries(ui, editor, Menu::ViewMode).or(*chosen);
+        *chosen = menu_entries(ui, state, Menu::ViewMode).or(*chosen);
         ui.separator();
         ui.menu_button("Debug", |ui| {
             ui.set_min_width(190.0);
-            *chosen = commands::menu_entries(ui, editor, Menu::Debug).or(*chosen);
+            *chosen = menu_entries(ui, state, Menu::Debug).or(*chosen);
         });
     });
 }
@@ -95,22 +141,21 @@ fn square(ui: &mut Ui, enabled: bool, button: Button<'_>, name: &str) -> Respons
     response
 }
 
-fn buttons(editor: &Editor, ui: &mut Ui, color: Color32, names: &[&str], chosen: &mut Option<CommandId>) {
-    for name in names {
-        let id = CommandId::named(name);
-        let command = id.get();
-        let text = match command.icon {
+fn buttons(state: &EditorState, ui: &mut Ui, color: Color32, commands: &[Command], chosen: &mut Option<Command>) {
+    for &command in commands {
+        let info = command.info();
+        let text = match info.icon {
             Some(Icon::Material(icon)) => icon.rich_text().size(17.0).color(color),
-            _ => RichText::new(*name),
+            _ => RichText::new(&info.label),
         };
-        let response = square(ui, id.enabled(editor), Button::new(text), name);
-        let tooltip = match *name {
-            "Undo" => with_step(command.tooltip(ui.ctx()), editor.session.document.undo_label()),
-            "Redo" => with_step(command.tooltip(ui.ctx()), editor.session.document.redo_label()),
-            _ => command.tooltip(ui.ctx()),
+        let response = square(ui, command.is_enabled(state), Button::new(text), &info.label);
+        let tooltip = match command {
+            Command::Undo => with_step(info.tooltip(ui.ctx()), state.session.document.undo_label()),
+            Command::Redo => with_step(info.tooltip(ui.ctx()), state.session.document.redo_label()),
+            _ => info.tooltip(ui.ctx()),
         };
         if response.on_hover_text(&tooltip).on_disabled_hover_text(tooltip).clicked() {
-            *chosen = Some(id);
+            *chosen = Some(command);
         }
     }
 }
@@ -131,9 +176,9 @@ fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
 const MOST_NAME: usize = 40;
 
 /// The examples that are test scenes, or those that are not; returns the one chosen.
-fn example_entries(editor: &Editor, ui: &mut Ui, are_tests: bool) -> Option<Intent> {
+fn example_entries(state: &EditorState, ui: &mut Ui, are_tests: bool) -> Option<Intent> {
     let mut chosen = None;
-    for (index, example) in editor.examples.iter().enumerate().filter(|(_, example)| example.is_test == are_tests) {
+    for (index, example) in state.examples.iter().enumerate().filter(|(_, example)| example.is_test == are_tests) {
         if ui.button(&example.name).clicked() {
             chosen = Some(Intent::Example(index));
         }
@@ -142,12 +187,12 @@ fn example_entries(editor: &Editor, ui: &mut Ui, are_tests: bool) -> Option<Inte
 }
 
 /// Recent files and examples, at the top of the File menu.
-fn file_lists(editor: &mut Editor, ui: &mut Ui) {
+fn file_lists(state: &mut EditorState, ui: &mut Ui) {
     let mut intent = None;
-    ui.add_enabled_ui(!editor.recent.paths().is_empty(), |ui| {
+    ui.add_enabled_ui(!state.files.recent().paths().is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             widgets::scrolling(ui, widgets::room_beside(&ui.ctx().clone()), |ui| {
-                for path in editor.recent.paths() {
+                for path in state.files.recent().paths() {
                     let name = path.file_name().map_or_else(|| path.to_string_lossy(), |n| n.to_string_lossy());
                     let name = widgets::elided(&name, MOST_NAME);
                     if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
@@ -157,14 +202,14 @@ fn file_lists(editor: &mut Editor, ui: &mut Ui) {
             });
         });
     });
-    ui.add_enabled_ui(!editor.examples.is_empty(), |ui| {
+    ui.add_enabled_ui(!state.examples.is_empty(), |ui| {
         ui.menu_button("Examples", |ui| {
             widgets::scrolling(ui, widgets::room_beside(&ui.ctx().clone()), |ui| {
-                intent = example_entries(editor, ui, false).or(intent.take());
-                if editor.examples.iter().any(|example| example.is_test) {
+                intent = example_entries(state, ui, false).or(intent.take());
+                if state.examples.iter().any(|example| example.is_test) {
                     ui.separator();
                     ui.menu_button("Test scenes", |ui| {
-                        intent = example_entries(editor, ui, true).or(intent.take());
+                        intent = example_entries(state, ui, true).or(intent.take());
                     });
                 }
             });
@@ -173,6 +218,6 @@ fn file_lists(editor: &mut Editor, ui: &mut Ui) {
     ui.separator();
     if let Some(intent) = intent {
         ui.close();
-        editor.intend(intent, &ui.ctx().clone());
+        state.requests.push(Request::Intend(intent));
     }
 }

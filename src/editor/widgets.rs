@@ -2,10 +2,8 @@
 
 use egui::{Align, Color32, Context, Id, Key, Layout, Response, RichText, ScrollArea, TextEdit, Ui, UiBuilder, vec2};
 
+pub use super::theme::MIXED;
 use super::{color_picker, theme};
-
-/// What a field shows where the selected nodes differ.
-pub const MIXED: &str = "–";
 
 /// Width of the labels in points.
 const LABEL_WIDTH: f32 = 92.0;

@@ -1,11 +1,9 @@
 //! What flattening may take. Everything is counted before it is made, so that no scene takes more than this, however it
 //! is built.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::arrays::{MAX_FLAT_NODES, MAX_FLAT_ROWS, MAX_FLAT_STEPS};
 use super::error::FlattenError;
+pub use crate::jobs::Cancel;
 use crate::scene::{Node, NodeId};
 
 /// Shapes and modifiers, each copy counted; entries of groups come on top.
@@ -20,22 +18,6 @@ pub(super) const LEVELS: &str = "the nesting of groups and modifiers";
 pub(super) const BYTES: &str = "the number of bytes that the scene takes on the device";
 /// See [`super::MAX_STACK`].
 pub(super) const STACK: &str = "the nesting of groups that cannot be simplified";
-
-/// Tells work that takes long to stop; all clones are one.
-#[derive(Clone, Debug, Default)]
-pub struct Cancel(Arc<AtomicBool>);
-
-impl Cancel {
-    /// Says stop.
-    pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    /// Whether somebody said stop.
-    pub fn is_canceled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
-}
 
 /// How much of a limit a scene uses.
 #[derive(Clone, Debug, PartialEq, Eq)]

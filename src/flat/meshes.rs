@@ -31,6 +31,12 @@ impl FlatScene {
         let meshes = self.meshes.iter().map(load).collect();
         (meshes, warnings)
     }
+
+    /// The same of a library as it is: nothing is read, and what is not there yet is not drawn.
+    pub fn known_meshes(&self, library: &MeshLibrary) -> Vec<Option<Arc<TriangleMesh>>> {
+        let known = |mesh: &super::FlatMesh| library.known(&mesh.path).and_then(|mesh| mesh.as_ref().ok()).cloned();
+        self.meshes.iter().map(known).collect()
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Every mesh of a scene, loaded once, and again when its files change.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -14,14 +15,14 @@ pub type MeshResult = Result<Arc<TriangleMesh>, Arc<MeshError>>;
 
 /// The meshes that a scene names, by their paths relative to the scene's folder. Failures are kept
 /// too, so that a broken file is read once and not once per frame.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct MeshLibrary {
     folder: Option<PathBuf>,
     loaded: HashMap<String, Loaded>,
     revision: u64,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Loaded {
     result: MeshResult,
     /// The files that it was made from, as they were.
@@ -97,6 +98,28 @@ impl MeshLibrary {
     /// The mesh of this name, if it was loaded before.
     pub fn known(&self, path: &str) -> Option<&MeshResult> {
         self.loaded.get(path).map(|loaded| &loaded.result)
+    }
+
+    /// Takes what another library, a copy of this one, has read since; not where this one has moved to another folder. So
+    /// meshes are read on another thread, each with what the others leave it of the room for textures.
+    pub fn take_new(&mut self, other: Self) {
+        if self.folder != other.folder {
+            return;
+        }
+        for (path, loaded) in other.loaded {
+            if let Entry::Vacant(place) = self.loaded.entry(path) {
+                place.insert(loaded);
+                self.revision += 1;
+            }
+        }
+    }
+
+    /// Keeps in mind that the mesh of this name cannot be had, and why, until it is read again.
+    pub fn refuse(&mut self, path: &str, reason: &str) {
+        let files = self.folder.iter().map(|folder| MeshFileStamp::of(&folder.join(path))).collect();
+        let result = Err(Arc::new(MeshError::new(path, "", reason)));
+        self.loaded.insert(path.to_owned(), Loaded { result, files });
+        self.revision += 1;
     }
 
     /// All that was asked for, with the files that were read.

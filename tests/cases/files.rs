@@ -15,6 +15,8 @@ use isolith::document::{Document, Edit};
 use isolith::editor::{Editor, Picture};
 use isolith::scene::{Group, Node, NodeKind, Scene, file};
 
+use crate::settle::Settle;
+
 /// Groups whose names can be shown, and end in `mark`.
 fn plain_scene(mark: u64, nodes: u64) -> Scene {
     let mut scene = Scene::new();
@@ -43,13 +45,13 @@ fn editor(document: Document, with: impl FnOnce(&mut Editor)) -> Harness<'static
         .with_size(egui::vec2(1280.0, 800.0))
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &Picture::default()), editor);
-    harness.run();
+    harness.settle();
     harness
 }
 
 fn press(harness: &mut Harness<'_, Editor>, label: &str) {
     harness.get_by_label(label).click();
-    harness.run();
+    harness.settle();
 }
 
 fn shows(harness: &Harness<'_, Editor>, label: &str) -> bool {

@@ -2,7 +2,9 @@
 
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use isolith::editor::Editor;
 use isolith::flat::debug_view::ViewMode;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
@@ -145,6 +147,38 @@ fn the_view_mode_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
     assert_eq!(harness.state().view().view_mode, ViewMode::Slope);
     assert_eq!(undo_all(&mut harness), 0, "looking changes nothing");
     assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn drawing_can_be_stopped_where_something_is_drawn() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    assert!(!harness.state_mut().take_stop_drawing());
+    harness.get_by_label("Stop drawing").click();
+    harness.run();
+    assert!(harness.state_mut().take_stop_drawing() && !harness.state_mut().take_stop_drawing(), "once");
+}
+
+#[test]
+fn panels_are_hidden_and_shown_by_the_menu() {
+    let (scene, _) = scene();
+    let mut harness = open(scene);
+    let width = |harness: &Harness<'_, Editor>| harness.get_by_label("Viewport").rect().width();
+    let before = width(&harness);
+    let toggle = |harness: &mut Harness<'_, Editor>, title: &str| {
+        for name in ["View", "Panels", title] {
+            let entry = harness.get_all_by_label(name).next().expect("an entry").rect().center();
+            click(harness, entry);
+            harness.run_steps(40);
+        }
+        press(harness, Modifiers::NONE, Key::Escape);
+        harness.run_steps(40);
+    };
+    toggle(&mut harness, "Outliner");
+    assert!(width(&harness) > before + 100.0, "{} {before}", width(&harness));
+    assert!(harness.query_by_label("Search").is_none(), "it is the tree that is hidden");
+    toggle(&mut harness, "Outliner");
+    assert_eq!(width(&harness), before);
 }
 
 #[test]

@@ -1,15 +1,18 @@
 //! Saving and opening: every order is answered, nothing is overwritten without a question.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isolith::document::Document;
 use isolith::editor::Editor;
+use isolith::jobs::Task;
 use isolith::scene::{Scene, Shape};
 
 use super::{click, field, open, open_in, pointer, press, scene, select, shape};
+use crate::settle::Settle;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
@@ -22,7 +25,7 @@ fn give_path(harness: &mut Harness<'_, Editor>, key: Key, path: &str) {
 fn retype(harness: &mut Harness<'_, Editor>, path: &str) {
     press(harness, CTRL, Key::A);
     harness.event(Event::Text(path.into()));
-    harness.run();
+    harness.settle();
     press(harness, Modifiers::NONE, Key::Enter);
 }
 
@@ -60,7 +63,7 @@ fn ctrl_s_always_answers() {
     click(&mut harness, radius);
     press(&mut harness, CTRL, Key::A);
     harness.event(Event::Text("3".into()));
-    harness.run();
+    harness.settle();
     press(&mut harness, CTRL, Key::S);
     assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 3.0 });
     assert_eq!(saved(&path), *harness.state().document().scene());
@@ -68,7 +71,7 @@ fn ctrl_s_always_answers() {
     // While a name is typed in the tree.
     press(&mut harness, Modifiers::NONE, Key::F2);
     harness.event(Event::Text("Xenon".into()));
-    harness.run();
+    harness.settle();
     press(&mut harness, CTRL, Key::S);
     assert_eq!(saved(&path).node(ball).unwrap().name, "Xenon");
     // With a menu open, which closes.
@@ -94,7 +97,7 @@ fn ctrl_s_always_answers() {
     press(&mut harness, CTRL, Key::S);
     assert_eq!(saved(&path), *harness.state().document().scene());
     pointer(&mut harness, radius + egui::vec2(80.0, 0.0), false);
-    harness.run();
+    harness.settle();
 }
 
 #[test]
@@ -120,7 +123,7 @@ fn saving_over_a_file_asks() {
     assert!(harness.state().title().starts_with("own.json"));
     give_path(&mut harness, Key::S, &other.display().to_string());
     harness.get_by_label("Replace").click();
-    harness.run();
+    harness.settle();
     assert!(!precious());
     assert!(harness.state().title().starts_with("other.json"));
 }
@@ -129,7 +132,7 @@ fn saving_over_a_file_asks() {
 fn saving_to_the_documents_own_file_does_not_ask() {
     let (mut harness, folder, path) = with_file();
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    harness.settle();
     for name in [path.clone(), folder.path().join(".").join("own.json"), path.with_extension("")] {
         give_path(&mut harness, Key::S, &name.display().to_string());
         assert!(!harness.state().has_dialog(), "{name:?}");
@@ -172,7 +175,7 @@ fn a_broken_file_is_refused_before_the_question_about_unsaved_work() {
     let broken = folder.path().join("broken.json");
     std::fs::write(&broken, "{").unwrap();
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    harness.settle();
     let scene = harness.state().document().scene().clone();
     give_path(&mut harness, Key::O, &broken.display().to_string());
     assert!(harness.query_by_label("Discard").is_none());
@@ -181,7 +184,7 @@ fn a_broken_file_is_refused_before_the_question_about_unsaved_work() {
     // A good one asks, and is shown when that is agreed.
     give_path(&mut harness, Key::O, &path.display().to_string());
     harness.get_by_label("Discard").click();
-    harness.run();
+    harness.settle();
     assert_eq!(harness.state().document().scene().nodes().len(), 4);
     assert!(!harness.state().document().is_changed());
 }
@@ -190,15 +193,15 @@ fn a_broken_file_is_refused_before_the_question_about_unsaved_work() {
 fn a_broken_example_is_refused_before_the_question() {
     let (scene, _) = scene();
     let mut editor = Editor::new(Document::new(scene));
-    let open = || Err("example.json: nodes: must be a list".to_owned());
-    editor.set_examples(vec![isolith::editor::Example { name: "Broken".into(), is_test: false, open: Box::new(open) }]);
+    let open = |_: &Task| Err("example.json: nodes: must be a list".to_owned());
+    editor.set_examples(vec![isolith::editor::Example { name: "Broken".into(), is_test: false, open: Arc::new(open) }]);
     let mut harness = Harness::builder()
         .with_size(egui::vec2(1280.0, 800.0))
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &super::no_picture()), editor);
-    harness.run();
+    harness.settle();
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    harness.settle();
     let menu = harness.get_all_by_label("File").next().unwrap().rect().center();
     click(&mut harness, menu);
     harness.run_steps(40);
@@ -215,7 +218,7 @@ fn a_broken_example_is_refused_before_the_question() {
 fn ctrl_s_answers_a_question_about_saving() {
     let (mut harness, folder, path) = with_file();
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    harness.settle();
     press(&mut harness, CTRL, Key::N);
     press(&mut harness, CTRL, Key::S);
     assert_eq!(saved(&path).nodes().len(), 5);
@@ -224,7 +227,7 @@ fn ctrl_s_answers_a_question_about_saving() {
     press(&mut harness, CTRL, Key::A);
     let new = folder.path().join("new.json");
     harness.event(Event::Text(new.display().to_string()));
-    harness.run();
+    harness.settle();
     press(&mut harness, CTRL, Key::S);
     assert!(new.is_file() && !harness.state().has_dialog());
 }
@@ -233,7 +236,7 @@ fn ctrl_s_answers_a_question_about_saving() {
 fn leaving_a_question_by_escape_loses_nothing() {
     let (mut harness, _folder, _) = with_file();
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    harness.settle();
     for key in [Key::N, Key::Q] {
         press(&mut harness, CTRL, key);
         assert!(harness.query_by_label("Discard").is_some());

@@ -6,13 +6,14 @@ use std::sync::mpsc::channel;
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
-use isolith::document::Document;
-use isolith::editor::{CommandId, Editor, Picture};
+use isolith::document::{Document, Edit};
+use isolith::editor::{Command, Editor, Picture};
 use isolith::mesh::{MeshLibrary, ReloadOutcome, Watcher};
 use isolith::scene::{MeshNode, Node, NodeKind, Scene, file};
 use serde_json::json;
 
 use super::tiny::{Tiny, triangle};
+use crate::settle::Settle;
 
 /// Longer than a change ever takes to be seen: it is looked for once a second.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -104,12 +105,12 @@ fn open(folder: &Path) -> Harness<'static, Editor> {
     let mut harness = Harness::builder()
         .with_context_setup(Editor::setup)
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &Picture::default()), Editor::new(document));
-    harness.run();
+    harness.settle();
     harness
 }
 
-fn width(harness: &mut Harness<'_, Editor>) -> f64 {
-    harness.state_mut().meshes().get("model.gltf").unwrap().bounds.max.x
+fn width(harness: &Harness<'_, Editor>) -> f64 {
+    harness.state().meshes().known("model.gltf").unwrap().as_ref().unwrap().bounds.max.x
 }
 
 #[test]
@@ -117,12 +118,12 @@ fn the_editor_follows_a_model_on_disk_and_reads_it_again_when_asked() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), 1.0);
     let mut harness = open(folder.path());
-    assert_eq!(width(&mut harness), 1.0);
+    assert_eq!(width(&harness), 1.0);
     std::thread::sleep(Duration::from_millis(20));
     write(folder.path(), 2.0);
     wait("a change of the model", || {
         harness.step();
-        (width(&mut harness) == 2.0).then_some(())
+        (width(&harness) == 2.0).then_some(())
     });
     let last =
         |harness: &Harness<'_, Editor>| harness.state().messages().last().map(|m| m.text.clone()).unwrap_or_default();
@@ -133,13 +134,13 @@ fn the_editor_follows_a_model_on_disk_and_reads_it_again_when_asked() {
         harness.step();
         last(&harness).ends_with("It is shown as it was before").then_some(())
     });
-    assert_eq!(width(&mut harness), 2.0);
+    assert_eq!(width(&harness), 2.0);
     write(folder.path(), 3.0);
     let ctx = harness.ctx.clone();
-    CommandId::named("Reload models").run(harness.state_mut(), &ctx);
+    harness.state_mut().run(Command::ReloadModels, &ctx);
     wait("what was asked for", || {
         harness.step();
-        (width(&mut harness) == 3.0).then_some(())
+        (width(&harness) == 3.0).then_some(())
     });
 }
 
@@ -152,4 +153,41 @@ fn what_a_model_holds_that_is_not_drawn_stands_in_the_log() {
     let harness = open(folder.path());
     let told: Vec<_> = harness.state().messages().map(|message| message.text.clone()).collect();
     assert_eq!(told, ["model.gltf: 1 animation not played: the model is shown at rest"]);
+}
+
+#[test]
+fn the_editor_reads_a_model_beside_its_frames_and_leaves_it_out_when_that_is_canceled() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), 4.0);
+    let mut harness = open(folder.path());
+    assert_eq!(width(&harness), 4.0);
+    // It is taken over by a frame, and there was none yet.
+    let document = Document::open(&folder.path().join("scene.json")).unwrap();
+    let editor = Editor::new(document);
+    assert!(editor.meshes().known("model.gltf").is_none() && editor.is_busy());
+    // The first view has waited for the model: it is as large as that.
+    let distance = |harness: &Harness<'_, Editor>| harness.state().view().camera.position.length();
+    let far = distance(&harness);
+    write(folder.path(), 1.0);
+    assert!(far > 1.5 * distance(&open(folder.path())), "{far}");
+    // What is canceled is said of the node, and read when it is asked for.
+    let mesh = NodeKind::Mesh(MeshNode { path: "other.gltf".into(), material: None });
+    fs::copy(folder.path().join("model.gltf"), folder.path().join("other.gltf")).unwrap();
+    let insert = Edit::Insert { parent: None, position: 0, node: Node::new("Other", mesh) };
+    harness.state_mut().document_mut().apply(insert).unwrap();
+    harness.step();
+    harness.state().jobs().cancel_foremost();
+    harness.settle();
+    let refused =
+        harness.state().meshes().known("other.gltf").unwrap().as_ref().err().map(|error| error.reason.clone());
+    // The job may have been faster than the canceling.
+    if let Some(reason) = refused {
+        assert!(reason.contains("canceled"), "{reason}");
+        let ctx = harness.ctx.clone();
+        harness.state_mut().run(Command::ReloadModels, &ctx);
+        wait("what was asked for", || {
+            harness.step();
+            harness.state().meshes().known("other.gltf").unwrap().is_ok().then_some(())
+        });
+    }
 }

@@ -6,17 +6,25 @@ use super::source::{Token, closing, tokens};
 pub const MODULES: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("guard", &[]),
+    ("jobs", &["guard"]),
     ("font", &["geometry"]),
-    ("scene", &["font", "geometry", "guard"]),
+    ("scene", &["font", "geometry", "guard", "jobs"]),
     ("mesh", &["geometry", "guard"]),
-    ("document", &["scene", "geometry"]),
+    ("document", &["scene", "geometry", "jobs"]),
     ("gallery", &["scene", "geometry"]),
-    ("flat", &["scene", "mesh", "geometry", "guard"]),
+    ("flat", &["scene", "mesh", "geometry", "guard", "jobs"]),
+    ("session", &["document", "flat", "scene", "mesh", "geometry", "jobs"]),
     ("render", &["flat", "scene", "mesh", "geometry", "guard"]),
     ("bench", &["render", "flat", "scene", "mesh", "geometry"]),
-    ("editor", &["document", "scene", "flat", "mesh", "geometry", "guard"]),
-    ("app", &["editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
-    ("cli", &["app", "bench", "editor", "render", "document", "gallery", "scene", "flat", "mesh", "geometry"]),
+    ("editor", &["session", "document", "scene", "flat", "mesh", "geometry", "jobs"]),
+    ("app", &["editor", "session", "render", "document", "gallery", "scene", "flat", "mesh", "geometry", "jobs"]),
+    (
+        "cli",
+        &[
+            "app", "bench", "editor", "session", "render", "document", "gallery", "scene", "flat", "mesh", "geometry",
+            "jobs",
+        ],
+    ),
 ];
 
 /// Crates that only some modules may name. A crate also stands for those whose name it starts.

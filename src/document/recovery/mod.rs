@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-pub use place::Lost;
+pub use place::{Lost, ReadSnapshot};
 pub use thumbnail::Thumbnail;
 pub use worker::{AUTOSAVE_THREAD, Note, Rescued, Rescuer};
 
@@ -119,7 +119,13 @@ impl Recovery {
 
     /// Opens a lost document. What was kept of it stays until it is saved or given up.
     pub fn recover(&mut self, lost: Lost) -> Result<Recovered, Box<Unreadable>> {
-        let (scene, problem) = match lost.read() {
+        let read = lost.read();
+        self.recover_read(lost, read)
+    }
+
+    /// The same after [`Lost::read`], which can take long: on another thread.
+    pub fn recover_read(&mut self, lost: Lost, read: ReadSnapshot) -> Result<Recovered, Box<Unreadable>> {
+        let (scene, problem) = match read {
             Ok(read) => read,
             Err(error) => return Err(Box::new(Unreadable { lost, error })),
         };

@@ -46,6 +46,9 @@ impl About {
     }
 }
 
+/// A scene that was kept, and what is wrong with a later snapshot of it; or what is wrong with all of them.
+pub type ReadSnapshot = Result<(Scene, Option<FileError>), FileError>;
+
 /// A folder that this process owns.
 #[derive(Debug)]
 pub(super) struct Place {
@@ -161,7 +164,7 @@ impl Lost {
     }
 
     /// The latest snapshot that can be read, and what is wrong with a later one.
-    pub(super) fn read(&self) -> Result<(Scene, Option<FileError>), FileError> {
+    pub fn read(&self) -> ReadSnapshot {
         let mut problem = None;
         for path in snapshots(&self.place.folder) {
             match file::load(&path) {

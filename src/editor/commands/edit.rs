@@ -1,6 +1,6 @@
 //! Commands on the selection.
 
-use egui::{Context, Key, Modifiers};
+use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER,
@@ -9,18 +9,16 @@ use egui_material_icons::icons::{
     ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
 };
 
-use super::{Command, Icon, Menu};
-use crate::document::Edit;
-use crate::editor::{Editor, selection};
+use super::command::Command;
+use super::info::{CommandInfo, Icon, Menu};
+use crate::editor::state::EditorState;
 use crate::scene::Operator;
 
+const NONE: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT_CTRL: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
-fn any(editor: &Editor) -> bool {
-    !editor.session.document.selection().is_empty()
-}
-
-pub(super) fn commands() -> Vec<Command> {
+pub(super) fn commands() -> Vec<CommandInfo> {
     let mut all = history();
     all.extend(structure());
     all.extend(roles());
@@ -29,167 +27,119 @@ pub(super) fn commands() -> Vec<Command> {
     all
 }
 
-fn new(icon: MaterialIcon, name: &str, help: &str, run: fn(&mut Editor, &Context)) -> Command {
-    Command::new(Menu::Edit, Icon::from(icon), name, help, run).when(any)
+fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
+    CommandInfo::new(Menu::Edit, command, Icon::from(icon), label, help)
 }
 
-fn history() -> Vec<Command> {
-    let shift_ctrl = CTRL.plus(Modifiers::SHIFT);
+fn any(state: &EditorState) -> bool {
+    !state.session.document.selection().is_empty()
+}
+
+/// A command on what is selected.
+fn on_selection(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
+    row(command, icon, label, help).when(any)
+}
+
+fn join(operator: Operator, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
+    on_selection(Command::Join(operator), icon, label, help)
+}
+
+fn history() -> Vec<CommandInfo> {
     vec![
-        Command::new(Menu::Edit, Icon::from(ICON_UNDO), "Undo", "Takes back the last change", |e, _| {
-            e.session.document.undo();
-        })
-        .key(CTRL, Key::Z)
-        .when(|e| e.session.document.undo_label().is_some()),
-        Command::new(Menu::Edit, Icon::from(ICON_REDO), "Redo", "Does again what was taken back", |e, _| {
-            e.session.document.redo();
-        })
-        .key(shift_ctrl, Key::Z)
-        .key(CTRL, Key::Y)
-        .when(|e| e.session.document.redo_label().is_some()),
+        row(Command::Undo, ICON_UNDO, "Undo", "Takes back the last change")
+            .key(CTRL, Key::Z)
+            .when(|state| state.session.document.undo_label().is_some()),
+        row(Command::Redo, ICON_REDO, "Redo", "Does again what was taken back")
+            .key(SHIFT_CTRL, Key::Z)
+            .key(CTRL, Key::Y)
+            .when(|state| state.session.document.redo_label().is_some()),
     ]
 }
 
-fn structure() -> Vec<Command> {
+fn structure() -> Vec<CommandInfo> {
+    let up = "One place up among its siblings; the order of operands matters";
     vec![
-        new(ICON_EDIT, "Rename", "Changes the name in the outliner", |e, _| e.rename_active())
-            .key(Modifiers::NONE, Key::F2)
+        on_selection(Command::Rename, ICON_EDIT, "Rename", "Changes the name in the outliner")
+            .key(NONE, Key::F2)
             .group(),
-        new(ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it", |e, _| {
-            selection::duplicate(&mut e.session);
-        })
-        .key(Modifiers::SHIFT, Key::D)
-        .key(CTRL, Key::D),
-        new(ICON_DELETE, "Delete", "Removes the selection", |e, _| selection::delete(&mut e.session))
-            .key(Modifiers::NONE, Key::X)
-            .key(Modifiers::NONE, Key::Delete),
-        new(ICON_FOLDER, "Group", "Puts the selection into a group", |e, _| {
-            selection::join(&mut e.session, Operator::Union, true);
-        })
-        .key(CTRL, Key::G)
-        .group(),
-        new(ICON_FOLDER_OFF, "Ungroup", "Takes the children out of the selected groups", |e, _| {
-            selection::ungroup(&mut e.session);
-        })
-        .key(CTRL.plus(Modifiers::SHIFT), Key::G),
-        new(ICON_ARROW_UPWARD, "Move up", "One place up among its siblings; the order of operands matters", |e, _| {
-            selection::shift(&mut e.session, -1);
-        })
-        .key(Modifiers::ALT, Key::ArrowUp),
-        new(ICON_ARROW_DOWNWARD, "Move down", "One place down among its siblings", |e, _| {
-            selection::shift(&mut e.session, 1);
-        })
-        .key(Modifiers::ALT, Key::ArrowDown),
+        on_selection(Command::Duplicate, ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it")
+            .key(Modifiers::SHIFT, Key::D)
+            .key(CTRL, Key::D),
+        on_selection(Command::Delete, ICON_DELETE, "Delete", "Removes the selection")
+            .key(NONE, Key::X)
+            .key(NONE, Key::Delete),
+        on_selection(Command::Group, ICON_FOLDER, "Group", "Puts the selection into a group").key(CTRL, Key::G).group(),
+        on_selection(Command::Ungroup, ICON_FOLDER_OFF, "Ungroup", "Takes the children out of the selected groups")
+            .key(SHIFT_CTRL, Key::G),
+        on_selection(Command::MoveUp, ICON_ARROW_UPWARD, "Move up", up).key(Modifiers::ALT, Key::ArrowUp),
+        on_selection(Command::MoveDown, ICON_ARROW_DOWNWARD, "Move down", "One place down among its siblings")
+            .key(Modifiers::ALT, Key::ArrowDown),
     ]
 }
 
-fn roles() -> Vec<Command> {
+fn roles() -> Vec<CommandInfo> {
+    let negative = "Cut away from what stands before it, or joined again";
     vec![
-        new(ICON_JOIN_FULL, "Union", "Joins the selection: what is in any of it", |e, _| {
-            selection::join(&mut e.session, Operator::Union, false);
-        })
-        .key(Modifiers::NONE, Key::U)
-        .group(),
-        new(ICON_JOIN_INNER, "Intersect", "Keeps what is in all of the selection", |e, _| {
-            selection::join(&mut e.session, Operator::Intersection, false);
-        })
-        .key(Modifiers::NONE, Key::I),
-        new(ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection", |e, _| {
-            selection::join(&mut e.session, Operator::Difference, false);
-        })
-        .key(Modifiers::NONE, Key::D),
-        new(ICON_REMOVE_CIRCLE, "Toggle subtract", "Cut away from what stands before it, or joined again", |e, _| {
-            selection::toggle_negative(&mut e.session);
-        })
-        .key(Modifiers::NONE, Key::N),
+        join(Operator::Union, ICON_JOIN_FULL, "Union", "Joins the selection: what is in any of it")
+            .key(NONE, Key::U)
+            .group(),
+        join(Operator::Intersection, ICON_JOIN_INNER, "Intersect", "Keeps what is in all of the selection")
+            .key(NONE, Key::I),
+        join(Operator::Difference, ICON_JOIN_LEFT, "Subtract", "Cuts all later ones out of the first of the selection")
+            .key(NONE, Key::D),
+        on_selection(Command::ToggleNegative, ICON_REMOVE_CIRCLE, "Toggle subtract", negative).key(NONE, Key::N),
     ]
 }
 
 /// Operators without a key; the command palette finds them.
-fn extended_operators() -> Vec<Command> {
+fn extended_operators() -> Vec<CommandInfo> {
+    let [exclude, pipe, groove] = [
+        "Keeps what is in one of the selection but not in the next",
+        "A tube along the curve where the surfaces of the selection meet",
+        "Cuts a groove along the surfaces of all later ones",
+    ];
     vec![
-        new(ICON_JOIN, "Exclude (XOR)", "Keeps what is in one of the selection but not in the next", |e, _| {
-            selection::join(&mut e.session, Operator::Xor, false);
-        })
-        .group(),
-        new(ICON_PLUMBING, "Pipe", "A tube along the curve where the surfaces of the selection meet", |e, _| {
-            selection::join(&mut e.session, Operator::Pipe, false);
-        }),
-        new(ICON_VERTICAL_ALIGN_BOTTOM, "Groove", "Cuts a groove along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.session, Operator::Groove, false);
-        }),
-        new(ICON_VERTICAL_ALIGN_TOP, "Ridge", "Raises a ridge along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.session, Operator::Tongue, false);
-        }),
-        new(ICON_STYLUS, "Engrave", "Cuts a V along the surfaces of all later ones", |e, _| {
-            selection::join(&mut e.session, Operator::Engrave, false);
-        }),
-        new(ICON_ANIMATION, "Morph", "A shape between those of the selection", |e, _| {
-            selection::join(&mut e.session, Operator::Morph, false);
-        }),
-        new(ICON_FORMAT_PAINT, "Color projection", "The first of the selection in the colors of the others", |e, _| {
-            selection::join(&mut e.session, Operator::Paint, false);
-        }),
+        join(Operator::Xor, ICON_JOIN, "Exclude (XOR)", exclude).group(),
+        join(Operator::Pipe, ICON_PLUMBING, "Pipe", pipe),
+        join(Operator::Groove, ICON_VERTICAL_ALIGN_BOTTOM, "Groove", groove),
+        join(
+            Operator::Tongue,
+            ICON_VERTICAL_ALIGN_TOP,
+            "Tongue",
+            "Raises a tongue along the surfaces of all later ones",
+        ),
+        join(Operator::Engrave, ICON_STYLUS, "Engrave", "Cuts a V along the surfaces of all later ones"),
+        join(Operator::Morph, ICON_ANIMATION, "Morph", "A shape between those of the selection"),
+        join(
+            Operator::Paint,
+            ICON_FORMAT_PAINT,
+            "Color projection",
+            "The first of the selection in the colors of the others",
+        ),
     ]
 }
 
-fn showing() -> Vec<Command> {
+fn showing() -> Vec<CommandInfo> {
+    let [nothing, unused] =
+        ["Clears the selection and shows the scene's settings", "Removes materials that nothing uses"];
     vec![
-        Command::new(
-            Menu::Edit,
-            Icon::from(ICON_SELECT_ALL),
-            "Select all",
-            "Selects every node that is not locked",
-            |e, _| {
-                selection::select_all(&mut e.session);
-            },
-        )
-        .key(CTRL, Key::A)
-        .group(),
-        Command::new(
-            Menu::Edit,
-            None,
-            "Deselect all",
-            "Clears the selection and shows the scene's settings",
-            |e, _| {
-                e.session.document.select(Vec::new());
-            },
-        )
-        .key(Modifiers::NONE, Key::Escape)
-        .when(any),
-        Command::new(
-            Menu::Edit,
-            Icon::from(ICON_VISIBILITY_OFF),
+        row(Command::SelectAll, ICON_SELECT_ALL, "Select all", "Selects every node that is not locked")
+            .key(CTRL, Key::A)
+            .group(),
+        CommandInfo::new(Menu::Edit, Command::SelectNothing, None, "Deselect all", nothing)
+            .key(NONE, Key::Escape)
+            .when(any),
+        on_selection(
+            Command::ToggleVisible,
+            ICON_VISIBILITY_OFF,
             "Toggle visible",
             "Hides the selection, or shows it again",
-            |e, _| {
-                selection::toggle_visible(&mut e.session);
-            },
         )
-        .key(Modifiers::NONE, Key::H)
-        .when(any),
-        Command::new(Menu::Edit, Icon::from(ICON_VISIBILITY), "Show all", "Shows everything that is hidden", |e, _| {
-            selection::show_all(&mut e.session);
-        })
-        .key(Modifiers::ALT, Key::H),
-        Command::new(
-            Menu::Edit,
-            Icon::from(ICON_LOCK),
-            "Toggle lock",
-            "Locked nodes are not picked in the viewport",
-            |e, _| {
-                selection::toggle_locked(&mut e.session);
-            },
-        )
-        .key(Modifiers::NONE, Key::L)
-        .when(any),
-        Command::new(Menu::Edit, None, "Remove unused materials", "Removes materials that nothing uses", |e, _| {
-            let unused = selection::unused_materials(e.session.document.scene());
-            e.session.together(|session| {
-                for id in unused {
-                    session.apply(Edit::RemoveMaterial(id));
-                }
-            });
-        }),
+        .key(NONE, Key::H),
+        row(Command::ShowAll, ICON_VISIBILITY, "Show all", "Shows everything that is hidden")
+            .key(Modifiers::ALT, Key::H),
+        on_selection(Command::ToggleLock, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the viewport")
+            .key(NONE, Key::L),
+        CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
     ]
 }

@@ -11,7 +11,10 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
+use super::read::parse_by;
+use super::watch::{BYTES_READ, PARSED};
 use super::{FileError, parse, to_json};
+use crate::jobs::Task;
 use crate::scene::limits::{MAX_ATTACHMENT_BYTES, MAX_FILE_BYTES};
 use crate::scene::{Scene, check};
 pub use backup::{KEPT_BACKUPS, backup_path};
@@ -24,16 +27,21 @@ pub use writer::{check_writable, replace};
 
 /// Reads a scene file.
 pub fn load(path: &Path) -> Result<Scene, FileError> {
-    load_stamped(path).map(|(scene, _)| scene)
+    load_stamped(path, &Task::new("Reading")).map(|(scene, _)| scene)
 }
 
-/// Reads a scene file, and returns with it how the file was, to find out later whether it has changed.
-pub fn load_stamped(path: &Path) -> Result<(Scene, Stamp), FileError> {
+/// Reads a scene file as a part of a task, and returns with it how the file was, to find out later whether it has changed.
+/// One that is canceled ends with an error.
+pub fn load_stamped(path: &Path, task: &Task) -> Result<(Scene, Stamp), FileError> {
     // Looked at first: a file that is changed while it is read counts as changed afterward.
     let metadata = fs::metadata(path);
     let bytes = bytes_of(path, MAX_FILE_BYTES)?;
+    task.check().map_err(|canceled| FileError::new(path, canceled.to_string()))?;
+    task.set_progress(BYTES_READ);
     let stamp = Stamp::of(&bytes, metadata.ok().as_ref());
-    Ok((parse(&bytes, path)?, stamp))
+    let scene = parse_by(&bytes, path, task)?;
+    task.set_progress(PARSED);
+    Ok((scene, stamp))
 }
 
 /// The bytes of a file that a shape is to keep.

@@ -11,6 +11,7 @@ use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::watch;
 use crate::geometry::Transform;
 use crate::scene::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{
@@ -236,6 +237,7 @@ where
                     return Err(A::Error::custom(format!("holds more than {MOST} entries")));
                 }
                 list.push(entry);
+                watch::entry(MOST == MAX_NODES)?;
             }
             Ok(list)
         }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `format` | the types of version 1, as serde and the schema see them |
 //! | `read` | bytes → checked scene; every message names file, node and field |
+//! | `watch` | how far the reading is, and whether it is to stop |
 //! | `weight` | how much a text holds, before anything is made of it |
 //! | `place` | finds name and id of the node at which reading failed |
 //! | `write` | scene → bytes, always the same, one value per line |
@@ -17,6 +18,7 @@ mod error;
 mod format;
 mod place;
 mod read;
+mod watch;
 mod weight;
 mod write;
 

@@ -12,12 +12,19 @@ use serde_json::Value;
 use super::error::{FileError, clipped};
 use super::format::{NodeV1, SceneV1, VERSION};
 use super::place;
+use super::watch;
 use super::weight::weigh;
+use crate::jobs::Task;
 use crate::scene::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
 use crate::scene::{Material, Node, NodeId, Scene, check, decode_budget, whole};
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
+    parse_by(bytes, file, &Task::new("Reading"))
+}
+
+/// The same as a part of a task: it learns how far the reading is, and can cancel it.
+pub(super) fn parse_by(bytes: &[u8], file: &Path, task: &Task) -> Result<Scene, FileError> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(FileError::new(file, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)));
     }
@@ -27,14 +34,17 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
         let (line, column) = place::line_and_column(&bytes[..e.valid_up_to()]);
         FileError::new(file, format!("line {line}, column {column}: is not text in UTF-8"))
     })?;
-    weigh(text).map_err(|found| {
+    let nodes = weigh(text).map_err(|found| {
         let (line, column) = place::line_and_column(&bytes[..found.at]);
         let reason = format!("line {line}, column {column}: holds more than {MAX_ENTRY_VALUES} values");
         let error = FileError::new(file, reason).at(found.field);
         if let Some(id) = found.id { error.of_node(&found.name, NodeId(id)) } else { error }
     })?;
     match version(text, file)? {
-        1 => scene_from_v1(decode_budget::within(|| typed(text, file))?, file),
+        1 => {
+            let scene = watch::within(task, nodes, || decode_budget::within(|| typed(text, file)))?;
+            scene_from_v1(scene, file)
+        }
         0 => Err(FileError::new(file, "there is no version 0 of the format").at("isolith")),
         newer => {
             let reason = format!("version {newer} is newer than this program, which reads up to {VERSION}");

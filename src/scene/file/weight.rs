@@ -18,13 +18,14 @@ pub(super) struct TooMuch {
 }
 
 /// Looks for an entry with more than [`MAX_ENTRY_VALUES`] values in it: a node, a material, or anything else at the top.
-pub(super) fn weigh(text: &str) -> Result<(), TooMuch> {
+/// Returns how many nodes there are.
+pub(super) fn weigh(text: &str) -> Result<usize, TooMuch> {
     let bytes = text.as_bytes();
     let mut depth = 0_usize;
     let (mut key, mut is_key_next) = ("", false);
     // In a list of entries: which one, and where it starts.
     let (mut index, mut start) = (0, 0);
-    let mut values = 0;
+    let (mut values, mut nodes) = (0, 0);
     let mut i = 0;
     while i < bytes.len() {
         let in_list = depth > 1 && matches!(key, "nodes" | "materials");
@@ -40,6 +41,7 @@ pub(super) fn weigh(text: &str) -> Result<(), TooMuch> {
             b'{' | b'[' => {
                 if depth == 2 && in_list {
                     (start, values) = (i, 0);
+                    nodes += usize::from(key == "nodes");
                 }
                 depth += 1;
                 values += 1;
@@ -61,7 +63,7 @@ pub(super) fn weigh(text: &str) -> Result<(), TooMuch> {
         }
         i += 1;
     }
-    Ok(())
+    Ok(nodes)
 }
 
 /// Where the string ends whose first letter is at `from`: at its closing quotes, or at the end of the text.

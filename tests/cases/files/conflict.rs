@@ -10,6 +10,7 @@ use isolith::editor::Editor;
 use isolith::scene::{Environment, Scene, file};
 
 use super::{editor, last_message, plain_scene, press, shows};
+use crate::settle::Settle;
 
 const QUESTION: &str = "“scene.json” was changed by another program";
 
@@ -35,7 +36,7 @@ fn overtaken(path: &Path, theirs: Scene) -> (Harness<'static, Editor>, Scene, Sc
 
 fn save(harness: &mut Harness<'_, Editor>) {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::S);
-    harness.run();
+    harness.settle();
 }
 
 #[test]
@@ -83,7 +84,7 @@ fn a_file_that_was_changed_is_not_written_over_unasked() {
     assert!(shows(&harness, QUESTION) && harness.state().has_dialog());
     // Esc leaves everything as it is, and so does the button.
     harness.key_press(Key::Escape);
-    harness.run();
+    harness.settle();
     assert!(!shows(&harness, QUESTION));
     save(&mut harness);
     press(&mut harness, "Cancel");
@@ -104,7 +105,7 @@ fn darken_more(harness: &mut Harness<'_, Editor>) {
     let document = harness.state_mut().document_mut();
     let environment = Environment { sky: [0.25; 3], ..document.scene().environment };
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
-    harness.run();
+    harness.settle();
 }
 
 #[test]
@@ -132,7 +133,7 @@ fn a_file_changed_meanwhile_is_told_of_when_the_artist_comes_back() {
     let focus = |harness: &mut Harness<'_, Editor>, focused: bool| {
         harness.input_mut().focused = focused;
         harness.event(egui::Event::WindowFocused(focused));
-        harness.run();
+        harness.settle();
     };
     focus(&mut harness, false);
     focus(&mut harness, true);

@@ -12,6 +12,7 @@ use isolith::editor::Severity;
 use isolith::scene::{Scene, file};
 
 use super::{add_group, changed, editor, has, kept, kept_with, last_message, names, plain_scene, press, shows, until};
+use crate::settle::Settle;
 
 /// Keeps the document as a process would that dies then.
 fn lose(root: &Path, document: &Document) {
@@ -160,7 +161,7 @@ fn where_nothing_can_be_kept_the_artist_is_told_and_goes_on() {
         editor.set_recovery(Recovery::start(&plain.join("recovery")).expect("starts"));
     });
     add_group(harness.state_mut().document_mut(), "Ball");
-    harness.run();
+    harness.settle();
     let start = Instant::now();
     while harness.state().messages().next().is_none() && start.elapsed() < Duration::from_secs(20) {
         std::thread::sleep(Duration::from_millis(20));
@@ -240,7 +241,7 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     drop(harness);
     let mut harness = start(&root);
     harness.key_press(Key::Escape);
-    harness.run();
+    harness.settle();
     assert!(!harness.state().has_dialog() && !harness.state().document().is_changed());
     drop(harness);
 
@@ -254,7 +255,7 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     assert_eq!(kept(&root).len(), 2, "it is kept until it is saved");
     // The file is as it was read: saving needs no question.
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::S);
-    harness.run();
+    harness.settle();
     assert!(!harness.state().document().is_changed() && !harness.state().has_dialog());
     until("what is saved goes", || kept(&root).len() == 1);
     drop(harness);
@@ -282,10 +283,10 @@ fn a_recovered_document_asks_before_it_replaces_what_others_wrote() {
     let recovery = Recovery::start(&root).expect("starts");
     let mut harness = editor(Document::new(Scene::new()), |editor| editor.set_recovery(recovery));
     harness.key_press(Key::Enter);
-    harness.run();
+    harness.settle();
     assert!(has(harness.state().document(), "Mine"));
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::S);
-    harness.run();
+    harness.settle();
     assert!(shows(&harness, "“pawn.json” was changed by another program"));
     assert_eq!(file::load(&path), Ok(plain_scene(5, 5)));
     // Closing now would not be agreed to: what is not saved stays kept.
@@ -302,11 +303,11 @@ fn a_window_that_is_closed_by_wish_keeps_nothing() {
         let recovery = Recovery::start(root).expect("starts");
         let mut harness = editor(Document::new(Scene::new()), |editor| editor.set_recovery(recovery));
         add_group(harness.state_mut().document_mut(), "Ball");
-        harness.run();
+        harness.settle();
         until("it is kept", || kept_with(root, "Ball"));
         if agrees {
             harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::Q);
-            harness.run();
+            harness.settle();
             press(&mut harness, "Discard");
             assert!(harness.state().wants_close());
         }

@@ -1,0 +1,171 @@
+//! Asks for the paths of files, by the system's dialog or in the window, and goes on with what was chosen.
+
+use std::path::Path;
+use std::sync::mpsc::{TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+use egui::Context;
+
+use super::dialogs::{Next, PathField, Purpose, Question, SystemAnswer, SystemDialog, with_ending};
+use super::intent::Intent;
+use super::messages::Message;
+use super::root::Editor;
+use super::{insertion, portal};
+use crate::scene::{MeshNode, Node, NodeKind};
+
+/// Nobody cancels a dialog faster than this: there was none.
+const NO_DIALOG: Duration = Duration::from_millis(600);
+
+impl Editor {
+    /// Asks where to save; then goes on with `then`.
+    pub fn choose_save_path(&mut self, then: Option<Next>, ctx: &Context) {
+        self.choose(Purpose::Save(then), ctx);
+    }
+
+    /// Asks for a mesh file and adds it.
+    pub fn choose_mesh(&mut self, ctx: &Context) {
+        if self.state.session.document.path().is_none() {
+            self.report(Message::info("Save the scene first: mesh files are named relative to the scene's folder."));
+        } else {
+            self.choose(Purpose::Mesh, ctx);
+        }
+    }
+
+    pub(super) fn choose(&mut self, purpose: Purpose, ctx: &Context) {
+        // Who asks again while the system's dialog is open does not see it: its answer is not waited for any more.
+        let is_unanswered = self.dialogs.system.take().is_some();
+        if self.dialogs.in_window || is_unanswered {
+            self.ask_in_window(purpose);
+            return;
+        }
+        let dialog = self.system_dialog(&purpose);
+        let (sender, answer) = channel();
+        let (ctx, saving) = (ctx.clone(), matches!(purpose, Purpose::Save(_)));
+        let spawned = std::thread::Builder::new().name("file dialog".into()).spawn(move || {
+            let answer = match portal::has_dialogs() {
+                false => SystemAnswer::NoDialog,
+                true if saving => SystemAnswer::Chosen(dialog.save_file()),
+                true => SystemAnswer::Chosen(dialog.pick_file()),
+            };
+            // The receiver is gone when the window is: then nobody waits for the answer.
+            let _ = sender.send(answer);
+            ctx.request_repaint();
+        });
+        match spawned {
+            Ok(_) => self.dialogs.system = Some(SystemDialog { purpose, answer, since: Instant::now() }),
+            Err(_) => self.ask_in_window(purpose),
+        }
+    }
+
+    fn system_dialog(&self, purpose: &Purpose) -> rfd::FileDialog {
+        let mut dialog = rfd::FileDialog::new().set_title(purpose.title());
+        dialog = match purpose {
+            Purpose::Mesh => dialog.add_filter("glTF", &["gltf", "glb"]),
+            Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
+            Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &["json"]),
+        };
+        let path = self.state.session.document.path();
+        if let Some(folder) = path.and_then(Path::parent).filter(|f| f.is_absolute()) {
+            dialog = dialog.set_directory(folder);
+        }
+        if matches!(purpose, Purpose::Save(_)) {
+            dialog = dialog.set_file_name(suggested_name(path));
+        }
+        dialog
+    }
+
+    fn ask_in_window(&mut self, purpose: Purpose) {
+        let path = self.state.session.document.path();
+        let text = match (&purpose, path) {
+            (Purpose::Save(_), Some(path)) => path.display().to_string(),
+            (Purpose::Save(_), None) => std::path::absolute(suggested_name(None))
+                .map_or_else(|_| suggested_name(None), |p| p.display().to_string()),
+            (_, Some(path)) => path
+                .parent()
+                .map_or_else(String::new, |folder| format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR)),
+            (_, None) => String::new(),
+        };
+        self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });
+    }
+
+    /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
+    pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
+        if let Some(wanted) = self.state.session.wanted_file.take() {
+            self.state.session.finish();
+            self.choose(Purpose::Attach(wanted), ctx);
+        }
+        let Some(dialog) = &self.dialogs.system else { return };
+        let answer = match dialog.answer.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            Err(TryRecvError::Disconnected) => SystemAnswer::NoDialog,
+            Ok(answer) => answer,
+        };
+        let Some(SystemDialog { purpose, since, .. }) = self.dialogs.system.take() else { return };
+        match answer {
+            SystemAnswer::Chosen(Some(path)) => self.chosen_in_system(purpose, &path, ctx),
+            SystemAnswer::Chosen(None) if since.elapsed() >= NO_DIALOG => {}
+            SystemAnswer::Chosen(None) | SystemAnswer::NoDialog => {
+                self.dialogs.in_window = true;
+                self.ask_in_window(purpose);
+            }
+        }
+    }
+
+    fn chosen_in_system(&mut self, purpose: Purpose, path: &Path, ctx: &Context) {
+        match purpose.refusal(path) {
+            Some(reason) => self.report(Message::error(reason)),
+            None => {
+                // The system's dialog has asked whether to replace the file, unless it gets another name here.
+                let was_asked = path == with_ending(path);
+                self.chosen(purpose, path, was_asked, ctx);
+            }
+        }
+    }
+
+    /// Goes on with a path that [`Purpose::refusal`] has nothing against.
+    pub(super) fn chosen(&mut self, purpose: Purpose, path: &Path, may_replace: bool, ctx: &Context) {
+        match purpose {
+            Purpose::Open => self.intend(Intent::Open(path.to_path_buf()), ctx),
+            Purpose::Save(then) => {
+                let path = with_ending(path);
+                if self.is_own(&path) {
+                    self.start_saving(&path, false, then);
+                } else if may_replace || !path.exists() {
+                    self.start_saving(&path, true, then);
+                } else {
+                    self.dialogs.question = Some(Question::Replace(path, then));
+                }
+            }
+            Purpose::Mesh => self.add_mesh(path),
+            Purpose::Attach(wanted) => self.state.files.read(self.state.derived.jobs(), wanted, path),
+        }
+    }
+
+    /// Whether it is the document's own file, by whatever name.
+    fn is_own(&self, path: &Path) -> bool {
+        let own = self.state.session.document.path();
+        own.is_some_and(|own| match (own.canonicalize(), path.canonicalize()) {
+            (Ok(own), Ok(path)) => own == path,
+            _ => own == path,
+        })
+    }
+
+    fn add_mesh(&mut self, path: &Path) {
+        let folder =
+            self.state.session.document.path().and_then(Path::parent).map(Path::to_path_buf).unwrap_or_default();
+        let relative = path.strip_prefix(&folder).ok().filter(|_| path.is_absolute()).unwrap_or(path);
+        if relative.is_absolute() {
+            let text = "Only files in the scene's folder or below it can be used. Copy the mesh there first.";
+            self.report(Message::error(text));
+            return;
+        }
+        let parts: Vec<_> = relative.iter().map(|p| p.to_string_lossy()).collect();
+        let name = relative.file_stem().map_or_else(|| "Mesh".into(), |s| s.to_string_lossy().into_owned());
+        let mesh = MeshNode { path: parts.join("/"), material: None };
+        insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(mesh)));
+    }
+}
+
+fn suggested_name(path: Option<&Path>) -> String {
+    path.and_then(Path::file_name).map_or_else(|| "scene.json".into(), |n| n.to_string_lossy().into_owned())
+}

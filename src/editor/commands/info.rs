@@ -1,0 +1,151 @@
+//! What is known about a command besides what it does.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use egui_material_icons::MaterialIcon;
+use egui_material_icons::icons::{
+    ICON_CHECK_BOX, ICON_CHECK_BOX_OUTLINE_BLANK, ICON_RADIO_BUTTON_CHECKED, ICON_RADIO_BUTTON_UNCHECKED,
+};
+
+use super::command::Command;
+use crate::editor::state::EditorState;
+use crate::editor::{icons, theme};
+use crate::scene::ShapeKind;
+
+/// Where a command stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Documents.
+    File,
+    /// What changes the selection.
+    Edit,
+    /// New nodes.
+    Add,
+    /// The camera and what is shown.
+    View,
+    /// What the picture shows; a part of the menu View.
+    ViewMode,
+    /// What the picture shows to whoever looks for a fault; a part of the menu of [`Menu::ViewMode`].
+    Debug,
+}
+
+/// A picture of a command.
+#[derive(Clone, Copy, Debug)]
+pub enum Icon {
+    /// A sign of the icon font.
+    Material(MaterialIcon),
+    /// The silhouette of a shape.
+    Shape(ShapeKind),
+}
+
+impl From<MaterialIcon> for Icon {
+    fn from(icon: MaterialIcon) -> Self {
+        Self::Material(icon)
+    }
+}
+
+/// Whether a command can be run.
+pub type Condition = fn(&EditorState) -> bool;
+
+/// Whether what a command switches is on.
+pub type SwitchState = fn(&EditorState, Command) -> bool;
+
+/// A row of the table.
+pub struct CommandInfo {
+    /// Which command.
+    pub command: Command,
+    /// What it is called, everywhere.
+    pub label: String,
+    /// Its menu.
+    pub menu: Menu,
+    /// Whether a line stands before it in its menu.
+    pub starts_group: bool,
+    /// Its picture.
+    pub icon: Option<Icon>,
+    /// One sentence about what it does.
+    pub help: String,
+    /// Its keys; the first is shown.
+    pub keys: Vec<KeyboardShortcut>,
+    /// Whether it can be run.
+    pub is_enabled: Condition,
+    /// Whether what it switches is on; none where it switches nothing.
+    pub is_on: Option<SwitchState>,
+}
+
+impl CommandInfo {
+    pub(super) fn new(
+        menu: Menu,
+        command: Command,
+        icon: impl Into<Option<Icon>>,
+        label: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Self {
+        Self {
+            command,
+            label: label.into(),
+            menu,
+            starts_group: false,
+            icon: icon.into(),
+            help: help.into(),
+            keys: Vec::new(),
+            is_enabled: |_| true,
+            is_on: None,
+        }
+    }
+
+    pub(super) fn key(mut self, modifiers: Modifiers, key: Key) -> Self {
+        self.keys.push(KeyboardShortcut::new(modifiers, key));
+        self
+    }
+
+    pub(super) fn when(mut self, is_enabled: Condition) -> Self {
+        self.is_enabled = is_enabled;
+        self
+    }
+
+    pub(super) fn switch(mut self, is_on: SwitchState) -> Self {
+        self.is_on = Some(is_on);
+        self
+    }
+
+    pub(super) fn group(mut self) -> Self {
+        self.starts_group = true;
+        self
+    }
+
+    /// Name, what it does and its keys.
+    pub fn tooltip(&self, ctx: &Context) -> String {
+        let keys: Vec<_> = self.keys.iter().map(|k| ctx.format_shortcut(k)).collect();
+        let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
+        format!("{}{keys}\n{}", self.label, self.help)
+    }
+
+    /// A check box, or a radio button for one of several choices.
+    fn mark(&self, on: bool) -> MaterialIcon {
+        match (self.menu, on) {
+            (Menu::ViewMode | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::ViewMode | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (_, true) => ICON_CHECK_BOX,
+            (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
+        }
+    }
+
+    /// Paints the icon at the left end of a menu entry; where it switches something, a mark of whether that is on.
+    pub fn paint_icon(&self, ui: &egui::Ui, entry: egui::Rect, enabled: bool, on: Option<bool>) {
+        let icon = on.map(|on| Icon::Material(self.mark(on))).or(self.icon);
+        let square = egui::Rect::from_center_size(
+            entry.left_center() + egui::vec2(ui.spacing().button_padding.x + 10.0, 0.0),
+            egui::Vec2::splat(16.0),
+        );
+        let square = icons::centered(square, 16.0);
+        let dim = if enabled { 1.0 } else { 0.45 };
+        match icon {
+            Some(Icon::Material(icon)) => {
+                icons::paint_icon(ui.painter(), square, icon, theme::WEAK.gamma_multiply(dim));
+            }
+            Some(Icon::Shape(kind)) => {
+                icons::paint_shape(ui.painter(), square, kind, theme::OBJECT.gamma_multiply(dim));
+            }
+            None => {}
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! What commands do.
+
+use std::path::Path;
+
+use egui::Context;
+use glam::DQuat;
+
+use super::command::Command;
+use crate::document::Edit;
+use crate::editor::edit_session::EditSession;
+use crate::editor::intent::Intent;
+use crate::editor::root::Editor;
+use crate::editor::state::EditorState;
+use crate::editor::{insertion, selection};
+use crate::scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
+
+impl Editor {
+    /// Runs a command, where it can be run.
+    pub fn run(&mut self, command: Command, ctx: &Context) {
+        if !command.is_enabled(&self.state) {
+            return;
+        }
+        self.state.session.finish();
+        let state = &mut self.state;
+        let session = &mut state.session;
+        match command {
+            Command::New => self.intend(Intent::New, ctx),
+            Command::Open => self.intend(Intent::Choose, ctx),
+            Command::Save => self.save(None, ctx),
+            Command::SaveAs => self.choose_save_path(None, ctx),
+            Command::Reload => self.reload(ctx),
+            Command::ReloadModels => state.derived.reload_models(),
+            Command::Recover => self.offer_lost_work(),
+            Command::Quit => self.intend(Intent::Quit, ctx),
+            Command::Undo => undo(session),
+            Command::Redo => redo(session),
+            Command::Rename => state.renaming = session.document.selection().last().copied(),
+            Command::Duplicate => selection::duplicate(session),
+            Command::Delete => selection::delete(session),
+            Command::Group => selection::join(session, Operator::Union, true),
+            Command::Ungroup => selection::ungroup(session),
+            Command::MoveUp => selection::shift(session, -1),
+            Command::MoveDown => selection::shift(session, 1),
+            Command::Join(operator) => selection::join(session, operator, false),
+            Command::ToggleNegative => selection::toggle_negative(session),
+            Command::SelectAll => selection::select_all(session),
+            Command::SelectNothing => session.document.select(Vec::new()),
+            Command::ToggleVisible => selection::toggle_visible(session),
+            Command::ShowAll => selection::show_all(session),
+            Command::ToggleLock => selection::toggle_locked(session),
+            Command::RemoveUnusedMaterials => remove_unused_materials(session),
+            Command::AddShape(kind) => insertion::shape(state, kind),
+            Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
+            Command::AddMesh => self.choose_mesh(ctx),
+            Command::AddSun => add_sun(state),
+            Command::AddPointLight => add_point_light(state),
+            Command::AddSpotLight => add_spot_light(state),
+            Command::AddCamera => add_camera(state),
+            Command::FrameSelected => state.frame_selected(),
+            Command::FrameAll => state.frame_all(),
+            Command::LookThroughCamera => state.look_through_camera(),
+            Command::LookFrom(side) => state.view.navigation.look_from(side),
+            Command::ToggleGrid => state.view.show_grid ^= true,
+            Command::ToggleOutline => state.view.show_outline ^= true,
+            Command::FindCommand => self.command_palette.open(),
+            Command::ShowMessages => session.messages.show_log ^= true,
+            Command::ShowLook(view_mode) => state.view.view_mode = view_mode,
+        }
+    }
+
+    fn reload(&mut self, ctx: &Context) {
+        if let Some(path) = self.document().path().map(Path::to_path_buf) {
+            self.intend(Intent::Open(path), ctx);
+        }
+    }
+}
+
+fn undo(session: &mut EditSession) {
+    session.document.undo();
+}
+
+fn redo(session: &mut EditSession) {
+    session.document.redo();
+}
+
+fn remove_unused_materials(session: &mut EditSession) {
+    let unused = selection::unused_materials(session.document.scene());
+    session.together(|session| {
+        for id in unused {
+            session.apply(Edit::RemoveMaterial(id));
+        }
+    });
+}
+
+fn add(state: &mut EditorState, node: Node) {
+    insertion::node(state, node);
+}
+
+fn add_sun(state: &mut EditorState) {
+    let down = DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
+    add(state, Node::new("Sun", NodeKind::Light(Light::sun())).rotated(down));
+}
+
+fn add_point_light(state: &mut EditorState) {
+    add_lamp(state, "Point light", LightKind::Point { attenuation: Attenuation::default() });
+}
+
+fn add_spot_light(state: &mut EditorState) {
+    let attenuation = Attenuation::default();
+    add_lamp(state, "Spot light", LightKind::Spot { attenuation, inner: 20.0, outer: 30.0 });
+}
+
+/// A lamp two meters above where the view looks, shining down.
+fn add_lamp(state: &mut EditorState, name: &str, light: LightKind) {
+    let down = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
+    let light = Light { color: [1.0; 3], intensity: 4.0, light };
+    let node = Node::new(name, NodeKind::Light(light)).rotated(down);
+    insertion::node_above(state, node, 2.0);
+}
+
+fn add_camera(state: &mut EditorState) {
+    let camera = state.view.navigation.camera();
+    let kind = CameraNode { fov_y: camera.fov_y.to_degrees(), near: camera.near, far: camera.far };
+    let node = Node::new("Camera", NodeKind::Camera(kind)).at(camera.position).rotated(camera.rotation);
+    insertion::node_in_world(state, node);
+}

@@ -1,0 +1,62 @@
+//! Commands by their keys.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
+
+use super::command::Command;
+use super::info::Menu;
+use crate::editor::command_palette::CommandPalette;
+use crate::editor::root::Editor;
+
+impl Editor {
+    /// Runs the commands whose keys were pressed. Not while text is being typed, something is being
+    /// dragged, or a menu is open: there the keys mean other things. Only documents are saved, opened and closed at any time:
+    /// after what is being typed has been taken, so at the end of the frame.
+    pub(in crate::editor) fn run_shortcuts(&mut self, ctx: &Context) {
+        if self.dialogs.is_open() {
+            return;
+        }
+        let is_of_document = |command: Command| command.info().menu == Menu::File;
+        if let Some(command) = ctx.input_mut(|i| take_shortcut(i, is_of_document)) {
+            ctx.memory_mut(|memory| memory.stop_text_input());
+            Popup::close_all(ctx);
+            self.command_palette = CommandPalette::default();
+            self.pending = Some(command);
+            return;
+        }
+        let dragging = ctx.input(|i| i.pointer.any_down());
+        // Not what `Context::any_popup_open` says: that knows only of popups shown in this pass already.
+        if self.has_dialog() || self.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
+            return;
+        }
+        let log = &mut self.state.session.messages.show_log;
+        if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
+            *log = false;
+        }
+        // Escape cancels what runs before it means anything else.
+        let jobs = self.state.derived.jobs();
+        if jobs.foremost().is_some_and(|task| task.can_cancel())
+            && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
+        {
+            jobs.cancel_foremost();
+        }
+        while let Some(command) = ctx.input_mut(|i| take_shortcut(i, |_| true)) {
+            self.run(command, ctx);
+        }
+    }
+}
+
+/// Takes the first key press out of the input that belongs to one of these commands.
+fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(Command) -> bool) -> Option<Command> {
+    let mut found = None;
+    input.events.retain(|event| {
+        let egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
+        if found.is_some() {
+            return true;
+        }
+        // Exactly these modifiers: Ctrl Z is not Shift Ctrl Z.
+        let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
+        found = Command::all().find(|command| is_wanted(*command) && command.info().keys.iter().any(fits));
+        found.is_none()
+    });
+    found
+}

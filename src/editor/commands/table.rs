@@ -1,0 +1,67 @@
+//! The table of all commands: label, keys, menu, and when each can be run. It feeds menus, toolbar, shortcuts and palette.
+
+use std::sync::LazyLock;
+
+use super::command::Command;
+use super::info::CommandInfo;
+use super::{add, edit, file, view};
+use crate::editor::state::EditorState;
+
+static TABLE: LazyLock<Vec<CommandInfo>> = LazyLock::new(|| {
+    let menus = [file::commands(), edit::commands(), add::commands(), view::commands()];
+    menus.into_iter().flatten().collect()
+});
+
+impl Command {
+    /// All commands, in the order of the menus.
+    pub fn all() -> impl Iterator<Item = Self> {
+        TABLE.iter().map(|info| info.command)
+    }
+
+    /// Its row of the table.
+    pub fn info(self) -> &'static CommandInfo {
+        TABLE.iter().find(|info| info.command == self).expect("every command that is named stands in the table")
+    }
+
+    /// Whether it can be run now.
+    pub fn is_enabled(self, state: &EditorState) -> bool {
+        (self.info().is_enabled)(state)
+    }
+
+    /// Whether what it switches is on.
+    pub fn is_on(self, state: &EditorState) -> Option<bool> {
+        self.info().is_on.map(|is_on| is_on(state, self))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+    use crate::flat::debug_view::ViewMode;
+    use crate::scene::{Operator, ShapeKind};
+
+    #[test]
+    fn labels_and_keys_are_unique_and_everything_is_explained() {
+        let mut labels = HashSet::new();
+        let mut keys = HashSet::new();
+        for command in Command::all() {
+            let info = command.info();
+            assert_eq!(info.command, command, "twice");
+            assert!(labels.insert(&info.label), "{} twice", info.label);
+            assert!(!info.help.is_empty(), "{}", info.label);
+            for key in &info.keys {
+                assert!(keys.insert(*key), "{}: {key:?} twice", info.label);
+            }
+        }
+    }
+
+    #[test]
+    fn every_shape_operator_and_look_has_a_command() {
+        let all: Vec<_> = Command::all().collect();
+        assert!(ShapeKind::ALL.iter().all(|kind| all.contains(&Command::AddShape(*kind))));
+        assert!(Operator::ALL.iter().all(|operator| all.contains(&Command::Join(*operator))));
+        assert!(ViewMode::ALL.into_iter().all(|view_mode| all.contains(&Command::ShowLook(view_mode))));
+    }
+}

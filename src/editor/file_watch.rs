@@ -1,0 +1,57 @@
+//! Looks after the document's file: what another program does to it is told, and asked about before it is written over.
+
+use std::path::PathBuf;
+
+use egui::Context;
+
+use super::conflict::{OverwriteAnswer, OverwriteQuestion, ask};
+use super::dialogs::Next;
+use super::messages::Message;
+use super::root::Editor;
+use crate::jobs::{JobEnd, Task};
+
+impl Editor {
+    /// Asks whether to write over a file that somebody else has changed.
+    pub(super) fn ask_about_conflict(&mut self, path: PathBuf, then: Option<Next>) {
+        self.conflict.question = Some(OverwriteQuestion { path, then });
+    }
+
+    /// Looks whether the file has changed when the artist comes back to the window. Once a frame.
+    pub(super) fn watch_file(&mut self, ctx: &Context) {
+        let has_focus = ctx.input(|i| i.focused);
+        let had_focus = std::mem::replace(&mut self.conflict.had_focus, has_focus);
+        let stamp = self.state.session.document.stamp();
+        if let (true, Some(path), Some(stamp)) = (has_focus && !had_focus, self.state.session.document.path(), stamp)
+            && self.conflict.told != Some(stamp)
+        {
+            let path = path.to_path_buf();
+            let job = self.state.derived.jobs().start(Task::hidden("File"), move |_| stamp.seems_outdated(&path));
+            self.conflict.looking = Some((job, stamp));
+        }
+        let Some((job, looked_at)) = &self.conflict.looking else { return };
+        let Some(end) = job.poll() else { return };
+        let is_this = stamp == Some(*looked_at);
+        self.conflict.looking = None;
+        if end == JobEnd::Done(true) && is_this {
+            self.conflict.told = stamp;
+            let name = self.state.session.document.title();
+            let name = name.trim_end_matches(" *");
+            let text = format!("Another program has changed {name}. File, Reload reads it again; saving asks first.");
+            self.report(Message::warning(text));
+        }
+    }
+
+    /// Shows the question.
+    pub(super) fn show_conflict(&mut self, ctx: &Context) {
+        let Some(question) = &self.conflict.question else { return };
+        let Some(answer) = ask(ctx, &question.path) else { return };
+        let Some(OverwriteQuestion { path, then }) = self.conflict.question.take() else { return };
+        match answer {
+            OverwriteAnswer::Overwrite => self.start_saving(&path, true, then),
+            OverwriteAnswer::SaveAs => self.choose_save_path(then, ctx),
+            // Changes are given up: that is what was asked.
+            OverwriteAnswer::Reload => self.open_file(&path, true),
+            OverwriteAnswer::Cancel => {}
+        }
+    }
+}

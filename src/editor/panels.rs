@@ -1,0 +1,19 @@
+//! The registry of panels: a new one is a file of its own and a line here.
+
+use super::inspector::Inspector;
+use super::outliner::Outliner;
+use super::panel::Panel;
+use super::status::StatusBar;
+use super::toolbar::Toolbar;
+use super::viewport::Viewport;
+
+/// All panels.
+pub fn all() -> Vec<Box<dyn Panel>> {
+    vec![
+        Box::new(Toolbar),
+        Box::new(StatusBar),
+        Box::<Outliner>::default(),
+        Box::<Inspector>::default(),
+        Box::<Viewport>::default(),
+    ]
+}

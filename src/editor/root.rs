@@ -1,0 +1,293 @@
+//! The editor: the state below, the shell with its panels above, and what comes up in front of both. What it does with
+//! documents and questions is in files of their own, each an `impl` of it.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
+
+use super::command_palette::CommandPalette;
+use super::commands::command::Command;
+use super::conflict::Conflict;
+use super::dialogs::Dialogs;
+use super::document_jobs::{Opening, Saving};
+use super::intent::Intent;
+use super::messages::Message;
+use super::safekeeping::Safekeeping;
+use super::shell::Shell;
+use super::state::{EditorState, Example, Request};
+use super::view_state::{Picture, ViewSettings};
+use super::{input_order, numbers, panels, theme, widgets};
+use crate::document::{Document, RecentFiles};
+use crate::flat::FlatScene;
+use crate::jobs::Jobs;
+use crate::mesh::MeshLibrary;
+use crate::session::{Opened, folder_of};
+
+/// Most characters of a file's name in the window's title.
+const MOST_TITLE: usize = 80;
+
+/// How often the progress of jobs is looked at.
+const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+
+/// The editor.
+pub struct Editor {
+    pub(super) state: EditorState,
+    shell: Shell,
+    pub(super) command_palette: CommandPalette,
+    pub(super) dialogs: Dialogs,
+    /// A document on its way to the window.
+    pub(super) opening: Option<Opening>,
+    /// The document on its way to its file.
+    pub(super) saving: Option<Saving>,
+    /// Keeps what is not saved; none where nothing is to be kept.
+    pub(super) safekeeping: Option<Safekeeping>,
+    pub(super) conflict: Conflict,
+    /// The document is a new one, whose first view has to wait for its arrays and models.
+    wants_view: bool,
+    shown_title: String,
+    /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
+    pub(super) typing: bool,
+    /// A command that waits until fields have taken what was typed into them.
+    pub(super) pending: Option<Command>,
+}
+
+impl Editor {
+    /// An editor for the document.
+    pub fn new(document: Document) -> Self {
+        let mut editor = Self {
+            state: EditorState::default(),
+            shell: Shell::new(panels::all()),
+            command_palette: CommandPalette::default(),
+            dialogs: Dialogs::default(),
+            opening: None,
+            saving: None,
+            safekeeping: None,
+            conflict: Conflict::default(),
+            wants_view: false,
+            shown_title: String::new(),
+            typing: false,
+            pending: None,
+        };
+        editor.state.panels = editor.shell.entries();
+        editor.replace_document(document);
+        editor
+    }
+
+    /// Installs fonts and the look. Once, before the first frame.
+    pub fn setup(ctx: &Context) {
+        theme::install(ctx);
+        ctx.add_plugin(input_order::InputOrder::default());
+        // A field takes what was typed when the pointer is pressed elsewhere: the click may already select another node.
+        ctx.options_mut(|options| options.input_options.surrender_focus_on = SurrenderFocusOn::Presses);
+    }
+
+    /// Remembers files between runs in this list.
+    pub fn set_recent(&mut self, recent: RecentFiles) {
+        self.state.files.set_recent(recent);
+    }
+
+    /// Offers examples in the File menu.
+    pub fn set_examples(&mut self, examples: Vec<Example>) {
+        self.state.examples = examples;
+    }
+
+    /// Asks for paths in the window, never by the system's dialogs.
+    pub fn ask_for_paths_in_window(&mut self) {
+        self.dialogs.in_window = true;
+    }
+
+    /// Shows everything and takes the input of one frame. Afterward [`Editor::flat`] and
+    /// [`Editor::view`] are those of this frame: a dragged value is in them already.
+    pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
+        let ctx = ui.ctx().clone();
+        self.state.picture.clone_from(picture);
+        let for_jobs = ctx.clone();
+        self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
+        self.poll_documents(&ctx);
+        self.poll_recovery();
+        self.poll_dialogs(&ctx);
+        self.guard_closing(&ctx);
+        self.open_dropped(&ctx);
+        if self.state.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
+            self.state.session.cancel();
+        }
+        self.run_shortcuts(&ctx);
+        for index in 0..self.shell.len() {
+            self.shell.show(index, &mut self.state, ui);
+            self.answer_requests(&ctx);
+        }
+        if let Some(reason) = numbers::take_refusal(&ctx) {
+            self.report(Message::warning(reason));
+        }
+        if let Some(later) = self.state.files.poll(self.state.derived.jobs(), &mut self.state.session) {
+            ctx.request_repaint_after(later);
+        }
+        self.show_in_front(&ctx);
+        if let Some(command) = self.pending.take() {
+            self.run(command, &ctx);
+        }
+        self.state.session.settle(&ctx);
+        self.follow_document();
+        if self.state.derived.jobs().foremost().is_some() {
+            ctx.request_repaint_after(PROGRESS_EVERY);
+        }
+        self.send_title(&ctx);
+        self.watch_file(&ctx);
+        self.follow_recovery(&ctx);
+        self.typing = ctx.text_edit_focused();
+    }
+
+    fn show_in_front(&mut self, ctx: &Context) {
+        self.show_dialogs(ctx);
+        self.show_conflict(ctx);
+        self.show_recovery(ctx);
+        if let Some(command) = self.command_palette.show(&self.state, ctx) {
+            self.run(command, ctx);
+        }
+        let corner = self.state.view.rect;
+        let messages = &mut self.state.session.messages;
+        messages.show_toasts(ctx, corner);
+        if messages.show_log {
+            messages.show_log(ctx);
+        }
+    }
+
+    /// Does what the panel shown last has ordered.
+    fn answer_requests(&mut self, ctx: &Context) {
+        for request in std::mem::take(&mut self.state.requests) {
+            match request {
+                Request::Run(command) => self.run(command, ctx),
+                Request::Intend(intent) => self.intend(intent, ctx),
+                Request::TogglePanel(id) => {
+                    self.shell.toggle(id);
+                    self.state.panels = self.shell.entries();
+                }
+            }
+        }
+    }
+
+    /// What the renderer should show.
+    pub fn view(&self) -> ViewSettings {
+        self.state.wanted_view()
+    }
+
+    /// The document.
+    pub fn document(&self) -> &Document {
+        &self.state.session.document
+    }
+
+    /// The document, for changes from outside the panels.
+    pub fn document_mut(&mut self) -> &mut Document {
+        &mut self.state.session.document
+    }
+
+    /// The document as arrays; the last good ones where the document is beyond a limit.
+    pub fn flat(&self) -> &Arc<FlatScene> {
+        self.state.flat()
+    }
+
+    /// The meshes that the scene names, as far as they are read.
+    pub fn meshes(&self) -> &MeshLibrary {
+        self.state.derived.library()
+    }
+
+    /// The names of the files for nodes that are being read.
+    pub fn files_being_read(&self) -> impl Iterator<Item = &str> {
+        self.state.files.files_being_read()
+    }
+
+    /// What runs beside the frames.
+    pub fn jobs(&self) -> &Jobs {
+        self.state.derived.jobs()
+    }
+
+    /// Whether anything runs beside the frames, or waits to be taken over by the next one.
+    pub fn is_busy(&self) -> bool {
+        !self.jobs().is_idle()
+            || self.state.derived.is_preparing()
+            || self.opening.is_some()
+            || self.saving.is_some()
+            || self.state.files.is_busy()
+            || self.conflict.is_looking()
+            || self.is_recovering()
+    }
+
+    /// Whether the artist wants the picture to stay as it is until something changes; answers yes once.
+    pub fn take_stop_drawing(&mut self) -> bool {
+        std::mem::take(&mut self.state.view.stops_drawing)
+    }
+
+    /// Tells the artist something.
+    pub fn report(&mut self, message: Message) {
+        self.state.session.messages.push(message);
+    }
+
+    /// The messages so far, oldest first.
+    pub fn messages(&self) -> impl DoubleEndedIterator<Item = &Message> {
+        self.state.session.messages.iter()
+    }
+
+    /// The window's title.
+    pub fn title(&self) -> String {
+        format!("{} – Isolith", widgets::elided(&self.state.session.document.title(), MOST_TITLE))
+    }
+
+    /// Whether the artist has agreed to close the window: nothing is left to save.
+    pub fn wants_close(&self) -> bool {
+        self.dialogs.closing
+    }
+
+    /// Whether a question waits for its answer.
+    pub fn has_dialog(&self) -> bool {
+        self.dialogs.is_open() || self.command_palette.is_open() || self.conflict.is_open() || self.is_offering()
+    }
+
+    /// Shows a document instead of the one that is open.
+    pub(super) fn replace_document(&mut self, document: Document) {
+        self.leave_document();
+        self.state.derived.reset(document.path().and_then(folder_of));
+        self.state.session.document = document;
+        self.follow_document();
+    }
+
+    /// Shows a document that is ready.
+    pub(super) fn show_opened(&mut self, opened: Opened) {
+        self.leave_document();
+        self.state.session.document = self.state.derived.adopt(opened);
+        self.follow_document();
+    }
+
+    fn leave_document(&mut self) {
+        self.state.session.finish();
+        self.opening = None;
+        self.state.files.forget_attachments();
+        self.forget_kept();
+        self.shell.forget();
+        self.wants_view = true;
+    }
+
+    /// Brings what is made of the document up to date; also once for another document, before its first frame.
+    fn follow_document(&mut self) {
+        self.state.follow_document();
+        if self.wants_view && !self.state.derived.is_preparing() {
+            self.wants_view = false;
+            self.state.show_as_saved();
+        }
+    }
+
+    fn open_dropped(&mut self, ctx: &Context) {
+        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
+        if let Some(path) = dropped.filter(|_| !self.has_dialog()) {
+            self.intend(Intent::Open(path), ctx);
+        }
+    }
+
+    fn send_title(&mut self, ctx: &Context) {
+        let title = self.title();
+        if title != self.shown_title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.shown_title = title;
+        }
+    }
+}

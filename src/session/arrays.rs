@@ -1,0 +1,119 @@
+//! The arrays of a document that changes: at once where that is quick, otherwise by a job, which stops when something newer is
+//! wanted.
+
+use std::sync::Arc;
+
+use crate::document::Document;
+use crate::flat::{FlatScene, Flattener, is_quick};
+use crate::jobs::{Job, JobEnd, Jobs, Task};
+use crate::scene::Scene;
+
+/// The flat scene of a revision of the document.
+#[derive(Debug, Default)]
+pub(super) struct Arrays {
+    flattener: Flattener,
+    /// The last one that could be made.
+    scene: Arc<FlatScene>,
+    /// The revision that was looked at last.
+    revision: Option<u64>,
+    problem: Option<String>,
+    job: Option<Job<Answer>>,
+    is_canceled: bool,
+}
+
+/// What a job gives back: what it flattens with, and what came of it; nothing where it was canceled.
+type Answer = (Flattener, Result<Option<Arc<FlatScene>>, String>);
+
+const CANCELED: &str = "preparing it was canceled";
+
+impl Arrays {
+    /// The arrays that somebody else has made of this revision.
+    pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, revision: u64) -> Self {
+        Self { flattener, scene, revision: Some(revision), ..Self::default() }
+    }
+
+    /// No arrays of this revision, for a reason.
+    pub fn refused(problem: String, revision: u64) -> Self {
+        Self { problem: Some(problem), revision: Some(revision), ..Self::default() }
+    }
+
+    pub fn scene(&self) -> &Arc<FlatScene> {
+        &self.scene
+    }
+
+    pub fn problem(&self) -> Option<&str> {
+        self.problem.as_deref()
+    }
+
+    /// Whether a job is at work.
+    pub fn is_under_way(&self) -> bool {
+        self.job.is_some()
+    }
+
+    /// Whether the arrays are older than the document because somebody has canceled the job.
+    pub fn is_canceled(&self) -> bool {
+        self.is_canceled
+    }
+
+    /// Makes the arrays of the same revision again.
+    pub fn prepare_again(&mut self) {
+        self.revision = None;
+    }
+
+    /// Brings the arrays up to date, or has a job do it, and takes over what a job has made. True if anything is new.
+    pub fn follow(&mut self, jobs: &Jobs, document: &Document) -> bool {
+        let revision = document.revision();
+        let is_new = self.revision != Some(revision);
+        if is_new {
+            self.start(jobs, document);
+            self.revision = Some(revision);
+        }
+        self.poll() || is_new
+    }
+
+    fn start(&mut self, jobs: &Jobs, document: &Document) {
+        (self.job, self.is_canceled) = (None, false);
+        let scene = document.scene();
+        if let Some(flat) = self.flattener.update(scene, 0.0) {
+            self.take(Ok(flat));
+        } else if is_quick(scene) {
+            let result = self.flattener.flatten(scene, 0.0).map_err(|error| error.to_string());
+            self.take(result);
+        } else {
+            let flattener = std::mem::take(&mut self.flattener);
+            self.job = Some(flatten_by_job(jobs, document.snapshot(), flattener));
+        }
+    }
+
+    fn take(&mut self, result: Result<Arc<FlatScene>, String>) {
+        match result {
+            Ok(flat) => (self.scene, self.problem) = (flat, None),
+            Err(problem) => self.problem = Some(problem),
+        }
+    }
+
+    fn poll(&mut self) -> bool {
+        let Some(end) = self.job.as_ref().and_then(Job::poll) else { return false };
+        self.job = None;
+        let result = match end {
+            JobEnd::Done((flattener, result)) => {
+                self.flattener = flattener;
+                result.transpose().unwrap_or_else(|| Err(CANCELED.into()))
+            }
+            JobEnd::Failed(reason) => Err(reason),
+            JobEnd::Canceled => {
+                self.is_canceled = true;
+                Err(CANCELED.into())
+            }
+        };
+        self.take(result);
+        true
+    }
+}
+
+fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, mut flattener: Flattener) -> Job<Answer> {
+    jobs.start(Task::new("Preparing the scene"), move |task| {
+        let made = flattener.flatten_until(&scene, 0.0, task.flag()).map_err(|error| error.to_string());
+        (flattener, made)
+    })
+}

@@ -1,0 +1,182 @@
+//! The models that a scene names: read by a job when they are wanted first, and again when their files change or the artist
+//! asks for it. What their files hold that is not drawn is told.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Weak};
+
+use super::notice::{Notice, NoticeLevel};
+use super::prepare::read_models;
+use crate::flat::{FlatMesh, FlatScene};
+use crate::jobs::{Job, JobEnd, Jobs, Task};
+use crate::mesh::{MeshLibrary, ReloadOutcome, TriangleMesh, Watcher};
+use crate::scene::NodeId;
+
+/// Looks after the models.
+#[derive(Debug, Default)]
+pub(super) struct Models {
+    library: MeshLibrary,
+    /// Reads what the library lacks.
+    reading: Option<Reading>,
+    /// Started when there is something to look after.
+    watcher: Option<Watcher>,
+    /// That of the library that the watcher knows.
+    revision: Option<u64>,
+    /// What has been told about, by path.
+    told: HashMap<String, Weak<TriangleMesh>>,
+    /// A model that cannot be read, and why.
+    problem: Option<(NodeId, String)>,
+    notices: Vec<Notice>,
+}
+
+#[derive(Debug)]
+struct Reading {
+    job: Job<MeshLibrary>,
+    paths: Vec<String>,
+}
+
+/// Most things that one message says about a model.
+const THINGS_TOLD: usize = 4;
+
+impl Models {
+    pub fn library(&self) -> &MeshLibrary {
+        &self.library
+    }
+
+    pub fn library_mut(&mut self) -> &mut MeshLibrary {
+        &mut self.library
+    }
+
+    pub fn problem(&self) -> Option<&(NodeId, String)> {
+        self.problem.as_ref()
+    }
+
+    /// Whether models are being read for the first time.
+    pub fn is_under_way(&self) -> bool {
+        self.reading.is_some()
+    }
+
+    pub fn take_notices(&mut self) -> Vec<Notice> {
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Moves to another folder, and forgets everything where it is another one.
+    pub fn set_folder(&mut self, folder: Option<PathBuf>) {
+        if self.library.folder() != folder.as_deref() {
+            self.reading = None;
+            self.library.set_folder(folder);
+        }
+    }
+
+    /// Takes what somebody else has read.
+    pub fn take_new(&mut self, library: MeshLibrary) {
+        self.library.take_new(library);
+    }
+
+    /// Reads all models again, in the background.
+    pub fn reload(&self) {
+        if let Some(watcher) = &self.watcher {
+            watcher.read_all();
+        }
+    }
+
+    /// Has read what the arrays name, and takes over what was read. Once a frame; whether anything is new.
+    pub fn follow(&mut self, jobs: &Jobs, flat: &FlatScene, is_new: bool) -> bool {
+        self.take_reread();
+        self.take_read();
+        if self.reading.is_none() {
+            self.read_missing(jobs, flat);
+        }
+        let revision = self.library.revision();
+        let is_changed = self.revision != Some(revision);
+        if is_changed {
+            self.revision = Some(revision);
+            self.tell_what_is_not_drawn(flat);
+            self.watch(jobs);
+        }
+        if is_changed || is_new {
+            self.problem = self.find_problem(flat);
+        }
+        is_changed
+    }
+
+    fn take_reread(&mut self) {
+        let news: Vec<_> = self.watcher.iter().flat_map(|watcher| watcher.news().collect::<Vec<_>>()).collect();
+        for fresh in news {
+            let path = fresh.source().path().to_owned();
+            let (level, text) = match self.library.replace(fresh) {
+                ReloadOutcome::Fresh(_) => (NoticeLevel::Info, format!("{path} was read again")),
+                ReloadOutcome::Kept(error) => (NoticeLevel::Error, format!("{error}. It is shown as it was before")),
+                ReloadOutcome::Broken(error) => (NoticeLevel::Error, error.to_string()),
+                ReloadOutcome::Unwanted => continue,
+            };
+            self.notices.push(Notice::new(level, text));
+        }
+    }
+
+    fn take_read(&mut self) {
+        let Some(end) = self.reading.as_ref().and_then(|reading| reading.job.poll()) else { return };
+        let Some(Reading { paths, .. }) = self.reading.take() else { return };
+        let reason = match end {
+            JobEnd::Done(library) => return self.library.take_new(library),
+            JobEnd::Failed(reason) => reason,
+            JobEnd::Canceled => "reading it was canceled; File, Reload models reads it".into(),
+        };
+        for path in paths.iter().filter(|path| self.library.known(path).is_none()).cloned().collect::<Vec<_>>() {
+            self.library.refuse(&path, &reason);
+        }
+    }
+
+    fn read_missing(&mut self, jobs: &Jobs, flat: &FlatScene) {
+        let missing = flat.meshes.iter().filter(|mesh| self.library.known(&mesh.path).is_none());
+        let paths: Vec<String> = missing.map(|mesh| mesh.path.clone()).collect();
+        let name = match &*paths {
+            [] => return,
+            [one] => format!("Reading {one}"),
+            many => format!("Reading {} models", many.len()),
+        };
+        let (mut library, wanted) = (self.library.clone(), paths.clone());
+        let job = jobs.start(Task::new(name), move |task| {
+            read_models(&wanted, &mut library, task, 0.0);
+            library
+        });
+        self.reading = Some(Reading { job, paths });
+    }
+
+    fn find_problem(&self, flat: &FlatScene) -> Option<(NodeId, String)> {
+        let error = |mesh: &FlatMesh| self.library.known(&mesh.path)?.as_ref().err().map(|e| (mesh.id, e.to_string()));
+        flat.meshes.iter().find_map(error)
+    }
+
+    fn tell_what_is_not_drawn(&mut self, flat: &FlatScene) {
+        for FlatMesh { path, .. } in &flat.meshes {
+            let Some(Ok(mesh)) = self.library.known(path) else { continue };
+            let told = self.told.insert(path.clone(), Arc::downgrade(mesh));
+            let is_told = told.is_some_and(|told| told.as_ptr() == Arc::as_ptr(mesh));
+            if is_told || mesh.warnings.is_empty() {
+                continue;
+            }
+            let things = mesh.warnings.iter().take(THINGS_TOLD).map(String::as_str).collect::<Vec<_>>().join("; ");
+            let more = mesh.warnings.len().saturating_sub(THINGS_TOLD);
+            let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+            self.notices.push(Notice::new(NoticeLevel::Warning, format!("{path}: {things}{more}")));
+        }
+    }
+
+    fn watch(&mut self, jobs: &Jobs) {
+        let sources = self.library.sources();
+        if self.watcher.is_none() && !sources.is_empty() {
+            let jobs = jobs.clone();
+            match Watcher::start(move || jobs.wake()) {
+                Ok(watcher) => self.watcher = Some(watcher),
+                Err(error) => {
+                    let text = format!("Models are not looked after: {error}");
+                    self.notices.push(Notice::new(NoticeLevel::Warning, text));
+                }
+            }
+        }
+        if let Some(watcher) = &self.watcher {
+            watcher.watch(sources);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! A document read and made ready as one job: what is shown stays until the next one is whole.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::prepare::PreparedScene;
+use crate::document::Document;
+use crate::jobs::{Canceled, Task};
+
+/// Reads a document, or says why it cannot.
+pub type ReadDocument = Arc<dyn Fn(&Task) -> Result<Document, String> + Send + Sync>;
+
+/// Reads the document in this file.
+pub fn read_file(path: &Path) -> ReadDocument {
+    let path = path.to_path_buf();
+    Arc::new(move |task| Document::open_by(&path, task).map_err(|error| error.to_string()))
+}
+
+/// The folder of a scene's file; the current one for a bare name.
+pub fn folder_of(file: &Path) -> Option<PathBuf> {
+    file.parent().map(|folder| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() })
+}
+
+/// A document that can be shown at once.
+#[derive(Debug)]
+pub struct Opened {
+    /// The document.
+    pub document: Document,
+    /// What is drawn of it, or why nothing is: a scene beyond a limit can still be edited.
+    pub(super) prepared: Result<PreparedScene, String>,
+}
+
+impl Opened {
+    /// Reads the document and makes it ready.
+    ///
+    /// # Errors
+    /// It cannot be read, or the task was canceled.
+    pub fn by(read: &ReadDocument, task: &Task) -> Result<Self, String> {
+        task.set_stage("reading");
+        Self::of(read(task)?, task)
+    }
+
+    /// Makes the document ready.
+    ///
+    /// # Errors
+    /// The task was canceled.
+    pub fn of(document: Document, task: &Task) -> Result<Self, String> {
+        let folder = document.path().and_then(folder_of);
+        let prepared = PreparedScene::of(document.scene(), 0.0, folder, task).map_err(|error| error.to_string());
+        let prepared = prepared.transpose().ok_or_else(|| Canceled.to_string())?;
+        Ok(Self { document, prepared })
+    }
+}
