@@ -7,11 +7,11 @@ use std::time::Duration;
 use egui::Context;
 
 use super::Editor;
-use super::edit_session::WantedFile;
+use super::edit_session::{WantedFile, subject};
 use super::messages::Message;
 use crate::document::Edit;
 use crate::guard::guarded;
-use crate::scene::{Attached, Node, file};
+use crate::scene::{Attached, ParamValue, file};
 
 /// A file on its way.
 pub struct FileJob {
@@ -69,19 +69,19 @@ impl Editor {
     }
 
     fn refuse(&mut self, wanted: &WantedFile, reason: &str) {
-        let node = wanted.nodes.last().and_then(|id| self.session.document.scene().node(*id));
-        let subject = node.map_or(String::new(), |node| format!("{}: ", wanted.target.label(node)));
+        let subject = wanted.paths.last().and_then(|path| subject(self.session.document.scene(), path));
+        let subject = subject.map_or(String::new(), |subject| format!("{subject}: "));
         self.report(Message::error(format!("{subject}{reason}")));
     }
 
     /// Gives the file to the nodes that it is wanted for, as one undo step.
     fn attach(&mut self, wanted: &WantedFile, file: &Attached) {
         self.session.together(|session| {
-            for &id in &wanted.nodes {
-                let Some(node) = session.document.scene().node(id) else { continue };
-                let mut node = Node::clone(node);
-                if wanted.target.set(&mut node, file) {
-                    session.apply(Edit::Replace(node));
+            for path in &wanted.paths {
+                // The node may be gone since, or another shape.
+                let now = path.get(session.document.scene());
+                if matches!(now, Ok(ParamValue::File(now)) if now.without() == file.without()) {
+                    session.apply(Edit::SetParam { path: path.clone(), value: ParamValue::File(file.clone()) });
                 }
             }
         });

@@ -8,6 +8,7 @@
 //! | `budget`, `survey`, `usage` | what flattening may take, counted before it is done |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modifier_table` | all that is known about a kind of modifier, in one row |
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
@@ -37,6 +38,7 @@ mod leaf;
 mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
+mod modifier_table;
 mod modify;
 mod moved;
 mod operands;
@@ -55,7 +57,10 @@ pub use arrays::*;
 pub use budget::{Cancel, Usage};
 pub use flatten::{FlattenError, flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
-pub use modify::{MAX_NEIGHBORS, REPEAT_REACH, is_copying};
+pub use modifier_table::{
+    changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
+};
+pub use modify::{MAX_NEIGHBORS, REPEAT_REACH};
 pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;

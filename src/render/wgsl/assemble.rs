@@ -11,7 +11,9 @@ use super::lookahead;
 use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
 use super::specialize::{Fold, specialize};
 use super::{Evaluator, Options, SkipMode};
-use crate::flat::{FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS, MAX_STACK, modifier_rows, payload_row};
+use crate::flat::{
+    self, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, Join, LEAF_ROWS, MAX_STACK, modifier_rows, payload_row,
+};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Every file of `shaders/`, by its path there.
@@ -112,13 +114,11 @@ impl OpSet {
     /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
     /// is a hit, and oversteps are short: they would pass bumps of a fraction of a pixel.
     fn is_rough(&self) -> bool {
-        use ModifierKind::{Bend, Displacement, Noise, Taper, Twist, Waves};
         use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
         let is_rough = |kind: &ShapeKind| {
             matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | Terrain | Heightmap | Ocean)
         };
-        self.shapes.iter().any(is_rough)
-            || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise | Displacement))
+        self.shapes.iter().any(is_rough) || self.modifiers.iter().any(|kind| flat::is_rough(*kind))
     }
 
     /// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
