@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use glam::DVec3;
 use image::GenericImageView;
 use isolith::geometry::Camera;
-use isolith::scene::{CameraNode, Group, MaterialId, MeshNode, Node, NodeKind, Object, Scene, Shape, file};
+use isolith::scene::{CameraNode, Group, MaterialId, MeshNode, Node, NodeKind, Object, ParamPath, Scene, Shape, file};
 use serde_json::Value;
 
 /// A floor (1) and a ball (2), a group (3) with two cameras.
@@ -295,6 +295,28 @@ fn check_counts_what_is_there() {
     for part in ["nodes", "of 100000", "components", "depth of the tree", "warnings"] {
         assert!(text.contains(part), "{part} is not in {text}");
     }
+}
+
+#[test]
+fn check_lists_every_parameter_with_unit_limits_and_default() {
+    let place = Place::new();
+    let scene = sample();
+    let report = place.run(&["check", "scene.json", "--params", "--json"]).succeeded().object();
+    let listed = report["params"].as_array().expect("a list").clone();
+    let all = ParamPath::all(&scene);
+    assert_eq!(listed.len(), all.len());
+    for (entry, (path, param, value)) in listed.iter().zip(&all) {
+        assert_eq!(keys(entry), ["path", "label", "value", "unit", "least", "most", "default", "animatable"]);
+        assert_eq!(entry["path"].as_str(), Some(path.to_string().as_str()));
+        assert_eq!(entry["value"].as_str(), Some(value.to_string().as_str()));
+        assert_eq!(entry["default"].as_str(), Some(param.default.to_string().as_str()));
+    }
+    let text = place.run(&["check", "scene.json", "--params"]).succeeded().out.clone();
+    for part in ["environment.sky = [", "material.1.shininess = 48 (1 to 10000, default 48)", ".camera.fov_y = 40 ° ("]
+    {
+        assert!(text.contains(part), "{part} is not in {text}");
+    }
+    assert!(!place.run(&["check", "scene.json"]).succeeded().out.contains("environment.sky"));
 }
 
 #[test]

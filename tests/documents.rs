@@ -37,6 +37,48 @@ fn with_radius(node: &Node, radius: f64) -> Node {
     node
 }
 
+#[test]
+fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
+    let mut document = Document::new(Scene::new());
+    let id = add(&mut document, None, ball("b"));
+    let before = text(&document);
+    let set = |document: &mut Document, path: &str, value: ParamValue| {
+        document.apply(Edit::SetParam { path: path.parse()?, value })
+    };
+    for (path, value) in [
+        (format!("node.{id}.object.shape.radius").replace('#', ""), ParamValue::Scalar(2.0)),
+        (format!("node.{id}.transform.translation[1]").replace('#', ""), ParamValue::Scalar(3.0)),
+        ("material.1.specular".into(), ParamValue::Scalar(0.5)),
+        ("environment.sky".into(), ParamValue::Vector(DVec3::ONE)),
+    ] {
+        let revision = document.revision();
+        set(&mut document, &path, value.clone()).expect(&path);
+        let parsed: isolith::scene::ParamPath = path.parse().expect("a path");
+        assert_eq!(parsed.get(document.scene()).as_ref(), Ok(&value), "{path}");
+        assert!(document.revision() > revision);
+        // The same again changes nothing and is no step.
+        let steps = document.undo_labels().count();
+        set(&mut document, &path, value).expect(&path);
+        assert_eq!(document.undo_labels().count(), steps, "{path}");
+    }
+    let labels: Vec<_> = document.undo_labels().take(4).map(str::to_owned).collect();
+    assert_eq!(labels, ["Change environment", "Change material Clay", "Place b", "Change b"]);
+    let now = text(&document);
+    let radius = format!("node.{}.object.shape.radius", id.0);
+    let error = set(&mut document, &radius, ParamValue::Scalar(-1.0)).expect_err("beyond its limits").to_string();
+    assert!(error.contains("b #") && error.contains("object.shape.radius: must be 0 to"), "{error}");
+    let error = set(&mut document, "node.99.transform.scale", ParamValue::Scalar(1.0)).expect_err("no such node");
+    assert_eq!(error, SceneError::NoNode(NodeId(99)));
+    let length = format!("node.{}.object.shape.length", id.0);
+    let error = set(&mut document, &length, ParamValue::Scalar(1.0)).expect_err("a ball has none").to_string();
+    assert!(error.starts_with(&length) && error.contains("there is radius"), "{error}");
+    assert_eq!(text(&document), now, "what is refused changes nothing");
+    for _ in 0..4 {
+        assert!(document.undo());
+    }
+    assert_eq!(text(&document), before);
+}
+
 /// Some ids of the scene, now and then one that does not exist.
 fn some_ids(random: &mut Random, scene: &Scene) -> Vec<NodeId> {
     let count = random.below(4) + usize::from(!random.once_in(10));

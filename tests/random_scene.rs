@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Axis, Blend, BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Limits,
-    Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, ModifierValue, Node, NodeId, NodeKind,
-    Object, Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, limits,
+    Attenuation, Blend, BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Limits, Material,
+    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamValue,
+    RadiusUnit, Scene, Shape, ShapeKind, limits,
 };
 
 use crate::contract::samples::image;
@@ -109,6 +109,7 @@ impl Random {
                     list.rows = (0..count).map(|_| row()).collect();
                     ParamValue::List(list)
                 }
+                other => unreachable!("no shape has {other:?}"),
             };
             assert!(shape.set_value(i, value));
         }
@@ -123,17 +124,16 @@ impl Random {
             let limits = &param.limits;
             let mut whole = || self.number(limits).round() as u32;
             let value = match value {
-                ModifierValue::Count(_) => ModifierValue::Count(whole()),
-                ModifierValue::Counts(_) => ModifierValue::Counts([whole(), whole(), whole()]),
-                ModifierValue::Scalar(_) => ModifierValue::Scalar(self.number(limits)),
-                ModifierValue::Vector(_) => ModifierValue::Vector(self.numbers(limits).into()),
-                ModifierValue::Flag(_) => ModifierValue::Flag(self.once_in(2)),
-                ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| self.once_in(2))),
-                ModifierValue::Axis(_) => ModifierValue::Axis(self.pick(&Axis::ALL)),
-                ModifierValue::File(file) if self.once_in(2) => {
-                    ModifierValue::File(image(&file, &mut || self.bits() as u16))
-                }
-                ModifierValue::File(file) => ModifierValue::File(file),
+                ParamValue::Count(_) => ParamValue::Count(whole()),
+                ParamValue::Counts(_) => ParamValue::Counts([whole(), whole(), whole()]),
+                ParamValue::Scalar(_) => ParamValue::Scalar(self.number(limits)),
+                ParamValue::Vector(_) => ParamValue::Vector(self.numbers(limits).into()),
+                ParamValue::Flag(_) => ParamValue::Flag(self.once_in(2)),
+                ParamValue::Flags(_) => ParamValue::Flags([0, 1, 2].map(|_| self.once_in(2))),
+                ParamValue::Choice(_) => ParamValue::Choice(&self.pick(&param.choices.iter().collect::<Vec<_>>()).key),
+                ParamValue::File(file) if self.once_in(2) => ParamValue::File(image(&file, &mut || self.bits() as u16)),
+                ParamValue::File(file) => ParamValue::File(file),
+                other => unreachable!("no modifier has {other:?}"),
             };
             assert!(modifier.set_value(i, value));
         }

@@ -9,8 +9,8 @@ use super::input::{folder, read_scene, shown};
 use super::text::{complain, say};
 use crate::flat::{self, Cancel, FlatScene, Usage, flatten_until};
 use crate::mesh::MeshLibrary;
-use crate::scene::Scene;
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
+use crate::scene::{Param, ParamPath, ParamValue, Scene};
 
 /// Arguments of `isolith check`.
 #[derive(Debug, clap::Args)]
@@ -25,6 +25,10 @@ pub struct CheckArguments {
     /// Make warnings errors, such as a model that is missing
     #[arg(long)]
     strict: bool,
+    /// List every parameter: its path, its value with unit, the range that it may have, its default. With --json as params:
+    /// [{path, label, value, unit, least, most, default, animatable}]; least and most are null where the value is no number
+    #[arg(long)]
+    params: bool,
 }
 
 /// Prints what each scene holds. With `--json`, a scene that cannot be used is reported on standard output too, as one
@@ -32,7 +36,7 @@ pub struct CheckArguments {
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for path in &arguments.scenes {
-        let looked_at = read(path).and_then(|report| {
+        let looked_at = read(path, arguments.params).and_then(|report| {
             let is_fine = report.warnings.is_empty() || !arguments.strict;
             match arguments.json {
                 true => say(&report.to_json(&shown(path), is_fine).to_string())?,
@@ -68,6 +72,8 @@ struct Report {
     limits: Vec<LimitUse>,
     cameras: Vec<String>,
     warnings: Vec<CheckWarning>,
+    /// Every parameter, where they are asked for.
+    params: Option<Vec<(ParamPath, &'static Param, ParamValue)>>,
 }
 
 /// How much of a limit the scene uses.
@@ -90,7 +96,7 @@ impl From<flat::Warning> for CheckWarning {
     }
 }
 
-fn read(path: &Path) -> Result<Report, Failure> {
+fn read(path: &Path, with_params: bool) -> Result<Report, Failure> {
     let scene = read_scene(path)?;
     let flattened = flatten_until(&scene, 0.0, &Cancel::default());
     let flattened = flattened.map_err(|error| Failure::beyond_limit(&shown(path), &error))?;
@@ -99,6 +105,7 @@ fn read(path: &Path) -> Result<Report, Failure> {
     let mut library = MeshLibrary::new(folder(path));
     let (_, missing) = flat.load_meshes(&mut library);
     report.warnings.extend(missing.into_iter().map(CheckWarning::from));
+    report.params = with_params.then(|| ParamPath::all(&scene));
     Ok(report)
 }
 
@@ -123,6 +130,7 @@ impl Report {
             limits: of_scene.into_iter().chain(of_arrays).collect(),
             cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
             warnings: flat.warnings.iter().cloned().map(CheckWarning::from).collect(),
+            params: None,
         }
     }
 
@@ -131,7 +139,7 @@ impl Report {
             self.warnings.iter().map(|w| json!({ "node": w.node, "reason": w.reason })).collect();
         let limit = |l: &LimitUse| json!({ "name": l.name, "used": l.used, "limit": l.limit, "node": l.node });
         let limits: Vec<Value> = self.limits.iter().map(limit).collect();
-        json!({
+        let mut report = json!({
             "ok": is_fine,
             "file": path.display().to_string(),
             "nodes": self.nodes,
@@ -140,7 +148,11 @@ impl Report {
             "cameras": self.cameras,
             "limits": limits,
             "warnings": warnings,
-        })
+        });
+        if let Some(params) = &self.params {
+            report["params"] = params.iter().map(param_json).collect();
+        }
+        report
     }
 
     fn to_text(&self, path: &Path) -> String {
@@ -150,11 +162,41 @@ impl Report {
         }
         text += &format!("\n  {:<30} {:>9}", "cameras", self.cameras.len());
         text += &format!("\n  {:<30} {:>9}", "warnings", self.warnings.len());
+        for (path, param, value) in self.params.iter().flatten() {
+            text += &format!("\n  {}", param_line(path, param, value));
+        }
         for warning in &self.warnings {
             text += &format!("\nwarning: {}: {}", one_line(&warning.node), one_line(&warning.reason));
         }
         text
     }
+}
+
+/// The range of a parameter; nothing for what is no number.
+fn range(param: &Param, value: &ParamValue) -> Option<[f64; 2]> {
+    use ParamValue::{Count, Counts, List, Scalar, Vector};
+    matches!(value, Scalar(_) | Vector(_) | Count(_) | Counts(_) | List(_)).then(|| param.limits.signed_range())
+}
+
+fn param_json((path, param, value): &(ParamPath, &'static Param, ParamValue)) -> Value {
+    let range = range(param, value);
+    json!({
+        "path": path.to_string(),
+        "label": param.label,
+        "value": value.to_string(),
+        "unit": param.limits.unit,
+        "least": range.map(|[least, _]| least),
+        "most": range.map(|[_, most]| most),
+        "default": param.default.to_string(),
+        "animatable": param.animatable,
+    })
+}
+
+fn param_line(path: &ParamPath, param: &Param, value: &ParamValue) -> String {
+    let with_unit = |text: String| format!("{text} {}", param.limits.unit).trim_end().to_owned();
+    let range = range(param, value).map_or(String::new(), |[least, most]| format!("{least} to {most}, "));
+    let (value, default) = (with_unit(value.to_string()), with_unit(param.default.to_string()));
+    format!("{path} = {} ({range}default {})", one_line(&value), one_line(&default))
 }
 
 /// Text from a file as part of a line.

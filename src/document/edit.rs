@@ -3,7 +3,10 @@
 use std::sync::Arc;
 
 use super::structure;
-use crate::scene::{Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError, check};
+use crate::scene::{
+    Changed, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue, Scene,
+    SceneError, check,
+};
 
 /// A change to a scene. Values are checked against [`crate::scene::limits`].
 ///
@@ -54,6 +57,13 @@ pub enum Edit {
     RemoveMaterial(MaterialId),
     /// Changes what surrounds the scene.
     SetEnvironment(Environment),
+    /// Changes one parameter of a node, a material or the environment.
+    SetParam {
+        /// Which one.
+        path: ParamPath,
+        /// Its new value.
+        value: ParamValue,
+    },
 }
 
 /// What an edit did.
@@ -128,7 +138,17 @@ impl Edit {
                 Arc::make_mut(scene).environment = environment;
                 Ok(Change::VALUE)
             }
+            Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
         }
+    }
+
+    /// The edit that replaces what has the parameter.
+    fn of_param(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Self, SceneError> {
+        Ok(match path.changed(scene, value)? {
+            Changed::Node(node) => Self::Replace(*node),
+            Changed::Material(material) => Self::ReplaceMaterial(material),
+            Changed::Environment(environment) => Self::SetEnvironment(environment),
+        })
     }
 
     /// What it does, for a history list.
@@ -147,6 +167,10 @@ impl Edit {
                 format!("Delete material {}", name.unwrap_or_else(|| id.to_string()))
             }
             Self::SetEnvironment(_) => "Change environment".into(),
+            Self::SetParam { path, value } => match Self::of_param(scene, path, value.clone()) {
+                Ok(edit) => edit.label(scene),
+                Err(_) => format!("Change {path}"),
+            },
         }
     }
 }

@@ -6,7 +6,7 @@ use egui::{Context, Id};
 
 use super::messages::{Message, Messages};
 use crate::document::{Document, Edit};
-use crate::scene::{Attached, Material, ModifierKind, ModifierValue, Node, NodeId, NodeKind, ParamValue};
+use crate::scene::{Attached, Material, Node, NodeId, NodeKind, ParamOwner, ParamPath, ParamValue, Part, Scene};
 
 /// The document, the gesture in progress, the messages.
 ///
@@ -25,54 +25,22 @@ pub struct EditSession {
 /// A file for a parameter of some nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedFile {
-    /// Which nodes.
-    pub nodes: Vec<NodeId>,
-    /// Which of their parameters.
-    pub target: ParamTarget,
+    /// The parameter, of each node.
+    pub paths: Vec<ParamPath>,
     /// What it is now.
     pub instead_of: Attached,
 }
 
-/// A parameter that holds a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ParamTarget {
-    /// Of this index among those of the shape.
-    Shape(usize),
-    /// Of the modifier at this place, of this index among its own.
-    Modifier([usize; 2]),
-}
-
-impl ParamTarget {
-    /// Gives the node the file; false, and nothing changed, where it has no such parameter.
-    pub fn set(self, node: &mut Node, file: &Attached) -> bool {
-        match (self, &mut node.kind) {
-            (Self::Shape(index), NodeKind::Object(object)) => {
-                object.shape.set_value(index, ParamValue::File(file.clone()))
-            }
-            (Self::Shape(_), _) => false,
-            (Self::Modifier([place, index]), _) => {
-                let slot = node.modifiers.get_mut(place);
-                slot.is_some_and(|slot| slot.modifier.set_value(index, ModifierValue::File(file.clone())))
-            }
-        }
-    }
-
-    /// The node, its shape or modifier, and the parameter, for messages.
-    pub fn label(self, node: &Node) -> String {
-        let (of, name) = match (self, &node.kind) {
-            (Self::Shape(index), NodeKind::Object(object)) => {
-                let kind = object.shape.kind();
-                (kind.label(), kind.params().get(index).map(|param| param.name))
-            }
-            (Self::Shape(_), _) => ("", None),
-            (Self::Modifier([place, index]), _) => {
-                let kind = node.modifiers.get(place).map(|slot| slot.modifier.kind());
-                let param = kind.and_then(|kind| kind.params().get(index));
-                (kind.map_or("", ModifierKind::label), param.map(|param| param.name))
-            }
-        };
-        format!("{} {}: {of}: {}", node.name, node.id, name.unwrap_or_default())
-    }
+/// The node, its shape or modifier, and the parameter, for messages; nothing for a node that is gone.
+pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
+    let ParamOwner::Node(id, part) = path.owner else { return None };
+    let node = scene.node(id)?;
+    let of = match (part, &node.kind) {
+        (Part::Modifier(place), _) => node.modifiers.get(place)?.modifier.kind().label(),
+        (Part::Shape, NodeKind::Object(object)) => object.shape.kind().label(),
+        _ => return Some(format!("{} {id}: {}", node.name, path.name)),
+    };
+    Some(format!("{} {id}: {of}: {}", node.name, path.name))
 }
 
 impl EditSession {
@@ -107,6 +75,14 @@ impl EditSession {
                 change(&mut node);
                 self.apply(Edit::Replace(node));
             }
+        }
+    }
+
+    /// Changes parameters, as part of the widget's gesture.
+    pub fn set_params(&mut self, widget: Id, changes: Vec<(ParamPath, ParamValue)>) {
+        self.begin(widget);
+        for (path, value) in changes {
+            self.apply(Edit::SetParam { path, value });
         }
     }
 

@@ -4,11 +4,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::edit_session::{EditSession, WantedFile};
+use super::edit_session::{EditSession, WantedFile, subject};
 use super::messages::Message;
 use crate::document::{Edit, RecentFiles};
 use crate::jobs::{Job, JobEnd, Jobs, Task};
-use crate::scene::{Attached, Node, file};
+use crate::scene::{Attached, ParamValue, file};
 
 /// See the module.
 #[derive(Default)]
@@ -126,19 +126,19 @@ impl FileJobs {
 }
 
 fn refuse(session: &mut EditSession, wanted: &WantedFile, reason: &str) {
-    let node = wanted.nodes.last().and_then(|id| session.document.scene().node(*id));
-    let subject = node.map_or(String::new(), |node| format!("{}: ", wanted.target.label(node)));
+    let subject = wanted.paths.last().and_then(|path| subject(session.document.scene(), path));
+    let subject = subject.map_or(String::new(), |subject| format!("{subject}: "));
     session.messages.push(Message::error(format!("{subject}{reason}")));
 }
 
 /// Gives the file to the nodes that it is wanted for, as one undo step.
 fn attach(session: &mut EditSession, wanted: &WantedFile, file: &Attached) {
     session.together(|session| {
-        for &id in &wanted.nodes {
-            let Some(node) = session.document.scene().node(id) else { continue };
-            let mut node = Node::clone(node);
-            if wanted.target.set(&mut node, file) {
-                session.apply(Edit::Replace(node));
+        for path in &wanted.paths {
+            // The node may be gone since, or another shape.
+            let now = path.get(session.document.scene());
+            if matches!(now, Ok(ParamValue::File(now)) if now.without() == file.without()) {
+                session.apply(Edit::SetParam { path: path.clone(), value: ParamValue::File(file.clone()) });
             }
         }
     });

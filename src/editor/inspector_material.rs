@@ -5,11 +5,11 @@ use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
 
 use super::multi_edit::MultiEdit;
 use super::numbers::{self, NumberField};
-use super::theme;
 use super::widgets::{self, MIXED};
+use super::{inspector_params, theme};
 use crate::document::Edit;
-use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS, UNIT};
-use crate::scene::{Limits, Material, MaterialId, Node, NodeKind};
+use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS};
+use crate::scene::{Limits, Material, MaterialId, Node, NodeKind, ParamPath, Params};
 
 /// The materials of the nodes that are edited.
 #[derive(Clone, Copy, PartialEq)]
@@ -137,48 +137,15 @@ fn editor(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     if response.changed() {
         edit.session().change_material(response.id, Material { name, ..material.clone() });
     }
-    color(ui, edit, ("Base color", "Diffuse reflectance"), material, |m| &mut m.albedo);
-    number(ui, edit, ("Specular", "Strength of the highlight; 0 is matte"), (UNIT, 0.25), material, |m| {
-        &mut m.specular
-    });
-    roughness(ui, edit, material);
-    color(ui, edit, ("Emission", "Light that it emits"), material, |m| &mut m.emission);
+    for param in material.params() {
+        match param.name {
+            "shininess" => roughness(ui, edit, material),
+            name => inspector_params::single(ui, edit.session(), ParamPath::of_material(material.id, name)),
+        }
+    }
     let strength = material.emission.iter().copied().fold(0.0, f64::max);
     if strength > 0.0 {
         emission_strength(ui, edit, material, strength);
-    }
-}
-
-type ParamAccess<T> = fn(&mut Material) -> &mut T;
-
-fn color(ui: &mut Ui, edit: &mut MultiEdit<'_>, text: (&str, &str), material: &Material, part: ParamAccess<[f64; 3]>) {
-    let mut edited = material.clone();
-    let value = *part(&mut edited);
-    let (widget, changed) = widgets::row(ui, text.0, text.1, |ui| widgets::color(ui, text.0, value, false));
-    if let Some(value) = changed {
-        *part(&mut edited) = value;
-        edit.session().change_material(widget, edited);
-    }
-}
-
-fn number(
-    ui: &mut Ui,
-    edit: &mut MultiEdit<'_>,
-    (label, help): (&str, &str),
-    (limits, default): (Limits, f64),
-    material: &Material,
-    part: ParamAccess<f64>,
-) {
-    let mut edited = material.clone();
-    let value = *part(&mut edited);
-    let field = NumberField { label, help, limits, default: Some(default), taken_as: None };
-    let answer = widgets::row(ui, label, help, |ui| {
-        let width = ui.available_width();
-        numbers::number(ui, &field, label, value, false, width)
-    });
-    if let Some(value) = answer.value {
-        *part(&mut edited) = value;
-        edit.session().change_material(answer.widget, edited);
     }
 }
 
@@ -196,8 +163,8 @@ fn shininess_of(roughness: f64) -> f64 {
 fn roughness(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     let (label, help) = ("Roughness", "Small is a small, sharp highlight");
     let range = [roughness_of(SHININESS.hard[1]), roughness_of(SHININESS.hard[0])];
-    let limits = Limits { soft: range, hard: range, unit: "" };
-    let field = NumberField { label, help, limits, default: Some(roughness_of(48.0)), taken_as: None };
+    let limits = Limits { soft: range, hard: range, unit: "", ..SHININESS };
+    let field = NumberField { label, help, limits, default: Some(roughness_of(48.0)) };
     let answer = widgets::row(ui, label, help, |ui| {
         let width = ui.available_width();
         numbers::number(ui, &field, label, roughness_of(material.shininess), false, width)
@@ -211,7 +178,7 @@ fn roughness(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
 /// Emission beyond 1 cannot be picked as a color: its brightest channel is a number of its own.
 fn emission_strength(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material, strength: f64) {
     let (label, help) = ("Emission strength", "Its brightest channel");
-    let field = NumberField { label, help, limits: INTENSITY, default: None, taken_as: None };
+    let field = NumberField { label, help, limits: INTENSITY, default: None };
     let answer = widgets::row(ui, field.label, field.help, |ui| {
         let width = ui.available_width();
         numbers::number(ui, &field, field.label, strength, false, width)

@@ -1,11 +1,10 @@
 //! Lists of points: a row of numbers for each, in a list of its own that scrolls.
 
-use egui::{RichText, ScrollArea, Ui, vec2};
+use egui::{Id, RichText, ScrollArea, Ui, vec2};
 
-use super::multi_edit::MultiEdit;
 use super::numbers::{self, NumberField};
 use super::theme;
-use crate::scene::{List, Node, Param};
+use crate::scene::{Limits, List};
 
 /// The list grows up to this height, in points of the screen.
 const MOST_HEIGHT: f32 = 220.0;
@@ -22,44 +21,47 @@ enum PointChange {
     Down,
 }
 
+/// A change of a row of a list.
+#[derive(Clone, Copy)]
+pub struct PointEdit {
+    index: usize,
+    change: PointChange,
+}
+
+impl PointEdit {
+    /// Makes the change where the list has such a row.
+    pub fn apply(self, list: &mut List) {
+        if self.index < list.rows.len() {
+            apply(list, self.index, self.change);
+        }
+    }
+}
+
 /// The points that a parameter holds. The button in front of a row adds, removes and moves.
-pub fn list(
-    ui: &mut Ui,
-    edit: &mut MultiEdit<'_>,
-    (label, param): (&str, &Param),
-    get: impl Fn(&Node) -> Option<List>,
-    set: impl Fn(&mut Node, List),
-) {
-    let Some(shown) = get(edit.active()) else { return };
-    if edit.common(&get).is_none() {
-        super::widgets::row(ui, label, param.help, |ui| {
+pub fn list(ui: &mut Ui, field: &NumberField<'_>, shown: &List, is_mixed: bool) -> Option<(Id, PointEdit)> {
+    let label = field.label;
+    if is_mixed {
+        super::widgets::row(ui, label, field.help, |ui| {
             ui.label(super::widgets::MIXED).on_hover_text("Different points: choose one node to edit its own");
         });
-        return;
+        return None;
     }
     ui.horizontal(|ui| {
-        ui.label(RichText::new(label).color(theme::WEAK)).on_hover_text(param.help);
+        ui.label(RichText::new(label).color(theme::WEAK)).on_hover_text(field.help);
         ui.label(RichText::new(format!("{}, {}", shown.rows.len(), shown.columns.join(" "))).color(theme::FAINT));
     });
     let mut done = None;
     ScrollArea::vertical().id_salt(label).max_height(MOST_HEIGHT).show(ui, |ui| {
         for index in 0..shown.rows.len() {
-            if let Some((widget, change)) = row(ui, &shown, index, param) {
-                done = Some((widget, index, change));
+            if let Some((widget, change)) = row(ui, shown, index, &field.limits) {
+                done = Some((widget, PointEdit { index, change }));
             }
         }
     });
-    if let Some((widget, index, change)) = done {
-        edit.change(widget, |node| {
-            if let Some(mut list) = get(node).filter(|list| index < list.rows.len()) {
-                apply(&mut list, index, change);
-                set(node, list);
-            }
-        });
-    }
+    done
 }
 
-fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::Id, PointChange)> {
+fn row(ui: &mut Ui, list: &List, index: usize, limits: &Limits) -> Option<(Id, PointChange)> {
     let mut done = None;
     ui.horizontal(|ui| {
         let gap = 4.0;
@@ -88,8 +90,8 @@ fn row(ui: &mut Ui, list: &List, index: usize, param: &Param) -> Option<(egui::I
         for (column, title) in list.columns.iter().enumerate() {
             let label = format!("{name} {title}");
             // The unit would take the room of the number.
-            let limits = crate::scene::Limits { unit: "", ..list.limits(column, &param.limits) };
-            let field = NumberField { label: &label, help: title, limits, default: None, taken_as: None };
+            let limits = Limits { unit: "", ..list.limits(column, limits) };
+            let field = NumberField { label: &label, help: title, limits, default: None };
             let answer = numbers::number(ui, &field, &label, list.rows[index][column], false, width);
             if let Some(value) = answer.value {
                 done = Some((answer.widget, PointChange::Set(column, value)));

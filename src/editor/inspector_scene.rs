@@ -3,29 +3,15 @@
 use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
-use super::{theme, widgets};
-use crate::document::Edit;
-use crate::scene::Environment;
-
-type ParamAccess = fn(&mut Environment) -> &mut [f64; 3];
+use super::{inspector_params, theme, widgets};
+use crate::scene::{Environment, ParamPath, Params};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
     ui.label(RichText::new("Scene").heading().color(egui::Color32::WHITE));
-    let rows: [(&str, &str, ParamAccess); 3] = [
-        ("Sky", "Background above", |e| &mut e.sky),
-        ("Horizon", "Background at and below the horizon", |e| &mut e.horizon),
-        ("Ambient", "Light from everywhere", |e| &mut e.ambient),
-    ];
     widgets::card(ui, "World", |ui| {
-        for (label, help, part) in rows {
-            let mut environment = session.document.scene().environment;
-            let value = *part(&mut environment);
-            let (widget, changed) = widgets::row(ui, label, help, |ui| widgets::color(ui, label, value, false));
-            if let Some(value) = changed {
-                *part(&mut environment) = value;
-                session.apply_by(widget, Edit::SetEnvironment(environment));
-            }
+        for param in Environment::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_environment(param.name));
         }
     });
     widgets::card(ui, "First steps", |ui| {

@@ -6,30 +6,14 @@ use glam::{DQuat, DVec3, EulerRot};
 
 use super::multi_edit::MultiEdit;
 use super::numbers::{self, FieldResponse, NumberField};
-use super::widgets;
-use crate::scene::limits::{POSITION, SCALE};
-use crate::scene::{Limits, Node, NodeKind};
+use super::{inspector_params, widgets};
+use crate::scene::{Limits, NodeKind, Part};
 
-const POSITION_FIELD: NumberField<'_> = NumberField {
-    label: "Position",
-    help: "Where the node stands in its group, in meters",
-    limits: POSITION,
-    default: Some(0.0),
-    taken_as: None,
-};
 const ROTATION_FIELD: NumberField<'_> = NumberField {
     label: "Rotation",
     help: "Degrees: Y turns like a compass, then X tilts, then Z rolls",
-    limits: Limits { soft: [-180.0, 180.0], hard: [-36_000.0, 36_000.0], unit: "°" },
+    limits: Limits::new([-180.0, 180.0], [-36_000.0, 36_000.0], "°"),
     default: Some(0.0),
-    taken_as: None,
-};
-const SCALE_FIELD: NumberField<'_> = NumberField {
-    label: "Scale",
-    help: "Factor along each local axis; negative mirrors, zero is refused",
-    limits: Limits { soft: SCALE.soft, hard: [-SCALE.hard[1], SCALE.hard[1]], unit: "" },
-    default: Some(1.0),
-    taken_as: Some(away_from_zero),
 };
 
 /// The angles last typed, with the quaternion they gave: while that stands, they are shown as typed.
@@ -43,10 +27,11 @@ impl EulerMemory {
     /// The card.
     pub fn show(&mut self, ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         widgets::card(ui, "Transform", |ui| {
-            edit.vector(ui, &POSITION_FIELD, |n| Some(n.transform.translation), |n, v| n.transform.translation = v);
+            inspector_params::row(ui, edit, Part::Transform, "translation");
             self.rotation_row(ui, edit);
-            let scalable = |n: &Node| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_));
-            edit.vector(ui, &SCALE_FIELD, |n| scalable(n).then_some(n.transform.scale), |n, v| n.transform.scale = v);
+            if let Some(mut scalable) = edit.only(|n| !matches!(n.kind, NodeKind::Light(_) | NodeKind::Camera(_))) {
+                inspector_params::row(ui, &mut scalable, Part::Transform, "scale");
+            }
         });
     }
 
@@ -94,11 +79,6 @@ fn to_quaternion(degrees: DVec3) -> DQuat {
     DQuat::from_euler(EulerRot::YXZ, r.y, r.x, r.z).normalize()
 }
 
-/// Zero would flatten space; the nearest factor allowed keeps the sign.
-fn away_from_zero(factor: f64) -> f64 {
-    if factor.abs() < SCALE.hard[0] { SCALE.soft[0].copysign(factor) } else { factor }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,12 +96,5 @@ mod tests {
         let memory = EulerMemory { rotation: to_quaternion(degrees), degrees };
         assert_eq!(memory.degrees(to_quaternion(degrees)), degrees);
         assert_ne!(memory.degrees(DQuat::IDENTITY), degrees);
-    }
-
-    #[test]
-    fn a_scale_of_zero_keeps_its_sign_and_becomes_small() {
-        assert_eq!(away_from_zero(0.0), SCALE.soft[0]);
-        assert_eq!(away_from_zero(-0.0), -SCALE.soft[0]);
-        assert_eq!(away_from_zero(-2.0), -2.0);
     }
 }

@@ -12,6 +12,7 @@
 //! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, command palette |
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
+//! | `inspector_params` | a row for any parameter, from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `legend` | what the colors of a picture mean that is not lit |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | what comes up in front |
@@ -45,6 +46,7 @@ mod inspector_blends;
 mod inspector_kinds;
 mod inspector_material;
 mod inspector_modifiers;
+mod inspector_params;
 mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;

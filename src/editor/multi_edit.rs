@@ -1,15 +1,14 @@
 //! Fields bound to the selected nodes: what is shown comes from the active node, what is changed
 //! changes every one of them, and values that differ show a dash.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use egui::Ui;
-use glam::DVec3;
 
 use super::edit_session::EditSession;
-use super::numbers::{self, FieldResponse, NumberField};
 use super::widgets;
-use crate::scene::{Node, NodeId};
+use crate::scene::{Node, NodeId, ParamPath, Part};
 
 /// Nodes edited together; never empty, the last is the active one.
 pub struct MultiEdit<'a> {
@@ -21,6 +20,15 @@ impl<'a> MultiEdit<'a> {
     /// Edits these nodes; `None` for none.
     pub fn new(session: &'a mut EditSession, nodes: Vec<Arc<Node>>) -> Option<Self> {
         if nodes.is_empty() { None } else { Some(Self { session, nodes }) }
+    }
+
+    /// A edit for those of the nodes that `keep` accepts; `None` where the active one is not among them.
+    pub fn only(&mut self, keep: impl Fn(&Node) -> bool) -> Option<MultiEdit<'_>> {
+        if !keep(self.active()) {
+            return None;
+        }
+        let nodes = self.nodes.iter().filter(|node| keep(node)).cloned().collect();
+        MultiEdit::new(self.session, nodes)
     }
 
     /// The node whose values are shown.
@@ -38,6 +46,12 @@ impl<'a> MultiEdit<'a> {
         self.nodes.iter().map(|n| n.id).collect()
     }
 
+    /// The paths of the nodes' parameter of this name.
+    pub fn paths(&self, part: Part, name: impl Into<Cow<'static, str>>) -> Vec<ParamPath> {
+        let name = name.into();
+        self.nodes.iter().map(|node| ParamPath::of_node(node.id, part, name.clone())).collect()
+    }
+
     /// Changes every node, as part of the widget's gesture.
     pub fn change(&mut self, widget: egui::Id, change: impl Fn(&mut Node)) {
         let ids = self.ids();
@@ -48,47 +62,6 @@ impl<'a> MultiEdit<'a> {
     pub fn common<T: PartialEq>(&self, get: impl Fn(&Node) -> T) -> Option<T> {
         let first = get(self.active());
         self.nodes.iter().all(|n| get(n) == first).then_some(first)
-    }
-
-    /// A row with one number.
-    pub fn number(
-        &mut self,
-        ui: &mut Ui,
-        field: &NumberField<'_>,
-        get: impl Fn(&Node) -> Option<f64>,
-        set: impl Fn(&mut Node, f64),
-    ) {
-        let Some(value) = get(self.active()) else { return };
-        let mixed = self.common(get).is_none();
-        let answer = widgets::row(ui, field.label, field.help, |ui| {
-            let width = ui.available_width();
-            numbers::number(ui, field, field.label, value, mixed, width)
-        });
-        if let Some(value) = answer.value {
-            self.change(answer.widget, |node| set(node, value));
-        }
-    }
-
-    /// A row with three numbers; only the component changed is set in each node.
-    pub fn vector(
-        &mut self,
-        ui: &mut Ui,
-        field: &NumberField<'_>,
-        get: impl Fn(&Node) -> Option<DVec3>,
-        set: impl Fn(&mut Node, DVec3),
-    ) {
-        let Some(value) = get(self.active()) else { return };
-        let mixed = std::array::from_fn(|axis| self.common(|n| get(n).map(|v| v[axis])).is_none());
-        let changed =
-            widgets::row(ui, field.label, field.help, |ui| numbers::vector(ui, field, value.to_array(), mixed));
-        if let Some((axis, FieldResponse { widget, value: Some(new) })) = changed {
-            self.change(widget, |node| {
-                if let Some(mut value) = get(node) {
-                    value[axis] = new;
-                    set(node, value);
-                }
-            });
-        }
     }
 
     /// A row with a drop-down list.
@@ -125,22 +98,6 @@ impl<'a> MultiEdit<'a> {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label.to_owned()));
         if response.changed() {
             self.change(response.id, |node| set(node, on));
-        }
-    }
-
-    /// A row with a color.
-    pub fn color(
-        &mut self,
-        ui: &mut Ui,
-        (label, help): (&str, &str),
-        get: impl Fn(&Node) -> Option<[f64; 3]>,
-        set: impl Fn(&mut Node, [f64; 3]),
-    ) {
-        let Some(value) = get(self.active()) else { return };
-        let mixed = self.common(get).is_none();
-        let (widget, changed) = widgets::row(ui, label, help, |ui| widgets::color(ui, label, value, mixed));
-        if let Some(value) = changed {
-            self.change(widget, |node| set(node, value));
         }
     }
 }

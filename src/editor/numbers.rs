@@ -7,6 +7,7 @@ use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
 use super::theme::MIXED;
 use super::{expression, theme};
 use crate::scene::Limits;
+use crate::scene::limits::Rule;
 
 /// What stands around a number.
 #[derive(Clone, Copy)]
@@ -19,17 +20,17 @@ pub struct NumberField<'a> {
     pub limits: Limits,
     /// What a reset gives; `None` where there is no natural one.
     pub default: Option<f64>,
-    /// What becomes of a number within the limits that cannot be taken as it is.
-    pub taken_as: Option<fn(f64) -> f64>,
 }
 
 impl NumberField<'_> {
     /// What becomes of a number.
     fn taken(&self, value: f64) -> f64 {
-        let value = if self.limits.is_whole() { value.round() } else { value };
-        let [least, most] = self.limits.hard;
-        let value = value.clamp(least, most);
-        self.taken_as.map_or(value, |taken| taken(value))
+        let Limits { soft, hard: [least, _], rule, .. } = self.limits;
+        let value = if rule == Rule::Whole { value.round() } else { value };
+        let [low, high] = self.limits.signed_range();
+        let value = value.clamp(low, high);
+        // The nearest magnitude that is offered keeps the sign.
+        if rule == Rule::Magnitude && value.abs() < least { soft[0].copysign(value) } else { value }
     }
 }
 
@@ -55,7 +56,7 @@ fn prefixed_number(
     width: f32,
     axis: Option<usize>,
 ) -> FieldResponse {
-    let Limits { soft, hard, unit } = field.limits;
+    let (Limits { soft, unit, .. }, hard) = (field.limits, field.limits.signed_range());
     let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
     // A value beyond the soft range, typed before, is not thrown back by a drag.
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
@@ -149,7 +150,7 @@ pub fn number_text(value: f64) -> String {
 
 /// Why a field does not show what was typed into it, if it does not.
 fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
-    let Limits { hard: [least, most], unit, .. } = field.limits;
+    let ([least, most], unit) = (field.limits.signed_range(), field.limits.unit);
     let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
     match expression::evaluate(typed) {
         None => Some(format!("{name}: “{typed}” is not a number, so it stays as it was.")),
@@ -244,7 +245,7 @@ fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::limits::{SIDES, SIZE};
+    use crate::scene::limits::{SCALE, SIDES, SIZE};
 
     #[test]
     fn whole_numbers_have_no_decimals_and_zero_has_no_sign() {
@@ -277,13 +278,22 @@ mod tests {
 
     #[test]
     fn what_becomes_of_a_number_is_said() {
-        let field = |limits, taken_as| NumberField { label: "", help: "", limits, default: None, taken_as };
+        let field = |limits| NumberField { label: "", help: "", limits, default: None };
         let said = |typed, field: &NumberField<'_>| refusal("N", typed, field);
-        assert_eq!(said("5", &field(SIDES, None)), None);
-        assert_eq!(said("5.4", &field(SIDES, None)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
-        assert!(said("2", &field(SIDES, None)).unwrap().contains("is less than 3"));
-        assert!(said("1/0", &field(SIZE, None)).unwrap().contains("is not a number"));
-        let off_zero: fn(f64) -> f64 = |v| if v == 0.0 { 0.01 } else { v };
-        assert_eq!(said("0", &field(SIZE, Some(off_zero))).unwrap(), "N: 0 is not possible; it is 0.01 m now.");
+        assert_eq!(said("5", &field(SIDES)), None);
+        assert_eq!(said("5.4", &field(SIDES)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
+        assert!(said("2", &field(SIDES)).unwrap().contains("is less than 3"));
+        assert!(said("1/0", &field(SIZE)).unwrap().contains("is not a number"));
+        assert_eq!(said("0", &field(SCALE)).unwrap(), "N: 0 is not possible; it is 0.01 now.");
+        assert_eq!(said("-2", &field(SCALE)), None);
+        assert!(said("-2e6", &field(SCALE)).unwrap().contains("is less than -1000000"));
+    }
+
+    #[test]
+    fn a_magnitude_of_zero_keeps_its_sign_and_becomes_small() {
+        let field = NumberField { label: "", help: "", limits: SCALE, default: None };
+        for (typed, taken) in [(0.0, SCALE.soft[0]), (-0.0, -SCALE.soft[0]), (-2.0, -2.0), (5e6, 1e6)] {
+            assert_eq!(field.taken(typed), taken);
+        }
     }
 }

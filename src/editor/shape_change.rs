@@ -119,7 +119,7 @@ impl Room {
 
 /// The shape with every number rounded to a micrometer, so that the inspector shows tidy values.
 fn rounded(mut shape: Shape) -> Shape {
-    use ParamValue::{File, Flag, List, Scalar, Text, Vector};
+    use ParamValue::{List, Scalar, Vector};
     let tidy = |v: f64| (v * 1e6).round() / 1e6;
     for (index, value) in shape.values().into_iter().enumerate() {
         let value = match value {
@@ -129,7 +129,7 @@ fn rounded(mut shape: Shape) -> Shape {
                 list.rows.iter_mut().flatten().for_each(|v| *v = tidy(*v));
                 List(list)
             }
-            other @ (Flag(_) | Text(_) | File(_)) => other,
+            other => other,
         };
         shape.set_value(index, value);
     }

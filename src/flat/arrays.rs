@@ -188,41 +188,13 @@ pub fn leaf_payload(kind: ShapeKind, params: &[ParamRow]) -> &[ParamRow] {
 }
 
 /// The data that the row at `row` says where to find.
-fn payload_at(params: &[ParamRow], row: usize) -> &[ParamRow] {
+pub(super) fn payload_at(params: &[ParamRow], row: usize) -> &[ParamRow] {
     let [count, offset, ..] = params[row].map(|v| v as usize);
     &params[row + offset..][..count]
 }
 
 /// Rows of a modifier before its own.
 pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
-
-/// Where the row that says where a modifier's data are stands among its own rows, the last of them; `None` for one without
-/// data.
-pub const fn modifier_payload_row(kind: ModifierKind) -> Option<usize> {
-    match kind {
-        ModifierKind::Displacement => Some(modifier_rows(kind) - 1),
-        _ => None,
-    }
-}
-
-/// The data of the modifier whose own rows `rows` begins with; empty for most.
-pub fn modifier_payload(kind: ModifierKind, rows: &[ParamRow]) -> &[ParamRow] {
-    modifier_payload_row(kind).map_or(&[], |row| payload_at(rows, row))
-}
-
-/// How many rows a modifier's own numbers take, and behind them where its data are.
-pub const fn modifier_rows(kind: ModifierKind) -> usize {
-    match kind {
-        // These are written as copies.
-        ModifierKind::Mirror | ModifierKind::Polar => 0,
-        ModifierKind::Repeat => 10,
-        ModifierKind::Recursion => 6,
-        ModifierKind::Bend => 4,
-        ModifierKind::Taper | ModifierKind::Displacement => 3,
-        ModifierKind::Twist | ModifierKind::Noise => 2,
-        ModifierKind::Elongate | ModifierKind::Round | ModifierKind::Onion | ModifierKind::Waves => 1,
-    }
-}
 
 /// A material as the GPU reads it.
 #[repr(C)]

@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
 use super::lower_bound::{LowerBound, fold_bounds};
+use super::modifier_table::modifier_payload_row;
 use super::operand::{Operand, Value};
 use super::stack::shallow;
 use crate::geometry::Aabb;

@@ -9,6 +9,7 @@
 //! | `operand`, `composition` | what folds are made of, and how it is put together |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modifier_table` | all that is known about a kind of modifier, in one row |
 //! | `modify` | what modifiers do to bounds and steps |
 //! | `moved` | the numbers of a component relative to a point near the eye |
 //! | `reflatten` | the same after a small change |
@@ -45,6 +46,7 @@ mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
+mod modifier_table;
 mod modify;
 mod moved;
 mod operand;
@@ -66,7 +68,10 @@ pub use error::FlattenError;
 pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
-pub use modify::{MAX_NEIGHBORS, REPEAT_REACH, is_copying};
+pub use modifier_table::{
+    changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
+};
+pub use modify::{MAX_NEIGHBORS, REPEAT_REACH};
 pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;

@@ -10,12 +10,12 @@ use std::rc::Rc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
-use super::arrays::modifier_rows;
 use super::lower_bound::LowerBound;
+use super::modifier_table::modifier_rows;
 use super::operand::Modified;
 use super::prepare::spline;
 use crate::geometry::Aabb;
-use crate::scene::{Axis, Heights, Modifier, ModifierKind};
+use crate::scene::{Axis, Heights, Modifier};
 
 /// Why a modifier does nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -418,9 +418,4 @@ fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64;
         }
     }
     out
-}
-
-/// Whether the kind evaluates its content several times.
-pub fn is_copying(kind: ModifierKind) -> bool {
-    matches!(kind, ModifierKind::Repeat | ModifierKind::Recursion)
 }

@@ -195,7 +195,7 @@ fn settled(mut node: Node) -> Node {
                         list.rows.iter_mut().flatten().for_each(|v| *v = round(*v));
                         ParamValue::List(list)
                     }
-                    other @ (ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_)) => other,
+                    other => other,
                 },
             );
         }

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::params::choices;
+
 /// One of the three axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -23,4 +25,11 @@ impl Axis {
     pub fn label(self) -> &'static str {
         ["X", "Y", "Z"][self as usize]
     }
+
+    /// Nothing that the name does not say.
+    fn help(self) -> &'static str {
+        ""
+    }
 }
+
+choices!(Axis);

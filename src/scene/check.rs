@@ -4,15 +4,12 @@
 use glam::DQuat;
 
 use super::drawn::text_fault;
-use super::limits::{
-    ATTENUATION, BLEND_RADIUS, CLIP, CONE, FOV, INTENSITY, Limits, MAX_APART, MAX_NAME, MAX_PATH, MAX_TEXT, POSITION,
-    RANGE, SCALE, SHININESS, STEPS, THICKNESS, UNIT,
-};
+use super::limits::{Limits, MAX_APART, MAX_NAME, MAX_PATH, Rule};
+use super::params::{Param, Params};
 use super::{
-    Attenuation, BlendOverride, CameraNode, Environment, Group, Light, LightKind, List, MAX_MODIFIERS, Material,
-    MeshNode, Modifier, ModifierValue, Node, NodeKind, ParamValue, SceneError, Shape,
+    Attenuation, CameraNode, Environment, Light, LightKind, List, MAX_MODIFIERS, Material, Node, NodeKind, ParamValue,
+    Part, SceneError, Shape,
 };
-use crate::geometry::Transform;
 
 /// A value that is not what it must be.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,12 +25,6 @@ impl Fault {
         Self { field: field.into(), reason: reason.into() }
     }
 
-    /// The same fault, seen from one level higher.
-    fn below(mut self, outer: &str) -> Self {
-        self.field = format!("{outer}.{}", self.field);
-        self
-    }
-
     /// The fault as the reason why an edit was refused.
     pub fn into_error(self, subject: impl Into<String>) -> SceneError {
         SceneError::Invalid { subject: subject.into(), field: self.field, reason: self.reason }
@@ -46,45 +37,67 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     if node.negative && !node.has_field() {
         return Err(Fault::new("negative", "only objects and groups can be negative"));
     }
-    if let BlendOverride::Radius(radius) = node.blend_override {
-        number("joining.radius", radius, &BLEND_RADIUS)?;
-    }
     if node.apart.len() > MAX_APART {
         return Err(Fault::new("apart", format!("must name at most {MAX_APART} nodes, not {}", node.apart.len())));
     }
-    transform(&node.transform).map_err(|f| f.below("transform"))?;
     if !node.modifiers.is_empty() && !node.has_field() {
         return Err(Fault::new("modifiers", "only objects and groups can have modifiers"));
     }
     if node.modifiers.len() > MAX_MODIFIERS {
         return Err(Fault::new("modifiers", format!("must be at most {MAX_MODIFIERS} of them")));
     }
-    for (i, slot) in node.modifiers.iter().enumerate() {
-        modifier(&slot.modifier).map_err(|f| f.below(&format!("modifiers[{i}].modifier")))?;
+    for part in Part::of(node) {
+        if let Some(params) = part.params(node) {
+            values(params).map_err(|fault| Fault { field: part.field(&fault.field), ..fault })?;
+        }
     }
-    match &node.kind {
-        NodeKind::Group(g) => group(g).map_err(|f| f.below("group")),
-        NodeKind::Object(o) => shape(&o.shape).map_err(|f| f.below("object.shape")),
-        NodeKind::Mesh(m) => mesh(m).map_err(|f| f.below("mesh")),
-        NodeKind::Light(l) => light(l).map_err(|f| f.below("light")),
-        NodeKind::Camera(c) => camera(c).map_err(|f| f.below("camera")),
-    }
+    let (part, together) = match &node.kind {
+        NodeKind::Group(_) => return Ok(()),
+        NodeKind::Object(o) => (Part::Shape, shape(&o.shape)),
+        NodeKind::Mesh(m) => (Part::Mesh, mesh_path(&m.path).map_err(|reason| Fault::new("path", reason))),
+        NodeKind::Light(l) => (Part::Light, light(l)),
+        NodeKind::Camera(c) => (Part::Camera, camera(c)),
+    };
+    together.map_err(|fault| Fault { field: part.field(&fault.field), ..fault })
 }
 
 /// Checks every value of a material.
 pub fn material(material: &Material) -> Result<(), Fault> {
     name(&material.name)?;
-    vector("albedo", material.albedo, &UNIT)?;
-    number("specular", material.specular, &UNIT)?;
-    number("shininess", material.shininess, &SHININESS)?;
-    vector("emission", material.emission, &INTENSITY)
+    values(material)
 }
 
 /// Checks every value of an environment.
 pub fn environment(environment: &Environment) -> Result<(), Fault> {
-    vector("sky", environment.sky, &INTENSITY)?;
-    vector("horizon", environment.horizon, &INTENSITY)?;
-    vector("ambient", environment.ambient, &INTENSITY)
+    values(environment)
+}
+
+/// Every parameter against the limits of its table.
+fn values(params: &dyn Params) -> Result<(), Fault> {
+    let mut found = Ok(());
+    params.visit("", &mut |prefix, param, value| {
+        if found.is_ok() {
+            found = self::value(param, &value)
+                .map_err(|fault| Fault { field: format!("{prefix}{}", fault.field), ..fault });
+        }
+    });
+    found
+}
+
+/// The value of a parameter against its limits.
+fn value(param: &Param, value: &ParamValue) -> Result<(), Fault> {
+    let (field, limits) = (param.name, &param.limits);
+    match value {
+        ParamValue::Scalar(v) => number(field, *v, limits),
+        ParamValue::Vector(v) => vector(field, v.to_array(), limits),
+        ParamValue::Count(n) => number(field, f64::from(*n), limits),
+        ParamValue::Counts(n) => vector(field, n.map(f64::from), limits),
+        ParamValue::Rotation(rotation) => unit_length(field, *rotation),
+        ParamValue::Text(text) => letters(field, text, limits),
+        ParamValue::List(list) => self::list(field, list, limits),
+        // A file was checked when it was read; the others are what their types allow.
+        ParamValue::Flag(_) | ParamValue::Flags(_) | ParamValue::Choice(_) | ParamValue::File(_) => Ok(()),
+    }
 }
 
 /// How far from 1 the length of a quaternion may be to be taken for a rotation at all.
@@ -139,42 +152,16 @@ fn name(name: &str) -> Result<(), Fault> {
     Ok(())
 }
 
-fn transform(transform: &Transform) -> Result<(), Fault> {
-    vector("translation", transform.translation.to_array(), &POSITION)?;
-    let length = transform.rotation.length();
+fn unit_length(field: &str, rotation: DQuat) -> Result<(), Fault> {
+    let length = rotation.length();
     if !length.is_finite() || (length - 1.0).abs() > UNIT_TOLERANCE {
-        return Err(Fault::new("rotation", format!("must be a quaternion of length 1, not of length {length}")));
-    }
-    for (i, factor) in transform.scale.to_array().into_iter().enumerate() {
-        if !SCALE.accept(factor.abs()) {
-            let [least, most] = SCALE.hard.map(plain);
-            let reason = format!("must be {least} to {most} in magnitude, not {}", plain(factor));
-            return Err(Fault::new(format!("scale[{i}]"), reason));
-        }
+        return Err(Fault::new(field, format!("must be a quaternion of length 1, not of length {length}")));
     }
     Ok(())
 }
 
-fn group(group: &Group) -> Result<(), Fault> {
-    number("blend.radius", group.blend.radius, &BLEND_RADIUS)?;
-    number("blend.steps", group.blend.steps.into(), &STEPS)?;
-    number("width", group.width, &THICKNESS)?;
-    number("depth", group.depth, &THICKNESS)?;
-    number("share", group.share, &UNIT)
-}
-
-/// Every parameter against the limits in its shape's own table.
+/// What the values of a shape must be together.
 fn shape(shape: &Shape) -> Result<(), Fault> {
-    for (param, value) in shape.kind().params().iter().zip(shape.values()) {
-        match value {
-            ParamValue::Scalar(v) => number(param.name, v, &param.limits)?,
-            ParamValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
-            // A file was checked when it was read.
-            ParamValue::Flag(_) | ParamValue::File(_) => {}
-            ParamValue::Text(text) => letters(param.name, &text)?,
-            ParamValue::List(list) => self::list(param.name, &list, &param.limits)?,
-        }
-    }
     if let Shape::Text { text, font, .. } = shape
         && let Some(reason) = text_fault(text, font)
     {
@@ -183,10 +170,10 @@ fn shape(shape: &Shape) -> Result<(), Fault> {
     Ok(())
 }
 
-fn letters(field: &str, text: &str) -> Result<(), Fault> {
-    let count = text.chars().count();
-    if count > MAX_TEXT {
-        return Err(Fault::new(field, format!("must be at most {MAX_TEXT} letters long, not {count}")));
+fn letters(field: &str, text: &str, limits: &Limits) -> Result<(), Fault> {
+    let (count, most) = (text.chars().count(), limits.hard[1]);
+    if count as f64 > most {
+        return Err(Fault::new(field, format!("must be at most {most} letters long, not {count}")));
     }
     if text.chars().any(|c| c.is_control() && c != '\n') {
         return Err(Fault::new(field, format!("must not hold control characters, such as in {text:?}")));
@@ -208,35 +195,13 @@ fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Every parameter against the limits in its modifier's own table.
-fn modifier(modifier: &Modifier) -> Result<(), Fault> {
-    for (param, value) in modifier.kind().params().iter().zip(modifier.values()) {
-        match value {
-            ModifierValue::Scalar(v) => number(param.name, v, &param.limits)?,
-            ModifierValue::Vector(v) => vector(param.name, v.to_array(), &param.limits)?,
-            ModifierValue::Count(n) => number(param.name, n.into(), &param.limits)?,
-            ModifierValue::Counts(n) => vector(param.name, n.map(f64::from), &param.limits)?,
-            // A file was checked when it was read.
-            ModifierValue::Flag(_) | ModifierValue::Flags(_) | ModifierValue::Axis(_) | ModifierValue::File(_) => {}
-        }
-    }
-    Ok(())
-}
-
-fn mesh(mesh: &MeshNode) -> Result<(), Fault> {
-    mesh_path(&mesh.path).map_err(|reason| Fault::new("path", reason))
-}
-
+/// What the values of a light must be together.
 fn light(light: &Light) -> Result<(), Fault> {
-    vector("color", light.color, &INTENSITY)?;
-    number("intensity", light.intensity, &INTENSITY)?;
     match &light.light {
         LightKind::Sun {} => Ok(()),
-        LightKind::Point { attenuation: a } => attenuation(a).map_err(|f| f.below("light.attenuation")),
+        LightKind::Point { attenuation: a } => attenuation(a),
         LightKind::Spot { attenuation: a, inner, outer } => {
-            attenuation(a).map_err(|f| f.below("light.attenuation"))?;
-            number("light.inner", *inner, &CONE)?;
-            number("light.outer", *outer, &CONE)?;
+            attenuation(a)?;
             if outer < inner {
                 let reason = format!("must be at least the inner angle of {inner}, not {outer}");
                 return Err(Fault::new("light.outer", reason));
@@ -247,21 +212,15 @@ fn light(light: &Light) -> Result<(), Fault> {
 }
 
 fn attenuation(attenuation: &Attenuation) -> Result<(), Fault> {
-    let Attenuation { constant, linear, quadratic, range } = *attenuation;
-    number("constant", constant, &ATTENUATION)?;
-    number("linear", linear, &ATTENUATION)?;
-    number("quadratic", quadratic, &ATTENUATION)?;
-    number("range", range, &RANGE)?;
+    let Attenuation { constant, linear, quadratic, .. } = *attenuation;
     if constant + linear + quadratic == 0.0 {
-        return Err(Fault::new("constant", "must not be 0 when linear and quadratic are 0"));
+        let reason = "must not be 0 when linear and quadratic are 0";
+        return Err(Fault::new("light.attenuation.constant", reason));
     }
     Ok(())
 }
 
 fn camera(camera: &CameraNode) -> Result<(), Fault> {
-    number("fov_y", camera.fov_y, &FOV)?;
-    number("near", camera.near, &CLIP)?;
-    number("far", camera.far, &CLIP)?;
     if camera.near >= camera.far {
         let reason = format!("must be more than the near limit of {}, not {}", camera.near, camera.far);
         return Err(Fault::new("far", reason));
@@ -275,8 +234,9 @@ fn number(field: &str, value: f64, limits: &Limits) -> Result<(), Fault> {
     }
     let ([least, most], unit) = (limits.hard, limits.unit);
     let space = if unit.is_empty() || unit == "°" { "" } else { " " };
+    let of_what = if limits.rule == Rule::Magnitude { " in magnitude" } else { "" };
     let (least, most, value) = (plain(least), plain(most), plain(value));
-    Err(Fault::new(field, format!("must be {least} to {most}{space}{unit}, not {value}")))
+    Err(Fault::new(field, format!("must be {least} to {most}{space}{unit}{of_what}, not {value}")))
 }
 
 /// A number for a message: with an exponent where it would have many zeros.
@@ -286,7 +246,8 @@ fn plain(value: f64) -> String {
 }
 
 fn vector(field: &str, values: [f64; 3], limits: &Limits) -> Result<(), Fault> {
-    values.iter().enumerate().try_for_each(|(i, v)| number(&format!("{field}[{i}]"), *v, limits))
+    let fault = values.iter().position(|v| !limits.accept(*v));
+    fault.map_or(Ok(()), |i| number(&format!("{field}[{i}]"), values[i], limits))
 }
 
 #[cfg(test)]
@@ -301,7 +262,6 @@ mod tests {
                 for bad in [f64::NAN, f64::INFINITY, param.limits.hard[0] - 1.0, param.limits.hard[1] * 1.01] {
                     let mut shape = kind.default_shape();
                     match &mut shape.values()[i] {
-                        ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_) => continue,
                         ParamValue::Scalar(_) => assert!(shape.set_value(i, ParamValue::Scalar(bad))),
                         ParamValue::Vector(_) => {
                             assert!(shape.set_value(i, ParamValue::Vector(glam::DVec3::new(0.5, bad, 0.5))))
@@ -310,6 +270,7 @@ mod tests {
                             list.rows[1][0] = bad;
                             assert!(shape.set_value(i, ParamValue::List(list.clone())));
                         }
+                        _ => continue,
                     }
                     let object = Object { shape, material: MaterialId(1) };
                     let fault = node(&Node::new("x", NodeKind::Object(object))).unwrap_err();
@@ -349,12 +310,11 @@ mod tests {
                 let bad = param.limits.hard[1] * 1.01 + 1.0;
                 let mut modifier = kind.default_modifier();
                 let value = match modifier.values()[i] {
-                    ModifierValue::Scalar(_) => ModifierValue::Scalar(f64::NAN),
-                    ModifierValue::Vector(_) => ModifierValue::Vector(glam::DVec3::new(1.0, bad, 1.0)),
-                    ModifierValue::Count(_) => ModifierValue::Count(bad as u32),
-                    ModifierValue::Counts(_) => ModifierValue::Counts([1, 1, bad as u32]),
-                    ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
-                    ModifierValue::Axis(_) | ModifierValue::File(_) => continue,
+                    ParamValue::Scalar(_) => ParamValue::Scalar(f64::NAN),
+                    ParamValue::Vector(_) => ParamValue::Vector(glam::DVec3::new(1.0, bad, 1.0)),
+                    ParamValue::Count(_) => ParamValue::Count(bad as u32),
+                    ParamValue::Counts(_) => ParamValue::Counts([1, 1, bad as u32]),
+                    _ => continue,
                 };
                 assert!(modifier.set_value(i, value));
                 let fault = node(&with(modifier)).unwrap_err();

@@ -42,6 +42,14 @@ pub enum SceneError {
     /// A table is not in depth-first pre-order.
     #[error("node {0} does not stand next to the other nodes of its group")]
     OutOfOrder(NodeId),
+    /// A parameter that is not there, or a value of another type, see [`super::ParamPath`].
+    #[error("{path}: {reason}")]
+    Param {
+        /// The path of the parameter.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A value is not what it must be, see [`super::check`].
     #[error("{subject}: {field}: {reason}")]
     Invalid {

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::limits::MAX_SCENE_PIXELS;
-use super::{Attached, Attachment, Heights, ModifierValue, Node, NodeKind, SceneError, Shape};
+use super::{Attached, Attachment, Heights, Node, NodeKind, ParamValue, SceneError, Shape};
 
 /// The images that a node holds.
 fn images(node: &Node) -> Vec<Attachment<Heights>> {
@@ -17,7 +17,7 @@ fn images(node: &Node) -> Vec<Attachment<Heights>> {
     };
     let values = node.modifiers.iter().flat_map(|slot| slot.modifier.values());
     let of_modifiers = values.filter_map(|value| match value {
-        ModifierValue::File(Attached::Heights(image)) => Some(image),
+        ParamValue::File(Attached::Heights(image)) => Some(image),
         _ => None,
     });
     shape.into_iter().chain(of_modifiers).filter(|image| image.content().is_some()).collect()

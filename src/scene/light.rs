@@ -3,26 +3,26 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// How a point or spot light weakens with distance d:
-/// 1 / (constant + linear d + quadratic d²), faded to zero at `range`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Attenuation {
-    /// Constant term.
-    pub constant: f64,
-    /// Per meter.
-    pub linear: f64,
-    /// Per square meter.
-    pub quadratic: f64,
-    /// Nothing is lit beyond this distance, in meters.
-    pub range: f64,
-}
+use super::limits::{ATTENUATION, CONE, INTENSITY, NO_LIMITS, RANGE};
+use super::params::{Variants, nested_params, nested_variants, param_rows, param_struct, param_variants};
 
-impl Default for Attenuation {
-    fn default() -> Self {
-        Self { constant: 1.0, linear: 0.0, quadratic: 0.1, range: 50.0 }
+param_struct! {
+    /// How a point or spot light weakens with distance d:
+    /// 1 / (constant + linear d + quadratic d²), faded to zero at `range`.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Attenuation {
+        /// Constant term of 1 / (constant + linear d + quadratic d²).
+        constant: f64 = 1.0, ATTENUATION;
+        /// Weakening per meter.
+        linear: f64 = 0.0, ATTENUATION;
+        /// Weakening per square meter.
+        quadratic: f64 = 0.1, ATTENUATION;
+        /// Nothing is lit beyond this distance.
+        range: f64 = 50.0, RANGE;
     }
 }
+nested_params!(Attenuation);
 
 /// What kind of light.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,39 +47,82 @@ pub enum LightKind {
     },
 }
 
-/// A light source.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Light {
-    /// Linear color.
-    pub color: [f64; 3],
-    /// Factor on the color.
-    pub intensity: f64,
-    /// Sun, point or spot.
-    pub light: LightKind,
+param_variants! { LightKind by |light| light.table(); {
+    LightKind::Sun {}
+    LightKind::Point { attenuation, }
+    LightKind::Spot { attenuation, inner, outer, }
+} }
+nested_variants!(LightKind, "Type", "Where the light comes from; it shines along the node's −Z.");
+
+impl LightKind {
+    /// A spot light as it is first.
+    fn spot() -> Self {
+        Self::Spot { attenuation: Attenuation::default(), inner: 20.0, outer: 30.0 }
+    }
+
+    /// What is known about its parameters; [`Attenuation`] has its own table.
+    fn table(&self) -> &'static [super::Param] {
+        match self {
+            Self::Spot { .. } => param_rows! {
+                /// Half angle within which the light is full.
+                ["inner"] f64 = 20.0, CONE.labeled("Inner angle");
+                /// Half angle at which the light has faded out; at least the inner angle.
+                ["outer"] f64 = 30.0, CONE.labeled("Outer angle");
+            },
+            _ => &[],
+        }
+    }
+}
+
+impl Variants for LightKind {
+    fn variants() -> Vec<(Self, &'static str, &'static str)> {
+        vec![
+            (LightKind::Sun {}, "Sun", "Parallel light, like the sun's."),
+            (LightKind::Point { attenuation: Attenuation::default() }, "Point", "From a point into every direction."),
+            (LightKind::spot(), "Spot", "From a point into a cone."),
+        ]
+    }
+
+    fn variant(&self) -> usize {
+        match self {
+            LightKind::Sun {} => 0,
+            LightKind::Point { .. } => 1,
+            LightKind::Spot { .. } => 2,
+        }
+    }
+}
+
+param_struct! {
+    /// A light source.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Light {
+        /// Linear color of the light.
+        color: [f64; 3] = [1.0; 3], INTENSITY.color();
+        /// Factor on the color.
+        intensity: f64 = 2.0, INTENSITY;
+        /// Sun, point or spot.
+        light: LightKind = LightKind::Sun {}, NO_LIMITS;
+    }
 }
 
 impl Light {
     /// White, of intensity 2.
     pub fn sun() -> Self {
-        Self { color: [1.0; 3], intensity: 2.0, light: LightKind::Sun {} }
+        Self::default()
     }
 }
 
-/// What surrounds the scene. Colors are linear.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Environment {
-    /// Background above, at the zenith.
-    pub sky: [f64; 3],
-    /// Background at and below the horizon.
-    pub horizon: [f64; 3],
-    /// Light from everywhere, times the albedo; from above in full, from below at half strength.
-    pub ambient: [f64; 3],
-}
-
-impl Default for Environment {
-    fn default() -> Self {
-        Self { sky: [0.055, 0.07, 0.095], horizon: [0.16, 0.175, 0.20], ambient: [0.26, 0.28, 0.32] }
+param_struct! {
+    /// What surrounds the scene. Colors are linear.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Environment {
+        /// Background above, at the zenith.
+        sky: [f64; 3] = [0.055, 0.07, 0.095], INTENSITY.color();
+        /// Background at and below the horizon.
+        horizon: [f64; 3] = [0.16, 0.175, 0.20], INTENSITY.color();
+        /// Light from everywhere, times the albedo; from above in full, from below at half strength.
+        ambient: [f64; 3] = [0.26, 0.28, 0.32], INTENSITY.color();
     }
 }

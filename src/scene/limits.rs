@@ -9,19 +9,57 @@ pub struct Limits {
     pub hard: [f64; 2],
     /// Unit shown behind the number.
     pub unit: &'static str,
+    /// Which of the numbers within the range have a meaning.
+    pub rule: Rule,
+}
+
+/// Which numbers have a meaning.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// All.
+    Any,
+    /// Whole ones.
+    Whole,
+    /// Those whose magnitude is within the range; the sign is free.
+    Magnitude,
 }
 
 impl Limits {
+    /// Any number within these ranges.
+    pub const fn new(soft: [f64; 2], hard: [f64; 2], unit: &'static str) -> Self {
+        Self { soft, hard, unit, rule: Rule::Any }
+    }
+
+    /// The same for whole numbers.
+    pub const fn whole(self) -> Self {
+        Self { rule: Rule::Whole, ..self }
+    }
+
+    /// The same for the magnitude of numbers of either sign.
+    pub const fn magnitude(self) -> Self {
+        Self { rule: Rule::Magnitude, ..self }
+    }
+
     /// Whether the value is finite and within the hard range.
     pub fn accept(&self, value: f64) -> bool {
+        let value = if self.rule == Rule::Magnitude { value.abs() } else { value };
         value.is_finite() && value >= self.hard[0] && value <= self.hard[1]
     }
 
     /// Whether only whole numbers mean something.
     pub fn is_whole(&self) -> bool {
-        [SIDES, ITERATIONS, POWER, SQUARES, OCTAVES, SEED, STEPS, COPIES].contains(self)
+        self.rule == Rule::Whole
+    }
+
+    /// The hard range with its sign: that of a magnitude reaches to both sides of 0.
+    pub fn signed_range(&self) -> [f64; 2] {
+        let [least, most] = self.hard;
+        if self.rule == Rule::Magnitude { [-most, most] } else { [least, most] }
     }
 }
+
+/// For what is not a number.
+pub const NO_LIMITS: Limits = Limits::new([0.0, 1.0], [f64::MIN, f64::MAX], "");
 
 /// Most nodes in a scene.
 pub const MAX_NODES: usize = 100_000;
@@ -59,78 +97,80 @@ pub const MAX_HEIGHTS: usize = 256;
 
 /// Longest text, in letters.
 pub const MAX_TEXT: usize = 64;
+/// Length of a text, in letters.
+pub const LETTERS: Limits = Limits::new([0.0, MAX_TEXT as f64], [0.0, MAX_TEXT as f64], "").whole();
+/// Length of the path of a file, in letters.
+pub const PATH_LENGTH: Limits = Limits::new([1.0, MAX_PATH as f64], [1.0, MAX_PATH as f64], "").whole();
 
 /// Radii, heights, edge lengths.
-pub const SIZE: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 1e6], unit: "m" };
+pub const SIZE: Limits = Limits::new([0.0, 5.0], [0.0, 1e6], "m");
 /// Thicknesses and roundings.
-pub const THICKNESS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
+pub const THICKNESS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
 /// Coordinates.
-pub const POSITION: Limits = Limits { soft: [-10.0, 10.0], hard: [-1e9, 1e9], unit: "m" };
+pub const POSITION: Limits = Limits::new([-10.0, 10.0], [-1e9, 1e9], "m");
 /// Magnitude of a scale factor; its sign is free, zero is refused.
-pub const SCALE: Limits = Limits { soft: [0.01, 10.0], hard: [1e-6, 1e6], unit: "" };
+pub const SCALE: Limits = Limits::new([0.01, 10.0], [1e-6, 1e6], "").magnitude();
 /// Length of a wave or a hill.
-pub const WAVELENGTH: Limits = Limits { soft: [0.1, 10.0], hard: [1e-2, 1e6], unit: "m" };
+pub const WAVELENGTH: Limits = Limits::new([0.1, 10.0], [1e-2, 1e6], "m");
 /// Layers of noise, and waves; whole numbers.
-pub const OCTAVES: Limits = Limits { soft: [1.0, 10.0], hard: [1.0, 10.0], unit: "" };
+pub const OCTAVES: Limits = Limits::new([1.0, 10.0], [1.0, 10.0], "").whole();
 /// Seeds of what is random; whole numbers.
-pub const SEED: Limits = Limits { soft: [0.0, 100.0], hard: [0.0, 1e6], unit: "" };
+pub const SEED: Limits = Limits::new([0.0, 100.0], [0.0, 1e6], "").whole();
 /// Angles.
-pub const TURN: Limits = Limits { soft: [-180.0, 180.0], hard: [-3600.0, 3600.0], unit: "°" };
-/// What is counted or only on or off.
-pub const COUNT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
+pub const TURN: Limits = Limits::new([-180.0, 180.0], [-3600.0, 3600.0], "°");
 /// Blend radius.
-pub const BLEND_RADIUS: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1e6], unit: "m" };
+pub const BLEND_RADIUS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
 /// Steps and columns of a blend.
-pub const STEPS: Limits = Limits { soft: [1.0, 12.0], hard: [1.0, 64.0], unit: "" };
+pub const STEPS: Limits = Limits::new([1.0, 12.0], [1.0, 64.0], "").whole();
 /// Most siblings that a node names as not to be blended with.
 pub const MAX_APART: usize = 64;
 /// Shares and reflectances.
-pub const UNIT: Limits = Limits { soft: [0.0, 1.0], hard: [0.0, 1.0], unit: "" };
+pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
 /// Light intensities and emitted colors.
-pub const INTENSITY: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 1e6], unit: "" };
+pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
 /// Blinn-Phong exponent.
-pub const SHININESS: Limits = Limits { soft: [1.0, 256.0], hard: [1.0, 1e4], unit: "" };
+pub const SHININESS: Limits = Limits::new([1.0, 256.0], [1.0, 1e4], "");
 /// Reach of a point or spot light.
-pub const RANGE: Limits = Limits { soft: [0.1, 100.0], hard: [1e-3, 1e9], unit: "m" };
+pub const RANGE: Limits = Limits::new([0.1, 100.0], [1e-3, 1e9], "m");
 /// Attenuation coefficients.
-pub const ATTENUATION: Limits = Limits { soft: [0.0, 2.0], hard: [0.0, 1e6], unit: "" };
+pub const ATTENUATION: Limits = Limits::new([0.0, 2.0], [0.0, 1e6], "");
 /// Half angle of a spot light's cone, in degrees.
-pub const CONE: Limits = Limits { soft: [0.0, 89.0], hard: [0.0, 89.9], unit: "°" };
+pub const CONE: Limits = Limits::new([0.0, 89.0], [0.0, 89.9], "°");
 /// Half of an arc, in degrees.
-pub const ARC: Limits = Limits { soft: [0.0, 180.0], hard: [0.0, 180.0], unit: "°" };
+pub const ARC: Limits = Limits::new([0.0, 180.0], [0.0, 180.0], "°");
 /// Half angle of a part of a ball, in degrees: less than all of it, whose sides would meet.
-pub const SECTOR: Limits = Limits { soft: [0.0, 179.0], hard: [0.0, 179.9], unit: "°" };
+pub const SECTOR: Limits = Limits::new([0.0, 179.0], [0.0, 179.9], "°");
 /// Sides of a polygon, points of a star.
-pub const SIDES: Limits = Limits { soft: [3.0, 12.0], hard: [3.0, 64.0], unit: "" };
+pub const SIDES: Limits = Limits::new([3.0, 12.0], [3.0, 64.0], "").whole();
 /// How often a fractal repeats itself.
-pub const ITERATIONS: Limits = Limits { soft: [0.0, 5.0], hard: [0.0, 8.0], unit: "" };
+pub const ITERATIONS: Limits = Limits::new([0.0, 5.0], [0.0, 8.0], "").whole();
 /// The power of a Mandelbulb; a whole number.
-pub const POWER: Limits = Limits { soft: [2.0, 12.0], hard: [2.0, 16.0], unit: "" };
+pub const POWER: Limits = Limits::new([2.0, 12.0], [2.0, 16.0], "").whole();
 /// How often a Julia set squares and a Mandelbulb is raised to its power.
-pub const SQUARES: Limits = Limits { soft: [0.0, 10.0], hard: [0.0, 16.0], unit: "" };
+pub const SQUARES: Limits = Limits::new([0.0, 10.0], [0.0, 16.0], "").whole();
 /// Each number of a Julia set's constant.
-pub const CONSTANT: Limits = Limits { soft: [-1.0, 1.0], hard: [-2.0, 2.0], unit: "" };
+pub const CONSTANT: Limits = Limits::new([-1.0, 1.0], [-2.0, 2.0], "");
 /// Sizes of a Kleinian set, in its own unit.
-pub const FOLD: Limits = Limits { soft: [0.0, 1.5], hard: [0.0, 10.0], unit: "" };
+pub const FOLD: Limits = Limits::new([0.0, 1.5], [0.0, 10.0], "");
 /// How much of a Kleinian set is shown, in its own unit.
-pub const REACH: Limits = Limits { soft: [0.5, 4.0], hard: [0.1, 10.0], unit: "" };
+pub const REACH: Limits = Limits::new([0.5, 4.0], [0.1, 10.0], "");
 /// Vertical angle of view, in degrees.
-pub const FOV: Limits = Limits { soft: [10.0, 120.0], hard: [0.1, 170.0], unit: "°" };
+pub const FOV: Limits = Limits::new([10.0, 120.0], [0.1, 170.0], "°");
 /// Near and far limits of a camera.
-pub const CLIP: Limits = Limits { soft: [1e-3, 1e4], hard: [1e-6, 1e9], unit: "m" };
+pub const CLIP: Limits = Limits::new([1e-3, 1e4], [1e-6, 1e9], "m");
 /// Distance from one copy to the next, and lengths of waves.
-pub const SPACING: Limits = Limits { soft: [0.01, 5.0], hard: [1e-6, 1e6], unit: "m" };
+pub const SPACING: Limits = Limits::new([0.01, 5.0], [1e-6, 1e6], "m");
 /// Numbers of copies.
-pub const COPIES: Limits = Limits { soft: [0.0, 16.0], hard: [0.0, 1e6], unit: "" };
+pub const COPIES: Limits = Limits::new([0.0, 16.0], [0.0, 1e6], "").whole();
 /// Angles in degrees.
-pub const ANGLE: Limits = Limits { soft: [-180.0, 180.0], hard: [-1e4, 1e4], unit: "°" };
+pub const ANGLE: Limits = Limits::new([-180.0, 180.0], [-1e4, 1e4], "°");
 /// Angles per length, in degrees per meter.
-pub const CURVATURE: Limits = Limits { soft: [-360.0, 360.0], hard: [-3.6e4, 3.6e4], unit: "°/m" };
+pub const CURVATURE: Limits = Limits::new([-360.0, 360.0], [-3.6e4, 3.6e4], "°/m");
 /// Change of width per height.
-pub const TAPER: Limits = Limits { soft: [-1.0, 1.0], hard: [-1e3, 1e3], unit: "/m" };
+pub const TAPER: Limits = Limits::new([-1.0, 1.0], [-1e3, 1e3], "/m");
 /// How far a displacement moves the surface.
-pub const AMPLITUDE: Limits = Limits { soft: [0.0, 0.5], hard: [0.0, 1e6], unit: "m" };
+pub const AMPLITUDE: Limits = Limits::new([0.0, 0.5], [0.0, 1e6], "m");
 /// The same, outward or inward.
-pub const DISPLACEMENT: Limits = Limits { soft: [-0.5, 0.5], hard: [-1e6, 1e6], unit: "m" };
+pub const DISPLACEMENT: Limits = Limits::new([-0.5, 0.5], [-1e6, 1e6], "m");
 /// Width of what is repeated side by side.
-pub const TILE: Limits = Limits { soft: [0.1, 5.0], hard: [1e-4, 1e6], unit: "m" };
+pub const TILE: Limits = Limits::new([0.1, 5.0], [1e-4, 1e6], "m");

@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::limits::{INTENSITY, SHININESS, UNIT};
+use super::params::param_struct;
 use super::whole;
 
 /// Stable identity of a material; never reused within a document.
@@ -22,27 +24,30 @@ impl std::fmt::Display for MaterialId {
     }
 }
 
-/// Lambert diffuse with a Blinn-Phong highlight. Colors are linear Rec. 709.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Material {
-    /// Identity.
-    pub id: MaterialId,
-    /// Name for people.
-    pub name: String,
-    /// Diffuse reflectance, 0 to 1 per channel.
-    pub albedo: [f64; 3],
-    /// Strength of the highlight, 0 (Lambert) to 1.
-    pub specular: f64,
-    /// Blinn-Phong exponent, from 1.
-    pub shininess: f64,
-    /// Emitted color.
-    pub emission: [f64; 3],
+param_struct! {
+    /// Lambert diffuse with a Blinn-Phong highlight. Colors are linear Rec. 709.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Material [
+        /// Identity.
+        id: MaterialId = MaterialId(1);
+        /// Name for people.
+        name: String = "Clay".into();
+    ] {
+        /// Diffuse reflectance, 0 to 1 per channel.
+        albedo: [f64; 3] = [0.6; 3], UNIT.color().labeled("Base color");
+        /// Strength of the highlight; 0 is matte.
+        specular: f64 = 0.25, UNIT;
+        /// Blinn-Phong exponent: larger is a smaller, sharper highlight.
+        shininess: f64 = 48.0, SHININESS.labeled("Sharpness");
+        /// Light that it emits.
+        emission: [f64; 3] = [0.0; 3], INTENSITY.color();
+    }
 }
 
 impl Material {
     /// A matte plastic of the given color.
     pub fn new(id: MaterialId, name: impl Into<String>, albedo: [f64; 3]) -> Self {
-        Self { id, name: name.into(), albedo, specular: 0.25, shininess: 48.0, emission: [0.0; 3] }
+        Self { id, name: name.into(), albedo, ..Self::default() }
     }
 }

@@ -4,6 +4,8 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
+use super::limits::{CLIP, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT};
+use super::params::{param_struct, param_table};
 use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
 use crate::geometry::Transform;
 
@@ -122,23 +124,25 @@ pub enum NodeKind {
     Camera(CameraNode),
 }
 
-/// Joins its children with one operator, in their order.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Group {
-    /// How each later child joins what precedes it.
-    pub operator: Operator,
-    /// How round the blends are, those of negative children too.
-    pub blend: Blend,
-    /// Full width of grooves and tongues, diameter of pipes, in meters.
-    #[serde(default = "usual_width", skip_serializing_if = "is_usual_width")]
-    pub width: f64,
-    /// Depth of grooves and engravings, height of tongues, in meters.
-    #[serde(default = "usual_depth", skip_serializing_if = "is_usual_depth")]
-    pub depth: f64,
-    /// How far a morph has come, from 0, the first child, to 1, the next.
-    #[serde(default = "half", skip_serializing_if = "is_half")]
-    pub share: f64,
+param_struct! {
+    /// Joins its children with one operator, in their order.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Group {
+        /// How each later child joins what precedes it.
+        operator: Operator = Operator::Union, NO_LIMITS;
+        /// How round the blends are, those of negative children too.
+        blend: Blend = Blend::HARD, NO_LIMITS;
+        /// Full width of grooves and tongues, diameter of pipes.
+        #[serde(default = "usual_width", skip_serializing_if = "is_usual_width")]
+        width: f64 = usual_width(), THICKNESS;
+        /// Depth of grooves and engravings, height of tongues.
+        #[serde(default = "usual_depth", skip_serializing_if = "is_usual_depth")]
+        depth: f64 = usual_depth(), THICKNESS;
+        /// How far a morph has come, from 0, the first child, to 1, the next.
+        #[serde(default = "half", skip_serializing_if = "is_half")]
+        share: f64 = half(), UNIT;
+    }
 }
 
 const fn usual_width() -> f64 {
@@ -195,14 +199,41 @@ pub struct MeshNode {
     pub material: Option<MaterialId>,
 }
 
-/// A viewpoint; looks along local −Z with +Y up.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CameraNode {
-    /// Full vertical angle of view, in degrees.
-    pub fov_y: f64,
-    /// Nearest distance seen, in meters: from the eye along the ray of each pixel, as depth is, not along the view axis.
-    pub near: f64,
-    /// Farthest distance seen, in meters, along the ray of each pixel.
-    pub far: f64,
+param_struct! {
+    /// A viewpoint; looks along local −Z with +Y up.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct CameraNode {
+        /// Full vertical angle of view.
+        fov_y: f64 = 40.0, FOV.labeled("Field of view");
+        /// Nothing nearer is seen: from the eye along the ray of each pixel, as depth is, not along the view axis.
+        near: f64 = 0.01, CLIP.labeled("Clip start");
+        /// Nothing farther is seen, along the ray of each pixel.
+        far: f64 = 1_000.0, CLIP.labeled("Clip end");
+    }
 }
+
+param_table! { Node {
+    /// Hidden, with all below it, when off.
+    visible: bool = true, NO_LIMITS.fixed();
+    /// Protected from selection and change in the viewport.
+    locked: bool = false, NO_LIMITS.fixed();
+    /// Cut away from what stands before it in its group, instead of joined; objects and groups only.
+    negative: bool = false, NO_LIMITS.fixed();
+    /// How this node blends with its siblings; objects and groups only.
+    blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blends");
+} }
+
+param_table! { Transform {
+    /// Where the node stands in its group.
+    translation: DVec3 = DVec3::ZERO, POSITION.labeled("Position");
+    /// A unit quaternion.
+    rotation: DQuat = DQuat::IDENTITY, NO_LIMITS;
+    /// Factor along each local axis; negative mirrors, zero is refused.
+    scale: DVec3 = DVec3::ONE, SCALE;
+} }
+
+param_table! { MeshNode {
+    /// A .gltf or .glb file, relative to the scene's folder, with forward slashes.
+    path: String = String::new(), PATH_LENGTH.labeled("File");
+} }

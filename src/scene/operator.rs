@@ -1,7 +1,15 @@
 //! How the operands of a group are joined.
 
+use std::sync::LazyLock;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::limits::{BLEND_RADIUS, NO_LIMITS, STEPS};
+use super::params::{
+    Choice, Param, ParamField, ParamValue, Slot, Visit, choices, choices_of, named, nested_params, param_rows,
+    param_struct,
+};
 
 /// An operator. It folds over the children in the artist's order: the first child is the start, `a`; each
 /// later child, `b`, is joined to what stands so far.
@@ -220,22 +228,37 @@ impl RadiusUnit {
             Self::Size => "Relative",
         }
     }
+
+    /// What the radius becomes, for people.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Meters => "The same length whatever the size",
+            Self::Size => "Times the largest half extent of the smaller operand: scales along",
+        }
+    }
 }
 
-/// Kernel and radius of a blend; radius 0 is the hard operator.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Blend {
-    /// The curve.
-    pub kernel: BlendKernel,
-    /// Fillet radius, see [`BlendKernel::THICKENING`].
-    pub radius: f64,
-    /// What the radius is measured in.
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub unit: RadiusUnit,
-    /// How many steps or columns; only those kernels have them.
-    #[serde(default = "few_steps", skip_serializing_if = "is_few_steps", deserialize_with = "super::whole::read")]
-    pub steps: u32,
+choices!(Operator);
+choices!(BlendKernel);
+choices!(RadiusUnit);
+nested_params!(Blend);
+
+param_struct! {
+    /// Kernel and radius of a blend; radius 0 is the hard operator.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Blend {
+        /// The curve of the blend; all thicken equally.
+        kernel: BlendKernel = BlendKernel::Circular, NO_LIMITS.labeled("Blend curve");
+        /// Fillet radius: how round the blends are; 0 is a sharp edge.
+        radius: f64 = 0.0, BLEND_RADIUS.labeled("Blend radius");
+        /// What the radius is measured in.
+        #[serde(default, skip_serializing_if = "is_default")]
+        unit: RadiusUnit = RadiusUnit::Meters, NO_LIMITS.labeled("Radius in");
+        /// How many steps or columns; only those kernels have them.
+        #[serde(default = "few_steps", skip_serializing_if = "is_few_steps", deserialize_with = "super::whole::read")]
+        steps: u32 = few_steps(), STEPS;
+    }
 }
 
 impl Blend {
@@ -276,6 +299,100 @@ pub enum BlendOverride {
     Hard,
     /// With this radius, in the unit of its group.
     Radius(f64),
+}
+
+impl BlendOverride {
+    /// The radius that a node gets first when it is to have its own.
+    const FIRST_RADIUS: f64 = 0.1;
+    /// Every way, in the order of the user interface.
+    const ALL: [Self; 3] = [Self::Inherit, Self::Hard, Self::Radius(Self::FIRST_RADIUS)];
+
+    /// Name for people.
+    fn label(self) -> &'static str {
+        match self {
+            Self::Inherit => "As its group",
+            Self::Hard => "Hard",
+            Self::Radius(_) => "Own radius",
+        }
+    }
+
+    /// What it does, for people.
+    fn help(self) -> &'static str {
+        match self {
+            Self::Inherit => "With the radius of its group",
+            Self::Hard => "Without a blend",
+            Self::Radius(_) => "With a radius of its own, in its group's unit",
+        }
+    }
+
+    /// What is known about the radius.
+    fn radius_param() -> &'static Param {
+        let table = param_rows! {
+            /// The blend radius of this node's blend.
+            ["radius"] f64 = BlendOverride::FIRST_RADIUS, BLEND_RADIUS.labeled("Own radius");
+        };
+        &table[0]
+    }
+}
+
+/// A choice, below which stands the radius where there is one.
+impl ParamField for BlendOverride {
+    const ANIMATABLE: bool = false;
+
+    fn choices() -> &'static [Choice] {
+        static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
+            // The one with a radius is no word in files but holds a number; its key is the name of that.
+            let mut choices = choices_of(&BlendOverride::ALL, BlendOverride::label, BlendOverride::help);
+            choices[2].key = "radius".into();
+            choices
+        });
+        &CHOICES
+    }
+
+    fn to_value(&self) -> Option<ParamValue> {
+        let same = |other: &Self| std::mem::discriminant(self) == std::mem::discriminant(other);
+        Self::ALL.iter().position(same).map(|index| ParamValue::Choice(&Self::choices()[index].key))
+    }
+
+    fn from_value(value: ParamValue) -> Option<Self> {
+        let ParamValue::Choice(key) = value else { return None };
+        Self::choices().iter().position(|choice| choice.key == key).map(|index| Self::ALL[index])
+    }
+
+    fn visit_field(&self, slot: Slot<'_>, visit: &mut Visit<'_>) {
+        if let (Some(value), Some(param)) = (self.to_value(), named(slot.table, slot.name)) {
+            visit(slot.prefix, param, value);
+        }
+        if let Self::Radius(radius) = self {
+            visit(&slot.inner_prefix(), Self::radius_param(), ParamValue::Scalar(*radius));
+        }
+    }
+
+    fn find_field(&self, slot: Slot<'_>, below: &str) -> Option<&'static Param> {
+        match (below, self) {
+            ("", _) => named(slot.table, slot.name),
+            (".radius", Self::Radius(_)) => Some(Self::radius_param()),
+            _ => None,
+        }
+    }
+
+    fn get_field(&self, below: &str) -> Option<ParamValue> {
+        match (below, self) {
+            ("", _) => self.to_value(),
+            (".radius", Self::Radius(radius)) => Some(ParamValue::Scalar(*radius)),
+            _ => None,
+        }
+    }
+
+    fn set_field(&mut self, below: &str, value: ParamValue) -> bool {
+        let new = match (below, &*self, value) {
+            ("", Self::Radius(_), ParamValue::Choice("radius")) => Some(*self),
+            ("", _, value) => Self::from_value(value),
+            (".radius", Self::Radius(_), ParamValue::Scalar(radius)) => Some(Self::Radius(radius)),
+            _ => None,
+        };
+        new.map(|new| *self = new).is_some()
+    }
 }
 
 const fn few_steps() -> u32 {

@@ -12,21 +12,21 @@ use super::attachment::Attachment;
 use super::drawn::{Corners, Points};
 use super::heights::Heights;
 use super::limits::{
-    ARC, CONE, CONSTANT, COUNT, FOLD, ITERATIONS, OCTAVES, POSITION, POWER, REACH, SECTOR, SEED, SIDES, SIZE, SQUARES,
-    THICKNESS, TURN, UNIT, WAVELENGTH,
+    ARC, CONE, CONSTANT, FOLD, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES, POSITION, POWER, REACH, SECTOR, SEED, SIDES,
+    SIZE, SQUARES, THICKNESS, TURN, UNIT, WAVELENGTH,
 };
 use crate::font::Face;
 
 #[macro_use]
 mod define;
 mod extent;
-mod param;
+mod packed;
 
 #[cfg(test)]
 mod tests;
 
-use param::ParamField;
-pub use param::{Degrees, LIST_COLUMNS, List, Param, ParamValue, SHAPE_FLOATS, Sides};
+use packed::Packed;
+pub use packed::{Degrees, SHAPE_FLOATS, Sides};
 
 /// Rows of the parameters of a shape with data.
 const DATA_PARAMETER_ROWS: usize = 2;
@@ -47,7 +47,7 @@ shapes! {
         /// Edge lengths.
         size: [f64; 3] = [1.0; 3], SIZE;
         /// Radius of the edges; at most half the shortest edge takes effect.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// The twelve edges of a cuboid, as bars.
     BoxFrame = sdf_box_frame, "Box frame" {
@@ -70,7 +70,7 @@ shapes! {
         /// From cap to cap.
         height: f64 = 1.0, SIZE;
         /// Radius of the edges; at most the radius and half the height take effect.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A cone along the Y axis, cut flat at both ends.
     CappedCone = sdf_capped_cone, "Truncated cone" {
@@ -159,7 +159,7 @@ shapes! {
         /// From cap to cap.
         height: f64 = 0.7, SIZE;
         /// Radius of the edges; at most the radius and half the height take effect.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A pyramid over a square, its tip on the Y axis.
     Pyramid = sdf_pyramid, "Pyramid" {
@@ -177,7 +177,7 @@ shapes! {
         /// From cap to cap.
         height: f64 = 0.4, SIZE;
         /// Radius of the edges; at most what fits into the rhombus and half the height take effect.
-        rounding: f64 = 0.06, THICKNESS;
+        rounding: f64 = 0.06, THICKNESS.labeled("Bevel");
     }
     /// A ball cut flat; what is above the cut stays.
     CutSphere = sdf_cut_sphere, "Dome" {
@@ -251,7 +251,7 @@ shapes! {
         /// From cap to cap.
         height: f64 = 0.3, SIZE;
         /// Radius of the edges; at most what fits into the star and half the height take effect.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A ring around the Y axis with a regular polygon as its section.
     PolygonRing = sdf_polygon_ring, "Polygon ring" {
@@ -311,40 +311,41 @@ shapes! {
         /// Added to the radius of each point.
         radius: f64 = 0.12, SIZE;
         /// Whether the curve returns to its first point.
-        closed: bool = false, COUNT;
+        closed: bool = false, NO_LIMITS;
     }
     /// A drawn profile in the XY plane, as thick as its depth along Z.
     Extrusion = sdf_extrusion with data, "Extrusion" {
         /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::star(5, 0.6, 0.28), POSITION;
         /// Whether the profile is a smooth curve through the corners.
-        smooth: bool = false, COUNT;
+        smooth: bool = false, NO_LIMITS;
         /// From face to face.
         depth: f64 = 0.3, SIZE;
         /// Radius of the edges of the faces, inward.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// A drawn profile in the XY plane, turned around the Y axis; what lies on the other side of the axis is left out.
     Revolution = sdf_revolution with data, "Lathe" {
         /// Corners of the profile; the last is joined to the first.
         corners: Corners = Corners::vase(), POSITION;
         /// Whether the profile is a smooth curve through the corners.
-        smooth: bool = false, COUNT;
+        smooth: bool = false, NO_LIMITS;
         /// How far the profile is moved away from the axis.
         offset: f64 = 0.0, POSITION;
     }
     /// A text of solid letters in the XY plane, as thick as its depth along Z.
     Text = sdf_text with data, "Text" {
         /// What is written; `\n` begins a line.
-        text: String = "Text".to_owned(), COUNT;
+        text: String = "Text".to_owned(), LETTERS;
         /// The font; letters that it does not have come from the editor's.
-        font: Attachment<Face> = Attachment::NONE, COUNT;
+        #[serde(default)]
+        font: Attachment<Face> = Attachment::NONE, NO_LIMITS;
         /// Height of the font; capital letters have seven tenths of it.
         size: f64 = 0.6, SIZE;
         /// From face to face.
         depth: f64 = 0.15, SIZE;
         /// Radius of the edges of the faces, inward.
-        rounding: f64 = 0.0, THICKNESS;
+        rounding: f64 = 0.0, THICKNESS.labeled("Bevel");
     }
     /// Hills: fractal noise over a rectangle, solid down to a flat bottom.
     Terrain = sdf_terrain with data, "Terrain" {
@@ -364,7 +365,8 @@ shapes! {
     /// A landscape from an image, the brighter the higher; solid down to a flat bottom.
     Heightmap = sdf_heightmap with data, "Heightmap" {
         /// Its pixels are heights; an image larger than 256 pixels is made smaller.
-        image: Attachment<Heights> = Attachment::NONE, COUNT;
+        #[serde(default)]
+        image: Attachment<Heights> = Attachment::NONE, NO_LIMITS;
         /// Width, depth of the ground below what is black, length.
         size: [f64; 3] = [2.0, 0.2, 2.0], SIZE;
         /// Of what is white above what is black.

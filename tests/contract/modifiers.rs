@@ -5,8 +5,8 @@ use isolith::flat::eval::{field, gradient};
 use isolith::flat::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::scene::{
-    Attachment, Axis, Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, ModifierValue, Node, NodeId,
-    NodeKind, Object, Operator, Scene, Shape,
+    Attachment, Axis, Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object,
+    Operator, ParamValue, Scene, Shape,
 };
 
 use super::rules::{gradient_is_right, steps_are_safe};
@@ -46,8 +46,8 @@ pub fn modified(modifiers: &[Modifier]) -> Scene {
 pub fn usual(kind: ModifierKind) -> Modifier {
     let (mut modifier, mut random) = (kind.default_modifier(), Random::new(kind as u64));
     for (index, value) in modifier.values().into_iter().enumerate() {
-        if let ModifierValue::File(file) = value {
-            assert!(modifier.set_value(index, ModifierValue::File(image(&file, &mut || random.bits() as u16))));
+        if let ParamValue::File(file) = value {
+            assert!(modifier.set_value(index, ParamValue::File(image(&file, &mut || random.bits() as u16))));
         }
     }
     modifier
@@ -66,14 +66,17 @@ pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
             let [low, high] = param.limits.soft;
             let mut number = || if i % 3 == 2 { random.pick(&[low, high]) } else { random.range(low, high) };
             let value = match value {
-                ModifierValue::Scalar(_) => ModifierValue::Scalar(number()),
-                ModifierValue::Vector(_) => ModifierValue::Vector(DVec3::new(number(), number(), number())),
-                ModifierValue::Count(_) => ModifierValue::Count(number().round() as u32),
-                ModifierValue::Counts(_) => ModifierValue::Counts([0, 1, 2].map(|_| random.index(4) as u32)),
-                ModifierValue::Flag(_) => ModifierValue::Flag(random.chance(0.5)),
-                ModifierValue::Flags(_) => ModifierValue::Flags([0, 1, 2].map(|_| random.chance(0.5))),
-                ModifierValue::Axis(_) => ModifierValue::Axis(random.pick(&Axis::ALL)),
-                ModifierValue::File(file) => ModifierValue::File(image(&file, &mut || random.bits() as u16)),
+                ParamValue::Scalar(_) => ParamValue::Scalar(number()),
+                ParamValue::Vector(_) => ParamValue::Vector(DVec3::new(number(), number(), number())),
+                ParamValue::Count(_) => ParamValue::Count(number().round() as u32),
+                ParamValue::Counts(_) => ParamValue::Counts([0, 1, 2].map(|_| random.index(4) as u32)),
+                ParamValue::Flag(_) => ParamValue::Flag(random.chance(0.5)),
+                ParamValue::Flags(_) => ParamValue::Flags([0, 1, 2].map(|_| random.chance(0.5))),
+                ParamValue::Choice(_) => {
+                    ParamValue::Choice(&random.pick(&param.choices.iter().collect::<Vec<_>>()).key)
+                }
+                ParamValue::File(file) => ParamValue::File(image(&file, &mut || random.bits() as u16)),
+                other => unreachable!("no modifier has {other:?}"),
             };
             assert!(modifier.set_value(index, value), "{kind:?}.{}", param.name);
         }

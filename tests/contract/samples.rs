@@ -82,7 +82,7 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
             ParamValue::Flag(_) => ParamValue::Flag(next() > 0.5),
             ParamValue::Text(_) => {
                 // Up to three letters: an empty text, one profile, profiles with holes.
-                let count = within(&Limits { soft: [0.0, 3.9], hard: [0.0, 3.0], unit: "" }) as usize;
+                let count = within(&Limits::new([0.0, 3.9], [0.0, 3.0], "")) as usize;
                 ParamValue::Text("oi8".chars().take(count).collect())
             }
             ParamValue::File(file) => {
@@ -90,12 +90,13 @@ pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Sh
                 ParamValue::File(if file.endings().contains(&"png") { image(&file, &mut pixel) } else { file })
             }
             ParamValue::List(mut list) => {
-                let more = within(&Limits { soft: [0.0, 2.9], hard: [0.0, 2.0], unit: "" }) as usize;
+                let more = within(&Limits::new([0.0, 2.9], [0.0, 2.0], "")) as usize;
                 let limits: Vec<Limits> = (0..list.columns.len()).map(|c| list.limits(c, &limits)).collect();
                 let mut row = || std::array::from_fn(|c| limits.get(c).map_or(0.0, &mut within));
                 list.rows = (0..list.count[0] + more).map(|_| row()).collect();
                 ParamValue::List(list)
             }
+            other => unreachable!("no shape has {other:?}"),
         };
         assert!(shape.set_value(i, value));
     }

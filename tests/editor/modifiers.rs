@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::Editor;
-use isolith::scene::{Axis, MAX_MODIFIERS, ModifierKind, ModifierSlot, ModifierValue, NodeId};
+use isolith::scene::{MAX_MODIFIERS, ModifierKind, ModifierSlot, NodeId, ParamValue};
 
 use super::attachments::choose;
 use super::{open_tall, scene, undo_all};
@@ -50,37 +50,38 @@ fn field_name(name: &str) -> String {
 }
 
 /// Changes a value in the inspector; the one that must follow, or none for a file.
-fn change(harness: &mut Harness<'_, Editor>, name: &str, value: &ModifierValue) -> Option<ModifierValue> {
+fn change(harness: &mut Harness<'_, Editor>, name: &str, value: &ParamValue) -> Option<ParamValue> {
     let mut number = |name: &str, v: f64| {
         widget(harness, name, Role::SpinButton).set_value_accesskit(v);
         harness.run();
         v
     };
     Some(match value {
-        ModifierValue::Scalar(v) => ModifierValue::Scalar(number(name, v * 0.5 + 0.125)),
-        ModifierValue::Count(n) => ModifierValue::Count(number(name, f64::from(n + 1)) as u32),
-        ModifierValue::Vector(v) => {
+        ParamValue::Scalar(v) => ParamValue::Scalar(number(name, v * 0.5 + 0.125)),
+        ParamValue::Count(n) => ParamValue::Count(number(name, f64::from(n + 1)) as u32),
+        ParamValue::Vector(v) => {
             let y = number(&format!("{name} Y"), v.y * 0.5 + 0.125);
-            ModifierValue::Vector(glam::DVec3::new(v.x, y, v.z))
+            ParamValue::Vector(glam::DVec3::new(v.x, y, v.z))
         }
-        ModifierValue::Counts([x, y, z]) => {
+        ParamValue::Counts([x, y, z]) => {
             let changed = number(&format!("{name} Z"), f64::from(z + 2));
-            ModifierValue::Counts([*x, *y, changed as u32])
+            ParamValue::Counts([*x, *y, changed as u32])
         }
-        ModifierValue::Flag(on) => {
+        ParamValue::Flag(on) => {
             click(harness, name, Role::CheckBox);
-            ModifierValue::Flag(!on)
+            ParamValue::Flag(!on)
         }
-        ModifierValue::Flags([x, y, z]) => {
+        ParamValue::Flags([x, y, z]) => {
             click(harness, &format!("{name} Y"), Role::CheckBox);
-            ModifierValue::Flags([*x, !y, *z])
+            ParamValue::Flags([*x, !y, *z])
         }
-        ModifierValue::Axis(_) => {
+        ParamValue::Choice(_) => {
             click(harness, name, Role::ComboBox);
             click(harness, "Z", Role::Button);
-            ModifierValue::Axis(Axis::Z)
+            ParamValue::Choice("z")
         }
-        ModifierValue::File(_) => return None,
+        ParamValue::File(_) => return None,
+        other => unreachable!("no modifier has {other:?}"),
     })
 }
 
@@ -156,7 +157,7 @@ fn the_image_of_a_displacement_is_chosen_refused_and_done_without() {
     add(&mut harness, ModifierKind::Twist);
     add(&mut harness, ModifierKind::Displacement);
     let name = |harness: &Harness<'_, Editor>| {
-        let ModifierValue::File(file) = modifiers(harness, ring)[1].modifier.values().swap_remove(0) else { panic!() };
+        let ParamValue::File(file) = modifiers(harness, ring)[1].modifier.values().swap_remove(0) else { panic!() };
         file.name().map(str::to_owned)
     };
     let displaces = |harness: &Harness<'_, Editor>| {

@@ -6,8 +6,8 @@ use super::allowed::Allowed;
 use super::node::{StressNode, StressPlacement, usual_blend};
 use super::place::StressView;
 use crate::scene::{
-    Attached, Attachment, Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, ModifierValue, Operator,
-    ParamValue, Shape, ShapeKind, limits,
+    Attached, Attachment, Blend, BlendKernel, Group, Limits, Modifier, ModifierKind, Operator, ParamValue, Shape,
+    ShapeKind, limits,
 };
 
 /// A thing to draw, and how.
@@ -114,7 +114,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<StressCase>) {
                 ParamValue::Scalar(_) => vec![("", ParamValue::Scalar(number))],
                 ParamValue::Vector(v) => along_axes(v.to_array(), number, |v| ParamValue::Vector(v.into())),
                 // What is no number has no extremes.
-                ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) | ParamValue::File(_) => continue,
+                _ => continue,
             };
             for (axis, value) in changed {
                 let mut shape = usual.clone();
@@ -178,9 +178,9 @@ fn with_image(mut modifier: Modifier) -> Modifier {
     const SIDE: u32 = 16;
     let rise = |x: u32| x * (SIDE - 1 - x);
     for (index, value) in modifier.values().into_iter().enumerate() {
-        if let ModifierValue::File(Attached::Heights(_)) = value {
+        if let ParamValue::File(Attached::Heights(_)) = value {
             let bumps = Attachment::drawn("bumps.png", [SIDE; 2], |x, y| (rise(x) * rise(y) / 13) as u8);
-            modifier.set_value(index, ModifierValue::File(Attached::Heights(bumps)));
+            modifier.set_value(index, ParamValue::File(Attached::Heights(bumps)));
         }
     }
     modifier
@@ -193,12 +193,11 @@ fn modifier(kind: ModifierKind, all: &mut Vec<StressCase>) {
         for (name, number) in extremes(&param.limits, 1.0) {
             let whole = number as u32;
             let changed = match value {
-                ModifierValue::Scalar(_) => vec![("", ModifierValue::Scalar(number))],
-                ModifierValue::Vector(v) => along_axes(v.to_array(), number, |v| ModifierValue::Vector(v.into())),
-                ModifierValue::Count(_) => vec![("", ModifierValue::Count(whole))],
-                ModifierValue::Counts(counts) => along_axes(counts, whole, ModifierValue::Counts),
-                ModifierValue::Flag(_) | ModifierValue::Flags(_) => continue,
-                ModifierValue::Axis(_) | ModifierValue::File(_) => continue,
+                ParamValue::Scalar(_) => vec![("", ParamValue::Scalar(number))],
+                ParamValue::Vector(v) => along_axes(v.to_array(), number, |v| ParamValue::Vector(v.into())),
+                ParamValue::Count(_) => vec![("", ParamValue::Count(whole))],
+                ParamValue::Counts(counts) => along_axes(counts, whole, ParamValue::Counts),
+                _ => continue,
             };
             for (axis, value) in changed {
                 let mut changed_modifier = usual.clone();
@@ -213,7 +212,7 @@ fn modifier(kind: ModifierKind, all: &mut Vec<StressCase>) {
         const CELL: f64 = 1e4;
         for (name, axes) in [("a row", [0, 1, 1]), ("a grid", [0, 0, 0])] {
             let mut endless = usual.clone();
-            endless.set_value(0, ModifierValue::Counts(axes));
+            endless.set_value(0, ParamValue::Counts(axes));
             let view = StressView::At(DVec3::from(spacing) * CELL * DVec3::from(axes.map(|n| f64::from(n == 0))));
             let case = plain(StressNode::Modified(endless), format!("cell 1e4 of {name} without end"));
             all.push(StressCase { view, ..case });

@@ -4,9 +4,11 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::modifier::*;
 use super::{BlendParams, BlendResult, Dual, Real, op_join, shape_distance};
 use crate::flat::mixture::{Mixture, SurfaceMaterial, mixture_joined, mixture_material, mixture_of};
+use crate::flat::modifier_table::{
+    modifier_count, modifier_exists, modifier_point, modifier_scale, modifier_start, modifier_value,
+};
 use crate::flat::{Component, FlatNode, FlatScene, LEAF_ROWS, MODIFIER_ROWS, ParamRow, leaf_payload};
 use crate::scene::{ModifierKind, ShapeKind};
 

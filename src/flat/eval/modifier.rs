@@ -1,67 +1,12 @@
 //! The modifiers: where a point stands in what they modify, and what they make of its field. Each function is the
-//! counterpart of the one of the same name in `shaders/mod/`; what the rows hold is said there.
+//! counterpart of the one of the same name in `shaders/mod/`; what the rows hold is said there. `flat/modifier_table.rs` says which
+//! kind has which.
 
 use super::Real;
 use super::heightfield::sdf_heights;
-use crate::flat::{ParamRow, modifier_payload};
-use crate::scene::ModifierKind;
+use crate::flat::ParamRow;
 
 type Point<T> = [T; 3];
-
-/// How often the content is evaluated for one point.
-pub fn modifier_count(kind: ModifierKind, rows: &[ParamRow]) -> u32 {
-    match kind {
-        ModifierKind::Repeat => candidates(rows).iter().product(),
-        ModifierKind::Recursion => rows[1][3] as u32,
-        _ => 1,
-    }
-}
-
-/// What bounds the field besides the copies.
-pub fn modifier_start<T: Real>(kind: ModifierKind, p: Point<T>, rows: &[ParamRow]) -> T {
-    match kind {
-        ModifierKind::Repeat => mod_repeat_start(p, rows),
-        _ => T::constant(f64::INFINITY),
-    }
-}
-
-/// Whether the k-th copy is there.
-pub fn modifier_exists<T: Real>(kind: ModifierKind, p: Point<T>, k: u32, rows: &[ParamRow]) -> bool {
-    kind != ModifierKind::Repeat || repeat_exists(repeat_index(p, k, rows), rows)
-}
-
-/// The size of the k-th copy.
-pub fn modifier_scale(kind: ModifierKind, k: u32, rows: &[ParamRow]) -> f64 {
-    if kind == ModifierKind::Recursion { f64::from(rows[0][3]).powi(k as i32) } else { 1.0 }
-}
-
-/// Where the point stands in the k-th copy of the content.
-pub fn modifier_point<T: Real>(kind: ModifierKind, p: Point<T>, k: u32, rows: &[ParamRow]) -> Point<T> {
-    match kind {
-        ModifierKind::Repeat => mod_repeat_point(p, k, rows),
-        ModifierKind::Recursion => mod_recursion_point(p, k, rows),
-        ModifierKind::Twist => mod_twist_point(p, rows),
-        ModifierKind::Bend => mod_bend_point(p, rows),
-        ModifierKind::Taper => mod_taper_point(p, rows),
-        ModifierKind::Elongate => mod_elongate_point(p, rows),
-        _ => p,
-    }
-}
-
-/// The field, from that of the content.
-pub fn modifier_value<T: Real>(kind: ModifierKind, f: T, p: Point<T>, rows: &[ParamRow]) -> T {
-    match kind {
-        ModifierKind::Twist => mod_twist_value(f, p, rows),
-        ModifierKind::Bend => mod_bend_value(f, p, rows),
-        ModifierKind::Taper => mod_taper_value(f, p, rows),
-        ModifierKind::Round => f - f64::from(rows[0][0]),
-        ModifierKind::Onion => mod_onion_value(f, rows),
-        ModifierKind::Waves => mod_waves_value(f, p, rows),
-        ModifierKind::Noise => mod_noise_value(f, p, rows),
-        ModifierKind::Displacement => mod_displacement_value(f, p, rows, modifier_payload(kind, rows)),
-        _ => f,
-    }
-}
 
 fn row(rows: &[ParamRow], i: usize) -> [f64; 4] {
     rows[i].map(f64::from)
@@ -105,7 +50,14 @@ fn repeat_index<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> [f64; 3] {
     [neighbor(p[0].value() - f64::from(rows[5][0]) * y, 0, k % n[0]), y, z]
 }
 
-fn repeat_exists(index: [f64; 3], rows: &[ParamRow]) -> bool {
+/// How many copies are evaluated for one point.
+pub fn mod_repeat_count(rows: &[ParamRow]) -> u32 {
+    candidates(rows).iter().product()
+}
+
+/// Whether the k-th copy is there.
+pub fn mod_repeat_exists<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> bool {
+    let index = repeat_index(p, k, rows);
     let all = |test: &dyn Fn(usize, f64) -> bool| (0..3).all(|i| test(i, index[i]));
     let at = |row: usize, i: usize| f64::from(rows[row][i]);
     let carved = all(&|i, x| x >= at(6, i) && x < at(7, i));

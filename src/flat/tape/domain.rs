@@ -10,6 +10,7 @@ use std::ops::Range;
 use super::grid::{Grid, SIZE_SLACK};
 use super::tape_entry::{MAX_TAPE_DOMAINS, MAX_TAPE_ENTRIES};
 use crate::flat::eval::BlendParams;
+use crate::flat::modifier_table::content_exactness;
 use crate::flat::{Component, FlatNode, FlatScene, Join, MODIFIER_ROWS, ModifierDomain, ParamRow};
 use crate::scene::ModifierKind;
 
@@ -161,15 +162,5 @@ fn of_content(kind: ModifierKind, rows: &[ParamRow], exact: f64) -> f64 {
     // What follows from a distance scale of 0 is not evaluated.
     let local = exact / f64::from(rows[1][3]).max(f64::MIN_POSITIVE);
     let own = |row: usize, column: usize| f64::from(rows[MODIFIER_ROWS + row][column]);
-    match kind {
-        ModifierKind::Mirror | ModifierKind::Polar => unreachable!("these are written as copies"),
-        ModifierKind::Repeat | ModifierKind::Elongate => local,
-        ModifierKind::Recursion => local / own(0, 3).min(1.0).powi(own(1, 3) as i32 - 1),
-        ModifierKind::Twist | ModifierKind::Bend | ModifierKind::Taper => local / own(0, 1),
-        ModifierKind::Round => local + own(0, 0).abs(),
-        ModifierKind::Onion => local + own(0, 0) + own(0, 1) * own(0, 2),
-        ModifierKind::Waves => local / own(0, 3) + own(0, 0).abs(),
-        ModifierKind::Noise => local / own(1, 0) + own(1, 1),
-        ModifierKind::Displacement => local / own(1, 0) + own(1, 1).abs().max(own(1, 2).abs()),
-    }
+    content_exactness(kind, local, &own)
 }

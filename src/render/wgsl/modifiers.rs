@@ -3,24 +3,12 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use crate::flat::{FlatNode, is_copying, modifier_payload_row, modifier_rows};
+use crate::flat::{FlatNode, changes_value, is_copying, modifier_payload_row, modifier_rows, moves_point};
 use crate::scene::ModifierKind;
 
 /// The name of a modifier's file.
 pub fn file(kind: ModifierKind) -> String {
     format!("{kind:?}").to_lowercase()
-}
-
-/// Whether it moves the point.
-pub fn has_point(kind: ModifierKind) -> bool {
-    use ModifierKind::{Bend, Elongate, Recursion, Repeat, Taper, Twist};
-    matches!(kind, Repeat | Recursion | Twist | Bend | Taper | Elongate)
-}
-
-/// Whether it changes the field's value.
-pub fn has_value(kind: ModifierKind) -> bool {
-    use ModifierKind::{Bend, Displacement, Noise, Onion, Round, Taper, Twist, Waves};
-    matches!(kind, Twist | Bend | Taper | Round | Onion | Waves | Noise | Displacement)
 }
 
 /// The line that includes a modifier's functions.
@@ -36,8 +24,8 @@ pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     }
     line(&mut out, "const NO_COPY: u32 = 0xffffffffu;");
     let copying = |kind: &ModifierKind| is_copying(*kind);
-    let moving = |kind: &ModifierKind| has_point(*kind);
-    let changing = |kind: &ModifierKind| has_value(*kind);
+    let moving = |kind: &ModifierKind| moves_point(*kind);
+    let changing = |kind: &ModifierKind| changes_value(*kind);
     let call = |name: &'static str, first: &'static str| {
         move |kind: ModifierKind| format!("mod_{}_{name}({})", file(kind), arguments(kind, first))
     };
@@ -60,8 +48,8 @@ pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
 /// The generated file: how gradients go through modifiers.
 pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let mut out = String::new();
-    let moving: Vec<_> = modifiers.iter().copied().filter(|k| has_point(*k)).collect();
-    let changing: Vec<_> = modifiers.iter().copied().filter(|k| has_value(*k)).collect();
+    let moving: Vec<_> = modifiers.iter().copied().filter(|k| moves_point(*k)).collect();
+    let changing: Vec<_> = modifiers.iter().copied().filter(|k| changes_value(*k)).collect();
     for kind in &moving {
         line(&mut out, &format!("#include \"generated/dual/pull_mod_{}.wgsl\"", file(*kind)));
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::flat::{FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, Join, MAX_STACK, modifier_rows};
+use crate::flat::{self, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, Join, MAX_STACK, modifier_rows};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// What the interpreter must be able to evaluate. Pipelines are built for it and cached by it, so a
@@ -100,13 +100,11 @@ impl OpSet {
     /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
     /// is a hit, and oversteps are short: they would pass bumps of a fraction of a pixel.
     pub(super) fn is_rough(&self) -> bool {
-        use ModifierKind::{Bend, Displacement, Noise, Taper, Twist, Waves};
         use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
         let is_rough = |kind: &ShapeKind| {
             matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | Terrain | Heightmap | Ocean)
         };
-        self.shapes.iter().any(is_rough)
-            || self.modifiers.iter().any(|kind| matches!(kind, Twist | Bend | Taper | Waves | Noise | Displacement))
+        self.shapes.iter().any(is_rough) || self.modifiers.iter().any(|kind| flat::is_rough(*kind))
     }
 }
 

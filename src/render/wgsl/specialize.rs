@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use super::calls::{arguments, data_argument, gradient_include, select_by_shape, shape_include};
 use super::lookahead;
 use super::material_weights::material_weights;
-use super::modifiers::{self, file, has_point, has_value, modifier_include};
+use super::modifiers::{self, file, modifier_include};
 use super::options::{Options, SkipMode};
 use super::structure::{EntryKind, ShapeSet, Structure, StructureEntry};
-use crate::flat::{GROUP_ROWS, Join, MODIFIER_ROWS, is_copying};
+use crate::flat::{GROUP_ROWS, Join, MODIFIER_ROWS, changes_value, is_copying, moves_point};
 use crate::scene::{ModifierKind, ShapeKind};
 
 /// Which of the two folds is written.
@@ -276,10 +276,10 @@ impl FoldWriter<'_> {
             self.line(&format!("        && mod_{name}_bound(a{at}, k{at}{rows}) >= v{at} {{ k{at} += 1u; }}"));
             self.line(&format!("    if k{at} >= mod_{name}_count({}) {{ break; }}", rows.trim_start_matches(", ")));
             self.line(&format!("    let b{at} = mod_{name}_point(a{at}, k{at}{rows});"));
-        } else if has_point(kind) {
+        } else if moves_point(kind) {
             self.line(&format!("    let b{at} = mod_{name}_point(a{at}, 0u{rows});"));
         }
-        self.points.push(if has_point(kind) { format!("b{at}") } else { format!("a{at}") });
+        self.points.push(if moves_point(kind) { format!("b{at}") } else { format!("a{at}") });
     }
 
     fn close_modifier(&mut self, level: usize, at: usize, entry: &StructureEntry, kind: ModifierKind, row: usize) {
@@ -289,7 +289,7 @@ impl FoldWriter<'_> {
             self.line(&format!("    v{at} = min(v{at}, s{level} * mod_{name}_scale(k{at}{rows}));"));
             self.line(&format!("    k{at} += 1u;\n    }}\n    s{level} = v{at};"));
         }
-        if has_value(kind) {
+        if changes_value(kind) {
             self.line(&format!("    s{level} = mod_{name}_value(s{level}, a{at}{rows});"));
         }
         if !entry.unscaled {

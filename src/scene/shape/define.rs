@@ -2,46 +2,28 @@
 
 macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
-        $( $(#[doc = $help:literal])+ $param:ident: $type:ty = $default:expr, $limits:expr; )*
+        $( $(#[doc = $help:literal])+ $(#[serde($missing:ident)])? $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
-        /// A shape with its parameters, in meters, in local space.
-        #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-        #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
-        pub enum Shape {
-            $( $(#[doc = $doc])+ $name { $( $(#[doc = $help])+ $param: $type, )* }, )+
+        $crate::scene::params::param_kinds! {
+            /// A shape with its parameters, in meters, in local space.
+            #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+            #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+            pub enum Shape;
+
+            /// Which shape, without its parameters. The number is the code that the GPU reads.
+            #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+            #[repr(u32)]
+            pub enum ShapeKind;
+
+            $( $(#[doc = $doc])+ $name = $label {
+                $( $(#[doc = $help])+ $(#[serde($missing)])? $param: $type = $default, $limits; )*
+            } )+
         }
 
-        /// Which shape, without its parameters. The number is the code that the GPU reads.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-        #[repr(u32)]
-        pub enum ShapeKind { $( $(#[doc = $doc])+ $name, )+ }
-
         impl ShapeKind {
-            /// Every kind, in the order of the user interface.
-            pub const ALL: &[Self] = &[$( Self::$name, )+];
-
-            /// Name for people.
-            pub fn label(self) -> &'static str {
-                match self { $( Self::$name => $label, )+ }
-            }
-
-            /// What it is, for people.
-            pub fn help(self) -> &'static str {
-                match self { $( Self::$name => concat!($( $doc, )+).trim_ascii(), )+ }
-            }
-
             /// The function that computes its field, on the CPU and on the GPU.
             pub fn function(self) -> &'static str {
                 match self { $( Self::$name => stringify!($function), )+ }
-            }
-
-            /// Its parameters in order.
-            pub fn params(self) -> &'static [Param] {
-                match self { $( Self::$name => const { &[$( Param {
-                    name: stringify!($param),
-                    help: concat!($( $help, )+).trim_ascii(),
-                    limits: $limits,
-                }, )*] }, )+ }
             }
 
             /// The shape of these packed parameters, see [`Shape::packed`]; nothing for one with data.
@@ -51,7 +33,7 @@ macro_rules! shapes {
                     return None;
                 }
                 let mut rest = packed.as_slice();
-                Some(match self { $( Self::$name => Shape::$name { $( $param: ParamField::unpack(&mut rest), )* }, )+ })
+                Some(match self { $( Self::$name => Shape::$name { $( $param: Packed::unpack(&mut rest), )* }, )+ })
             }
 
             /// How many rows of four numbers it takes: its parameters, and behind them where its data are.
@@ -64,7 +46,7 @@ macro_rules! shapes {
                 if self.has_data() {
                     return DATA_PARAMETER_ROWS;
                 }
-                match self { $( Self::$name => const { (0_usize $( + <$type as ParamField>::FLOATS )*).div_ceil(4) }, )+ }
+                match self { $( Self::$name => const { (0_usize $( + <$type as Packed>::FLOATS )*).div_ceil(4) }, )+ }
             }
 
             /// Whether it is evaluated from numbers made of its parameters, with further rows behind them.
@@ -79,21 +61,11 @@ macro_rules! shapes {
 
             /// The shape with its default parameters.
             pub fn default_shape(self) -> Shape {
-                match self { $( Self::$name => Shape::$name { $( $param: $default, )* }, )+ }
+                self.with_defaults()
             }
         }
 
         impl Shape {
-            /// Which shape it is.
-            pub fn kind(&self) -> ShapeKind {
-                match self { $( Self::$name { .. } => ShapeKind::$name, )+ }
-            }
-
-            /// The parameters' values, in the order of [`ShapeKind::params`].
-            pub fn values(&self) -> Vec<ParamValue> {
-                match self { $( Self::$name { $( $param, )* } => vec![$( $param.to_value(), )*], )+ }
-            }
-
             /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
             /// cosine; a number of sides is followed by the cosine and sine of half the angle of one. Of a shape with
             /// data all are 0: `flat::PreparedShape` makes what is read instead.
@@ -104,24 +76,8 @@ macro_rules! shapes {
                     return out;
                 }
                 let mut rest = out.as_mut_slice();
-                match self { $( Self::$name { $( $param, )* } => { $( $param.pack(&mut rest); )* } )+ }
+                match self { $( Self::$name { $( $param, )* } => { $( Packed::pack($param, &mut rest); )* } )+ }
                 out
-            }
-
-            /// Sets the parameter at `index`; false, and nothing changed, where there is none or the
-            /// value is of the other type.
-            #[allow(unused_assignments, unused_mut, unused_variables, reason = "shapes without parameters")]
-            pub fn set_value(&mut self, index: usize, value: ParamValue) -> bool {
-                match self { $( Self::$name { $( $param, )* } => {
-                    let mut i = 0;
-                    $( if i == index {
-                        let Some(v) = ParamField::from_value(value) else { return false };
-                        *$param = v;
-                        return true;
-                    }
-                    i += 1; )*
-                    false
-                } )+ }
             }
         }
 

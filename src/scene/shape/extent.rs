@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
-use super::{Degrees, ParamValue, Shape};
+use super::{Degrees, Shape};
 use crate::geometry::Aabb;
 use crate::scene::drawn::{profile_bounds, text_bounds, tube_bounds};
+use crate::scene::params::ParamValue;
 
 const INFINITY: f64 = f64::INFINITY;
 
@@ -172,7 +173,7 @@ impl Shape {
                         list.rows.iter_mut().flatten().for_each(|v| *v *= factor);
                         ParamValue::List(list)
                     }
-                    other @ (ParamValue::Flag(_) | ParamValue::Text(_) | ParamValue::File(_)) => other,
+                    other => other,
                 };
                 self.set_value(index, value);
             }

@@ -1,6 +1,7 @@
 //! The table against what is made of it.
 
 use super::*;
+use crate::scene::params::{LIST_COLUMNS, ParamValue};
 
 #[test]
 fn every_parameter_can_be_read_written_and_packed() {
@@ -16,9 +17,7 @@ fn every_parameter_can_be_read_written_and_packed() {
             let [before, after] = [before, &after].map(|v| match v {
                 ParamValue::Scalar(v) => glam::DVec3::splat(*v),
                 ParamValue::Vector(v) => *v,
-                ParamValue::Flag(_) | ParamValue::List(_) | ParamValue::Text(_) | ParamValue::File(_) => {
-                    panic!("{kind:?} has data")
-                }
+                _ => panic!("{kind:?} has data"),
             });
             assert!(before.abs_diff_eq(after, 1e-12), "{kind:?}");
         }
@@ -28,12 +27,13 @@ fn every_parameter_can_be_read_written_and_packed() {
                 ParamValue::Vector(v) => ParamValue::Vector(*v + 0.25),
                 ParamValue::Flag(v) => ParamValue::Flag(!v),
                 ParamValue::Text(v) => ParamValue::Text(format!("{v}!")),
-                ParamValue::File(_) => continue,
+                ParamValue::File(_) | ParamValue::Choice(_) => continue,
                 ParamValue::List(list) => {
                     let mut list = list.clone();
                     list.rows.push([0.0; LIST_COLUMNS]);
                     ParamValue::List(list)
                 }
+                other => unreachable!("no shape has {other:?}"),
             };
             assert!(shape.set_value(i, changed.clone()));
             assert_eq!(shape.values()[i], changed);

@@ -1,0 +1,354 @@
+//! Names for every parameter of a scene.
+//!
+//! In text a path is the owner and the field as files and their errors name it: `node.12.object.shape.radius`,
+//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.albedo`, `environment.sky`.
+
+use std::borrow::Cow;
+use std::fmt;
+use std::str::FromStr;
+
+use super::params::{Param, ParamValue, Params};
+use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError};
+
+/// Names a parameter of a scene, or one of the three elements of one.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ParamPath {
+    /// What has the parameter.
+    pub owner: ParamOwner,
+    /// The parameter's key in files, below its owner: `radius`, `blend.radius`.
+    pub name: Cow<'static, str>,
+    /// Which of its three elements is meant; `None` for all of it.
+    pub element: Option<usize>,
+}
+
+/// What has parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum ParamOwner {
+    /// A part of a node.
+    Node(NodeId, Part),
+    /// A material.
+    Material(MaterialId),
+    /// What surrounds the scene.
+    Environment,
+}
+
+/// A part of a node that has parameters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Part {
+    /// The node itself: whether it is seen, how it is joined.
+    Node,
+    /// Its place in its group.
+    Transform,
+    /// The modifier at this place in its list.
+    Modifier(usize),
+    /// The shape of an object.
+    Shape,
+    /// The operator of a group.
+    Operator,
+    /// The file of a mesh.
+    Mesh,
+    /// A light.
+    Light,
+    /// A camera.
+    Camera,
+}
+
+impl Part {
+    /// The parts that the node has, in the order of files.
+    pub fn of(node: &Node) -> impl Iterator<Item = Self> {
+        let kind = match &node.kind {
+            NodeKind::Group(_) => Self::Operator,
+            NodeKind::Object(_) => Self::Shape,
+            NodeKind::Mesh(_) => Self::Mesh,
+            NodeKind::Light(_) => Self::Light,
+            NodeKind::Camera(_) => Self::Camera,
+        };
+        let modifiers = (0..node.modifiers.len()).map(Self::Modifier);
+        [Self::Node, Self::Transform].into_iter().chain(modifiers).chain([kind])
+    }
+
+    /// The parameters of this part of the node, where it has one.
+    pub fn params(self, node: &Node) -> Option<&dyn Params> {
+        Some(match (self, &node.kind) {
+            (Self::Node, _) => node,
+            (Self::Transform, _) => &node.transform,
+            (Self::Modifier(place), _) => node.modifiers.get(place)?,
+            (Self::Shape, NodeKind::Object(object)) => &object.shape,
+            (Self::Operator, NodeKind::Group(group)) => group,
+            (Self::Mesh, NodeKind::Mesh(mesh)) => mesh,
+            (Self::Light, NodeKind::Light(light)) => light,
+            (Self::Camera, NodeKind::Camera(camera)) => camera,
+            _ => return None,
+        })
+    }
+
+    /// The same, to be changed.
+    pub fn params_mut(self, node: &mut Node) -> Option<&mut dyn Params> {
+        if self == Self::Node {
+            return Some(node);
+        }
+        Some(match (self, &mut node.kind) {
+            (Self::Transform, _) => &mut node.transform,
+            (Self::Modifier(place), _) => node.modifiers.get_mut(place)?,
+            (Self::Shape, NodeKind::Object(object)) => &mut object.shape,
+            (Self::Operator, NodeKind::Group(group)) => group,
+            (Self::Mesh, NodeKind::Mesh(mesh)) => mesh,
+            (Self::Light, NodeKind::Light(light)) => light,
+            (Self::Camera, NodeKind::Camera(camera)) => camera,
+            _ => return None,
+        })
+    }
+
+    /// The field of files, below the node, that keeps the parameter.
+    pub fn field(self, name: &str) -> String {
+        match self {
+            Self::Node => name.to_owned(),
+            Self::Transform => format!("transform.{name}"),
+            Self::Modifier(place) if name == ENABLED => format!("modifiers[{place}].{name}"),
+            Self::Modifier(place) => format!("modifiers[{place}].modifier.{name}"),
+            Self::Shape => format!("object.shape.{name}"),
+            Self::Operator => format!("group.{name}"),
+            Self::Mesh => format!("mesh.{name}"),
+            Self::Light => format!("light.{name}"),
+            Self::Camera => format!("camera.{name}"),
+        }
+    }
+
+    /// The part whose parameter a field of files is, and its name; see [`Part::field`].
+    fn of_field(field: &str) -> Option<(Self, &str)> {
+        const PARTS: [(&str, Part); 6] = [
+            ("transform.", Part::Transform),
+            ("object.shape.", Part::Shape),
+            ("group.", Part::Operator),
+            ("mesh.", Part::Mesh),
+            ("light.", Part::Light),
+            ("camera.", Part::Camera),
+        ];
+        for (prefix, part) in PARTS {
+            if let Some(name) = field.strip_prefix(prefix) {
+                return Some((part, name));
+            }
+        }
+        let Some(rest) = field.strip_prefix("modifiers[") else { return Some((Self::Node, field)) };
+        let (place, rest) = rest.split_once("].")?;
+        let name =
+            if rest == ENABLED { rest } else { rest.strip_prefix("modifier.").filter(|name| *name != ENABLED)? };
+        Some((Self::Modifier(whole(place)?), name))
+    }
+}
+
+/// The one parameter of a modifier that its place in the list has, not the modifier.
+const ENABLED: &str = "enabled";
+
+/// A number as paths write it: without a sign or zeros in front.
+fn whole<T: FromStr + fmt::Display>(text: &str) -> Option<T> {
+    text.parse().ok().filter(|number: &T| number.to_string() == text)
+}
+
+impl ParamPath {
+    /// Of a part of a node.
+    pub fn of_node(id: NodeId, part: Part, name: impl Into<Cow<'static, str>>) -> Self {
+        Self { owner: ParamOwner::Node(id, part), name: name.into(), element: None }
+    }
+
+    /// Of a material.
+    pub fn of_material(id: MaterialId, name: impl Into<Cow<'static, str>>) -> Self {
+        Self { owner: ParamOwner::Material(id), name: name.into(), element: None }
+    }
+
+    /// Of the environment.
+    pub fn of_environment(name: impl Into<Cow<'static, str>>) -> Self {
+        Self { owner: ParamOwner::Environment, name: name.into(), element: None }
+    }
+
+    /// The same for one of the parameter's three elements.
+    pub fn element(self, index: usize) -> Self {
+        Self { element: Some(index), ..self }
+    }
+
+    /// All parameters of a node, in the order of files, with their values.
+    pub fn all_of_node(node: &Node) -> Vec<(Self, &'static Param, ParamValue)> {
+        let mut all = Vec::new();
+        for part in Part::of(node) {
+            if let Some(params) = part.params(node) {
+                collect(ParamOwner::Node(node.id, part), params, &mut all);
+            }
+        }
+        all
+    }
+
+    /// All parameters of a scene: the environment's, the materials', the nodes'.
+    pub fn all(scene: &Scene) -> Vec<(Self, &'static Param, ParamValue)> {
+        let mut all = Vec::new();
+        collect(ParamOwner::Environment, &scene.environment, &mut all);
+        for material in scene.materials() {
+            collect(ParamOwner::Material(material.id), &**material, &mut all);
+        }
+        all.extend(scene.nodes().iter().flat_map(|node| Self::all_of_node(node)));
+        all
+    }
+
+    /// What is known about the parameter.
+    pub fn param(&self, scene: &Scene) -> Result<&'static Param, SceneError> {
+        let params = self.params(scene)?;
+        params.find(&self.name).ok_or_else(|| self.unknown(params))
+    }
+
+    /// Its value; of one element as a value of its own.
+    pub fn get(&self, scene: &Scene) -> Result<ParamValue, SceneError> {
+        let params = self.params(scene)?;
+        self.value_in(params).ok_or_else(|| self.unknown(params))
+    }
+
+    /// Its value in a node, whatever the node's id is; `None` where it has no such parameter.
+    pub fn get_in(&self, node: &Node) -> Option<ParamValue> {
+        let ParamOwner::Node(_, part) = self.owner else { return None };
+        self.value_in(part.params(node)?)
+    }
+
+    /// Sets it in a node, whatever the node's id is; false, and nothing changed, where it has no such parameter or the value
+    /// is of another type. Nothing is checked against limits.
+    pub fn set_in(&self, node: &mut Node, value: ParamValue) -> bool {
+        let ParamOwner::Node(_, part) = self.owner else { return false };
+        part.params_mut(node).is_some_and(|params| self.set_value(params, value))
+    }
+
+    /// What has the parameter, with another value for it; the scene stays as it is. Nothing is checked against limits.
+    pub fn changed(&self, scene: &Scene, value: ParamValue) -> Result<Changed, SceneError> {
+        let refusal = |params: &dyn Params| match self.value_in(params) {
+            None => self.unknown(params),
+            Some(now) => self.refused(format!("must be a value like {now}, not {value}")),
+        };
+        match self.owner {
+            ParamOwner::Node(id, part) => {
+                let mut node = Node::clone(scene.node(id).ok_or(SceneError::NoNode(id))?);
+                let params = part.params_mut(&mut node).ok_or_else(|| self.no_part())?;
+                if !self.set_value(params, value.clone()) {
+                    return Err(refusal(params));
+                }
+                Ok(Changed::Node(Box::new(node)))
+            }
+            ParamOwner::Material(id) => {
+                let mut material = Material::clone(scene.material(id).ok_or(SceneError::NoMaterial(id))?);
+                if !self.set_value(&mut material, value.clone()) {
+                    return Err(refusal(&material));
+                }
+                Ok(Changed::Material(material))
+            }
+            ParamOwner::Environment => {
+                let mut environment = scene.environment;
+                if !self.set_value(&mut environment, value.clone()) {
+                    return Err(refusal(&environment));
+                }
+                Ok(Changed::Environment(environment))
+            }
+        }
+    }
+
+    fn params<'s>(&self, scene: &'s Scene) -> Result<&'s dyn Params, SceneError> {
+        match self.owner {
+            ParamOwner::Node(id, part) => {
+                let node = scene.node(id).ok_or(SceneError::NoNode(id))?;
+                part.params(node).ok_or_else(|| self.no_part())
+            }
+            ParamOwner::Material(id) => Ok(&**scene.material(id).ok_or(SceneError::NoMaterial(id))?),
+            ParamOwner::Environment => Ok(&scene.environment),
+        }
+    }
+
+    fn value_in(&self, params: &dyn Params) -> Option<ParamValue> {
+        let value = params.get(&self.name)?;
+        self.element.map_or_else(|| Some(value.clone()), |index| value.element(index))
+    }
+
+    fn set_value(&self, params: &mut dyn Params, value: ParamValue) -> bool {
+        let new = match self.element {
+            None => Some(value),
+            Some(index) => params.get(&self.name).and_then(|whole| whole.with_element(index, &value)),
+        };
+        new.is_some_and(|new| params.set(&self.name, new))
+    }
+
+    fn refused(&self, reason: impl Into<String>) -> SceneError {
+        SceneError::Param { path: self.to_string(), reason: reason.into() }
+    }
+
+    fn no_part(&self) -> SceneError {
+        self.refused("the node has no such part")
+    }
+
+    fn unknown(&self, params: &dyn Params) -> SceneError {
+        if params.find(&self.name).is_some() {
+            return self.refused("it has no such element");
+        }
+        let mut names = Vec::new();
+        params.visit("", &mut |prefix, param, _| names.push(format!("{prefix}{}", param.name)));
+        self.refused(format!("there is no such parameter; there is {}", names.join(", ")))
+    }
+}
+
+fn collect(owner: ParamOwner, params: &dyn Params, all: &mut Vec<(ParamPath, &'static Param, ParamValue)>) {
+    params.visit("", &mut |prefix, param, value| {
+        let name = if prefix.is_empty() { param.name.into() } else { format!("{prefix}{}", param.name).into() };
+        all.push((ParamPath { owner, name, element: None }, param, value));
+    });
+}
+
+/// What has a parameter, after a change of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Changed {
+    /// A node.
+    Node(Box<Node>),
+    /// A material.
+    Material(Material),
+    /// The environment.
+    Environment(Environment),
+}
+
+impl fmt::Display for ParamPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.owner {
+            ParamOwner::Node(id, part) => write!(f, "node.{}.{}", id.0, part.field(&self.name)),
+            ParamOwner::Material(id) => write!(f, "material.{}.{}", id.0, self.name),
+            ParamOwner::Environment => write!(f, "environment.{}", self.name),
+        }?;
+        self.element.map_or(Ok(()), |index| write!(f, "[{index}]"))
+    }
+}
+
+impl FromStr for ParamPath {
+    type Err = SceneError;
+
+    fn from_str(text: &str) -> Result<Self, SceneError> {
+        parse(text).ok_or_else(|| SceneError::Param {
+            path: text.to_owned(),
+            reason: "is not the path of a parameter, such as node.12.object.shape.radius, material.3.albedo[0] or environment.sky"
+                .into(),
+        })
+    }
+}
+
+fn parse(text: &str) -> Option<ParamPath> {
+    let (text, element) = match text.strip_suffix(']').and_then(|text| text.rsplit_once('[')) {
+        Some((text, index)) => (text, Some(whole::<usize>(index)?)),
+        None => (text, None),
+    };
+    let (owner, rest) = text.split_once('.')?;
+    let (owner, name) = match owner {
+        "environment" => (ParamOwner::Environment, rest),
+        "material" => {
+            let (id, name) = rest.split_once('.')?;
+            (ParamOwner::Material(MaterialId(whole(id)?)), name)
+        }
+        "node" => {
+            let (id, field) = rest.split_once('.')?;
+            let (part, name) = Part::of_field(field)?;
+            (ParamOwner::Node(NodeId(whole(id)?), part), name)
+        }
+        _ => return None,
+    };
+    let is_name = |word: &str| {
+        !word.is_empty() && word.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit() || b == b'_')
+    };
+    name.split('.').all(is_name).then(|| ParamPath { owner, name: name.to_owned().into(), element })
+}

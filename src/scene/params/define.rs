@@ -1,0 +1,372 @@
+//! What is made of a table of parameters.
+
+/// The key of a field in files: its name, unless the table gives another.
+macro_rules! param_name {
+    ($field:ident) => {
+        stringify!($field)
+    };
+    ($field:ident, $key:literal) => {
+        $key
+    };
+}
+pub(crate) use param_name;
+
+/// The rows of a table, made once.
+macro_rules! param_rows {
+    ($( $(#[doc = $help:literal])+ [$name:expr] $type:ty = $default:expr, $spec:expr; )*) => {{
+        static TABLE: std::sync::LazyLock<Vec<$crate::scene::params::Param>> = std::sync::LazyLock::new(|| {
+            let rows: Vec<Option<$crate::scene::params::Param>> = vec![$(
+                $crate::scene::params::row::<$type>($name, concat!($( $help, )+), $spec, $default),
+            )*];
+            rows.into_iter().flatten().collect()
+        });
+        TABLE.as_slice()
+    }};
+}
+pub(crate) use param_rows;
+
+/// A struct whose fields are parameters. Fields in brackets are not; they come first.
+///
+/// ```text
+/// param_struct! {
+///     /// A viewpoint.
+///     #[derive(…)]
+///     pub struct CameraNode {
+///         /// Full vertical angle of view.
+///         fov_y: f64 = 40.0, FOV.labeled("Field of view");
+///     }
+/// }
+/// ```
+macro_rules! param_struct {
+    ($(#[$meta:meta])* pub struct $name:ident $([ $(
+        $(#[doc = $about:literal])+ $field:ident: $field_type:ty = $value:expr;
+    )* ])? { $(
+        $(#[doc = $help:literal])+ $(#[serde($($serde:tt)*)])? $param:ident: $type:ty = $default:expr, $spec:expr;
+    )* }) => {
+        $(#[$meta])*
+        pub struct $name {
+            $( $( $(#[doc = $about])+ pub $field: $field_type, )* )?
+            $( $(#[doc = $help])+ $(#[serde($($serde)*)])? pub $param: $type, )*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $( $( $field: $value, )* )? $( $param: $default, )* }
+            }
+        }
+
+        $crate::scene::params::param_table! { $name { $( $(#[doc = $help])+ $param: $type = $default, $spec; )* } }
+    };
+}
+pub(crate) use param_struct;
+
+/// The table of a struct that is defined elsewhere. `field as "key"` gives a field another name in files.
+macro_rules! param_table {
+    ($name:ident { $(
+        $(#[doc = $help:literal])+ $param:ident $(as $key:literal)?: $type:ty = $default:expr, $spec:expr;
+    )* }) => {
+        impl $crate::scene::params::Params for $name {
+            fn params(&self) -> &'static [$crate::scene::params::Param] {
+                $crate::scene::params::param_rows! { $(
+                    $(#[doc = $help])+
+                    [$crate::scene::params::param_name!($param $(, $key)?)] $type = $default, $spec;
+                )* }
+            }
+
+            fn visit(&self, prefix: &str, visit: &mut $crate::scene::params::Visit<'_>) {
+                let table = self.params();
+                $( {
+                    let name = $crate::scene::params::param_name!($param $(, $key)?);
+                    let slot = $crate::scene::params::Slot { prefix, name, table };
+                    $crate::scene::params::ParamField::visit_field(&self.$param, slot, visit);
+                } )*
+            }
+
+            fn find(&self, name: &str) -> Option<&'static $crate::scene::params::Param> {
+                $( {
+                    let field = $crate::scene::params::param_name!($param $(, $key)?);
+                    if let Some(below) = $crate::scene::params::below(name, field) {
+                        let slot = $crate::scene::params::Slot { prefix: "", name: field, table: self.params() };
+                        return $crate::scene::params::ParamField::find_field(&self.$param, slot, below);
+                    }
+                } )*
+                None
+            }
+
+            fn get(&self, name: &str) -> Option<$crate::scene::params::ParamValue> {
+                $( if let Some(below) =
+                    $crate::scene::params::below(name, $crate::scene::params::param_name!($param $(, $key)?))
+                {
+                    return $crate::scene::params::ParamField::get_field(&self.$param, below);
+                } )*
+                None
+            }
+
+            fn set(&mut self, name: &str, value: $crate::scene::params::ParamValue) -> bool {
+                $( if let Some(below) =
+                    $crate::scene::params::below(name, $crate::scene::params::param_name!($param $(, $key)?))
+                {
+                    return $crate::scene::params::ParamField::set_field(&mut self.$param, below, value);
+                } )*
+                false
+            }
+        }
+    };
+}
+pub(crate) use param_table;
+
+/// An enum whose variants have parameters, and the enum of its kinds, which have none.
+macro_rules! param_kinds {
+    (
+        $(#[$meta:meta])* pub enum $name:ident;
+        $(#[$kind_meta:meta])* pub enum $kind:ident;
+        $( $(#[doc = $doc:literal])+ $variant:ident = $label:literal { $(
+            $(#[doc = $help:literal])+ $(#[serde($missing:ident)])? $param:ident: $type:ty = $default:expr, $spec:expr;
+        )* } )+
+    ) => {
+        $(#[$meta])*
+        pub enum $name {
+            $( $(#[doc = $doc])+ $variant { $(
+                $(#[doc = $help])+
+                #[serde(deserialize_with = "crate::scene::params::ParamField::read" $(, $missing)?)]
+                $param: $type,
+            )* }, )+
+        }
+
+        $(#[$kind_meta])*
+        pub enum $kind { $( $(#[doc = $doc])+ $variant, )+ }
+
+        impl $kind {
+            /// Every kind, in the order of the user interface.
+            pub const ALL: &[Self] = &[$( Self::$variant, )+];
+
+            /// Name for people.
+            pub fn label(self) -> &'static str {
+                match self { $( Self::$variant => $label, )+ }
+            }
+
+            /// What it is or does, for people.
+            pub fn help(self) -> &'static str {
+                match self { $( Self::$variant => concat!($( $doc, )+).trim_ascii(), )+ }
+            }
+
+            /// Its parameters in order.
+            pub fn params(self) -> &'static [$crate::scene::params::Param] {
+                match self { $( Self::$variant => $crate::scene::params::param_rows! { $(
+                    $(#[doc = $help])+ [stringify!($param)] $type = $default, $spec;
+                )* }, )+ }
+            }
+
+            /// The kind with its default parameters.
+            fn with_defaults(self) -> $name {
+                match self { $( Self::$variant => $name::$variant { $( $param: $default, )* }, )+ }
+            }
+        }
+
+        impl $name {
+            /// Its kind.
+            pub fn kind(&self) -> $kind {
+                match self { $( Self::$variant { .. } => $kind::$variant, )+ }
+            }
+
+            /// The parameters' values, in the order of their table.
+            pub fn values(&self) -> Vec<$crate::scene::params::ParamValue> {
+                let mut values = Vec::new();
+                $crate::scene::params::Params::visit(self, "", &mut |_, _, value| values.push(value));
+                values
+            }
+
+            /// Sets the parameter at `index`; false, and nothing changed, where there is none or the value is of another
+            /// type.
+            pub fn set_value(&mut self, index: usize, value: $crate::scene::params::ParamValue) -> bool {
+                let param = self.kind().params().get(index);
+                param.is_some_and(|param| $crate::scene::params::Params::set(self, param.name, value))
+            }
+        }
+
+        $crate::scene::params::param_variants! { $name by |value| value.kind().params(); { $(
+            $name::$variant { $( $param, )* }
+        )+ } }
+    };
+}
+pub(crate) use param_kinds;
+
+/// The parameters of an enum whose tables are at hand.
+macro_rules! param_variants {
+    ($name:ident by |$value:ident| $table:expr; { $( $owner:ident::$variant:ident { $( $param:ident, )* } )+ }) => {
+        #[allow(unused_variables, reason = "variants without parameters")]
+        impl $crate::scene::params::Params for $name {
+            fn params(&self) -> &'static [$crate::scene::params::Param] {
+                let $value = self;
+                $table
+            }
+
+            fn visit(&self, prefix: &str, visit: &mut $crate::scene::params::Visit<'_>) {
+                let table = self.params();
+                match self { $( $owner::$variant { $( $param, )* } => { $(
+                    let slot = $crate::scene::params::Slot { prefix, name: stringify!($param), table };
+                    $crate::scene::params::ParamField::visit_field($param, slot, visit);
+                )* } )+ }
+            }
+
+            fn find(&self, name: &str) -> Option<&'static $crate::scene::params::Param> {
+                let table = self.params();
+                match self { $( $owner::$variant { $( $param, )* } => { $(
+                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
+                        let slot = $crate::scene::params::Slot { prefix: "", name: stringify!($param), table };
+                        return $crate::scene::params::ParamField::find_field($param, slot, below);
+                    }
+                )* } )+ }
+                None
+            }
+
+            fn get(&self, name: &str) -> Option<$crate::scene::params::ParamValue> {
+                match self { $( $owner::$variant { $( $param, )* } => { $(
+                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
+                        return $crate::scene::params::ParamField::get_field($param, below);
+                    }
+                )* } )+ }
+                None
+            }
+
+            fn set(&mut self, name: &str, value: $crate::scene::params::ParamValue) -> bool {
+                match self { $( $owner::$variant { $( $param, )* } => { $(
+                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
+                        return $crate::scene::params::ParamField::set_field($param, below, value);
+                    }
+                )* } )+ }
+                false
+            }
+        }
+    };
+}
+pub(crate) use param_variants;
+
+/// Lets a struct with parameters be a part of another one.
+macro_rules! nested_params {
+    ($name:ident) => {
+        impl $crate::scene::params::ParamField for $name {
+            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+                None
+            }
+            fn from_value(_: $crate::scene::params::ParamValue) -> Option<Self> {
+                None
+            }
+            fn visit_field(&self, slot: $crate::scene::params::Slot<'_>, visit: &mut $crate::scene::params::Visit<'_>) {
+                $crate::scene::params::Params::visit(self, &slot.inner_prefix(), visit);
+            }
+            fn find_field(
+                &self,
+                _: $crate::scene::params::Slot<'_>,
+                below: &str,
+            ) -> Option<&'static $crate::scene::params::Param> {
+                $crate::scene::params::Params::find(self, below.strip_prefix('.')?)
+            }
+            fn get_field(&self, below: &str) -> Option<$crate::scene::params::ParamValue> {
+                $crate::scene::params::Params::get(self, below.strip_prefix('.')?)
+            }
+            fn set_field(&mut self, below: &str, value: $crate::scene::params::ParamValue) -> bool {
+                let name = below.strip_prefix('.');
+                name.is_some_and(|name| $crate::scene::params::Params::set(self, name, value))
+            }
+        }
+    };
+}
+pub(crate) use nested_params;
+
+/// Lets an enum with parameters be a part of a struct. Its variant is the parameter `type`, as in files.
+macro_rules! nested_variants {
+    ($name:ident, $label:literal, $help:literal) => {
+        impl $name {
+            fn type_param() -> &'static $crate::scene::params::Param {
+                static CHOICES: std::sync::LazyLock<Vec<$crate::scene::params::Choice>> =
+                    std::sync::LazyLock::new($crate::scene::params::tags::<$name>);
+                static PARAM: std::sync::LazyLock<$crate::scene::params::Param> =
+                    std::sync::LazyLock::new(|| $crate::scene::params::Param {
+                        name: "type",
+                        label: $label.into(),
+                        help: $help,
+                        limits: $crate::scene::limits::NO_LIMITS,
+                        default: $crate::scene::params::ParamValue::Choice(&CHOICES[0].key),
+                        choices: &CHOICES,
+                        is_color: false,
+                        animatable: false,
+                    });
+                &PARAM
+            }
+
+            fn type_value(&self) -> $crate::scene::params::ParamValue {
+                let choices = Self::type_param().choices;
+                $crate::scene::params::ParamValue::Choice(&choices[$crate::scene::params::Variants::variant(self)].key)
+            }
+        }
+
+        impl $crate::scene::params::ParamField for $name {
+            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+                None
+            }
+            fn from_value(_: $crate::scene::params::ParamValue) -> Option<Self> {
+                None
+            }
+            fn visit_field(&self, slot: $crate::scene::params::Slot<'_>, visit: &mut $crate::scene::params::Visit<'_>) {
+                let prefix = slot.inner_prefix();
+                visit(&prefix, Self::type_param(), self.type_value());
+                $crate::scene::params::Params::visit(self, &prefix, visit);
+            }
+            fn find_field(
+                &self,
+                _: $crate::scene::params::Slot<'_>,
+                below: &str,
+            ) -> Option<&'static $crate::scene::params::Param> {
+                match below.strip_prefix('.')? {
+                    "type" => Some(Self::type_param()),
+                    name => $crate::scene::params::Params::find(self, name),
+                }
+            }
+            fn get_field(&self, below: &str) -> Option<$crate::scene::params::ParamValue> {
+                match below.strip_prefix('.')? {
+                    "type" => Some(self.type_value()),
+                    name => $crate::scene::params::Params::get(self, name),
+                }
+            }
+            fn set_field(&mut self, below: &str, value: $crate::scene::params::ParamValue) -> bool {
+                let choices = Self::type_param().choices;
+                match (below.strip_prefix('.'), value) {
+                    (Some("type"), $crate::scene::params::ParamValue::Choice(key)) => {
+                        let index = choices.iter().position(|choice| choice.key == key);
+                        index.map(|index| $crate::scene::params::change_variant(self, index)).is_some()
+                    }
+                    (Some(name), value) => $crate::scene::params::Params::set(self, name, value),
+                    (None, _) => false,
+                }
+            }
+        }
+    };
+}
+pub(crate) use nested_variants;
+
+/// Lets an enum without fields be a parameter that is chosen: it needs `ALL`, `label` and `help`.
+macro_rules! choices {
+    ($name:ident) => {
+        impl $crate::scene::params::ParamField for $name {
+            const ANIMATABLE: bool = false;
+
+            fn choices() -> &'static [$crate::scene::params::Choice] {
+                static CHOICES: std::sync::LazyLock<Vec<$crate::scene::params::Choice>> =
+                    std::sync::LazyLock::new(|| {
+                        $crate::scene::params::choices_of(&$name::ALL, $name::label, $name::help)
+                    });
+                &CHOICES
+            }
+            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+                let index = Self::ALL.iter().position(|value| value == self)?;
+                Some($crate::scene::params::ParamValue::Choice(&Self::choices()[index].key))
+            }
+            fn from_value(value: $crate::scene::params::ParamValue) -> Option<Self> {
+                let $crate::scene::params::ParamValue::Choice(key) = value else { return None };
+                Self::choices().iter().position(|choice| choice.key == key).map(|index| Self::ALL[index])
+            }
+        }
+    };
+}
+pub(crate) use choices;

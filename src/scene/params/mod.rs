@@ -1,0 +1,255 @@
+//! Parameters: the values of a scene that have a name, limits, a default and a help text.
+//!
+//! Each type has one table, and a parameter is one row of it: `name: type = default, limits;` with the help text as the comment
+//! above. The file's checks, the inspector, multi-edit, attachments and [`super::ParamPath`] follow from the row.
+//! [`param_struct`] and [`param_kinds`] define the type with its table; [`param_table`] and [`param_variants`] add a table to
+//! a type that stands elsewhere.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Deserializer, Serialize};
+
+use super::Limits;
+
+mod define;
+#[cfg(test)]
+mod tests;
+mod value;
+
+pub(crate) use define::{
+    choices, nested_params, nested_variants, param_kinds, param_name, param_rows, param_struct, param_table,
+    param_variants,
+};
+pub use value::{LIST_COLUMNS, List, ParamValue};
+
+/// What is known about a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Param {
+    /// Its key in files, below the part that it belongs to.
+    pub name: &'static str,
+    /// Its name for people.
+    pub label: Cow<'static, str>,
+    /// One sentence for people.
+    pub help: &'static str,
+    /// Accepted and offered ranges, with the unit; for a text, those of its length. Without meaning for the rest.
+    pub limits: Limits,
+    /// The value that a new object has.
+    pub default: ParamValue,
+    /// What can be chosen, for a value that is a choice.
+    pub choices: &'static [Choice],
+    /// Whether its three numbers are a linear color.
+    pub is_color: bool,
+    /// Whether it may change with time: a change neither reads a file nor makes another structure.
+    pub animatable: bool,
+}
+
+/// One of the values that a parameter can be chosen from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Its name in files.
+    pub key: String,
+    /// Its name for people.
+    pub label: &'static str,
+    /// One sentence for people.
+    pub help: &'static str,
+}
+
+/// The last column of a table: limits, and what is unusual about the parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct ParamSpec {
+    limits: Limits,
+    label: Option<&'static str>,
+    is_color: bool,
+    is_fixed: bool,
+}
+
+impl From<Limits> for ParamSpec {
+    fn from(limits: Limits) -> Self {
+        Self { limits, label: None, is_color: false, is_fixed: false }
+    }
+}
+
+impl Limits {
+    /// These limits, for a parameter that people know by another name than files do.
+    pub fn labeled(self, label: &'static str) -> ParamSpec {
+        ParamSpec::from(self).labeled(label)
+    }
+
+    /// These limits, for each channel of a color.
+    pub fn color(self) -> ParamSpec {
+        ParamSpec { is_color: true, ..self.into() }
+    }
+
+    /// These limits, for a parameter that cannot change with time, see [`Param::animatable`].
+    pub fn fixed(self) -> ParamSpec {
+        ParamSpec { is_fixed: true, ..self.into() }
+    }
+}
+
+impl ParamSpec {
+    /// The same for a parameter that people know by another name than files do.
+    pub fn labeled(self, label: &'static str) -> Self {
+        Self { label: Some(label), ..self }
+    }
+}
+
+/// Takes what stands before a parameter's name, the parameter, and its value.
+pub type Visit<'v> = dyn FnMut(&str, &'static Param, ParamValue) + 'v;
+
+/// What has parameters.
+pub trait Params {
+    /// The rows of its table.
+    fn params(&self) -> &'static [Param];
+
+    /// Visits every parameter that it has now, in the table's order, those of its parts included; `prefix` stands before
+    /// their names.
+    fn visit(&self, prefix: &str, visit: &mut Visit<'_>);
+
+    /// What is known about the parameter of this name.
+    fn find(&self, name: &str) -> Option<&'static Param>;
+
+    /// The value of the parameter of this name.
+    fn get(&self, name: &str) -> Option<ParamValue>;
+
+    /// Sets the parameter of this name; false, and nothing changed, where there is none or the value is of another type.
+    /// Limits are the business of [`super::check`].
+    fn set(&mut self, name: &str, value: ParamValue) -> bool;
+}
+
+/// Where a field stands in its table.
+#[derive(Clone, Copy)]
+pub struct Slot<'a> {
+    /// Before the field's name.
+    pub prefix: &'a str,
+    /// The field's name.
+    pub name: &'static str,
+    /// The table.
+    pub table: &'static [Param],
+}
+
+impl Slot<'_> {
+    /// What stands before the names of what is below the field.
+    pub fn inner_prefix(&self) -> String {
+        format!("{}{}.", self.prefix, self.name)
+    }
+}
+
+/// A type that a field of a table can have: one value, or a part with parameters of its own. `below` is what follows the
+/// field's name: nothing for the field itself, or a dot and a name.
+pub trait ParamField: Sized {
+    /// Whether such a value may change with time.
+    const ANIMATABLE: bool = true;
+
+    /// The values to choose from; none for most types.
+    fn choices() -> &'static [Choice] {
+        &[]
+    }
+
+    /// The value; `None` for a part.
+    fn to_value(&self) -> Option<ParamValue>;
+
+    /// The field of this value, where it is of the right type.
+    fn from_value(value: ParamValue) -> Option<Self>;
+
+    /// From a file.
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>
+    where
+        Self: Deserialize<'de>,
+    {
+        Self::deserialize(deserializer)
+    }
+
+    /// See [`Params::visit`].
+    fn visit_field(&self, slot: Slot<'_>, visit: &mut Visit<'_>) {
+        if let (Some(value), Some(param)) = (self.to_value(), named(slot.table, slot.name)) {
+            visit(slot.prefix, param, value);
+        }
+    }
+
+    /// See [`Params::find`].
+    fn find_field(&self, slot: Slot<'_>, below: &str) -> Option<&'static Param> {
+        below.is_empty().then(|| named(slot.table, slot.name)).flatten()
+    }
+
+    /// See [`Params::get`].
+    fn get_field(&self, below: &str) -> Option<ParamValue> {
+        below.is_empty().then(|| self.to_value()).flatten()
+    }
+
+    /// See [`Params::set`].
+    fn set_field(&mut self, below: &str, value: ParamValue) -> bool {
+        let new = below.is_empty().then(|| Self::from_value(value)).flatten();
+        new.map(|new| *self = new).is_some()
+    }
+}
+
+/// A row of a table; `None` for a part, which has a table of its own.
+pub(super) fn row<T: ParamField>(
+    name: &'static str,
+    help: &'static str,
+    spec: impl Into<ParamSpec>,
+    default: T,
+) -> Option<Param> {
+    let ParamSpec { limits, label, is_color, is_fixed } = spec.into();
+    Some(Param {
+        name,
+        label: label.map_or_else(|| sentence_case(name).into(), Cow::Borrowed),
+        help: help.trim_ascii(),
+        limits,
+        default: default.to_value()?,
+        choices: T::choices(),
+        is_color,
+        animatable: T::ANIMATABLE && !is_fixed,
+    })
+}
+
+/// The parameter of this name.
+pub(super) fn named(table: &'static [Param], name: &str) -> Option<&'static Param> {
+    table.iter().find(|param| param.name == name)
+}
+
+/// What of a name follows the field: nothing, or a dot and the rest.
+pub(super) fn below<'n>(name: &'n str, field: &str) -> Option<&'n str> {
+    name.strip_prefix(field).filter(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// `bottom_radius` → `Bottom radius`.
+fn sentence_case(name: &str) -> String {
+    let spaced = name.replace('_', " ");
+    let mut chars = spaced.chars();
+    chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
+}
+
+/// The choices of an enum without fields, by the names that files have for them.
+pub(super) fn choices_of<T: Copy + Serialize>(
+    all: &[T],
+    label: impl Fn(T) -> &'static str,
+    help: impl Fn(T) -> &'static str,
+) -> Vec<Choice> {
+    let key = |value: T| serde_json::to_value(value).ok().and_then(|key| key.as_str().map(str::to_owned));
+    all.iter().map(|v| Choice { key: key(*v).unwrap_or_default(), label: label(*v), help: help(*v) }).collect()
+}
+
+/// An enum whose variants have parameters.
+pub trait Variants: Params + Serialize + Sized {
+    /// Each variant with its default parameters, its name and its help text, for people.
+    fn variants() -> Vec<(Self, &'static str, &'static str)>;
+    /// The place of its variant among them.
+    fn variant(&self) -> usize;
+}
+
+/// The variants as choices, by their tags in files.
+pub(super) fn tags<T: Variants>() -> Vec<Choice> {
+    let tag = |value: &T| serde_json::to_value(value).ok()?.get("type")?.as_str().map(str::to_owned);
+    let choice = |(value, label, help)| Choice { key: tag(&value).unwrap_or_default(), label, help };
+    T::variants().into_iter().map(choice).collect()
+}
+
+/// Another variant, with the values of all parameters that both have.
+pub(super) fn change_variant<T: Variants>(this: &mut T, index: usize) {
+    let mut new = T::variants().swap_remove(index).0;
+    this.visit("", &mut |prefix, param, value| {
+        new.set(&format!("{prefix}{}", param.name), value);
+    });
+    *this = new;
+}

@@ -1,0 +1,133 @@
+//! The types of shapes' parameters, packed for the evaluators.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::font::Face;
+use crate::scene::attachment::Attachment;
+use crate::scene::drawn::{Corners, Points};
+use crate::scene::heights::Heights;
+use crate::scene::params::{ParamField, ParamValue};
+
+/// Most numbers that the packed parameters of one shape may take.
+pub const SHAPE_FLOATS: usize = 8;
+
+/// An angle in degrees. Evaluators are given its sine and cosine: those of the GPU are not exact.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Degrees(pub f64);
+
+/// How many sides a regular polygon has; rounded to a whole number. Evaluators are given that, then cosine and
+/// sine of half the angle that a side takes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(transparent)]
+pub struct Sides(pub f64);
+
+impl Sides {
+    /// Half the angle that a side takes, in radians.
+    pub fn half_angle(self) -> f64 {
+        std::f64::consts::PI / self.0.round()
+    }
+}
+
+/// One number in a wrapper.
+macro_rules! scalar {
+    ($type:ident) => {
+        impl ParamField for $type {
+            fn to_value(&self) -> Option<ParamValue> {
+                Some(ParamValue::Scalar(self.0))
+            }
+            fn from_value(value: ParamValue) -> Option<Self> {
+                if let ParamValue::Scalar(v) = value { Some(Self(v)) } else { None }
+            }
+        }
+    };
+}
+scalar!(Degrees);
+scalar!(Sides);
+
+/// A type of parameter as evaluators are given it.
+pub trait Packed: Sized {
+    /// How many numbers it takes when packed.
+    const FLOATS: usize;
+    /// Writes the packed numbers to the start of `out`, which then begins behind them.
+    fn pack(&self, out: &mut &mut [f64]);
+    /// Reads the packed numbers from the start of `rest`, which then begins behind them.
+    fn unpack(rest: &mut &[f64]) -> Self;
+}
+
+fn put<const N: usize>(out: &mut &mut [f64], numbers: [f64; N]) {
+    let (first, rest) = std::mem::take(out).split_at_mut(N);
+    first.copy_from_slice(&numbers);
+    *out = rest;
+}
+
+fn take<const N: usize>(rest: &mut &[f64]) -> [f64; N] {
+    let (first, behind) = rest.split_at(N);
+    *rest = behind;
+    std::array::from_fn(|i| first[i])
+}
+
+impl Packed for f64 {
+    const FLOATS: usize = 1;
+    fn pack(&self, out: &mut &mut [f64]) {
+        put(out, [*self]);
+    }
+    fn unpack(rest: &mut &[f64]) -> Self {
+        take::<1>(rest)[0]
+    }
+}
+
+impl Packed for [f64; 3] {
+    const FLOATS: usize = 3;
+    fn pack(&self, out: &mut &mut [f64]) {
+        put(out, *self);
+    }
+    fn unpack(rest: &mut &[f64]) -> Self {
+        take(rest)
+    }
+}
+
+impl Packed for Degrees {
+    const FLOATS: usize = 2;
+    fn pack(&self, out: &mut &mut [f64]) {
+        put(out, self.0.to_radians().sin_cos().into());
+    }
+    fn unpack(rest: &mut &[f64]) -> Self {
+        let [sine, cosine] = take(rest);
+        Self(sine.atan2(cosine).to_degrees())
+    }
+}
+
+impl Packed for Sides {
+    const FLOATS: usize = 3;
+    fn pack(&self, out: &mut &mut [f64]) {
+        let (sine, cosine) = self.half_angle().sin_cos();
+        put(out, [self.0.round(), cosine, sine]);
+    }
+    fn unpack(rest: &mut &[f64]) -> Self {
+        Self(take::<3>(rest)[0])
+    }
+}
+
+/// What only shapes with data have, which are not packed.
+macro_rules! not_packed {
+    ($($type:ty = $empty:expr;)+) => { $(
+        impl Packed for $type {
+            const FLOATS: usize = 0;
+            fn pack(&self, _: &mut &mut [f64]) {}
+            fn unpack(_: &mut &[f64]) -> Self {
+                $empty
+            }
+        }
+    )+ };
+}
+
+not_packed! {
+    bool = false;
+    String = Self::new();
+    Points = Self::new([]);
+    Corners = Self::new([]);
+    Attachment<Heights> = Self::NONE;
+    Attachment<Face> = Self::NONE;
+}
