@@ -8,7 +8,7 @@ use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::wgsl::{
     Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates,
 };
-use isolith::render::{DebugView, Instance, Overlay};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -209,6 +209,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 padding_2
             }
         ),
+        layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
+        layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(
             "DebugView" =

@@ -5,6 +5,7 @@ mod device;
 pub mod driver;
 pub mod probe;
 pub mod readback;
+pub mod scene_probe;
 
 pub use adapter::{AdapterChoice, AdapterSummary, adapters};
 pub use device::{Gpu, GpuError, device_descriptor, instance_descriptor};
