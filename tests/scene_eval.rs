@@ -93,12 +93,15 @@ fn values_are_right(test: &TestScene, hierarchy: &Hierarchy, loaded: &LoadedScen
 fn probe_rays(test: &TestScene, count: usize) -> Vec<ProbeRay> {
     let mut random = Random::new(test.seed + 11);
     let position = test.camera.position;
-    let ray = |_| ProbeRay {
-        origin: position + random.point(6.0).as_vec3().as_dvec3(),
-        direction: random.direction().as_vec3().as_dvec3(),
-        limits: LIMITS,
-        gone: GONE,
-        normal: None,
+    let components = &test.flat.components;
+    let ray = |i: usize| {
+        let origin = position + random.point(6.0).as_vec3().as_dvec3();
+        // Half of them into the middle of something, so that enough is hit.
+        let component = &components[random.index(components.len())];
+        let aimed = component.origin + component.bounds.center() - origin;
+        let is_aimed = i % 2 == 0 && component.bounds.is_finite();
+        let direction = if is_aimed { aimed.normalize_or(DVec3::X) } else { random.direction() };
+        ProbeRay { origin, direction: direction.as_vec3().as_dvec3(), limits: LIMITS, gone: GONE, normal: None }
     };
     (0..count).map(ray).collect()
 }
