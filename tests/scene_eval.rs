@@ -97,10 +97,12 @@ fn probe_rays(test: &TestScene, count: usize) -> Vec<ProbeRay> {
     let ray = |i: usize| {
         let origin = position + random.point(6.0).as_vec3().as_dvec3();
         // Half of them into the middle of something, so that enough is hit.
-        let component = &components[random.index(components.len())];
-        let aimed = component.origin + component.bounds.center() - origin;
-        let is_aimed = i % 2 == 0 && component.bounds.is_finite();
-        let direction = if is_aimed { aimed.normalize_or(DVec3::X) } else { random.direction() };
+        let component = components.get(random.index(components.len().max(1)));
+        let aimed = component.filter(|component| i % 2 == 0 && component.bounds.is_finite());
+        let direction = match aimed {
+            Some(component) => (component.origin + component.bounds.center() - origin).normalize_or(DVec3::X),
+            None => random.direction(),
+        };
         ProbeRay { origin, direction: direction.as_vec3().as_dvec3(), limits: LIMITS, gone: GONE, normal: None }
     };
     (0..count).map(ray).collect()
