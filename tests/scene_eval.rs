@@ -98,7 +98,7 @@ fn probe_rays(test: &TestScene, count: usize) -> Vec<ProbeRay> {
         let origin = position + random.point(6.0).as_vec3().as_dvec3();
         // Half of them into the middle of something, so that enough is hit.
         let component = components.get(random.index(components.len().max(1)));
-        let aimed = component.filter(|component| i % 2 == 0 && component.bounds.is_finite());
+        let aimed = component.filter(|component| i.is_multiple_of(2) && component.bounds.is_finite());
         let direction = match aimed {
             Some(component) => (component.origin + component.bounds.center() - origin).normalize_or(DVec3::X),
             None => random.direction(),
@@ -202,7 +202,7 @@ fn both_sides_agree_with_the_reference_on_random_scenes() {
         });
         compared = [0, 1].map(|i| compared[i] + counts[i]);
         // The comparison must be able to fail: on each side by itself.
-        if test.seed % 10 == 0
+        if test.seed.is_multiple_of(10)
             && let Some(broken) = without_a_component(test)
         {
             let loaded = probe.load(&shared.gpu, &test.flat, &broken, (&test.camera, ROWS));

@@ -1,5 +1,7 @@
 //! What it takes to ask a scene, against asking every component: the figures of `benches/README.md`.
 
+#![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
+
 use glam::{DVec2, DVec3};
 use isolith::flat::reference::trace::Tracer;
 use isolith::flat::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
