@@ -19,6 +19,7 @@ mod overlay;
 mod random_scene;
 mod renderer;
 mod saving;
+mod scene_eval;
 mod settle;
 mod shaders;
 mod strategies;

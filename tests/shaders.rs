@@ -8,7 +8,7 @@ use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::wgsl::{
     Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates,
 };
-use isolith::render::{DebugView, Instance, Overlay};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
 use isolith::scene::ShapeKind;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -205,6 +205,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 ray_origin_depth
             }
         ),
+        layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
+        layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(
             "DebugView" =

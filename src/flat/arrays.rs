@@ -1,9 +1,12 @@
 //! The arrays. `#[repr(C)]` types are read by the GPU as they stand; `shaders/common/scene.wgsl` is
 //! their counterpart, and a test compares the layouts.
 
+use std::sync::OnceLock;
+
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
+use super::hierarchy::Hierarchy;
 use crate::geometry::{Aabb, Camera};
 use crate::scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
@@ -305,6 +308,12 @@ impl Component {
         Some(rows)
     }
 
+    /// Its bounds, relative to `origin`, grown a little: the arrays are rounded to f32, their bounds are not.
+    pub fn grown_bounds(&self) -> Aabb {
+        let reach = [self.bounds.min, self.bounds.max].map(|v| v.abs().to_array()).concat();
+        self.bounds.expanded(1e-6 * reach.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max))
+    }
+
     /// Whether it holds modifiers.
     pub fn is_modified(&self) -> bool {
         !self.modifier_domains.is_empty()
@@ -362,6 +371,49 @@ pub struct FlatScene {
     pub environment: Environment,
     /// What the artist should know.
     pub warnings: Vec<Warning>,
+    /// See [`FlatScene::hierarchy`].
+    pub(super) lazy_hierarchy: LazyHierarchy,
+}
+
+impl FlatScene {
+    /// The hierarchy over the bounds of the components, in the world. Built when first asked for; a scene that nobody asks
+    /// has none.
+    pub fn hierarchy(&self) -> &Hierarchy {
+        self.lazy_hierarchy.0.get_or_init(|| {
+            let boxes: Vec<Aabb> = self.components.iter().map(world_bounds).collect();
+            Hierarchy::build(&boxes)
+        })
+    }
+
+    /// Whether somebody has asked for the hierarchy.
+    pub fn has_hierarchy(&self) -> bool {
+        self.lazy_hierarchy.0.get().is_some()
+    }
+
+    /// Fits the hierarchy, where there is one, to the component at `index`, which has changed.
+    pub(super) fn refit_hierarchy(&mut self, index: usize) {
+        let bounds = world_bounds(&self.components[index]);
+        if let Some(hierarchy) = self.lazy_hierarchy.0.get_mut()
+            && !hierarchy.refit(index as u32, bounds)
+        {
+            self.lazy_hierarchy = LazyHierarchy::default();
+        }
+    }
+}
+
+/// The grown bounds of a component in the world.
+fn world_bounds(component: &Component) -> Aabb {
+    component.grown_bounds().translated(component.origin)
+}
+
+/// The hierarchy of a scene once somebody needs it. It follows from the components, so it takes no part in comparisons.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LazyHierarchy(OnceLock<Hierarchy>);
+
+impl PartialEq for LazyHierarchy {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// A component whose numbers reach beyond this, in meters, is large: rounding to f32 moves what is in it by more than 2 µm.

@@ -18,6 +18,7 @@
 //! | `eval` | the field over the arrays, in f64, with exact derivatives: the reference |
 //! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
 //! | `reference` | the reference renderer: a whole picture in f64, and how wrong another one is |
+//! | `hierarchy`, `scene_eval` | distances and rays to all components at once |
 //! | `pick` | which node a ray hits |
 //! | `tape` | which entries of a large component matter where |
 //! | `mixture` | materials of a pixel with their weights; counterpart of `shaders/common/mixture.wgsl` |
@@ -40,6 +41,7 @@ pub mod eval;
 mod flatten;
 mod fold;
 mod gbuffer;
+pub mod hierarchy;
 mod leaf;
 mod lights;
 mod lower_bound;
@@ -54,6 +56,7 @@ pub mod pick;
 mod prepare;
 pub mod reference;
 mod reflatten;
+pub mod scene_eval;
 mod stack;
 pub mod standpoint;
 mod survey;

@@ -2,7 +2,7 @@
 
 use super::FlatScene;
 use super::mesh_rays::{Meshes, trace_meshes};
-use super::reference::trace::trace;
+use super::scene_eval::{RayLimits, SceneEvaluator};
 use crate::geometry::Ray;
 use crate::scene::NodeId;
 
@@ -12,7 +12,7 @@ pub fn pick(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -
     let mesh = trace_meshes(flat, meshes, ray, near, far);
     let limit = mesh.map_or(far, |(_, hit)| hit.t);
     // A ray that cannot be followed to its end has met no field on the way.
-    match trace(flat, ray, near, limit).ok().flatten() {
+    match SceneEvaluator::new(flat).ray(ray, RayLimits { near, far: limit }).ok().flatten() {
         Some(hit) => Some(flat.ids[hit.leaf as usize]),
         None => mesh.map(|(index, _)| flat.meshes[index].id),
     }

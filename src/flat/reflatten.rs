@@ -144,6 +144,7 @@ impl Last {
         flat.ids[range(old.first, old.count)].copy_from_slice(&scratch.ids);
         flat.params[range(old.params, old.param_rows)].copy_from_slice(&scratch.params);
         flat.components[at] = Component { first: old.first, params: old.params, ..new };
+        flat.refit_hierarchy(at);
         true
     }
 }

@@ -10,6 +10,8 @@
 //! rounded to f32. Where a cut ends flush with a face, or two faces coincide, that rounding may leave a skin: between
 //! parallel faces of two shapes what is thinner than the rounding is nothing.
 
+use std::cell::Cell;
+
 use glam::DVec3;
 use thiserror::Error;
 
@@ -76,6 +78,27 @@ pub fn trace(flat: &FlatScene, ray: &Ray, near: f64, far: f64) -> Result<Option<
     Tracer::new(flat).march(ray, near, far).map(|march| march.hit)
 }
 
+/// The first surface of one component on the ray between `near` and `far`. Adds to `evaluations` how often the field was
+/// evaluated.
+pub fn trace_component(
+    flat: &FlatScene,
+    index: u32,
+    ray: &Ray,
+    [near, far]: [f64; 2],
+    evaluations: &mut u64,
+) -> Result<Option<f64>, TraceError> {
+    let mut line = Line::new(flat, index, ray);
+    let hit = line.first_hit(near, far);
+    *evaluations += line.fields.get();
+    hit
+}
+
+/// The leaf of a component that the ray meets at `t`: index into [`FlatScene::nodes`].
+pub fn leaf_at(flat: &FlatScene, component: u32, ray: &Ray, t: f64) -> u32 {
+    let line = Line::new(flat, component, ray);
+    surface(flat, line.component, line.at(t)).leaf
+}
+
 /// Traces many rays through one scene.
 #[derive(Clone)]
 pub struct Tracer<'a> {
@@ -84,16 +107,19 @@ pub struct Tracer<'a> {
     bounds: Vec<Aabb>,
     /// Entry, exit and index of the components on the present ray.
     order: Vec<(f64, f64, u32)>,
+    /// How often the field of a component was evaluated so far.
+    pub evaluations: u64,
 }
 
 impl<'a> Tracer<'a> {
     /// Prepares a scene.
     pub fn new(flat: &'a FlatScene) -> Self {
-        let grown = |c: &Component| {
-            let reach = [c.bounds.min, c.bounds.max].map(|v| v.abs().to_array()).concat();
-            c.bounds.expanded(1e-6 * reach.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max))
-        };
-        Self { flat, bounds: flat.components.iter().map(grown).collect(), order: Vec::new() }
+        Self {
+            flat,
+            bounds: flat.components.iter().map(Component::grown_bounds).collect(),
+            order: Vec::new(),
+            evaluations: 0,
+        }
     }
 
     /// Follows the ray from `near` to the first surface, or to `far`.
@@ -117,7 +143,9 @@ impl<'a> Tracer<'a> {
                 break;
             }
             let mut line = Line::new(self.flat, index, ray);
-            if let Some(t) = line.first_hit(entry, limit)? {
+            let hit = line.first_hit(entry, limit);
+            self.evaluations += line.fields.get();
+            if let Some(t) = hit? {
                 nearest = Some((t, index));
             }
             margin = margin.min(line.margin);
@@ -125,7 +153,9 @@ impl<'a> Tracer<'a> {
         let Some((t, component)) = nearest else { return Ok(March { hit: None, margin }) };
         let line = Line::new(self.flat, component, ray);
         let leaf = surface(self.flat, line.component, line.at(t)).leaf;
-        Ok(March { hit: Some(Hit { t, component, leaf }), margin: margin.min(line.depth(t)) })
+        let margin = margin.min(line.depth(t));
+        self.evaluations += line.fields.get();
+        Ok(March { hit: Some(Hit { t, component, leaf }), margin })
     }
 }
 
@@ -136,6 +166,8 @@ struct Line<'a> {
     origin: DVec3,
     direction: DVec3,
     evaluations: u32,
+    /// How often the field was evaluated, by `field` and `slope`.
+    fields: Cell<u64>,
     margin: f64,
 }
 
@@ -143,7 +175,15 @@ impl<'a> Line<'a> {
     fn new(flat: &'a FlatScene, index: u32, ray: &Ray) -> Self {
         let component = &flat.components[index as usize];
         let origin = ray.origin - component.origin;
-        Self { flat, component, origin, direction: ray.direction, evaluations: 0, margin: f64::INFINITY }
+        Self {
+            flat,
+            component,
+            origin,
+            direction: ray.direction,
+            evaluations: 0,
+            fields: Cell::new(0),
+            margin: f64::INFINITY,
+        }
     }
 
     fn at(&self, t: f64) -> DVec3 {
@@ -151,11 +191,13 @@ impl<'a> Line<'a> {
     }
 
     fn field(&self, t: f64) -> f64 {
+        self.fields.set(self.fields.get() + 1);
         field(self.flat, self.component, self.at(t))
     }
 
     /// The field's slope along the ray.
     fn slope(&self, t: f64) -> f64 {
+        self.fields.set(self.fields.get() + 1);
         gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
     }
 

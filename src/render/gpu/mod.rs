@@ -6,6 +6,7 @@ pub mod driver;
 mod error;
 pub mod probe;
 pub mod readback;
+pub mod scene_probe;
 
 pub use adapter::{AdapterChoice, AdapterSummary, adapters, instance_descriptor};
 pub use device::{Gpu, device_descriptor};

@@ -1,6 +1,7 @@
 //! What lives on the device: buffers, textures, targets, layouts of bind groups, and the structs that shaders read.
 
 pub mod buffers;
+pub mod hierarchy;
 pub mod layouts;
 pub mod tape_texture;
 pub mod targets;

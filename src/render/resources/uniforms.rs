@@ -120,7 +120,7 @@ pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
 }
 
 /// Where bounds without end are said to end: far beyond any camera, near enough for f32 arithmetic.
-const UNBOUNDED: f32 = 1e18;
+pub const UNBOUNDED: f32 = 1e18;
 
 impl GpuComponent {
     /// As it stands to the eye.
