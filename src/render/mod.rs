@@ -11,6 +11,7 @@
 //! The frame, in order: mesh (clears, then triangles), hiz (only with meshes), cone and
 //! trace (each component, front to back), surface, shade, debug_view (only where a view mode is asked for), overlay. See `frame::plan` for how it is cut into dispatches.
 
+mod evaluators;
 mod frame;
 mod gpu;
 mod passes;
@@ -19,6 +20,7 @@ mod renderer;
 mod resources;
 pub mod wgsl;
 
+pub use evaluators::{EvaluatorUse, evaluators_of};
 pub use frame::cost_model::coarse_size;
 pub use frame::{plan, standpoint};
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};

@@ -74,7 +74,8 @@ impl FoldWriter<'_> {
         }
         // Copied once: a uniform read at each use costs several times as much on a processor. A surface is
         // evaluated once only, and reads where it needs to.
-        let copied = if self.fold == Fold::Value && self.baked.is_none() { rows } else { 0 };
+        let is_copied = self.fold == Fold::Value && self.baked.is_none() && !self.reads_at_use();
+        let copied = if is_copied { rows } else { 0 };
         for (row, bits) in self.baked.into_iter().flatten().enumerate() {
             let [x, y, z, w] = bits.map(f32::from_bits);
             self.line(&format!("const q{row} = vec4f({x:?}, {y:?}, {z:?}, {w:?});"));
@@ -95,11 +96,18 @@ impl FoldWriter<'_> {
         self.line("}");
     }
 
+    /// Whether rows are read where they are used. Graphics cards hold uniforms in scalar registers, some hundred: with all rows
+    /// read before the march, most of them were spilled into lanes of vector registers.
+    fn reads_at_use(&self) -> bool {
+        self.options.skip_mode == SkipMode::Branches && self.baked.is_none()
+    }
+
     /// What stands before the fold.
     fn open_fold(&mut self) {
         if self.fold == Fold::Surface {
             self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
-            for row in 0..if self.baked.is_some() { 0 } else { self.structure.rows() } {
+            let is_read = self.baked.is_none() && !self.reads_at_use();
+            for row in 0..if is_read { self.structure.rows() } else { 0 } {
                 self.line(&format!("    let q{row} = rows[{row}u];"));
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
@@ -129,6 +137,9 @@ impl FoldWriter<'_> {
         let mut open: Vec<(usize, StructureEntry, usize)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
+            if self.reads_at_use() {
+                self.out.push_str(&read_rows(entry, row, ""));
+            }
             if entry.is_leaf() {
                 let is_operand = |e: &&StructureEntry| e.kind != EntryKind::Run && e.join == Join::Difference;
                 let cuts = open.iter().map(|(_, group, _)| group).chain([entry]).filter(is_operand).count();
@@ -171,7 +182,8 @@ impl FoldWriter<'_> {
             }
         }
         if surface {
-            let text = material_weights(self.structure, self.baked.is_some(), self.options.skip_mode);
+            let reads_again = self.reads_at_use();
+            let text = material_weights(self.structure, self.baked.is_some(), reads_again, self.options.skip_mode);
             self.line(&text);
             self.line("    return Surface(s0, surface_first + l0, gradient, diffuse, emission);\n}");
         } else {
@@ -314,6 +326,11 @@ impl FoldWriter<'_> {
         let reached = format!("placed_bounds({point}, q{row}, q{}, q{}) < {bound}", row + 1, row + 2);
         self.line(&format!("    if {reached} {{"));
     }
+}
+
+/// Reads the rows of an entry, whose first is `row`. `offset` is code: something to add to each place.
+pub(super) fn read_rows(entry: &StructureEntry, row: usize, offset: &str) -> String {
+    (row..row + entry.rows()).map(|row| format!("    let q{row} = rows[{row}u{offset}];\n")).collect()
 }
 
 /// The name of the least that an operand can be ahead.
