@@ -1,7 +1,7 @@
 # Isolith. `make run` and `make test` are all that a fresh Debian or Ubuntu machine with Rust needs.
 
 SHELL := /bin/bash
-.PHONY: help run test nightly window lint bench golden scenes setup
+.PHONY: help run test nightly window lint bench gpu-static golden scenes setup
 .DEFAULT_GOAL := help
 
 # Vulkan drivers want a private folder and complain where there is none.
@@ -13,14 +13,14 @@ endif
 endif
 
 help: ## Show this list
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1\t\2/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
 
 # Built for speed, as `make bench` is: the two share their build, as `make test` and `make lint` share theirs.
 run: setup ## Open the editor on the showcase scene; without a display, render it to showcase.png
 	cargo run --release -- scenes/showcase.json
 
 test: lint ## Check formatting and lints, then run every test
-	cargo test --lib --tests
+	cargo test --workspace --lib --tests
 
 # 200 times the points of `make test`: a million for each repetition against its copies. Numerical stress by all methods.
 # 50 real editors under Xvfb are driven by keys and killed: that takes half an hour and installs xvfb and xdotool.
@@ -37,8 +37,8 @@ window: setup ## Drive the program in a window of its own at one frame a second,
 
 lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy
-	cargo fmt --check
-	cargo clippy --all-targets -- -D warnings
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
 
 bench: setup ## Measure speed and accuracy; tables go into benches/README.md, charts into target/bench
 	cargo bench --bench frame
@@ -47,6 +47,9 @@ bench: setup ## Measure speed and accuracy; tables go into benches/README.md, ch
 	cargo run --release -- bench --growth --methods tape,straight-line,auto --output target/bench
 	cargo run --release -- bench --blends --methods auto --output target/bench
 	cargo run --release -- bench --stress --output target/bench
+
+gpu-static: setup ## Compile every shader for two graphics cards, without one; the table goes into benches/README.md
+	ISOLITH_ACCEPT_GPU_STATIC=1 cargo test --workspace --test limits
 
 golden: setup ## Accept the pictures of all scenes as they are rendered now
 	ISOLITH_ACCEPT_GOLDEN=1 cargo test --test tests -- golden::

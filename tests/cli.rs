@@ -433,3 +433,29 @@ fn bench_refuses_what_it_does_not_know() {
     place.run(&["bench", "scene.json", "--size", "5"]).failed(2, &["16..=4096"]);
     place.run(&["bench", "missing.json"]).failed(3, &["missing.json"]);
 }
+
+#[test]
+fn shader_prints_what_naga_accepts_and_says_what_there_is() {
+    let place = Place::new();
+    let list = place.run(&["shader", "scene.json", "--list"]);
+    let lines: Vec<&str> = list.succeeded().out.lines().collect();
+    assert!(lines[0].starts_with("passes: ") && lines[0].contains("surface"), "{}", list.out);
+    assert!(lines[1].starts_with("evaluator 0: interpreter; components: 2; "), "{}", list.out);
+    let straight = "evaluator 1: straight-line code for 1 entries; components: 1; shapes: ";
+    assert!(lines.len() == 4 && lines[2].starts_with(straight), "{}", list.out);
+    for (evaluator, pass) in [("0", "trace"), ("1", "surface"), ("2", "cone"), ("0", "shade")] {
+        let run = place.run(&["shader", "scene.json", "--pass", pass, "--evaluator", evaluator]);
+        let module = naga::front::wgsl::parse_str(&run.succeeded().out);
+        let module = module.unwrap_or_else(|error| panic!("{pass}: {}", error.emit_to_string(&run.out)));
+        assert!(!module.entry_points.is_empty(), "{pass}");
+    }
+    let of = |arguments: &[&str]| place.run(&[&["shader"], arguments].concat()).succeeded().out.clone();
+    assert_ne!(of(&["scene.json"]), of(&["scene.json", "--counting"]));
+    assert_ne!(of(&["scene.json", "--evaluator", "1"]), of(&["scene.json", "--evaluator", "1", "--for", "processor"]));
+    assert_ne!(of(&["scene.json"]), of(&["scene.json", "--method", "baked"]));
+    assert!(of(&[]).contains("fn sdf_mandelbulb"), "without a scene it knows every shape");
+    place.run(&["shader", "scene.json", "--pass", "paint"]).failed(2, &["paint", "surface"]);
+    place.run(&["shader", "scene.json", "--evaluator", "3"]).failed(2, &["evaluator 3", "--list"]);
+    place.run(&["shader", "scene.json", "--method", "fastest"]).failed(2, &["fastest", "auto"]);
+    place.run(&["shader", "missing.json"]).failed(3, &["missing.json"]);
+}

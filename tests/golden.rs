@@ -14,7 +14,7 @@ const SIDE: u32 = 256;
 
 /// How equal two pictures must be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Gate {
+pub enum Gate {
     /// To the last bit. Lavapipe gives the same bits on every machine and in every version.
     Exact,
     /// As near as another driver's rounding allows, see [`CHANNEL_TOLERANCE`] and [`PIXEL_TOLERANCE`].
@@ -61,29 +61,31 @@ fn every_scene_looks_as_accepted() {
             picture.save(accepted_path(&scene.name)).expect("the accepted picture can be written");
         }
     }
-    compare_with_accepted(EvalStrategy::Interpreter, if is_lavapipe { Gate::Exact } else { Gate::Close });
+    let gate = if is_lavapipe { Gate::Exact } else { Gate::Close };
+    compare_with_accepted("interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
 }
 
 /// Straight-line code may be rounded otherwise than the interpreter, so bits are not compared.
 #[test]
 fn every_scene_looks_the_same_with_straight_line_code() {
-    compare_with_accepted(EvalStrategy::StraightLine, Gate::Close);
+    compare_with_accepted("specialized", Gate::Close, |scene, side| scene.render(side, EvalStrategy::StraightLine));
 }
 
-fn compare_with_accepted(strategy: EvalStrategy, gate: Gate) {
+/// Fails where a scene looks otherwise as `draw` draws it. `how` is for messages and names of files.
+pub fn compare_with_accepted(how: &str, gate: Gate, draw: impl Fn(&BenchScene, u32) -> GBuffer) {
     let mut faults = Vec::new();
     for scene in scenes() {
         let Ok(accepted) = image::open(accepted_path(&scene.name)) else {
             faults.push(format!("{}: no picture was accepted yet; look at it and run `make golden`", scene.name));
             continue;
         };
-        let (actual, accepted) = (image(&scene.render(SIDE, strategy)), accepted.to_rgba8());
+        let (actual, accepted) = (image(&draw(&scene, SIDE)), accepted.to_rgba8());
         if let Err(fault) = gate.check(&actual, &accepted) {
-            let place = keep(&format!("{}-{strategy:?}", scene.name), &actual, &accepted);
+            let place = keep(&format!("{}-{how}", scene.name), &actual, &accepted);
             faults.push(format!("{}: {fault}; see {}", scene.name, place.display()));
         }
     }
-    assert!(faults.is_empty(), "{strategy:?}, {gate:?}:\n{}", faults.join("\n"));
+    assert!(faults.is_empty(), "{how}, {gate:?}:\n{}", faults.join("\n"));
 }
 
 #[test]

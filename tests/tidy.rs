@@ -220,6 +220,8 @@ fn edges_are_seen_through_super_and_braces() {
 fn broken_house_rules_are_caught() {
     let bad = ["uns", "afe"].concat();
     assert!(caught("src/scene/a.rs", &format!("fn f() {{ {bad} {{}} }}"), &bad));
+    assert!(caught("tests/gpu_static/src/cards.rs", &format!("fn f() {{ {bad} {{}} }}"), &bad));
+    assert!(!caught("tests/gpu_static/src/vulkan.rs", &format!("fn f() {{ {bad} {{}} }}"), &bad));
     assert!(caught("src/scene/a.rs", &format!("fn f() {{ {}!() }}", ["to", "do"].concat()), "!"));
     assert!(caught("src/scene/a.rs", "fn f() { x.unwrap() }", "unwrap outside of tests"));
     assert!(caught("src/scene/a.rs", "fn f() { println!() }", "only the command line prints"));

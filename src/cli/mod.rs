@@ -6,6 +6,7 @@
 //! | `outputs` | buffers → files |
 //! | `bench` | `isolith bench`: run time against error |
 //! | `check` | `isolith check`: what a scene holds, what is wrong with it |
+//! | `shader` | `isolith shader`: the assembled source of a pass |
 //! | `progress` | the bar, and Ctrl-C |
 //! | `adapters` | `isolith adapters`, and the option that chooses one |
 //! | `input` | scene files, standard input |
@@ -24,6 +25,7 @@ mod outputs;
 mod progress;
 mod render;
 mod runtime_folder;
+mod shader;
 mod text;
 
 use std::ffi::OsString;
@@ -74,6 +76,9 @@ enum CliCommand {
     /// Measure how long scenes take and how exact they are, by every method
     #[command(after_help = EXIT_CODES)]
     Bench(bench::BenchArguments),
+    /// Print the WGSL source of a pass as a graphics device gets it
+    #[command(after_help = EXIT_CODES)]
+    Shader(shader::ShaderArguments),
     /// Print the JSON schema of scene files
     Schema,
     /// List the graphics adapters
@@ -112,6 +117,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
         Some(CliCommand::Render(arguments)) => render::render(&arguments),
         Some(CliCommand::Check(arguments)) => check::check(&arguments),
         Some(CliCommand::Bench(arguments)) => bench::bench(&arguments),
+        Some(CliCommand::Shader(arguments)) => shader::shader(&arguments),
         Some(CliCommand::Schema) => say(&format!("{:#}", crate::scene::file::schema())),
         Some(CliCommand::Gallery { folder }) => write_gallery(&folder),
         Some(CliCommand::Adapters(arguments)) => adapters::list(&arguments),

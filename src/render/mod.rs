@@ -28,6 +28,7 @@ pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::{Overlay, OverlaySettings};
 pub use pipelines::cache::PipelineCache;
+pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
 pub use renderer::{Counts, Distribution, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};

@@ -1,13 +1,14 @@
 //! Which pipeline evaluates which component: the interpreter at once, a specialized one as soon as it is
 //! built. Equal structures share a pipeline; nobody ever waits for one unless asked to.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
-use crate::flat::{Component, FlatScene};
+use super::evaluators::tape_evaluators;
+use crate::flat::FlatScene;
 use crate::guard::guarded;
 use crate::render::gpu::Gpu;
 use crate::render::passes::field::{FieldLayouts, FieldPipelines};
@@ -15,7 +16,7 @@ use crate::render::pipelines::key::{PipelineKey, Templates};
 use crate::render::pipelines::prewarm::Prewarmer;
 use crate::render::pipelines::strategy::EvalStrategy;
 use crate::render::resources::layouts::Layouts;
-use crate::render::wgsl::{Evaluator, OpSet, Options, ShaderError, Structure};
+use crate::render::wgsl::{Evaluator, OpSet, Options, ShaderError};
 
 /// Most specialized pipelines that are kept; the least recently used go first.
 pub const MAX_PIPELINES: usize = 1024;
@@ -200,13 +201,7 @@ impl PipelineCache {
         let mut choices = vec![None; flat.components.len()];
         for (index, key) in order.iter().filter_map(|i| Some((*i, keys[*i]?))) {
             let component = &flat.components[index];
-            choices[index] = self.specialized(key.bits, strategy, || match (strategy, key.template) {
-                (EvalStrategy::Baked, _) => {
-                    Some(Evaluator::Baked(Structure::whole(flat, component), component_rows(flat, component)))
-                }
-                (_, Some(shapes)) => Structure::template(flat, component, shapes).map(Evaluator::StraightLine),
-                _ => Structure::of(flat, component).map(Evaluator::StraightLine),
-            });
+            choices[index] = self.specialized(key.bits, strategy, || key.evaluator(flat, component, strategy));
         }
         let by_tape = |i: usize| strategy != EvalStrategy::Interpreter && has_tapes.get(i) == Some(&true);
         let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
@@ -295,11 +290,11 @@ impl PipelineCache {
             }
         }
         let interpreter = &mut self.interpreters[0];
-        let plain = OpSet { modifiers: BTreeSet::new(), ..interpreter.ops.clone() };
-        let tape = [(&mut interpreter.tape, plain), (&mut interpreter.tape_modified, interpreter.ops.clone())];
-        for ((slot, ops), _) in tape.into_iter().zip(needs_tapes).filter(|(_, needed)| *needed) {
+        let [plain, modified] = tape_evaluators(&interpreter.ops);
+        let tape = [(&mut interpreter.tape, plain), (&mut interpreter.tape_modified, modified)];
+        for ((slot, evaluator), _) in tape.into_iter().zip(needs_tapes).filter(|(_, needed)| *needed) {
             if slot.is_none() {
-                *slot = Some(build(Evaluator::Tape(ops))?);
+                *slot = Some(build(evaluator)?);
                 self.built += 1;
             }
         }
@@ -359,12 +354,6 @@ impl Drop for CompileWorker {
             let _ = thread.join();
         }
     }
-}
-
-/// The component's numbers as bits, without the data of its leaves.
-fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
-    let rows = component.params as usize..(component.params + component.param_rows - component.payload_rows) as usize;
-    flat.params[rows].iter().map(|row| row.map(f32::to_bits)).collect()
 }
 
 /// Builds a pipeline; what the driver or the validation has against it comes back in words.

@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::flat::{Component, FlatScene};
 use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::wgsl::{OpSet, ShapeSet, Structure, tapes_are_cheaper};
+use crate::render::wgsl::{Evaluator, OpSet, ShapeSet, Structure, tapes_are_cheaper};
 
 /// What a component's pipeline is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +19,25 @@ pub struct PipelineKey {
     pub bits: u128,
     /// The shapes that its leaves may be, where it is for a template.
     pub template: Option<ShapeSet>,
+}
+
+impl PipelineKey {
+    /// What its pipeline evaluates: `component` is one of those that share it. `None` where the component has no such pipeline.
+    pub fn evaluator(&self, flat: &FlatScene, component: &Component, strategy: EvalStrategy) -> Option<Evaluator> {
+        match (strategy, self.template) {
+            (EvalStrategy::Baked, _) => {
+                Some(Evaluator::Baked(Structure::whole(flat, component), component_rows(flat, component)))
+            }
+            (_, Some(shapes)) => Structure::template(flat, component, shapes).map(Evaluator::StraightLine),
+            _ => Structure::of(flat, component).map(Evaluator::StraightLine),
+        }
+    }
+}
+
+/// The component's numbers as bits, without the data of its leaves.
+fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
+    let rows = component.params as usize..(component.params + component.param_rows - component.payload_rows) as usize;
+    flat.params[rows].iter().map(|row| row.map(f32::to_bits)).collect()
 }
 
 /// Most entries of all different structures together that get pipelines. Twice as many are too many for lavapipe.

@@ -1,6 +1,7 @@
 //! The pipelines that evaluate components: which component shares one, those that are built, and compiling ahead of use.
 
 pub mod cache;
+pub mod evaluators;
 pub mod key;
 pub mod prewarm;
 pub mod strategy;

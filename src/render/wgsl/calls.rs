@@ -104,3 +104,8 @@ pub fn arguments(point: &str, entry: &StructureEntry, shape: ShapeKind, row: usi
 pub fn data_argument(at: usize) -> String {
     format!("first_row + {at}u + u32(q{at}.y)")
 }
+
+/// Reads the rows of an entry, whose first is `row`. `offset` is code: something to add to each place.
+pub(super) fn read_entry_rows(entry: &StructureEntry, row: usize, offset: &str) -> String {
+    (row..row + entry.rows()).map(|row| format!("    let q{row} = rows[{row}u{offset}];\n")).collect()
+}

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::calls::{arguments, data_argument, gradient_include, select_by_shape, shape_include};
+use super::calls::{arguments, data_argument, gradient_include, read_entry_rows, select_by_shape, shape_include};
 use super::lookahead;
 use super::material_weights::material_weights;
 use super::modifiers::{self, file, modifier_include};
@@ -72,7 +72,8 @@ impl FoldWriter<'_> {
         }
         // Copied once: a uniform read at each use costs several times as much on a processor. A surface is
         // evaluated once only, and reads where it needs to.
-        let copied = if self.fold == Fold::Value && self.baked.is_none() { rows } else { 0 };
+        let is_copied = self.fold == Fold::Value && self.baked.is_none() && !self.reads_at_use();
+        let copied = if is_copied { rows } else { 0 };
         for (row, bits) in self.baked.into_iter().flatten().enumerate() {
             let [x, y, z, w] = bits.map(f32::from_bits);
             self.line(&format!("const q{row} = vec4f({x:?}, {y:?}, {z:?}, {w:?});"));
@@ -93,11 +94,18 @@ impl FoldWriter<'_> {
         self.line("}");
     }
 
+    /// Whether rows are read where they are used. Graphics cards hold uniforms in scalar registers, some hundred: with all rows
+    /// read before the march, most of them were spilled into lanes of vector registers.
+    fn reads_at_use(&self) -> bool {
+        self.options.skip_mode == SkipMode::Branches && self.baked.is_none()
+    }
+
     /// What stands before the fold.
     fn open_fold(&mut self) {
         if self.fold == Fold::Surface {
             self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
-            for row in 0..if self.baked.is_some() { 0 } else { self.structure.rows() } {
+            let is_read = self.baked.is_none() && !self.reads_at_use();
+            for row in 0..if is_read { self.structure.rows() } else { 0 } {
                 self.line(&format!("    let q{row} = rows[{row}u];"));
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
@@ -127,6 +135,9 @@ impl FoldWriter<'_> {
         let mut open: Vec<(usize, StructureEntry, usize)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
+            if self.reads_at_use() {
+                self.out.push_str(&read_entry_rows(entry, row, ""));
+            }
             if entry.is_leaf() {
                 let is_operand = |e: &&StructureEntry| e.kind != EntryKind::Run && e.join == Join::Difference;
                 let cuts = open.iter().map(|(_, group, _)| group).chain([entry]).filter(is_operand).count();
@@ -169,7 +180,7 @@ impl FoldWriter<'_> {
             }
         }
         if surface {
-            let text = material_weights(self.structure, self.options.skip_mode);
+            let text = material_weights(self.structure, self.reads_at_use(), self.options.skip_mode);
             self.line(&text);
             self.line("    return Surface(s0, surface_first + l0, gradient, materials);\n}");
         } else {

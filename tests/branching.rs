@@ -1,0 +1,123 @@
+//! Kernels that skip by branches are right. Graphics cards get them; here lavapipe runs them, slowly, because it executes
+//! both sides of each branch. Interpreter and lists have the same source for every device.
+
+use std::sync::{LazyLock, Mutex, PoisonError};
+use std::time::Duration;
+
+use glam::DQuat;
+use isolith::flat::GBuffer;
+use isolith::flat::reference::accuracy::{Verdict, verdicts};
+use isolith::flat::reference::image::render_reference;
+use isolith::render::wgsl::{Evaluator, Options, SkipMode, Structure, assemble};
+use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
+use isolith::scene::{Node, NodeKind, ParamValue, Scene, ShapeKind};
+
+use crate::contract::samples::Random;
+use crate::contract::trees::{Recipe, tree};
+use crate::golden::{Gate, compare_with_accepted};
+use crate::gpu::{BenchScene, shared};
+
+/// Random trees, and how many of them have one structure: each structure takes half a second to compile.
+const TREES: u64 = 200;
+const TREES_OF_A_STRUCTURE: u64 = 10;
+/// Width and height of their pictures, in pixels.
+const SIDE: u32 = 24;
+
+/// Draws with kernels that skip by branches, once they are all there.
+fn draw(bench_scene: &BenchScene, side: u32, method: EvalStrategy) -> GBuffer {
+    static RENDERER: LazyLock<Mutex<Renderer>> = LazyLock::new(|| {
+        let gpu = shared().gpu.clone();
+        let options = Options { skipping: SkipMode::Branches, ..Options::default() };
+        Mutex::new(Renderer::with_options(&gpu, options).expect("a renderer"))
+    });
+    let renderer = &mut *RENDERER.lock().unwrap_or_else(PoisonError::into_inner);
+    renderer.set_strategy(method);
+    let BenchScene { flat, meshes, camera, name } = bench_scene;
+    loop {
+        let frame = renderer.begin(Slot::Full, flat, meshes, camera, [side; 2], OverlaySettings::default());
+        frame.unwrap_or_else(|error| panic!("{name}: {error}"));
+        if !renderer.is_preparing() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert_eq!(renderer.pipelines_failed(), 0, "{name}");
+    let picture = renderer.render(flat, meshes, camera, [side; 2], &mut |_| true);
+    let (buffers, unfinished) = picture.unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert!(unfinished.is_empty(), "{name}: {unfinished:?}");
+    buffers
+}
+
+#[test]
+fn every_scene_looks_as_accepted_by_branching_kernels() {
+    compare_with_accepted("branching", Gate::Close, |scene, side| draw(scene, side, EvalStrategy::Auto));
+}
+
+/// A random tree of any shapes; those of a structure differ in their numbers only.
+fn random_tree(seed: u64) -> BenchScene {
+    let of_structure = 5000 + seed / TREES_OF_A_STRUCTURE;
+    let recipe = Recipe { blends: true, stretching: of_structure.is_multiple_of(2), kinds: ShapeKind::ALL };
+    let mut scene = tree(of_structure, recipe);
+    vary(&mut scene, &mut Random::new(seed));
+    BenchScene::new(&format!("tree {seed}"), &scene, None)
+}
+
+/// Moves, turns and scales every node, and changes sizes and blends, all of them a little.
+fn vary(scene: &mut Scene, random: &mut Random) {
+    let nodes: Vec<Node> = scene.nodes().iter().map(|node| Node::clone(node)).collect();
+    for mut node in nodes {
+        node.transform.translation += random.point(0.2);
+        node.transform.rotation *= DQuat::from_axis_angle(random.direction(), random.range(0.0, 0.5));
+        node.transform.scale *= random.range(0.9, 1.1);
+        match &mut node.kind {
+            NodeKind::Group(group) => group.blend.radius *= random.range(0.5, 1.5),
+            NodeKind::Object(object) => {
+                let params = object.shape.kind().params();
+                for (i, value) in object.shape.values().into_iter().enumerate() {
+                    if let (ParamValue::Scalar(size), "m") = (value, params[i].limits.unit) {
+                        object.shape.set_value(i, ParamValue::Scalar(size * random.range(0.8, 1.1)));
+                    }
+                }
+            }
+            _ => {}
+        }
+        scene.replace(node).expect("it keeps the rules");
+    }
+}
+
+/// How many pixels of the picture are wrong against the reference of `meant`, and how many show anything.
+fn wrong(picture: &GBuffer, drawn: &BenchScene, meant: &BenchScene) -> [usize; 2] {
+    let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [SIDE; 2], &|_| ());
+    let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
+    let wrong = verdicts(picture, &drawn.flat, &reference).into_iter().filter(|verdict: &Verdict| verdict.is_wrong());
+    [wrong.count(), reference.buffers.depth.iter().filter(|depth| depth.is_finite()).count()]
+}
+
+#[test]
+fn another_tree_is_refused() {
+    let (drawn, meant) = (random_tree(0), random_tree(TREES_OF_A_STRUCTURE));
+    let [wrong, _] = wrong(&draw(&drawn, SIDE, EvalStrategy::StraightLine), &drawn, &meant);
+    assert!(wrong > 20, "{wrong}");
+}
+
+/// If these kernels had no branches, the tests above would not test what they say.
+#[test]
+fn kernels_for_cards_have_branches_that_others_have_not() {
+    let branches = |pass: &str, skipping: SkipMode| {
+        let of = |structure: u64| {
+            let flat = random_tree(structure * TREES_OF_A_STRUCTURE).flat;
+            let structures: Vec<_> = flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect();
+            structures.into_iter().map(move |structure| {
+                let options = Options { skipping, ..Options::default() };
+                let text = source(pass, &Evaluator::StraightLine(structure), options).expect("a source");
+                ["if placed_bounds(", "if share"].map(|branch| text.matches(branch).count()).iter().sum::<usize>()
+            })
+        };
+        (0..TREES / TREES_OF_A_STRUCTURE).flat_map(of).sum::<usize>()
+    };
+    for (pass, least) in [("trace.wgsl", 5), ("surface.wgsl", 50)] {
+        assert_eq!(branches(pass, SkipMode::Selects), 0, "{pass}");
+        let found = branches(pass, SkipMode::Branches);
+        assert!(found > least, "{pass}: {found}");
+    }
+}

@@ -1,0 +1,179 @@
+//! Limits, and the exceptions from them.
+
+use crate::cards::{Card, Report};
+use crate::subjects::{Purpose, Subjects, Way};
+
+/// What a card's compiler makes of all pipelines of one purpose: the worst of each figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// The card.
+    pub card: Card,
+    /// What they are for.
+    pub purpose: Purpose,
+    /// How many they are.
+    pub pipelines: usize,
+    /// Most vector registers.
+    pub vgprs: u64,
+    /// Most scalar registers.
+    pub sgprs: u64,
+    /// Most vector registers that are spilled.
+    pub spilled_vgprs: u64,
+    /// Most scalar registers that are spilled.
+    pub spilled_sgprs: u64,
+    /// Most scratch memory.
+    pub scratch: u64,
+    /// Fewest waves.
+    pub waves: u64,
+    /// Most cycles.
+    pub inverse_throughput: u64,
+    /// Most code, in bytes.
+    pub code_size: u64,
+    /// Time to compile all of them.
+    pub compile_ms: f64,
+}
+
+/// A row for each purpose.
+pub fn rows(card: &Card, subjects: &Subjects, report: &Report) -> Vec<Row> {
+    let row = |(purpose, pipelines): &(Purpose, Vec<usize>)| {
+        let stages = || pipelines.iter().flat_map(|index| &report.statistics[*index]);
+        let most = |figure: fn(&crate::Statistics) -> u64| stages().map(figure).max().unwrap_or(0);
+        Row {
+            card: *card,
+            purpose: purpose.clone(),
+            pipelines: pipelines.len(),
+            vgprs: most(|s| s.vgprs),
+            sgprs: most(|s| s.sgprs),
+            spilled_vgprs: most(|s| s.spilled_vgprs),
+            spilled_sgprs: most(|s| s.spilled_sgprs),
+            scratch: most(|s| s.scratch),
+            waves: stages().map(|s| s.waves).min().unwrap_or(0),
+            inverse_throughput: most(|s| s.inverse_throughput),
+            code_size: most(|s| s.code_size),
+            compile_ms: pipelines
+                .iter()
+                .filter_map(|index| report.statistics[*index].first())
+                .map(|s| s.compile_ms)
+                .sum(),
+        }
+    };
+    subjects.purposes.iter().map(row).collect()
+}
+
+/// More than the limits for one purpose, and why.
+#[derive(Clone, Copy, Debug)]
+pub struct Exception {
+    /// Name of the scene.
+    pub scene: &'static str,
+    /// How fields are evaluated.
+    pub way: Way,
+    /// The pass.
+    pub pass: &'static str,
+    /// Most vector registers, on whichever card takes more.
+    pub vgprs: u64,
+    /// Most of them that are spilled.
+    pub spilled: u64,
+    /// Why it is so.
+    pub reason: &'static str,
+}
+
+/// The Mandelbulb keeps two numbers of each of up to 17 steps, with their derivatives, for the way back: 136 registers,
+/// because the compiler puts such an array into registers. The surface is evaluated once in a pixel that shows it; the march
+/// has no derivatives, and takes 96.
+const ORBIT: &str = "the orbit of a fractal, with derivatives, is in registers";
+/// The interpreter keeps what stands before a modifier, its nearest copy, and the content at once, beside the derivatives of a
+/// shape. Lists and straight-line code for surfaces with modifiers would be other ways; the march takes 96.
+const COPIES: &str = "with modifiers three surfaces are alive at once, beside a shape's derivatives";
+
+/// What is allowed beyond the limits, as measured with Mesa 22.3.6. Its compiler gives a lane of GFX11 no more than 132
+/// registers, and spills the rest.
+pub const EXCEPTIONS: &[Exception] = &[
+    surface("shapes", Way::Interpreter, 256, 371, ORBIT),
+    surface("shapes", Way::Straight, 232, 295, ORBIT),
+    surface("fractals", Way::Interpreter, 256, 408, ORBIT),
+    surface("fractals", Way::Straight, 232, 292, ORBIT),
+    surface("modifiers", Way::Interpreter, 136, 4, COPIES),
+    surface("modifiers", Way::Straight, 136, 4, COPIES),
+    surface("chessboard", Way::Interpreter, 136, 4, COPIES),
+    surface("chessboard", Way::Straight, 136, 4, COPIES),
+];
+
+const fn surface(scene: &'static str, way: Way, vgprs: u64, spilled: u64, reason: &'static str) -> Exception {
+    Exception { scene, way, pass: "surface", vgprs, spilled, reason }
+}
+
+/// What is wrong with these rows: what spills, what takes too many registers, and exceptions that nothing needs.
+pub fn faults(rows: &[Row], exceptions: &[Exception]) -> Vec<String> {
+    let is_for = |exception: &Exception, row: &Row| {
+        let Purpose { scene, way, pass } = &row.purpose;
+        exception.scene == scene && exception.way == *way && exception.pass == pass
+    };
+    let is_within = |row: &Row| row.vgprs <= row.card.max_vgprs && row.spilled_vgprs == 0;
+    let mut faults = Vec::new();
+    for row in rows {
+        let exception = exceptions.iter().find(|exception| is_for(exception, row));
+        let [vgprs, spilled] = exception.map_or([row.card.max_vgprs, 0], |e| [e.vgprs, e.spilled]);
+        let Purpose { scene, way, pass } = &row.purpose;
+        let what = format!("{}: {pass} of {scene} by {}", row.card.name, way.name());
+        if row.spilled_vgprs > spilled {
+            faults.push(format!("{what}: {} spilled vector registers are more than {spilled}", row.spilled_vgprs));
+        }
+        if row.vgprs > vgprs {
+            faults.push(format!("{what}: {} vector registers are more than {vgprs}", row.vgprs));
+        }
+    }
+    for exception in exceptions {
+        let Exception { scene, way, pass, .. } = exception;
+        if rows.iter().filter(|row| is_for(exception, row)).all(is_within) {
+            faults.push(format!("the exception for {pass} of {scene} by {} is not needed", way.name()));
+        }
+    }
+    faults
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cards::CARDS;
+
+    const MOST: u64 = CARDS[0].max_vgprs;
+
+    fn row(vgprs: u64, spilled_vgprs: u64) -> Row {
+        let purpose = Purpose { scene: "pawn".into(), way: Way::Straight, pass: "trace".into() };
+        Row {
+            card: CARDS[0],
+            purpose,
+            pipelines: 1,
+            vgprs,
+            sgprs: 64,
+            spilled_vgprs,
+            spilled_sgprs: 3,
+            scratch: 0,
+            waves: 8,
+            inverse_throughput: 1000,
+            code_size: 1000,
+            compile_ms: 1.0,
+        }
+    }
+
+    const FOR_PAWN: Exception =
+        Exception { scene: "pawn", way: Way::Straight, pass: "trace", vgprs: 192, spilled: 2, reason: "a sample" };
+
+    #[test]
+    fn what_spills_and_what_takes_too_many_registers_is_refused() {
+        assert_eq!(faults(&[row(MOST, 0)], &[]), [""; 0]);
+        assert!(faults(&[row(64, 1)], &[])[0].contains("1 spilled vector registers are more than 0"));
+        assert!(faults(&[row(MOST + 1, 0)], &[])[0].contains("129 vector registers are more than 128"));
+    }
+
+    #[test]
+    fn exceptions_allow_what_they_say_and_must_be_needed() {
+        assert_eq!(faults(&[row(192, 0)], &[FOR_PAWN]), [""; 0]);
+        assert_eq!(faults(&[row(MOST, 2)], &[FOR_PAWN]), [""; 0]);
+        assert!(faults(&[row(200, 0)], &[FOR_PAWN])[0].contains("more than 192"));
+        assert!(faults(&[row(192, 3)], &[FOR_PAWN])[0].contains("3 spilled vector registers are more than 2"));
+        assert!(faults(&[row(MOST, 0)], &[FOR_PAWN])[0].contains("is not needed"));
+        assert!(faults(&[], &[FOR_PAWN])[0].contains("is not needed"));
+        let elsewhere = Exception { pass: "surface", ..FOR_PAWN };
+        assert_eq!(faults(&[row(192, 0)], &[elsewhere]).len(), 2, "it is for another pass");
+    }
+}

@@ -1,0 +1,241 @@
+//! Every pipeline that the renderer builds for the example scenes on a graphics card.
+
+use std::collections::HashMap;
+
+use isolith::flat::flatten;
+use isolith::gallery;
+use isolith::render::wgsl::{Evaluator, FILES, Options, SkipMode, assemble, assemble_plain};
+use isolith::render::{EvalStrategy, EvaluatorUse, evaluators_of};
+use naga::ShaderStage;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use crate::Error;
+use crate::spirv::{Resource, Shader, Stage};
+
+/// Of a vertex attribute or a target of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Format {
+    /// One float.
+    Float,
+    /// Two.
+    Float2,
+    /// Three.
+    Float3,
+    /// Four.
+    Float4,
+    /// Four of 16 bits.
+    Half4,
+    /// An unsigned integer.
+    Uint,
+    /// Four bytes from 0 to 1.
+    Unorm4,
+}
+
+impl Format {
+    /// In bytes.
+    pub fn size(self) -> u32 {
+        match self {
+            Self::Float | Self::Uint | Self::Unorm4 => 4,
+            Self::Float2 | Self::Half4 => 8,
+            Self::Float3 => 12,
+            Self::Float4 => 16,
+        }
+    }
+}
+
+/// A pipeline that a driver can compile.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Pipeline {
+    /// For messages.
+    pub name: String,
+    /// One of compute, or one of vertices and one of fragments.
+    pub stages: Vec<Stage>,
+    /// Everything that is bound, by group and binding.
+    pub bindings: Vec<([u32; 2], Resource)>,
+    /// Of each vertex buffer.
+    pub vertex_formats: Vec<Format>,
+    /// Of each target.
+    pub color_formats: Vec<Format>,
+    /// Whether there is a depth buffer.
+    pub has_depth: bool,
+}
+
+/// What a pipeline is for.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Purpose {
+    /// The example scene, or [`NO_FIELD`].
+    pub scene: String,
+    /// How fields are evaluated.
+    pub way: Way,
+    /// The pass, and for those that have several its entry point.
+    pub pass: String,
+}
+
+/// How fields are evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Way {
+    /// Not at all.
+    None,
+    /// By the interpreter.
+    Interpreter,
+    /// By lists.
+    Lists,
+    /// By lists, with modifiers.
+    ModifiedLists,
+    /// By straight-line code.
+    Straight,
+}
+
+impl Way {
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "–",
+            Self::Interpreter => "interpreter",
+            Self::Lists => "lists",
+            Self::ModifiedLists => "lists below modifiers",
+            Self::Straight => "straight-line",
+        }
+    }
+
+    fn of(evaluator: &Evaluator) -> Self {
+        match evaluator {
+            Evaluator::Interpreter(_) => Self::Interpreter,
+            Evaluator::Tape(features) if features.modifiers.is_empty() => Self::Lists,
+            Evaluator::Tape(_) => Self::ModifiedLists,
+            Evaluator::StraightLine(_) | Evaluator::Baked(..) => Self::Straight,
+        }
+    }
+}
+
+/// Stands for a scene where a pass evaluates no field.
+pub const NO_FIELD: &str = "(any)";
+
+/// All pipelines, each once, and what each purpose needs, by index.
+#[derive(Debug, Default)]
+pub struct Subjects {
+    /// The pipelines.
+    pub pipelines: Vec<Pipeline>,
+    /// Each purpose with its pipelines.
+    pub purposes: Vec<(Purpose, Vec<usize>)>,
+}
+
+/// What cards get.
+const OPTIONS: Options = Options {
+    counting: false,
+    skip_mode: SkipMode::Branches,
+    cones: true,
+    relaxed: true,
+    quality: isolith::render::wgsl::Quality::Default,
+};
+
+/// Passes over a field, with their entry points.
+const FIELD_PASSES: [[&str; 2]; 3] = [["cone", "cone"], ["trace", "trace"], ["surface", "surface_pass"]];
+/// Bindings of these passes whose offset each dispatch chooses: the component, its rows, the work.
+const FIELD_OFFSETS: [[u32; 2]; 3] = [[1, 2], [1, 4], [3, 0]];
+
+/// Everything that is compiled.
+pub fn subjects() -> Result<Subjects, Error> {
+    let mut sources: Vec<(String, &str)> = Vec::new();
+    let mut known: HashMap<String, usize> = HashMap::new();
+    let mut purposes: Vec<(Purpose, Vec<usize>)> = Vec::new();
+    for (scene, evaluator) in evaluators()? {
+        for [pass, entry_point] in FIELD_PASSES {
+            let failed = |error| Error::Refused { what: format!("{scene}, {pass}"), reason: format!("{error}") };
+            let text = assemble(&format!("{pass}.wgsl"), &evaluator, OPTIONS).map_err(failed)?;
+            let index = *known.entry(text).or_insert_with_key(|text| {
+                sources.push((text.clone(), entry_point));
+                sources.len() - 1
+            });
+            let purpose = Purpose { scene: scene.clone(), way: Way::of(&evaluator), pass: pass.to_owned() };
+            match purposes.iter_mut().find(|(other, _)| *other == purpose) {
+                Some((_, all)) if all.contains(&index) => {}
+                Some((_, all)) => all.push(index),
+                None => purposes.push((purpose, vec![index])),
+            }
+        }
+    }
+    let made = sources.par_iter().map(|(text, entry_point)| compute(entry_point, text, entry_point, &FIELD_OFFSETS));
+    let mut all = Subjects { pipelines: made.collect::<Result<_, _>>()?, purposes };
+    for (pass, pipeline) in passes_without_fields()? {
+        let purpose = Purpose { scene: NO_FIELD.to_owned(), way: Way::None, pass };
+        all.purposes.push((purpose, vec![all.pipelines.len()]));
+        all.pipelines.push(pipeline);
+    }
+    Ok(all)
+}
+
+/// Every evaluator of every scene, by each method that the window may choose.
+fn evaluators() -> Result<Vec<(String, Evaluator)>, Error> {
+    let mut all = Vec::new();
+    for (scene, contents) in gallery::all() {
+        let failed = |error| Error::Refused { what: scene.to_owned(), reason: format!("{error:?}") };
+        let flat = flatten(&contents, 0.0).map_err(failed)?;
+        let methods = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::Auto];
+        let uses = methods.into_iter().flat_map(|method| evaluators_of(&flat, method));
+        all.extend(uses.map(|EvaluatorUse { evaluator, .. }| (scene.to_owned(), evaluator)));
+    }
+    Ok(all)
+}
+
+/// A pipeline of one entry point.
+pub fn compute(name: &str, text: &str, entry_point: &str, dynamic: &[[u32; 2]]) -> Result<Pipeline, Error> {
+    let shader = Shader::new(name, text)?;
+    Ok(Pipeline {
+        name: name.to_owned(),
+        stages: vec![shader.stage(entry_point, ShaderStage::Compute)?],
+        bindings: shader.bindings(dynamic).into_iter().collect(),
+        ..Pipeline::default()
+    })
+}
+
+/// The pipelines of all entry points of a file that compute.
+pub fn of_file(name: &str, text: &str) -> Result<Vec<Pipeline>, Error> {
+    let entry_points = Shader::new(name, text)?.entry_points(ShaderStage::Compute);
+    entry_points.iter().map(|entry_point| compute(entry_point, text, entry_point, &FIELD_OFFSETS)).collect()
+}
+
+/// The pipelines of all passes that evaluate no field.
+fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
+    let mut all = Vec::new();
+    let evaluates_fields =
+        |pass: &str| FIELD_PASSES.iter().any(|[field, _]| *field == pass) || pass.starts_with("probe");
+    let passes = FILES.iter().filter_map(|(file, _)| file.strip_suffix(".wgsl").filter(|name| !name.contains('/')));
+    for pass in passes.filter(|pass| !evaluates_fields(pass)) {
+        let failed = |error| Error::Refused { what: pass.to_owned(), reason: format!("{error}") };
+        let text = assemble_plain(&format!("{pass}.wgsl")).map_err(failed)?;
+        let shader = Shader::new(pass, &text)?;
+        for entry_point in shader.entry_points(ShaderStage::Compute) {
+            all.push((pass.to_owned(), compute(pass, &text, &entry_point, &FIELD_OFFSETS)?));
+        }
+        for fragment in shader.entry_points(ShaderStage::Fragment) {
+            let name = fragment.trim_end_matches("_fragment").replace('_', " ");
+            all.push((name.clone(), drawn(&name, &shader, &fragment)?));
+        }
+    }
+    Ok(all)
+}
+
+/// A pipeline that draws.
+fn drawn(name: &str, shader: &Shader, fragment: &str) -> Result<Pipeline, Error> {
+    let is_mesh = name == "mesh";
+    let vertex = shader.entry_points(ShaderStage::Vertex);
+    let failed = || Error::Refused { what: name.to_owned(), reason: "it has no vertex shader".to_owned() };
+    let vertex = vertex.first().ok_or_else(failed)?;
+    let (vertex_formats, color_formats) = match is_mesh {
+        true => (
+            vec![Format::Float3, Format::Float3, Format::Float4, Format::Float2],
+            vec![Format::Float, Format::Uint, Format::Float4, Format::Half4],
+        ),
+        false => (Vec::new(), vec![Format::Unorm4]),
+    };
+    Ok(Pipeline {
+        name: name.to_owned(),
+        stages: vec![shader.stage(vertex, ShaderStage::Vertex)?, shader.stage(fragment, ShaderStage::Fragment)?],
+        bindings: shader.bindings(if is_mesh { &[[1, 0]] } else { &[] }).into_iter().collect(),
+        vertex_formats,
+        color_formats,
+        has_depth: is_mesh,
+    })
+}
