@@ -27,7 +27,7 @@ const SIDE: u32 = 24;
 fn draw(bench_scene: &BenchScene, side: u32, method: EvalStrategy) -> GBuffer {
     static RENDERER: LazyLock<Mutex<Renderer>> = LazyLock::new(|| {
         let gpu = shared().gpu.clone();
-        let options = Options { skipping: SkipMode::Branches, ..Options::default() };
+        let options = Options { skip_mode: SkipMode::Branches, ..Options::default() };
         Mutex::new(Renderer::with_options(&gpu, options).expect("a renderer"))
     });
     let renderer = &mut *RENDERER.lock().unwrap_or_else(PoisonError::into_inner);
@@ -103,13 +103,13 @@ fn another_tree_is_refused() {
 /// If these kernels had no branches, the tests above would not test what they say.
 #[test]
 fn kernels_for_cards_have_branches_that_others_have_not() {
-    let branches = |pass: &str, skipping: SkipMode| {
+    let branches = |pass: &str, skip_mode: SkipMode| {
         let of = |structure: u64| {
             let flat = random_tree(structure * TREES_OF_A_STRUCTURE).flat;
             let structures: Vec<_> = flat.components.iter().filter_map(|c| Structure::of(&flat, c)).collect();
             structures.into_iter().map(move |structure| {
-                let options = Options { skipping, ..Options::default() };
-                let text = source(pass, &Evaluator::StraightLine(structure), options).expect("a source");
+                let options = Options { skip_mode, ..Options::default() };
+                let text = assemble(pass, &Evaluator::StraightLine(structure), options).expect("a source");
                 ["if placed_bounds(", "if share"].map(|branch| text.matches(branch).count()).iter().sum::<usize>()
             })
         };
