@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use isolith::flat::{FlatScene, Flattener, flatten};
+use isolith::field::{FlatScene, Flattener, flatten};
 use isolith::gallery;
 use isolith::render::{Gpu, OverlaySettings, Renderer, Slot};
 

@@ -20,7 +20,7 @@ use fidget::raster::voxel::{EvalConfig, Image, RenderConfig, RenderSize, render}
 use fidget::render::{CancelToken, ThreadPool, TileSizes};
 use glam::{DAffine3, DMat3, DVec3};
 use isolith::bench::cpu_time;
-use isolith::flat::{BACKGROUND_DEPTH, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GBuffer, Join, LEAF_ROWS};
+use isolith::field::{BACKGROUND_DEPTH, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, GBuffer, Join, LEAF_ROWS};
 use isolith::geometry::{Aabb, Camera};
 use isolith::scene::ShapeKind;
 

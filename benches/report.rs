@@ -12,11 +12,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use isolith::bench::{Baseline, Bench, BenchScene, ReferenceCache};
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::{Accuracy, Flattener};
+use isolith::field::reference::image::render_reference;
+use isolith::field::{Accuracy, Flattener};
 use isolith::mesh::MeshLibrary;
-use isolith::render::wgsl::Quality;
 use isolith::render::{EvalStrategy, OverlaySettings, Slot};
+use isolith::wgsl::Quality;
 
 /// Width and height of the measured pictures, in pixels.
 const SIDE: u32 = 256;

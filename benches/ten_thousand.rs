@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use isolith::document::{Document, Edit};
-use isolith::flat::FlatScene;
+use isolith::field::FlatScene;
 use isolith::geometry::Camera;
 use isolith::render::{OverlaySettings, Renderer, Slot};
 use isolith::scene::{

@@ -1,11 +1,11 @@
 //! Every scene's picture against the reference, on the same rays.
 
-use isolith::flat::Accuracy;
-use isolith::flat::reference::accuracy::{MAX_WRONG_SHARE, verdicts};
-use isolith::flat::reference::image::render_reference;
-use isolith::render::wgsl::{Options, Quality};
+use isolith::field::Accuracy;
+use isolith::field::reference::accuracy::{MAX_WRONG_SHARE, verdicts};
+use isolith::field::reference::image::render_reference;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+use isolith::wgsl::{Options, Quality};
 
 use crate::gpu::{BenchScene, scenes, shared};
 

@@ -5,15 +5,15 @@ mod gradients;
 mod lookahead;
 
 use glam::{DQuat, DVec3};
-use isolith::flat::eval::field;
-use isolith::flat::{CellTree, FlatScene, PreparedShape, flatten, leaf_payload, tape_field};
+use isolith::field::eval::field;
+use isolith::field::{CellTree, FlatScene, PreparedShape, flatten, leaf_payload, tape_field};
 use isolith::gallery;
 use isolith::render::probe;
-use isolith::render::wgsl::{Evaluator, OpSet, Options, ShapeSet, SkipMode, Structure};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object, Operator, Scene,
     Shape, ShapeKind,
 };
+use isolith::wgsl::{Evaluator, OpSet, Options, ShapeSet, SkipMode, Structure};
 
 use crate::contract::modifiers::{modified, modified_crowds, samples};
 use crate::contract::samples::{Random, ordinary};

@@ -5,12 +5,12 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
 use glam::DQuat;
-use isolith::flat::GBuffer;
-use isolith::flat::reference::accuracy::{Verdict, verdicts};
-use isolith::flat::reference::image::render_reference;
-use isolith::render::wgsl::{Evaluator, Options, SkipMode, Structure, assemble};
+use isolith::field::GBuffer;
+use isolith::field::reference::accuracy::{Verdict, verdicts};
+use isolith::field::reference::image::render_reference;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{Node, NodeKind, ParamValue, Scene, ShapeKind};
+use isolith::wgsl::{Evaluator, Options, SkipMode, Structure, assemble};
 
 use crate::contract::samples::Random;
 use crate::contract::trees::{Recipe, tree};

@@ -3,9 +3,9 @@
 use glam::DVec3;
 use isolith::gallery;
 use isolith::geometry::Camera;
-use isolith::render::wgsl::Options;
 use isolith::render::{Counts, EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+use isolith::wgsl::Options;
 
 use crate::gpu::{BenchScene, scenes, shared};
 

@@ -1,16 +1,16 @@
 //! Counts of pixels, and the looks that show them: they cost nothing unless asked for, add up, and show what they say.
 
 use glam::{DVec3, Vec3};
-use isolith::flat::debug_view::{
+use isolith::field::debug_view::{
     DEBUG_VIEW_NOTHING, DepthRange, ViewMode, debug_view_count, debug_view_distance, debug_view_lit, debug_view_normal,
     debug_view_slope, id_color,
 };
-use isolith::flat::{GBuffer, HitTarget};
+use isolith::field::{GBuffer, HitTarget};
 use isolith::gallery;
 use isolith::geometry::Camera;
-use isolith::render::wgsl::Options;
 use isolith::render::{EvalStrategy, Frame, OverlaySettings, PixelCounts, Renderer, Slot};
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+use isolith::wgsl::Options;
 
 use crate::gpu::{BenchScene, shared};
 

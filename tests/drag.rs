@@ -1,7 +1,7 @@
 //! A dragged number reaches the picture in the same frame, builds no pipeline and uploads next to nothing.
 
 use isolith::document::{Document, Edit};
-use isolith::flat::{GBuffer, flatten};
+use isolith::field::{GBuffer, flatten};
 use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{MaterialId, Node, NodeId, NodeKind, Object, Scene, Shape};
 

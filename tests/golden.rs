@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use image::{Rgba, RgbaImage};
-use isolith::flat::GBuffer;
+use isolith::field::GBuffer;
 use isolith::render::EvalStrategy;
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
 

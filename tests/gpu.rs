@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
 
-use isolith::flat::{FlatScene, GBuffer, flatten};
+use isolith::field::{FlatScene, GBuffer, flatten};
 use isolith::geometry::Camera;
 use isolith::mesh::{MeshLibrary, TriangleMesh};
 use isolith::render::{EvalStrategy, Gpu, Renderer};

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use isolith::flat::{GBuffer, MESH_BIT};
+use isolith::field::{GBuffer, MESH_BIT};
 use isolith::render::{EvalStrategy, OverlaySettings, Slot};
 use isolith::scene::NodeId;
 

@@ -4,8 +4,8 @@
 use std::time::{Duration, Instant};
 
 use isolith::document::{Document, Edit};
-use isolith::flat::debug_view::{DepthRange, ViewMode};
-use isolith::flat::{FlatScene, Flattener, GBuffer, flatten};
+use isolith::field::debug_view::{DepthRange, ViewMode};
+use isolith::field::{FlatScene, Flattener, GBuffer, flatten};
 use isolith::gallery;
 use isolith::geometry::Camera;
 use isolith::render::{EvalStrategy, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};

@@ -5,16 +5,16 @@ mod figures;
 mod scenes;
 
 use glam::DVec3;
-use isolith::flat::eval::{field, gradient};
-use isolith::flat::hierarchy::Hierarchy;
-use isolith::flat::reference::trace::Tracer;
-use isolith::flat::scene_eval::{RayLimits, SURFACE_BIAS, SceneEvaluator, surface_ray};
-use isolith::flat::{FlatScene, Flattener, flatten};
+use isolith::field::eval::{field, gradient};
+use isolith::field::hierarchy::Hierarchy;
+use isolith::field::reference::trace::Tracer;
+use isolith::field::scene_eval::{RayLimits, SURFACE_BIAS, SceneEvaluator, surface_ray};
+use isolith::field::{FlatScene, Flattener, flatten};
 use isolith::geometry::{Camera, Ray};
 use isolith::render::EvalStrategy;
 use isolith::render::scene_probe::{LoadedScene, ProbeRay, ProbedHit, SceneProbe};
-use isolith::render::wgsl::FILES;
 use isolith::scene::Node;
+use isolith::wgsl::FILES;
 
 use crate::contract::samples::Random;
 use crate::gpu::{BenchScene, shared};
@@ -327,7 +327,7 @@ fn nothing_is_built_that_nobody_asks_for() {
     subject.render(32, EvalStrategy::Auto);
     assert!(!subject.flat.has_hierarchy(), "a picture needs none");
     let ray = Ray { origin: subject.camera.position, direction: subject.camera.rotation * DVec3::NEG_Z };
-    isolith::flat::pick::pick(&subject.flat, &subject.meshes, &ray, 0.1, 100.0);
+    isolith::field::pick::pick(&subject.flat, &subject.meshes, &ray, 0.1, 100.0);
     assert!(subject.flat.has_hierarchy());
     // No pass of the frame has the code.
     let passes = FILES.iter().filter(|(name, _)| !name.contains('/') && !name.starts_with("probe_scene"));

@@ -2,14 +2,12 @@
 
 use std::mem::{offset_of, size_of};
 
-use isolith::flat::{FlatMaterial, FlatNode, GpuLight, flatten};
+use isolith::field::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::wgsl::{
-    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates,
-};
 use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
 use isolith::scene::ShapeKind;
+use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The passes: the files that stand in no folder.

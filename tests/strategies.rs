@@ -4,14 +4,14 @@ use std::sync::LazyLock;
 use std::time::Duration;
 
 use glam::DVec3;
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::{GBuffer, flatten, has_tape};
+use isolith::field::reference::image::render_reference;
+use isolith::field::{GBuffer, flatten, has_tape};
 use isolith::gallery;
-use isolith::render::wgsl::shape_loops;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, ShapeKind,
 };
+use isolith::wgsl::shape_loops;
 
 use crate::contract::modifiers::{modified, modified_crowds, samples};
 use crate::contract::trees::{Recipe, tree};

@@ -1,7 +1,7 @@
 //! Numerical stress: what `isolith bench --stress` draws, held to what is allowed and to what is known to be wrong.
 
 use isolith::bench::{Allowed, Metrics, cases};
-use isolith::flat::reference::image::{ReferenceImage, render_reference};
+use isolith::field::reference::image::{ReferenceImage, render_reference};
 use isolith::geometry::Camera;
 use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind};

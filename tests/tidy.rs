@@ -172,7 +172,7 @@ fn caught(path: &str, body: &str, what: &str) -> bool {
 
 #[test]
 fn forbidden_uses_are_caught() {
-    assert!(caught("src/scene/a.rs", "use crate::flat::FlatScene;", "scene may not use flat"));
+    assert!(caught("src/scene/a.rs", "use crate::field::FlatScene;", "scene may not use flat"));
     assert!(caught("src/scene/a.rs", "use crate::{geometry::Aabb, render};", "scene may not use render"));
     assert!(caught("src/scene/a.rs", "use super::super::render::X;", "scene may not use render"));
     assert!(caught("src/scene/mod.rs", "use super::flat;", "scene may not use flat"));
@@ -183,13 +183,13 @@ fn forbidden_uses_are_caught() {
     assert!(caught("src/render/a.rs", "use egui::Ui;", "only editor and app may use egui"));
     assert!(caught("src/render/a.rs", "use egui_ltreeview::X;", "only editor and app may use egui"));
     assert!(caught("src/render/a.rs", "use crate::scene::Scene;", "the renderer sees no Scene"));
-    assert!(caught("src/render/a.rs", "use crate::flat::eval::field;", "it never evaluates"));
+    assert!(caught("src/render/a.rs", "use crate::field::eval::field;", "it never evaluates"));
     assert!(caught(
         "src/render/wgsl/a.rs",
-        "use crate::flat::{FlatScene, reference::X};",
-        "may not use flat::reference"
+        "use crate::field::{FlatScene, reference::X};",
+        "may not use field::reference"
     ));
-    assert!(caught("src/render/a.rs", "fn f() { crate::flat::pick::pick() }", "may not use flat::pick"));
+    assert!(caught("src/render/a.rs", "fn f() { crate::field::pick::pick() }", "may not use field::pick"));
     assert!(caught("src/document/mod.rs", "fn f() { std::fs::read(\"x\"); }", "touch the file system"));
     assert!(caught("src/flat/mod.rs", "use std::fs;", "touch the file system"));
     assert!(caught("src/flat/mod.rs", "fn f() { File::open(\"x\"); }", "touch the file system"));
@@ -200,11 +200,11 @@ fn allowed_uses_are_let_through() {
     let fine = |path: &str, body: &str| assert_eq!(problems(path, &format!("//! A sample.\n{body}\n")), [""; 0]);
     fine("src/scene/a.rs", "use crate::geometry::Aabb;\nuse super::Node;\nuse crate::scene::Light;");
     fine("src/scene/mod.rs", "mod tests {\n use super::*;\n}");
-    fine("src/scene/a.rs", "/// See [`crate::flat`] and `wgpu::Device`.\nfn f() {}");
+    fine("src/scene/a.rs", "/// See [`crate::field`] and `wgpu::Device`.\nfn f() {}");
     fine("src/scene/a.rs", "#[cfg(test)]\nmod tests {\n use crate::render::X;\n}");
     fine("src/render/gpu.rs", "use wgpu::util::DeviceExt;\nuse crate::scene::ShapeKind;");
-    fine("src/render/a.rs", "use crate::flat::{FlatScene, standpoint::Standpoint};");
-    fine("src/render/a.rs", "#[cfg(test)]\nmod tests {\n use crate::flat::eval::field;\n}");
+    fine("src/render/a.rs", "use crate::field::{FlatScene, standpoint::Standpoint};");
+    fine("src/render/a.rs", "#[cfg(test)]\nmod tests {\n use crate::field::eval::field;\n}");
     fine("src/scene/file/mod.rs", "use std::fs;");
     fine("src/flat/a.rs", "#[cfg(test)]\nmod tests {\n fn f() { std::fs::read(\"x\").unwrap(); }\n}");
 }

@@ -2,10 +2,10 @@
 //! walks the scene's tree in f64.
 
 use glam::{DQuat, DVec3};
-use isolith::flat::eval::field;
-use isolith::flat::reference::trace::Tracer;
-use isolith::flat::unflattened::SceneField;
-use isolith::flat::{Component, FlatScene, flatten};
+use isolith::field::eval::field;
+use isolith::field::reference::trace::Tracer;
+use isolith::field::unflattened::SceneField;
+use isolith::field::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::geometry::Ray;
 use isolith::scene::{

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use isolith::flat::eval::field;
-use isolith::flat::flatten;
+use isolith::field::eval::field;
+use isolith::field::flatten;
 use isolith::scene::{NodeKind, Scene, file};
 
 /// Of a file: groups, objects, meshes, lights and cameras, then the field at some points, in meters, to a millimeter.

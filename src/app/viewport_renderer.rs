@@ -8,8 +8,8 @@ use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 
 use crate::editor::{Editor, Message, Picture, ViewSettings};
-use crate::flat::FlatScene;
-use crate::flat::debug_view::{DepthRange, ViewMode};
+use crate::field::FlatScene;
+use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::mesh::TriangleMesh;
 use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use crate::render::EvalStrategy;
-use crate::render::wgsl::{Options, SkipMode};
+use crate::wgsl::{Options, SkipMode};
 
 /// A method of drawing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

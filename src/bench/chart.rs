@@ -10,7 +10,7 @@ use super::labels::{LabelPlace, Obstacles, Wish, along, around};
 use super::legend::{DASH, FRONTIER, FRONTIER_WIDTH, LegendGroup, Sign, TITLE_EM, TITLE_WIDTH, legend, title};
 use super::marks::{RADIUS, color, cross, faint, mark, methods, qualities, ring};
 use super::row::{BenchRow, DEFAULT, LIMIT};
-use crate::flat::reference::accuracy::MAX_WRONG_SHARE;
+use crate::field::reference::accuracy::MAX_WRONG_SHARE;
 
 /// Width and height of a chart, in pixels.
 pub(super) const SIZE: (u32, u32) = (1100, 760);

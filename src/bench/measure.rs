@@ -9,14 +9,14 @@ use thiserror::Error;
 
 use super::baseline::Baseline;
 use super::row::BenchRow;
-use crate::flat::reference::image::{ReferenceImage, render_reference};
-use crate::flat::reference::trace::TraceError;
-use crate::flat::{Accuracy, FlatScene, FlattenError, GBuffer, HitTarget, flatten, flatten_whole};
+use crate::field::reference::image::{ReferenceImage, render_reference};
+use crate::field::reference::trace::TraceError;
+use crate::field::{Accuracy, FlatScene, FlattenError, GBuffer, HitTarget, flatten, flatten_whole};
 use crate::geometry::Camera;
 use crate::mesh::{MeshLibrary, TriangleMesh};
-use crate::render::wgsl::{Options, Quality};
 use crate::render::{Counts, EvalStrategy, Frame, Gpu, OverlaySettings, PixelCounts, RenderError, Renderer, Slot};
 use crate::scene::Scene;
+use crate::wgsl::{Options, Quality};
 
 /// Why something could not be measured.
 #[derive(Debug, Error)]

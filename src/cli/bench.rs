@@ -17,9 +17,9 @@ use crate::bench::{
 use crate::gallery;
 use crate::mesh::MeshLibrary;
 use crate::render::driver::loop_iterations;
-use crate::render::wgsl::Quality;
 use crate::render::{EvalStrategy, Gpu, Renderer};
 use crate::scene::file;
+use crate::wgsl::Quality;
 
 /// Smallest and largest side of a measured picture, in pixels.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=4096;

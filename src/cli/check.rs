@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::failure::Failure;
 use super::input::{folder, read_scene, shown};
 use super::text::{complain, say};
-use crate::flat::{self, Cancel, FlatScene, Usage, flatten_until};
+use crate::field::{self, Cancel, FlatScene, Usage, flatten_until};
 use crate::mesh::MeshLibrary;
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{Param, ParamPath, ParamValue, Scene};
@@ -90,8 +90,8 @@ struct CheckWarning {
     reason: String,
 }
 
-impl From<flat::Warning> for CheckWarning {
-    fn from(warning: flat::Warning) -> Self {
+impl From<field::Warning> for CheckWarning {
+    fn from(warning: field::Warning) -> Self {
         Self { node: format!("{} {}", warning.name, warning.node), reason: warning.reason }
     }
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::flat::FlattenError;
-use crate::flat::reference::trace::TraceError;
+use crate::field::FlattenError;
+use crate::field::reference::trace::TraceError;
 use crate::render::{GpuError, RenderError};
 use crate::scene::Scene;
 use crate::scene::file::FileError;

@@ -8,7 +8,7 @@ use image::{DynamicImage, ImageBuffer, ImageFormat};
 use super::exr_ids;
 use super::failure::Failure;
 use super::input::is_standard;
-use crate::flat::{FlatScene, GBuffer, HitTarget};
+use crate::field::{FlatScene, GBuffer, HitTarget};
 use crate::scene::file;
 
 /// What a file shows.

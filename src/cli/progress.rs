@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::text::complain;
-use crate::flat::Cancel;
+use crate::field::Cancel;
 
 /// Where standard error is no terminal, a line is written this often instead of a bar.
 const LINE_EVERY: Duration = Duration::from_secs(10);

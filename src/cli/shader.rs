@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use super::failure::Failure;
 use super::input::{read_scene, shown};
 use super::text::say;
-use crate::flat::flatten;
-use crate::render::wgsl::{Evaluator, FILES, OpSet, Options, SkipMode, assemble};
+use crate::field::flatten;
 use crate::render::{EvalStrategy, EvaluatorUse, evaluators_of};
 use crate::scene::ShapeKind;
+use crate::wgsl::{Evaluator, FILES, OpSet, Options, SkipMode, assemble};
 
 /// Arguments of `isolith shader`.
 #[derive(Debug, clap::Args)]

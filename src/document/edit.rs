@@ -3,12 +3,12 @@
 use std::sync::Arc;
 
 use super::structure;
-use crate::scene::{
+use isolith_scene::{
     Changed, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue, Scene,
     SceneError, check,
 };
 
-/// A change to a scene. Values are checked against [`crate::scene::limits`].
+/// A change to a scene. Values are checked against [`isolith_scene::limits`].
 ///
 /// Where an edit names several nodes, those that stand below another one of them go along with it, and
 /// all keep the order that they have in the scene.
@@ -207,7 +207,7 @@ fn check_material(material: &Material) -> Result<(), SceneError> {
 }
 
 fn check_material_id(id: MaterialId) -> Result<(), SceneError> {
-    use crate::scene::limits::MAX_ID;
+    use isolith_scene::limits::MAX_ID;
     if id.0 > MAX_ID {
         return Err(SceneError::Limit { what: "the id of a material", limit: MAX_ID as usize });
     }

@@ -3,7 +3,7 @@
 use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
 
-use crate::scene::{NodeId, Scene};
+use isolith_scene::{NodeId, Scene};
 
 /// Most steps that can be undone; beyond it the oldest is forgotten.
 pub const MAX_STEPS: usize = 1_000;
@@ -89,7 +89,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Group, Material, MaterialId, Node, NodeKind};
+    use isolith_scene::{Group, Material, MaterialId, Node, NodeKind};
 
     #[test]
     fn big_scenes_are_kept_for_fewer_steps() {

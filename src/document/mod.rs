@@ -22,9 +22,9 @@ pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
 pub use state_folder::state_folder;
 
-use crate::jobs::Task;
-use crate::scene::file::{self, FileError, Stamp};
-use crate::scene::{NodeId, Scene, SceneError};
+use isolith_jobs::Task;
+use isolith_scene::file::{self, FileError, Stamp};
+use isolith_scene::{NodeId, Scene, SceneError};
 
 /// A scene with its selection, its past and its file.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::geometry::Transform;
-use crate::scene::limits::{POSITION, SCALE};
-use crate::scene::{NodeId, Scene};
+use isolith_geometry::Transform;
+use isolith_scene::limits::{POSITION, SCALE};
+use isolith_scene::{NodeId, Scene};
 
 /// Relative error up to which two transforms count as the same.
 const TOLERANCE: f64 = 1e-9;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::state_folder;
-use crate::scene::file;
+use isolith_scene::file;
 
 /// Most files remembered.
 pub const MAX_RECENT: usize = 12;

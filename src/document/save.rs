@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::{Document, OverwriteRisk};
-use crate::scene::Scene;
-use crate::scene::file::{self, FileError, Stamp};
+use isolith_scene::Scene;
+use isolith_scene::file::{self, FileError, Stamp};
 
 /// A document as it is to be saved to a path.
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::placement::kept_in_place;
-use crate::scene::limits::MAX_NAME;
-use crate::scene::{Node, NodeId, Scene, SceneError};
+use isolith_scene::limits::MAX_NAME;
+use isolith_scene::{Node, NodeId, Scene, SceneError};
 
 /// Takes out nodes and all below them.
 pub(super) fn remove(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<(), SceneError> {

@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DVec3};
 
-use crate::geometry::Aabb;
-use crate::mesh::MeshLibrary;
-use crate::scene::{Node, NodeId, NodeKind, Scene};
+use isolith_geometry::Aabb;
+use isolith_mesh::MeshLibrary;
+use isolith_scene::{Node, NodeId, NodeKind, Scene};
 
 /// Half the room given to what has none of its own: lights, cameras, endless planes.
 const TOKEN: f64 = 0.5;
@@ -98,7 +98,7 @@ pub fn oriented(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> Option<(DAff
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Group, Light, Object, ShapeKind};
+    use isolith_scene::{Group, Light, Object, ShapeKind};
 
     fn object(scene: &Scene, kind: ShapeKind) -> Node {
         let material = scene.materials()[0].id;

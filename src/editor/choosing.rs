@@ -11,7 +11,7 @@ use super::intent::Intent;
 use super::messages::Message;
 use super::root::Editor;
 use super::{insertion, portal};
-use crate::scene::{MeshNode, Node, NodeKind};
+use isolith_scene::{MeshNode, Node, NodeKind};
 
 /// Nobody cancels a dialog faster than this: there was none.
 const NO_DIALOG: Duration = Duration::from_millis(600);

@@ -6,8 +6,8 @@ use egui::{Button, Context, Id, Key, Modal, RichText, vec2};
 
 use super::dialogs::Next;
 use super::theme;
-use crate::jobs::Job;
-use crate::scene::file::Stamp;
+use isolith_jobs::Job;
+use isolith_scene::file::Stamp;
 
 /// A question that waits, and what has been told.
 #[derive(Default)]

@@ -6,8 +6,8 @@ use std::sync::mpsc::Receiver;
 use std::time::Instant;
 
 use super::edit_session::WantedFile;
-use crate::scene::Attached;
-use crate::session::{Opened, folder_of};
+use isolith_scene::Attached;
+use isolith_session::{Opened, folder_of};
 
 /// An intent that can be carried out: its document has been opened.
 pub enum Next {

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use super::dialogs::Next;
-use crate::document::Saved;
-use crate::jobs::Job;
-use crate::scene::file::FileError;
-use crate::session::Opened;
+use isolith_document::Saved;
+use isolith_jobs::Job;
+use isolith_scene::file::FileError;
+use isolith_session::Opened;
 
 /// A document on its way.
 pub struct Opening {
-    /// See [`crate::jobs`].
+    /// See [`isolith_jobs`].
     pub job: Job<Result<Opened, String>>,
     /// For people.
     pub name: String,
@@ -22,7 +22,7 @@ pub struct Opening {
 
 /// The document on its way to its file.
 pub struct Saving {
-    /// See [`crate::jobs`].
+    /// See [`isolith_jobs`].
     pub job: Job<SaveAnswer>,
     /// Where to.
     pub path: PathBuf,

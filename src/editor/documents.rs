@@ -10,10 +10,10 @@ use super::document_jobs::{Opening, SaveAnswer, Saving};
 use super::intent::Intent;
 use super::messages::Message;
 use super::root::Editor;
-use crate::document::{Document, OverwriteRisk};
-use crate::jobs::{JobEnd, Task};
-use crate::scene::{Light, Node, NodeKind, Scene};
-use crate::session::{folder_of, read_file};
+use isolith_document::{Document, OverwriteRisk};
+use isolith_jobs::{JobEnd, Task};
+use isolith_scene::{Light, Node, NodeKind, Scene};
+use isolith_session::{folder_of, read_file};
 
 impl Editor {
     /// Does it, after asking where work would be lost. What cannot be read is refused before that.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{Context, Id};
 
 use super::messages::{Message, Messages};
-use crate::document::{Document, Edit};
-use crate::scene::{Attached, Material, Node, NodeId, NodeKind, ParamOwner, ParamPath, ParamValue, Part, Scene};
+use isolith_document::{Document, Edit};
+use isolith_scene::{Attached, Material, Node, NodeId, NodeKind, ParamOwner, ParamPath, ParamValue, Part, Scene};
 
 /// The document, the gesture in progress, the messages.
 ///

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use super::edit_session::{EditSession, WantedFile, subject};
 use super::messages::Message;
-use crate::document::{Edit, RecentFiles};
-use crate::jobs::{Job, JobEnd, Jobs, Task};
-use crate::scene::{Attached, ParamValue, file};
+use isolith_document::{Edit, RecentFiles};
+use isolith_jobs::{Job, JobEnd, Jobs, Task};
+use isolith_scene::{Attached, ParamValue, file};
 
 /// See the module.
 #[derive(Default)]

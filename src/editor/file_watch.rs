@@ -8,7 +8,7 @@ use super::conflict::{OverwriteAnswer, OverwriteQuestion, ask};
 use super::dialogs::Next;
 use super::messages::Message;
 use super::root::Editor;
-use crate::jobs::{JobEnd, Task};
+use isolith_jobs::{JobEnd, Task};
 
 impl Editor {
     /// Asks whether to write over a file that somebody else has changed.

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::bounds;
 use super::navigation::Navigation;
 use super::state::EditorState;
-use crate::flat::debug_view::DepthRange;
+use isolith_field::debug_view::DepthRange;
 
 impl EditorState {
     /// Shows all of the selection.

@@ -7,8 +7,8 @@ use glam::{DAffine3, DMat3, DVec3};
 use super::edit_session::EditSession;
 use super::projection::Projection;
 use super::{selection, theme};
-use crate::geometry::Ray;
-use crate::scene::NodeId;
+use isolith_geometry::Ray;
+use isolith_scene::NodeId;
 
 /// What can be grabbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -186,7 +186,7 @@ mod tests {
     use glam::DVec2;
 
     use super::*;
-    use crate::geometry::Camera;
+    use isolith_geometry::Camera;
 
     #[test]
     fn an_axis_follows_the_pointer_exactly() {

@@ -10,7 +10,7 @@ use egui_material_icons::icons::{
 
 pub use super::shape_icons::paint_shape;
 use super::theme;
-use crate::scene::{LightKind, Node, NodeKind, Operator};
+use isolith_scene::{LightKind, Node, NodeKind, Operator};
 
 /// The drawing of a node's kind: a shape's silhouette or an icon, in the kind's color.
 pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {

@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::selection;
 use super::state::EditorState;
-use crate::document::Edit;
-use crate::scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
+use isolith_document::Edit;
+use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
 
 /// Adds an object of the given kind and selects it.
 pub fn shape(state: &mut EditorState, kind: ShapeKind) {

@@ -13,9 +13,9 @@ use super::{
     icons, inspector_blends, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
     inspector_transform, selection, theme, widgets,
 };
-use crate::document::Edit;
-use crate::scene::limits::MAX_NAME;
-use crate::scene::{Node, NodeKind};
+use isolith_document::Edit;
+use isolith_scene::limits::MAX_NAME;
+use isolith_scene::{Node, NodeKind};
 
 /// What the inspector remembers between frames.
 #[derive(Default)]

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::multi_edit::MultiEdit;
 use super::numbers::NumberField;
 use super::{inspector_params, theme, widgets};
-use crate::scene::{Group, Node, NodeKind, Operator, Part, RadiusUnit};
+use isolith_scene::{Group, Node, NodeKind, Operator, Part, RadiusUnit};
 
 /// Whether the node is joined or cut away, and how it blends; objects and groups.
 pub fn role(ui: &mut Ui, edit: &mut MultiEdit<'_>) {

@@ -6,7 +6,7 @@ use super::inspector_params::{self, ParamChange};
 use super::multi_edit::MultiEdit;
 use super::widgets::{self, MIXED};
 use super::{shape_change, theme};
-use crate::scene::{CameraNode, MeshNode, Node, NodeKind, Object, ParamPath, ParamValue, Params, Part, ShapeKind};
+use isolith_scene::{CameraNode, MeshNode, Node, NodeKind, Object, ParamPath, ParamValue, Params, Part, ShapeKind};
 
 fn object(n: &Node) -> Option<&Object> {
     if let NodeKind::Object(o) = &n.kind { Some(o) } else { None }

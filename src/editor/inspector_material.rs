@@ -7,9 +7,9 @@ use super::multi_edit::MultiEdit;
 use super::numbers::{self, NumberField};
 use super::widgets::{self, MIXED};
 use super::{inspector_params, theme};
-use crate::document::Edit;
-use crate::scene::limits::{INTENSITY, MAX_NAME, SHININESS};
-use crate::scene::{Limits, Material, MaterialId, Node, NodeKind, ParamPath, Params};
+use isolith_document::Edit;
+use isolith_scene::limits::{INTENSITY, MAX_NAME, SHININESS};
+use isolith_scene::{Limits, Material, MaterialId, Node, NodeKind, ParamPath, Params};
 
 /// The materials of the nodes that are edited.
 #[derive(Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@ use egui_material_icons::icons::{ICON_ADD, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWAR
 
 use super::multi_edit::MultiEdit;
 use super::{inspector_params, theme, widgets};
-use crate::scene::{MAX_MODIFIERS, ModifierKind, ModifierSlot, Node, Part};
+use isolith_scene::{MAX_MODIFIERS, ModifierKind, ModifierSlot, Node, Part};
 
 /// Shows the card for objects and groups.
 pub fn show(ui: &mut Ui, edit: &mut MultiEdit<'_>) {

@@ -11,7 +11,7 @@ use super::multi_edit::MultiEdit;
 use super::numbers::{self, FieldResponse, NumberField};
 use super::theme;
 use super::widgets::{self, MIXED};
-use crate::scene::{Attached, Limits, Param, ParamOwner, ParamPath, ParamValue, Part};
+use isolith_scene::{Attached, Limits, Param, ParamOwner, ParamPath, ParamValue, Part};
 
 /// What the artist did to a parameter.
 pub enum ParamChange {

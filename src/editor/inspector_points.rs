@@ -4,7 +4,7 @@ use egui::{Id, RichText, ScrollArea, Ui, vec2};
 
 use super::numbers::{self, NumberField};
 use super::theme;
-use crate::scene::{Limits, List};
+use isolith_scene::{Limits, List};
 
 /// The list grows up to this height, in points of the screen.
 const MOST_HEIGHT: f32 = 220.0;

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use crate::scene::{Environment, ParamPath, Params};
+use isolith_scene::{Environment, ParamPath, Params};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {

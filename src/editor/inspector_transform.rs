@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3, EulerRot};
 use super::multi_edit::MultiEdit;
 use super::numbers::{self, FieldResponse, NumberField};
 use super::{inspector_params, widgets};
-use crate::scene::{Limits, NodeKind, Part};
+use isolith_scene::{Limits, NodeKind, Part};
 
 const ROTATION_FIELD: NumberField<'_> = NumberField {
     label: "Rotation",

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, pos
 use glam::Vec3;
 
 use super::theme;
-use crate::flat::debug_view::{DepthRange, Legend, ViewMode};
+use isolith_field::debug_view::{DepthRange, Legend, ViewMode};
 
 /// From the viewport's corner, and from the legend's border to what is in it, in points.
 const MARGIN: f32 = 12.0;

@@ -8,7 +8,7 @@ use egui::Ui;
 
 use super::edit_session::EditSession;
 use super::widgets;
-use crate::scene::{Node, NodeId, ParamPath, Part};
+use isolith_scene::{Node, NodeId, ParamPath, Part};
 
 /// Nodes edited together; never empty, the last is the active one.
 pub struct MultiEdit<'a> {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::geometry::{Aabb, Camera, Ray};
+use isolith_geometry::{Aabb, Camera, Ray};
 
 /// A side to look from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -6,8 +6,8 @@ use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
 
 use super::theme::MIXED;
 use super::{expression, theme};
-use crate::scene::Limits;
-use crate::scene::limits::Rule;
+use isolith_scene::Limits;
+use isolith_scene::limits::Rule;
 
 /// What stands around a number.
 #[derive(Clone, Copy)]
@@ -245,7 +245,7 @@ fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::limits::{SCALE, SIDES, SIZE};
+    use isolith_scene::limits::{SCALE, SIDES, SIZE};
 
     #[test]
     fn whole_numbers_have_no_decimals_and_zero_has_no_sign() {

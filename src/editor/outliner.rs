@@ -17,9 +17,9 @@ use super::messages::Message;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, Request};
 use super::{icons, selection, theme, widgets};
-use crate::document::Edit;
-use crate::scene::limits::MAX_NAME;
-use crate::scene::{Node, NodeId, NodeKind, Scene};
+use isolith_document::Edit;
+use isolith_scene::limits::MAX_NAME;
+use isolith_scene::{Node, NodeId, NodeKind, Scene};
 
 /// A row of the tree; `None` is the scene itself, which holds the top and is not shown.
 type RowId = Option<NodeId>;

@@ -7,7 +7,7 @@ use super::navigation::Side;
 use super::projection::Projection;
 use super::state::EditorState;
 use super::{bounds, icons, theme};
-use crate::scene::{Node, NodeId, NodeKind};
+use isolith_scene::{Node, NodeId, NodeKind};
 
 /// Boxes are painted for so many selected nodes at most.
 const MOST_BOXES: usize = 64;

@@ -1,9 +1,9 @@
 //! What lies under the pointer.
 
 use super::state::EditorState;
-use crate::flat::pick;
-use crate::geometry::Ray;
-use crate::scene::NodeId;
+use isolith_field::pick;
+use isolith_geometry::Ray;
+use isolith_scene::NodeId;
 
 /// The node that the ray meets first: the very surface that is drawn, not a box around it.
 pub fn pick_node(state: &EditorState, ray: &Ray) -> Option<NodeId> {

@@ -4,7 +4,7 @@ use egui::{Pos2, Rect, vec2};
 use glam::{DVec2, DVec3};
 
 use super::view_state::ViewState;
-use crate::geometry::{Camera, Ray};
+use isolith_geometry::{Camera, Ray};
 
 /// See the module.
 pub struct Projection {

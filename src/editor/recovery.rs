@@ -7,8 +7,8 @@ use egui::Context;
 use super::messages::Message;
 use super::root::Editor;
 use super::safekeeping::{RecoveryChoice, Safekeeping, take_picture};
-use crate::document::recovery::{Lost, Note, ReadSnapshot, Recovered, Recovery, Rescued, Unreadable};
-use crate::jobs::{Job, JobEnd, Task};
+use isolith_document::recovery::{Lost, Note, ReadSnapshot, Recovered, Recovery, Rescued, Unreadable};
+use isolith_jobs::{Job, JobEnd, Task};
 
 /// How long after a change a picture is kept, in seconds: by then the change is drawn.
 const PICTURE_AFTER: f64 = 0.5;

@@ -18,11 +18,11 @@ use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
 use super::view_state::{Picture, ViewSettings};
 use super::{input_order, numbers, panels, theme, widgets};
-use crate::document::{Document, RecentFiles};
-use crate::flat::FlatScene;
-use crate::jobs::Jobs;
-use crate::mesh::MeshLibrary;
-use crate::session::{Opened, folder_of};
+use isolith_document::{Document, RecentFiles};
+use isolith_field::FlatScene;
+use isolith_jobs::Jobs;
+use isolith_mesh::MeshLibrary;
+use isolith_session::{Opened, folder_of};
 
 /// Most characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;

@@ -9,8 +9,8 @@ use egui::{
 };
 
 use super::theme;
-use crate::document::recovery::{Lost, ReadSnapshot, Recovery, Thumbnail};
-use crate::jobs::Job;
+use isolith_document::recovery::{Lost, ReadSnapshot, Recovery, Thumbnail};
+use isolith_jobs::Job;
 
 /// Room for a picture in the list.
 const PICTURE_SIZE: egui::Vec2 = vec2(144.0, 90.0);

@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use super::edit_session::EditSession;
 use super::messages::Message;
-use crate::document::Edit;
-use crate::scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
+use isolith_document::Edit;
+use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
 
 /// The selected nodes that do not stand below another selected one, in the scene's order.
 pub fn roots(session: &EditSession) -> Vec<NodeId> {

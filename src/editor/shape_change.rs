@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::geometry::Aabb;
-use crate::scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
+use isolith_geometry::Aabb;
+use isolith_scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
 
 /// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
 /// then the kind's defaults.
@@ -139,7 +139,7 @@ fn rounded(mut shape: Shape) -> Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MaterialId, Node, NodeKind, Object, check};
+    use isolith_scene::{MaterialId, Node, NodeKind, Object, check};
 
     #[test]
     fn every_change_keeps_about_the_size_and_every_value_is_allowed() {

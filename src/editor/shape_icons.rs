@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, vec2};
 
-use crate::scene::ShapeKind;
+use isolith_scene::ShapeKind;
 
 /// Paints the silhouette of a shape, seen a little from above.
 pub fn paint_shape(painter: &Painter, rect: Rect, kind: ShapeKind, color: Color32) {

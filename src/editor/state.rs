@@ -9,10 +9,10 @@ use super::file_jobs::FileJobs;
 use super::intent::Intent;
 use super::messages::{Message, Severity};
 use super::view_state::{Picture, ViewSettings, ViewState};
-use crate::document::Document;
-use crate::flat::FlatScene;
-use crate::scene::{NodeId, Scene};
-use crate::session::{Notice, NoticeLevel, ReadDocument, SceneSession};
+use isolith_document::Document;
+use isolith_field::FlatScene;
+use isolith_scene::{NodeId, Scene};
+use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
 
 /// An example that the File menu offers.
 pub struct Example {

@@ -9,8 +9,8 @@ use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::theme;
 use super::view_state::{Picture, PointerActivity};
-use crate::jobs::Task;
-use crate::scene::NodeId;
+use isolith_jobs::Task;
+use isolith_scene::NodeId;
 
 /// See the module.
 pub struct StatusBar;

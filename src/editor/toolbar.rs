@@ -10,8 +10,8 @@ use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
 use super::{icons, legend, theme, widgets};
-use crate::flat::debug_view::ViewMode;
-use crate::scene::{Operator, ShapeKind};
+use isolith_field::debug_view::ViewMode;
+use isolith_scene::{Operator, ShapeKind};
 
 /// See the module.
 pub struct Toolbar;

@@ -4,8 +4,8 @@ use egui::{Pos2, Rect, TextureId, vec2};
 use glam::DVec3;
 
 use super::navigation::Navigation;
-use crate::flat::debug_view::ViewMode;
-use crate::geometry::Camera;
+use isolith_field::debug_view::ViewMode;
+use isolith_geometry::Camera;
 
 /// What the renderer has made.
 #[derive(Clone, Debug, Default)]

@@ -11,7 +11,7 @@ use super::projection::Projection;
 use super::state::EditorState;
 use super::view_state::PointerActivity;
 use super::{legend, selection, theme};
-use crate::flat::debug_view::ViewMode;
+use isolith_field::debug_view::ViewMode;
 
 /// What the pointer is dragging.
 enum Dragging {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use skrifa::outline::OutlinePen;
 
 use super::limits::MAX_TEXT_ARCS;
-use crate::geometry::{ArcPiece, biarc};
+use isolith_geometry::{ArcPiece, biarc};
 
 /// How far arcs may leave the curves of the font, in heights of the font (em).
 pub const TOLERANCE: f64 = 5e-4;

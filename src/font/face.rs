@@ -14,7 +14,7 @@ use skrifa::{GlyphId, Tag};
 use super::bend::ArcPen;
 use super::limits::MAX_TEXT_ARCS;
 use super::work;
-use crate::geometry::ArcPiece;
+use isolith_geometry::ArcPiece;
 
 /// Texts whose outlines are kept for each font; when there are more all are made again as they are needed.
 const KEPT_TEXTS: usize = 256;

@@ -19,7 +19,7 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 
-use crate::geometry::{ArcPiece, arc_union};
+use isolith_geometry::{ArcPiece, arc_union};
 
 pub use bend::TOLERANCE;
 pub use face::{Face, Outlines};

@@ -1,7 +1,7 @@
 //! The three blend kernels, column by column, at one radius: union, intersection, difference.
 
 use super::scene_builder::{SceneBuilder, blended, cuboid, cylinder, object, v};
-use crate::scene::{BlendKernel, Operator, Scene};
+use isolith_scene::{BlendKernel, Operator, Scene};
 
 /// One radius for all nine.
 const RADIUS: f64 = 0.26;

@@ -1,7 +1,7 @@
 //! Union, intersection and difference of the same box and sphere: hard behind, blended in front.
 
 use super::scene_builder::{SceneBuilder, blended, cuboid, cylinder, group, object, sphere, turn_y, v};
-use crate::scene::{BlendKernel, MaterialId, Operator, Scene};
+use isolith_scene::{BlendKernel, MaterialId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.05, 0.10, 0.16], [0.16, 0.215, 0.26], [0.28, 0.30, 0.34]);
@@ -31,7 +31,7 @@ pub(super) fn scene() -> Scene {
 }
 
 /// The sphere reaches past the faces of the box, but not to its edges.
-fn add_operands(builder: &mut SceneBuilder, group: crate::scene::NodeId, [cube, ball]: [MaterialId; 2]) {
+fn add_operands(builder: &mut SceneBuilder, group: isolith_scene::NodeId, [cube, ball]: [MaterialId; 2]) {
     builder.add(group, object("Box", cuboid(0.92, 0.92, 0.92, 0.0), cube));
     builder.add(group, object("Sphere", sphere(0.56), ball));
 }

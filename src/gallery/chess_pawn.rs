@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::scene_builder::{
     SceneBuilder, blended, cone, cuboid, cylinder, ellipsoid, group, object, sphere, torus, turn_y, v,
 };
-use crate::scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
+use isolith_scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.05, 0.07, 0.10], [0.135, 0.115, 0.10], [0.26, 0.26, 0.28]);

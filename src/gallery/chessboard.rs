@@ -2,7 +2,7 @@
 
 use super::chess_pawn;
 use super::scene_builder::{SceneBuilder, cuboid, group, object, v};
-use crate::scene::{Modifier, Operator, Scene};
+use isolith_scene::{Modifier, Operator, Scene};
 
 /// Side of a square, in meters.
 const SQUARE: f64 = 1.0;

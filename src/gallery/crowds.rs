@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::random_groups::{SplitMix, overview};
 use super::scene_builder::{SceneBuilder, blended, cuboid, group, object, sphere, torus};
-use crate::scene::{BlendKernel, Operator, Scene};
+use isolith_scene::{BlendKernel, Operator, Scene};
 
 /// `leaves` spheres, rounded boxes and tori in a box that grows with them, in one union: blended, or hard.
 pub fn crowd(leaves: usize, is_blended: bool, seed: u64) -> Scene {

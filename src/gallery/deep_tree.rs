@@ -4,7 +4,7 @@
 //! and depth costs nothing but numbers.
 
 use super::scene_builder::{SceneBuilder, blended, cylinder, group, object, sphere, torus, turn_y, turn_z, v};
-use crate::scene::{BlendKernel, Operator, Scene};
+use isolith_scene::{BlendKernel, Operator, Scene};
 
 /// How many groups stand in one another.
 pub const DEPTH: i32 = 80;

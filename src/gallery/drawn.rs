@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::scene_builder::{SceneBuilder, cuboid, object, turn_x, turn_y, v};
-use crate::scene::{Attachment, Corners, Points, Scene, Shape};
+use isolith_scene::{Attachment, Corners, Points, Scene, Shape};
 
 /// Points of the knot.
 const KNOT_POINTS: i32 = 64;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::scene_builder::{SceneBuilder, blended, ellipsoid, object, turn_x, turn_y, turn_z, v};
-use crate::scene::{BlendKernel, Operator, Scene, Shape};
+use isolith_scene::{BlendKernel, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.10, 0.25, 0.52], [0.55, 0.60, 0.66], [0.30, 0.33, 0.40]);

@@ -2,7 +2,7 @@
 //! repeated by recursion.
 
 use super::scene_builder::{SceneBuilder, blended, capsule, cylinder, object, torus, turn_x, turn_y, v};
-use crate::scene::{BlendKernel, Modifier, Operator, Scene, Shape};
+use isolith_scene::{BlendKernel, Modifier, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.012, 0.016, 0.03], [0.07, 0.08, 0.11], [0.24, 0.26, 0.31]);

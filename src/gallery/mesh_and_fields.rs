@@ -4,7 +4,7 @@ use super::scene_builder::{
     SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, mesh, object, sphere, torus, turn_x,
     turn_y, turn_z, v,
 };
-use crate::scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
+use isolith_scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.02, 0.075, 0.09], [0.10, 0.20, 0.20], [0.25, 0.27, 0.28]);

@@ -22,7 +22,7 @@ mod showcase;
 
 use std::path::{Path, PathBuf};
 
-use crate::scene::{Scene, file};
+use isolith_scene::{Scene, file};
 
 pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;

@@ -3,7 +3,9 @@
 use super::scene_builder::{
     SceneBuilder, blended, capsule, cuboid, cylinder, group, object, sphere, torus, turn_x, turn_z, v,
 };
-use crate::scene::{Attachment, Axis, BlendKernel, MaterialId, Modifier, ModifierKind, NodeId, Operator, Scene, Shape};
+use isolith_scene::{
+    Attachment, Axis, BlendKernel, MaterialId, Modifier, ModifierKind, NodeId, Operator, Scene, Shape,
+};
 
 /// Stands in a row.
 const COLUMNS: usize = 4;

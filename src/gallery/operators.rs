@@ -5,7 +5,7 @@
 //! whose arms do not blend with its body.
 
 use super::scene_builder::{SceneBuilder, capsule, cuboid, cylinder, object, sphere, turn_x, turn_z, v};
-use crate::scene::{Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
+use isolith_scene::{Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
 
 /// One radius for all.
 const RADIUS: f64 = 0.26;

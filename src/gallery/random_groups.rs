@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 
 use super::scene_builder::{SceneBuilder, blended, cuboid, group, object, sphere, torus};
-use crate::scene::{BlendKernel, Operator, Scene};
+use isolith_scene::{BlendKernel, Operator, Scene};
 
 /// Leaves of one group.
 const GROUP_LEAVES: usize = 8;

@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
-use crate::geometry::Camera;
-use crate::scene::{
+use isolith_geometry::Camera;
+use isolith_scene::{
     Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
     Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape,
 };

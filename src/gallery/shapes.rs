@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3};
 
 use super::scene_builder::{SceneBuilder, cuboid, group, object, turn_x, turn_y, v};
-use crate::geometry::Aabb;
-use crate::scene::{Operator, Scene, ShapeKind};
+use isolith_geometry::Aabb;
+use isolith_scene::{Operator, Scene, ShapeKind};
 
 /// Tiles in a row.
 const COLUMNS: usize = 7;
@@ -43,7 +43,7 @@ pub(super) fn scene() -> Scene {
 
 /// The shape with its default parameters, as large as the others, standing on its tile; a text leans back to face the
 /// camera. Of one without end the part in a box is shown.
-fn add_shape(builder: &mut SceneBuilder, kind: ShapeKind, color: crate::scene::MaterialId, at: DVec3) {
+fn add_shape(builder: &mut SceneBuilder, kind: ShapeKind, color: isolith_scene::MaterialId, at: DVec3) {
     let shape = kind.default_shape();
     let bounds = shape.bounds();
     if bounds.is_finite() {

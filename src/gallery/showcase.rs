@@ -6,7 +6,7 @@ use super::scene_builder::{
     SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus,
     turn_x, turn_y, turn_z, v,
 };
-use crate::scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene, Shape};
+use isolith_scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene, Shape};
 
 /// The planet's center and radius.
 const PLANET: (DVec3, f64) = (DVec3::new(0.0, -3.3, 0.0), 2.6);

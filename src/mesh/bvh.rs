@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::geometry::{Aabb, Ray};
+use isolith_geometry::{Aabb, Ray};
 
 /// The corners of a triangle.
 pub type Triangle = [DVec3; 3];

@@ -16,7 +16,7 @@ use super::remarks::Remarks;
 use super::schema::{GltfMesh, Primitive, Whole};
 use super::surface::{Surface, Surfaces};
 use super::{MeshPart, TriangleMesh};
-use crate::geometry::Aabb;
+use isolith_geometry::Aabb;
 
 /// Writes meshes into one, one after the other.
 pub(super) struct Writer<'a> {

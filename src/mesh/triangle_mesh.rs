@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3, DVec4};
 use super::bvh::{Bvh, Triangle};
 use super::surface::Surface;
 use super::texture::Texture;
-use crate::geometry::{Aabb, Ray};
+use isolith_geometry::{Aabb, Ray};
 
 /// An indexed triangle mesh in one space: the file's scene with all its nodes written out.
 ///

@@ -17,7 +17,6 @@ mod pipelines;
 mod recipe;
 mod renderer;
 mod resources;
-pub mod wgsl;
 
 pub use frame::cost_model::coarse_size;
 pub use frame::plan;

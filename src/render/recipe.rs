@@ -93,7 +93,7 @@ recipe!(passes);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::wgsl::{FILES, assemble_plain};
+    use isolith_wgsl::{FILES, assemble_plain};
 
     /// The files of `shaders/` that are no passes of a frame.
     const NO_PASSES: &[&str] = &["driver.wgsl", "probe.wgsl", "probe_lookahead.wgsl", "probe_surface.wgsl"];

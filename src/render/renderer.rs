@@ -19,20 +19,20 @@ use std::time::{Duration, Instant};
 use super::passes::overlay::OverlaySettings;
 use super::passes::{Building, Passes};
 use super::recipe::{Extent, Pass};
-use crate::flat::debug_view::{DepthRange, ViewMode};
-use crate::flat::standpoint::Standpoints;
-use crate::flat::{Cancel, FlatScene, GBuffer, TapeCache, Warning};
-use crate::geometry::Camera;
-use crate::mesh::TriangleMesh;
-use crate::render::frame::cost_model::CostModel;
-use crate::render::frame::plan::{FramePlan, Room, TooMuch, plan};
-use crate::render::gpu::Gpu;
-use crate::render::gpu::readback::{read_buffers, read_color, read_words_at};
-use crate::render::pipelines::cache::PipelineCache;
-use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::resources::layouts::Layouts;
-use crate::render::resources::uniforms::UNIFORM_STRIDE;
-use crate::render::wgsl::{Options, SkipMode};
+use crate::frame::cost_model::CostModel;
+use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
+use crate::gpu::Gpu;
+use crate::gpu::readback::{read_buffers, read_color, read_words_at};
+use crate::pipelines::cache::PipelineCache;
+use crate::pipelines::strategy::EvalStrategy;
+use crate::resources::layouts::Layouts;
+use crate::resources::uniforms::UNIFORM_STRIDE;
+use isolith_field::debug_view::{DepthRange, ViewMode};
+use isolith_field::standpoint::Standpoints;
+use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning};
+use isolith_geometry::Camera;
+use isolith_mesh::TriangleMesh;
+use isolith_wgsl::{Options, SkipMode};
 
 use choice::{Chosen, Evaluators, check};
 pub use error::RenderError;
@@ -284,7 +284,7 @@ impl Renderer {
     }
 
     /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
-    /// dispatches of about [`crate::render::frame::plan::DISPATCH_TARGET`]. Waits for the device, and updates the cost model.
+    /// dispatches of about [`crate::frame::plan::DISPATCH_TARGET`]. Waits for the device, and updates the cost model.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
         // What others have submitted before, the painting of a window above all, is none of this frame's time.
         self.gpu.wait()?;

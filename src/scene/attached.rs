@@ -2,7 +2,7 @@
 
 use super::attachment::{Attachment, Content};
 use super::heights::Heights;
-use crate::font::Face;
+use isolith_font::Face;
 
 /// An attachment of any kind, as the value of a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl Attached {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::limits::MAX_ATTACHMENT_BYTES;
+    use crate::limits::MAX_ATTACHMENT_BYTES;
 
     fn font() -> Vec<u8> {
         epaint_default_fonts::HACK_REGULAR.to_vec()

@@ -12,8 +12,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::decode_budget;
 use super::limits::{MAX_ATTACHMENT_BYTES, MAX_NAME};
-use crate::font::Face;
-use crate::guard::guarded;
+use isolith_font::Face;
+use isolith_guard::guarded;
 
 /// What a file can be read as.
 pub trait Content: Sized + Send + Sync + 'static {

@@ -253,7 +253,7 @@ fn vector(field: &str, values: [f64; 3], limits: &Limits) -> Result<(), Fault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MaterialId, Object, ShapeKind};
+    use crate::{MaterialId, Object, ShapeKind};
 
     #[test]
     fn every_parameter_of_every_shape_is_held_to_its_limits() {
@@ -301,7 +301,7 @@ mod tests {
 
     #[test]
     fn every_parameter_of_every_modifier_is_held_to_its_limits() {
-        use crate::scene::{ModifierKind, Shape};
+        use crate::{ModifierKind, Shape};
         let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
         for &kind in ModifierKind::ALL {
             let with = |modifier| Node::new("x", NodeKind::Object(object.clone())).modified(modifier);

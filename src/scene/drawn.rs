@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::attachment::Attachment;
-use crate::font::{Face, text_curve};
-use crate::geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
+use isolith_font::{Face, text_curve};
+use isolith_geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
 
 /// Smaller letters are no letters, in meters.
 const LEAST_TEXT: f64 = 1e-6;

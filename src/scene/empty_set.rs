@@ -5,7 +5,7 @@
 //! ([`Operator::needs_first`] has the one exception), and so are groups that hold only lights, cameras and meshes.
 
 use super::{Modifier, Operator, Shape};
-use crate::geometry::Aabb;
+use isolith_geometry::Aabb;
 
 /// What `a` joined with `b` is where at least one of the two is the empty set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

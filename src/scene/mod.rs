@@ -40,6 +40,5 @@ pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{Choice, LIST_COLUMNS, List, Param, ParamField, ParamSpec, ParamValue, Params, Slot, Variants, Visit};
-pub(crate) use shape::for_each_shape;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;

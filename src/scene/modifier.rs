@@ -226,7 +226,7 @@ fn is_true(value: &bool) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Attached;
+    use crate::Attached;
 
     #[test]
     fn every_parameter_can_be_read_and_written() {

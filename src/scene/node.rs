@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::limits::{CLIP, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT};
 use super::params::{param_struct, param_table};
 use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
-use crate::geometry::Transform;
+use isolith_geometry::Transform;
 
 /// Stable identity of a node; never reused within a document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, JsonSchema)]

@@ -15,7 +15,7 @@ use super::limits::{
     ARC, CONE, CONSTANT, FOLD, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES, POSITION, POWER, REACH, SECTOR, SEED, SIDES,
     SIZE, SQUARES, THICKNESS, TURN, UNIT, WAVELENGTH,
 };
-use crate::font::Face;
+use isolith_font::Face;
 
 #[macro_use]
 mod define;

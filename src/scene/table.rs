@@ -414,7 +414,7 @@ fn check_limit(what: &'static str, value: usize, limit: usize) -> Result<(), Sce
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Group, Object, Shape};
+    use crate::{Group, Object, Shape};
 
     fn node(id: u64, parent: Option<u64>, is_group: bool) -> Node {
         let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };

@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use crate::document::Document;
-use crate::flat::{FlatScene, Flattener, is_quick};
-use crate::jobs::{Job, JobEnd, Jobs, Task};
-use crate::scene::Scene;
+use isolith_document::Document;
+use isolith_field::{FlatScene, Flattener, is_quick};
+use isolith_jobs::{Job, JobEnd, Jobs, Task};
+use isolith_scene::Scene;
 
 /// The flat scene of a revision of the document.
 #[derive(Debug, Default)]

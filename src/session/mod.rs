@@ -24,11 +24,11 @@ pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
 pub use prepare::PreparedScene;
 
-use crate::document::Document;
-use crate::flat::FlatScene;
-use crate::jobs::{Job, Jobs, Task};
-use crate::mesh::MeshLibrary;
-use crate::scene::NodeId;
+use isolith_document::Document;
+use isolith_field::FlatScene;
+use isolith_jobs::{Job, Jobs, Task};
+use isolith_mesh::MeshLibrary;
+use isolith_scene::NodeId;
 
 /// See the module.
 #[derive(Debug, Default)]
@@ -137,10 +137,10 @@ mod tests {
     use std::time::{Duration, Instant};
 
     use super::*;
-    use crate::document::Edit;
-    use crate::flat::flatten;
-    use crate::jobs::JobEnd;
-    use crate::scene::{Modifier, Node, NodeKind, Object, Scene, ShapeKind};
+    use isolith_document::Edit;
+    use isolith_field::flatten;
+    use isolith_jobs::JobEnd;
+    use isolith_scene::{Modifier, Node, NodeKind, Object, Scene, ShapeKind};
 
     /// A ball in rings, so often that flattening it takes longer than a frame.
     fn rings(count: u32) -> Node {

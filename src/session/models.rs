@@ -7,10 +7,10 @@ use std::sync::{Arc, Weak};
 
 use super::notice::{Notice, NoticeLevel};
 use super::prepare::read_models;
-use crate::flat::{FlatMesh, FlatScene};
-use crate::jobs::{Job, JobEnd, Jobs, Task};
-use crate::mesh::{MeshLibrary, ReloadOutcome, TriangleMesh, Watcher};
-use crate::scene::NodeId;
+use isolith_field::{FlatMesh, FlatScene};
+use isolith_jobs::{Job, JobEnd, Jobs, Task};
+use isolith_mesh::{MeshLibrary, ReloadOutcome, TriangleMesh, Watcher};
+use isolith_scene::NodeId;
 
 /// Looks after the models.
 #[derive(Debug, Default)]

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::prepare::PreparedScene;
-use crate::document::Document;
-use crate::jobs::{Canceled, Task};
+use isolith_document::Document;
+use isolith_jobs::{Canceled, Task};
 
 /// Reads a document, or says why it cannot.
 pub type ReadDocument = Arc<dyn Fn(&Task) -> Result<Document, String> + Send + Sync>;

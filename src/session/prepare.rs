@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use crate::flat::{FlatScene, FlattenError, Flattener};
-use crate::jobs::Task;
-use crate::mesh::MeshLibrary;
-use crate::scene::Scene;
+use isolith_field::{FlatScene, FlattenError, Flattener};
+use isolith_jobs::Task;
+use isolith_mesh::MeshLibrary;
+use isolith_scene::Scene;
 
 /// Progress of a task when the arrays are there. Reading the scene comes before that.
 const FLATTENED: f32 = 0.75;

@@ -2,13 +2,13 @@
 //! are these gradients, and the weights of blends make them; shapes have a test of their own beside `render::wgsl::dual`.
 
 use glam::{DVec3, Vec3Swizzles as _};
-use isolith::flat::eval::{MIXED, Mixture, SurfacePoint, surface};
-use isolith::flat::{Component, FlatScene, flatten};
+use isolith::field::eval::{MIXED, Mixture, SurfacePoint, surface};
+use isolith::field::{Component, FlatScene, flatten};
 use isolith::render::probe::{self, ProbedSurface};
-use isolith::render::wgsl::{Evaluator, OpSet, Options, SkipMode, Structure};
 use isolith::scene::{
     Blend, BlendKernel, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator, Scene, Shape,
 };
+use isolith::wgsl::{Evaluator, OpSet, Options, SkipMode, Structure};
 
 use crate::contract::samples::Random;
 use crate::gpu::shared;

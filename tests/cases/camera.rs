@@ -8,8 +8,8 @@ mod narrow;
 use std::path::Path;
 
 use glam::{DQuat, DVec2, DVec3};
-use isolith::flat::GBuffer;
-use isolith::flat::reference::image::render_reference;
+use isolith::field::GBuffer;
+use isolith::field::reference::image::render_reference;
 use isolith::geometry::Camera;
 use isolith::render::EvalStrategy;
 use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
@@ -134,7 +134,7 @@ fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
         let picture = draw(&bench_scene, size, strategy);
         let shown = picture.depth.iter().filter(|d| d.is_finite()).count();
         assert!(shown > picture.depth.len() / 200, "{name}: {shown} pixels show something");
-        let accuracy = isolith::flat::Accuracy::against(&picture, &bench_scene.flat, &right);
+        let accuracy = isolith::field::Accuracy::against(&picture, &bench_scene.flat, &right);
         if accuracy.wrong > 0 || !accuracy.faults().is_empty() {
             all.push(format!("{name}, {strategy:?}: {accuracy:?}"));
         }

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use isolith::flat::flatten;
-use isolith::flat::reference::image::render_reference;
+use isolith::field::flatten;
+use isolith::field::reference::image::render_reference;
 use isolith::geometry::Camera;
-use isolith::render::wgsl::tapes_are_cheaper;
 use isolith::render::{EvalStrategy, Gpu, OverlaySettings, Renderer, Slot, coarse_size};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind, file,
 };
+use isolith::wgsl::tapes_are_cheaper;
 
 use crate::gpu::{BenchScene, scenes};
 
@@ -20,7 +20,7 @@ fn case(name: &str) -> PathBuf {
 }
 
 /// Every component of the scene, and whether the window draws it by tapes at first.
-fn listed(flat: &isolith::flat::FlatScene) -> Vec<bool> {
+fn listed(flat: &isolith::field::FlatScene) -> Vec<bool> {
     let leaves = flat.nodes.iter().filter(|node| node.is_leaf());
     let kinds: BTreeSet<ShapeKind> = leaves.map(|node| ShapeKind::ALL[(node.code & 0xffff) as usize]).collect();
     flat.components.iter().map(|component| tapes_are_cheaper(flat, component, &kinds, None)).collect()

@@ -6,7 +6,7 @@ mod opening;
 
 use std::path::PathBuf;
 
-use isolith::flat::{FlatScene, flatten};
+use isolith::field::{FlatScene, flatten};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, file,
 };

@@ -4,16 +4,16 @@ use std::path::Path;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use glam::{DQuat, DVec3};
-use isolith::flat::reference::image::{ReferenceImage, render_reference};
-use isolith::flat::reference::tolerance::GRAZING_ANGLE;
-use isolith::flat::{GBuffer, Warning};
+use isolith::field::reference::image::{ReferenceImage, render_reference};
+use isolith::field::reference::tolerance::GRAZING_ANGLE;
+use isolith::field::{GBuffer, Warning};
 use isolith::geometry::Camera;
-use isolith::render::wgsl::{Options, SkipMode};
 use isolith::render::{EvalStrategy, Renderer};
 use isolith::scene::{
     Attachment, Blend, BlendKernel, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene,
     Shape, file,
 };
+use isolith::wgsl::{Options, SkipMode};
 
 use crate::gpu::{BenchScene, shared};
 

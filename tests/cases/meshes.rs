@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use isolith::flat::pick::pick;
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::{GBuffer, NO_LEAF, Warning, flatten};
+use isolith::field::pick::pick;
+use isolith::field::reference::image::render_reference;
+use isolith::field::{GBuffer, NO_LEAF, Warning, flatten};
 use isolith::mesh::{MeshLibrary, parse};
 use isolith::render::EvalStrategy;
 use isolith::scene::file;

@@ -4,16 +4,16 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use glam::{DQuat, DVec2, DVec3};
-use isolith::flat::eval::{field, gradient};
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::reference::trace::{Hit, Tracer};
-use isolith::flat::{Accuracy, FlatScene, flatten};
+use isolith::field::eval::{field, gradient};
+use isolith::field::reference::image::render_reference;
+use isolith::field::reference::trace::{Hit, Tracer};
+use isolith::field::{Accuracy, FlatScene, flatten};
 use isolith::geometry::{Camera, Ray};
 use isolith::render::probe;
-use isolith::render::wgsl::{Evaluator, OpSet, Options, Structure};
 use isolith::scene::{
     Blend, Group, MaterialId, Modifier, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind, file,
 };
+use isolith::wgsl::{Evaluator, OpSet, Options, Structure};
 
 use crate::contract::samples::{Random, ordinary};
 use crate::gpu::shared;

@@ -5,7 +5,7 @@ mod build;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use isolith::flat::{NO_LEAF, flatten};
+use isolith::field::{NO_LEAF, flatten};
 use isolith::geometry::{Aabb, ArcPiece};
 use isolith::render::EvalStrategy;
 use isolith::scene::{Attachment, NodeKind, Scene, Shape, file, text_profile};

@@ -2,8 +2,8 @@
 //! and how much volume the kernels add.
 
 use glam::DVec3;
-use isolith::flat::eval::{BlendParams, field, op_union, surface};
-use isolith::flat::{FlatScene, flatten};
+use isolith::field::eval::{BlendParams, field, op_union, surface};
+use isolith::field::{FlatScene, flatten};
 use isolith::scene::{
     Blend, BlendKernel, BlendOverride, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator,
     RadiusUnit, Scene, Shape,

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
-use isolith::flat::PreparedShape;
-use isolith::flat::eval::{heightmap_height, ocean_height, terrain_height};
+use isolith::field::PreparedShape;
+use isolith::field::eval::{heightmap_height, ocean_height, terrain_height};
 use isolith::geometry::ArcPiece;
 use isolith::scene::{Shape, ShapeKind, profile_curve, text_profile, tube_curve};
 

@@ -1,8 +1,8 @@
 //! The contract of every modifier, over content that is not symmetric.
 
 use glam::{DQuat, DVec3};
-use isolith::flat::eval::{field, gradient};
-use isolith::flat::{Component, FlatScene, flatten};
+use isolith::field::eval::{field, gradient};
+use isolith::field::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::scene::{
     Attachment, Axis, Blend, BlendKernel, Group, MaterialId, Modifier, ModifierKind, Node, NodeId, NodeKind, Object,

@@ -1,7 +1,7 @@
 //! Every operator with every kernel.
 
-use isolith::flat::Join;
-use isolith::flat::eval::{BlendParams, BlendResult, op_join};
+use isolith::field::Join;
+use isolith::field::eval::{BlendParams, BlendResult, op_join};
 use isolith::scene::{Blend, BlendKernel, Operator};
 
 use super::samples::{Random, many};

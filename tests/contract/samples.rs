@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 
 use glam::DVec3;
 use image::{DynamicImage, ImageBuffer, ImageFormat, Luma};
-use isolith::flat::PreparedShape;
-use isolith::flat::eval::{Real, shape_distance};
+use isolith::field::PreparedShape;
+use isolith::field::eval::{Real, shape_distance};
 use isolith::scene::limits::UNIT;
 use isolith::scene::{Attached, Limits, ParamValue, Shape, ShapeKind};
 

@@ -1,8 +1,8 @@
 //! Every shape.
 
 use glam::DVec3;
-use isolith::flat::PreparedShape;
-use isolith::flat::eval::{Dual, Real};
+use isolith::field::PreparedShape;
+use isolith::field::eval::{Dual, Real};
 use isolith::scene::{Corners, Shape, ShapeKind};
 
 use super::drawn::tube_distance;

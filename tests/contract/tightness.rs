@@ -4,8 +4,8 @@
 use std::fmt::Write as _;
 
 use glam::DVec3;
-use isolith::flat::eval::field;
-use isolith::flat::{PreparedShape, flatten};
+use isolith::field::eval::field;
+use isolith::field::{PreparedShape, flatten};
 use isolith::geometry::Aabb;
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, ModifierKind, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind,

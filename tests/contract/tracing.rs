@@ -3,10 +3,10 @@
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use glam::{DVec2, DVec3};
-use isolith::flat::pick::pick;
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::reference::trace::{Tracer, trace};
-use isolith::flat::{FlatScene, HitTarget, flatten};
+use isolith::field::pick::pick;
+use isolith::field::reference::image::render_reference;
+use isolith::field::reference::trace::{Tracer, trace};
+use isolith::field::{FlatScene, HitTarget, flatten};
 use isolith::geometry::{Camera, Ray};
 use isolith::mesh::MeshLibrary;
 use isolith::scene::{Blend, Group, MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};

@@ -1,8 +1,8 @@
 //! Random trees of shapes and groups, through flattening.
 
 use glam::{DAffine3, DQuat, DVec3};
-use isolith::flat::eval::{field, gradient, surface};
-use isolith::flat::{Component, FlatScene, flatten};
+use isolith::field::eval::{field, gradient, surface};
+use isolith::field::{Component, FlatScene, flatten};
 use isolith::scene::{
     Blend, BlendKernel, BlendOverride, Group, Material, MaterialId, Node, NodeId, NodeKind, Object, Operator,
     RadiusUnit, Scene, ShapeKind,

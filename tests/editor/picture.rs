@@ -5,7 +5,7 @@ use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::Editor;
-use isolith::flat::debug_view::ViewMode;
+use isolith::field::debug_view::ViewMode;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
 

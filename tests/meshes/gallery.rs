@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use isolith::flat::flatten;
+use isolith::field::flatten;
 use isolith::gallery::{RANDOM_SEED, SHOWCASE, all, random, write_all};
 use isolith::mesh::MeshLibrary;
 use isolith::scene::{NodeKind, file};

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use isolith::flat::flatten;
+use isolith::field::flatten;
 use isolith::mesh::{MeshLibrary, ReloadOutcome, load, parse};
 use isolith::scene::file;
 use serde_json::{Value, json};

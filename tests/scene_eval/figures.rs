@@ -3,9 +3,9 @@
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
 use glam::{DVec2, DVec3};
-use isolith::flat::reference::trace::Tracer;
-use isolith::flat::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
-use isolith::flat::{FlatScene, flatten};
+use isolith::field::reference::trace::Tracer;
+use isolith::field::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
+use isolith::field::{FlatScene, flatten};
 use isolith::gallery;
 use isolith::geometry::{Camera, Ray};
 use isolith::render::scene_probe::{ProbeRay, SceneProbe};

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 use glam::{DQuat, DVec3};
-use isolith::flat::{FlatScene, flatten};
+use isolith::field::{FlatScene, flatten};
 use isolith::geometry::Camera;
-use isolith::render::wgsl::{Extended, OpSet};
 use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Node, NodeKind, Object, Operator, Scene, Shape, ShapeKind,
 };
+use isolith::wgsl::{Extended, OpSet};
 
 use crate::contract::samples::Random;
 use crate::contract::trees::{Recipe, tree};

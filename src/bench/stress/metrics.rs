@@ -9,9 +9,9 @@ use super::allowed::Allowed;
 use super::cases::StressCase;
 use super::strip::strip;
 use crate::bench::BenchError;
-use crate::flat::reference::accuracy::{Accuracy, verdicts};
-use crate::flat::reference::image::{ReferenceImage, render_reference};
-use crate::flat::{FlatScene, GBuffer, flatten};
+use crate::field::reference::accuracy::{Accuracy, verdicts};
+use crate::field::reference::image::{ReferenceImage, render_reference};
+use crate::field::{FlatScene, GBuffer, flatten};
 use crate::render::{EvalStrategy, Renderer};
 
 /// Width and height of the pictures, in pixels.
@@ -30,7 +30,7 @@ pub struct Metrics {
     pub hits: usize,
     /// By which of the methods it is drawn worst; the metrics that follow are of that picture.
     pub strategy: EvalStrategy,
-    /// Pixels that are wrong, see [`crate::flat::reference::accuracy`].
+    /// Pixels that are wrong, see [`crate::field::reference::accuracy`].
     pub wrong: usize,
     /// Pixels that differ from the reference because their rays graze.
     pub grazing: usize,

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::node::StressPlacement;
-use crate::flat::eval::surface;
-use crate::flat::reference::trace::{TraceError, trace};
-use crate::flat::{FlatScene, view::THREE_QUARTER};
+use crate::field::eval::surface;
+use crate::field::reference::trace::{TraceError, trace};
+use crate::field::{FlatScene, view::THREE_QUARTER};
 use crate::geometry::{Aabb, Camera};
 
 /// Where the eye is.

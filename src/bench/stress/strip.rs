@@ -2,7 +2,7 @@
 
 use image::{Rgb, RgbImage};
 
-use crate::flat::GBuffer;
+use crate::field::GBuffer;
 
 /// Picture, reference and difference beside each other. Red is wrong, gray the error of the depth: white from a tenth of
 /// a footprint on.

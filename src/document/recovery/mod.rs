@@ -25,7 +25,7 @@ pub use thumbnail::Thumbnail;
 pub use worker::{AUTOSAVE_THREAD, Note, Rescued, Rescuer};
 
 use super::Document;
-use crate::scene::file::FileError;
+use isolith_scene::file::FileError;
 use place::About;
 use worker::{Order, Shared, Snapshot};
 

@@ -8,9 +8,9 @@ use std::time::SystemTime;
 use serde::{Deserialize, Serialize};
 
 use super::Thumbnail;
-use crate::document::Document;
-use crate::scene::file::{self, FileError, Stamp};
-use crate::scene::{Scene, limits};
+use crate::Document;
+use isolith_scene::file::{self, FileError, Stamp};
+use isolith_scene::{Scene, limits};
 
 /// Whoever holds the lock of this file owns the folder.
 const LOCK: &str = "lock";

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::place::{About, Lost, Place};
 use super::thumbnail::Thumbnail;
-use crate::scene::Scene;
+use isolith_scene::Scene;
 
 /// The name of the thread.
 pub const AUTOSAVE_THREAD: &str = "autosave";

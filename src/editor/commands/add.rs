@@ -7,7 +7,7 @@ use egui_material_icons::icons::{
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
-use crate::scene::ShapeKind;
+use isolith_scene::ShapeKind;
 
 fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
     CommandInfo::new(Menu::Add, command, Icon::from(icon), label, help)

@@ -1,8 +1,8 @@
 //! The commands by name, without what they need and do.
 
-use crate::editor::navigation::Side;
-use crate::flat::debug_view::ViewMode;
-use crate::scene::{Operator, ShapeKind};
+use crate::navigation::Side;
+use isolith_field::debug_view::ViewMode;
+use isolith_scene::{Operator, ShapeKind};
 
 /// Something that the artist can order. What it is called, where it stands and when it can be run is in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use egui_material_icons::icons::{
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
-use crate::editor::state::EditorState;
-use crate::scene::Operator;
+use crate::state::EditorState;
+use isolith_scene::Operator;
 
 const NONE: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;

@@ -4,8 +4,8 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
-use crate::editor::state::EditorState;
-use crate::editor::theme;
+use crate::state::EditorState;
+use crate::theme;
 
 /// Room for an icon in front of a label.
 pub const ICON_ROOM: &str = "      ";

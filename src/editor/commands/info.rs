@@ -7,9 +7,9 @@ use egui_material_icons::icons::{
 };
 
 use super::command::Command;
-use crate::editor::state::EditorState;
-use crate::editor::{icons, theme};
-use crate::scene::ShapeKind;
+use crate::state::EditorState;
+use crate::{icons, theme};
+use isolith_scene::ShapeKind;
 
 /// Where a command stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

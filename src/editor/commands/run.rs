@@ -6,13 +6,13 @@ use egui::Context;
 use glam::DQuat;
 
 use super::command::Command;
-use crate::document::Edit;
-use crate::editor::edit_session::EditSession;
-use crate::editor::intent::Intent;
-use crate::editor::root::Editor;
-use crate::editor::state::EditorState;
-use crate::editor::{insertion, selection};
-use crate::scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
+use crate::edit_session::EditSession;
+use crate::intent::Intent;
+use crate::root::Editor;
+use crate::state::EditorState;
+use crate::{insertion, selection};
+use isolith_document::Edit;
+use isolith_scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
 impl Editor {
     /// Runs a command, where it can be run.

@@ -4,14 +4,14 @@ use egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
 
 use super::command::Command;
 use super::info::Menu;
-use crate::editor::command_palette::CommandPalette;
-use crate::editor::root::Editor;
+use crate::command_palette::CommandPalette;
+use crate::root::Editor;
 
 impl Editor {
     /// Runs the commands whose keys were pressed. Not while text is being typed, something is being
     /// dragged, or a menu is open: there the keys mean other things. Only documents are saved, opened and closed at any time:
     /// after what is being typed has been taken, so at the end of the frame.
-    pub(in crate::editor) fn run_shortcuts(&mut self, ctx: &Context) {
+    pub(crate) fn run_shortcuts(&mut self, ctx: &Context) {
         if self.dialogs.is_open() {
             return;
         }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use super::command::Command;
 use super::info::CommandInfo;
 use super::{add, edit, file, view};
-use crate::editor::state::EditorState;
+use crate::state::EditorState;
 
 static TABLE: LazyLock<Vec<CommandInfo>> = LazyLock::new(|| {
     let menus = [file::commands(), edit::commands(), add::commands(), view::commands()];
@@ -39,8 +39,8 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
-    use crate::flat::debug_view::ViewMode;
-    use crate::scene::{Operator, ShapeKind};
+    use isolith_field::debug_view::ViewMode;
+    use isolith_scene::{Operator, ShapeKind};
 
     #[test]
     fn labels_and_keys_are_unique_and_everything_is_explained() {

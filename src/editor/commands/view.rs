@@ -8,8 +8,8 @@ use egui_material_icons::icons::{
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
-use crate::editor::navigation::Side;
-use crate::flat::debug_view::ViewMode;
+use crate::navigation::Side;
+use isolith_field::debug_view::ViewMode;
 
 fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
     CommandInfo::new(Menu::View, command, Icon::from(icon), label, help)

@@ -1,7 +1,7 @@
 //! Unions of rectangles and disks, against figures known by hand.
 
 use super::*;
-use crate::geometry::straight_curve;
+use crate::straight_curve;
 
 fn polygon(corners: &[[f64; 2]]) -> Vec<ArcPiece> {
     let points: Vec<DVec3> = corners.iter().map(|[x, y]| DVec3::new(*x, *y, 0.0)).collect();

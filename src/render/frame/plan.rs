@@ -8,12 +8,12 @@ use std::time::Duration;
 use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3, UVec2};
 
-use crate::flat::{Component, FlatScene};
-use crate::geometry::Camera;
-use crate::render::frame::cost_model::{Cost, CostModel};
-use crate::render::recipe::{Extent, Pass};
-use crate::render::renderer::evaluation::EvaluationCost;
-use crate::render::resources::uniforms::DispatchParams;
+use crate::frame::cost_model::{Cost, CostModel};
+use crate::recipe::{Extent, Pass};
+use crate::renderer::evaluation::EvaluationCost;
+use crate::resources::uniforms::DispatchParams;
+use isolith_field::{Component, FlatScene};
+use isolith_geometry::Camera;
 
 /// Pixels along a side of a tile: what a cone begins with.
 pub const TILE: u32 = 8;

@@ -1,11 +1,11 @@
 //! What is known of the driver only by trying.
 
-use crate::render::frame::plan::MAX_ITERATIONS;
-use crate::render::gpu::readback::read_words;
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::{bind, compute_pipeline, entry, layout, write_storage};
-use crate::render::wgsl::assemble_plain;
+use crate::frame::plan::MAX_ITERATIONS;
+use crate::gpu::readback::read_words;
+use crate::gpu::{Gpu, GpuError};
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::{bind, compute_pipeline, entry, layout, write_storage};
+use isolith_wgsl::assemble_plain;
 
 /// Iterations that are tried.
 const TRIED: u32 = 100_000;

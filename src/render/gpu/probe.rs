@@ -3,20 +3,20 @@
 use glam::DVec3;
 use wgpu::ShaderStages;
 
-use crate::flat::mixture::{Mixture, mixture_decoded, mixture_material};
-use crate::flat::standpoint::Standpoint;
-use crate::flat::{CellTree, FlatScene, ParamRow, ROW_ALIGNMENT};
-use crate::render::gpu::Gpu;
-use crate::render::gpu::readback::read_words;
-use crate::render::renderer::RenderError;
-use crate::render::renderer::scene::PIPELINE_WINDOW;
-use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::layouts::{
+use crate::gpu::Gpu;
+use crate::gpu::readback::read_words;
+use crate::renderer::RenderError;
+use crate::renderer::scene::PIPELINE_WINDOW;
+use crate::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::resources::layouts::{
     Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
     window, write_storage,
 };
-use crate::render::resources::uniforms::GpuComponent;
-use crate::render::wgsl::{Evaluator, Options, assemble, template_rows};
+use crate::resources::uniforms::GpuComponent;
+use isolith_field::mixture::{Mixture, mixture_decoded, mixture_material};
+use isolith_field::standpoint::Standpoint;
+use isolith_field::{CellTree, FlatScene, ParamRow, ROW_ALIGNMENT};
+use isolith_wgsl::{Evaluator, Options, assemble, template_rows};
 
 /// The field of the component of this index at `points` (relative to its origin), by the same source as
 /// the passes.

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use crate::flat::{BACKGROUND_DEPTH, GBuffer};
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::resources::targets::{BACKGROUND, Target, Targets};
+use crate::gpu::{Gpu, GpuError};
+use crate::resources::targets::{BACKGROUND, Target, Targets};
+use isolith_field::{BACKGROUND_DEPTH, GBuffer};
 
 /// How long to wait for word that a buffer can be read, when the device has done all its work.
 const CALL_BACK: Duration = Duration::from_secs(30);

@@ -3,23 +3,23 @@
 use glam::DVec3;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages};
 
-use crate::flat::hierarchy::Hierarchy;
-use crate::flat::standpoint::Standpoint;
-use crate::flat::{CellTree, FlatScene};
-use crate::geometry::Camera;
-use crate::render::gpu::Gpu;
-use crate::render::gpu::readback::read_words;
-use crate::render::renderer::RenderError;
-use crate::render::renderer::evaluation::EvaluationCost;
-use crate::render::renderer::scene::PIPELINE_WINDOW;
-use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
-use crate::render::resources::layouts::{
+use crate::gpu::Gpu;
+use crate::gpu::readback::read_words;
+use crate::renderer::RenderError;
+use crate::renderer::evaluation::EvaluationCost;
+use crate::renderer::scene::PIPELINE_WINDOW;
+use crate::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
+use crate::resources::layouts::{
     Layouts, PARAMS_FORMAT, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform, window,
     write_storage,
 };
-use crate::render::resources::uniforms::{GpuComponent, GpuView};
-use crate::render::wgsl::{Evaluator, OpSet, Options, assemble, shape_loops};
+use crate::resources::uniforms::{GpuComponent, GpuView};
+use isolith_field::hierarchy::Hierarchy;
+use isolith_field::standpoint::Standpoint;
+use isolith_field::{CellTree, FlatScene};
+use isolith_geometry::Camera;
+use isolith_wgsl::{Evaluator, OpSet, Options, assemble, shape_loops};
 
 /// A ray through a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,14 +6,14 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
 use super::{Bound, Building, FramePass};
-use crate::flat::FlatScene;
-use crate::flat::debug_view::{DepthRange, ViewMode, id_color};
-use crate::render::frame::plan::TILE;
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::*;
-use crate::render::wgsl::{ShaderError, assemble_plain};
+use crate::frame::plan::TILE;
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::*;
+use isolith_field::FlatScene;
+use isolith_field::debug_view::{DepthRange, ViewMode, id_color};
+use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
     /// Group 1.

@@ -8,12 +8,12 @@ use std::ops::Range;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
 use super::{Bound, Building, FramePass};
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::renderer::resources::{RAY_COUNTS, SUBTILE_COUNTS};
-use crate::render::resources::layouts::*;
-use crate::render::resources::targets::Targets;
-use crate::render::wgsl::{Evaluator, Options, ShaderError, assemble};
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::renderer::resources::{RAY_COUNTS, SUBTILE_COUNTS};
+use crate::resources::layouts::*;
+use crate::resources::targets::Targets;
+use isolith_wgsl::{Evaluator, Options, ShaderError, assemble};
 
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;

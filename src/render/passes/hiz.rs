@@ -5,11 +5,11 @@ use std::ops::Range;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
 use super::{Bound, Building, FramePass};
-use crate::render::frame::plan::{SUBTILES, TILE};
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::resources::layouts::*;
-use crate::render::wgsl::{ShaderError, assemble_plain};
+use crate::frame::plan::{SUBTILES, TILE};
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::resources::layouts::*;
+use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
     /// Group 2.

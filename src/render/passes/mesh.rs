@@ -11,17 +11,17 @@ use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
 use super::{Building, FramePass};
-use crate::flat::standpoint::ray_origin_depth;
-use crate::flat::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
-use crate::geometry::Camera;
-use crate::mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::renderer::timings::Stamps;
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::*;
-use crate::render::resources::targets::{BACKGROUND, Targets};
-use crate::render::wgsl::{ShaderError, assemble_plain};
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::renderer::timings::Stamps;
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::*;
+use crate::resources::targets::{BACKGROUND, Targets};
+use isolith_field::standpoint::ray_origin_depth;
+use isolith_field::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use isolith_geometry::Camera;
+use isolith_mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
+use isolith_wgsl::{ShaderError, assemble_plain};
 
 /// The pass, and the meshes that are on the device.
 #[derive(Debug)]

@@ -7,14 +7,14 @@ use glam::{DVec3, UVec2};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use super::{Bound, Building, FramePass};
-use crate::flat::FlatScene;
-use crate::render::frame::plan::FramePlan;
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::*;
-use crate::render::wgsl::{ShaderError, assemble_plain};
-use crate::scene::NodeId;
+use crate::frame::plan::FramePlan;
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::*;
+use isolith_field::FlatScene;
+use isolith_scene::NodeId;
+use isolith_wgsl::{ShaderError, assemble_plain};
 
 /// What is drawn over the picture.
 #[derive(Clone, Debug, Default, PartialEq)]

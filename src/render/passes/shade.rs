@@ -5,12 +5,12 @@ use std::ops::Range;
 use wgpu::{BindGroup, BindGroupLayout};
 
 use super::{Bound, Building, FramePass};
-use crate::flat::{FILE_SHININESS, FILE_SPECULAR, FlatMaterial, FlatScene};
-use crate::render::recipe::Pass;
-use crate::render::renderer::recorder::Recorder;
-use crate::render::resources::layouts::*;
-use crate::render::resources::uniforms::DispatchParams;
-use crate::render::wgsl::{ShaderError, assemble_plain};
+use crate::recipe::Pass;
+use crate::renderer::recorder::Recorder;
+use crate::resources::layouts::*;
+use crate::resources::uniforms::DispatchParams;
+use isolith_field::{FILE_SHININESS, FILE_SPECULAR, FlatMaterial, FlatScene};
+use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
     /// Group 1.

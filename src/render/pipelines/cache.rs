@@ -8,15 +8,15 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 
 use super::evaluators::tape_evaluators;
-use crate::flat::FlatScene;
-use crate::guard::guarded;
-use crate::render::gpu::Gpu;
-use crate::render::passes::field::{FieldLayouts, FieldPipelines};
-use crate::render::pipelines::key::{PipelineKey, Templates};
-use crate::render::pipelines::prewarm::Prewarmer;
-use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::resources::layouts::Layouts;
-use crate::render::wgsl::{Evaluator, OpSet, Options, ShaderError};
+use crate::gpu::Gpu;
+use crate::passes::field::{FieldLayouts, FieldPipelines};
+use crate::pipelines::key::{PipelineKey, Templates};
+use crate::pipelines::prewarm::Prewarmer;
+use crate::pipelines::strategy::EvalStrategy;
+use crate::resources::layouts::Layouts;
+use isolith_field::FlatScene;
+use isolith_guard::guarded;
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError};
 
 /// Most specialized pipelines that are kept; the least recently used go first.
 pub const MAX_PIPELINES: usize = 1024;

@@ -3,10 +3,10 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::flat::{FlatScene, has_tape};
-use crate::render::pipelines::key::Templates;
-use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::wgsl::{Evaluator, OpSet};
+use crate::pipelines::key::Templates;
+use crate::pipelines::strategy::EvalStrategy;
+use isolith_field::{FlatScene, has_tape};
+use isolith_wgsl::{Evaluator, OpSet};
 
 /// An evaluator, and the components that it draws, by their index. The interpreter of [`EvalStrategy::Auto`] draws all of
 /// them until something better is ready.
@@ -60,8 +60,8 @@ pub(super) fn tape_evaluators(ops: &OpSet) -> [Evaluator; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flat::flatten;
-    use crate::gallery;
+    use isolith_field::flatten;
+    use isolith_gallery as gallery;
 
     #[test]
     fn every_component_of_every_scene_is_drawn_by_each_method() {

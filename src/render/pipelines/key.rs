@@ -8,9 +8,9 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::flat::{Component, FlatScene};
-use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::wgsl::{Evaluator, OpSet, ShapeSet, Structure, tapes_are_cheaper};
+use crate::pipelines::strategy::EvalStrategy;
+use isolith_field::{Component, FlatScene};
+use isolith_wgsl::{Evaluator, OpSet, ShapeSet, Structure, tapes_are_cheaper};
 
 /// What a component's pipeline is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

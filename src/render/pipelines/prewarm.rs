@@ -1,12 +1,12 @@
 //! Has a driver compile pipelines before they are needed, on a device of its own.
 
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::passes::field::{FieldBuffers, FieldLayouts, FieldPipelines};
-use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::layouts::{Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
-use crate::render::resources::targets::Targets;
-use crate::render::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
-use crate::render::wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
+use crate::gpu::{Gpu, GpuError};
+use crate::passes::field::{FieldBuffers, FieldLayouts, FieldPipelines};
+use crate::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::resources::layouts::{Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
+use crate::resources::targets::Targets;
+use crate::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
+use isolith_wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
 
 /// A device with just enough on it to dispatch a pipeline over nothing.
 #[derive(Debug)]
@@ -105,8 +105,8 @@ impl Prewarmer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gallery;
-    use crate::render::wgsl::OpSet;
+    use isolith_gallery as gallery;
+    use isolith_wgsl::OpSet;
 
     /// Nobody sees what a prewarmer's device complains about: pipelines would only be compiled later, while a frame waits.
     #[test]
@@ -114,7 +114,7 @@ mod tests {
         let prewarmer = Gpu::headless()
             .and_then(|gpu| Prewarmer::new(&gpu, Options::default()))
             .unwrap_or_else(|error| panic!("{error}"));
-        let flat = crate::flat::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
+        let flat = isolith_field::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
         prewarmer.prewarm(&Evaluator::Interpreter(OpSet::of(&flat))).unwrap_or_else(|error| panic!("{error}"));
     }
 }

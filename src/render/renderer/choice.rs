@@ -5,13 +5,13 @@ use std::time::Duration;
 
 use super::RenderError;
 use super::evaluation::EvaluationCost;
-use crate::flat::{Cancel, CellTree, Component, FlatNode, FlatScene, TapeCache, leaf_payload};
-use crate::geometry::Camera;
-use crate::render::pipelines::cache::{EvalMode, PipelineCache, PipelineChoice};
-use crate::render::pipelines::key::PipelineKey;
-use crate::render::pipelines::strategy::EvalStrategy;
-use crate::render::wgsl::shape_loops;
-use crate::scene::ShapeKind;
+use crate::pipelines::cache::{EvalMode, PipelineCache, PipelineChoice};
+use crate::pipelines::key::PipelineKey;
+use crate::pipelines::strategy::EvalStrategy;
+use isolith_field::{Cancel, CellTree, Component, FlatNode, FlatScene, TapeCache, leaf_payload};
+use isolith_geometry::Camera;
+use isolith_scene::ShapeKind;
+use isolith_wgsl::shape_loops;
 
 /// What [`Evaluators::choose`] finds, beside the components.
 pub struct Chosen {
@@ -113,13 +113,14 @@ fn loop_trips(flat: &FlatScene, component: &Component) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{flat, gallery};
+    use isolith_field as field;
+    use isolith_gallery as gallery;
 
     /// Dispatches are cut by these trip counts: if an image's rows counted, a heightmap would take minutes.
     #[test]
     fn data_count_as_loop_trips_only_where_they_are_looped_over() {
         let shapes = gallery::all().into_iter().find(|(name, _)| *name == "shapes").expect("the sheet of shapes").1;
-        let flat = flat::flatten(&shapes, 0.0).expect("within the limits");
+        let flat = field::flatten(&shapes, 0.0).expect("within the limits");
         let of_kind = |kind: ShapeKind| {
             let is_it = |node: &&FlatNode| node.is_leaf() && node.code & 0xffff == kind as u32;
             let holds = |c: &&Component| flat.nodes[c.first as usize..][..c.count as usize].iter().any(|n| is_it(&n));

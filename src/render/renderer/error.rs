@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use crate::render::gpu::GpuError;
-use crate::render::wgsl::ShaderError;
-use crate::scene::NodeId;
+use crate::gpu::GpuError;
+use isolith_scene::NodeId;
+use isolith_wgsl::ShaderError;
 
 /// Why there is no picture.
 #[derive(Debug, Error)]
@@ -48,10 +48,10 @@ pub enum RenderError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flat::flatten;
-    use crate::gallery;
-    use crate::render::gpu::adapter::{AdapterChoice, all, instance};
-    use crate::render::{EvalStrategy, Gpu, Renderer, device_descriptor};
+    use crate::gpu::adapter::{AdapterChoice, all, instance};
+    use crate::{EvalStrategy, Gpu, Renderer, device_descriptor};
+    use isolith_field::flatten;
+    use isolith_gallery as gallery;
 
     /// A device that binds at most so many bytes of a storage buffer.
     fn device_that_binds(bytes: u64) -> Gpu {

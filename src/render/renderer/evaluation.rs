@@ -1,6 +1,6 @@
 //! What one evaluation of a component takes, by how it is evaluated: dispatches are cut by it.
 
-use crate::flat::{CellTree, Component};
+use isolith_field::{CellTree, Component};
 
 /// What evaluating a component means for its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq)]

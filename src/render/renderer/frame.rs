@@ -5,20 +5,20 @@ use std::time::Duration;
 use super::Slot;
 use super::choice::Chosen;
 use super::unfinished::GoingOn;
-use crate::flat::debug_view::ViewMode;
-use crate::flat::{FlatScene, ParamRow};
-use crate::render::frame::cost_model::{Cost, CostModel};
-use crate::render::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
-use crate::render::passes::field::FieldPipelines;
-use crate::render::passes::overlay::OverlaySettings;
-use crate::render::pipelines::cache::{EvalMode, PipelineChoice};
-use crate::render::pipelines::key::PipelineKey;
-use crate::render::recipe::Pass;
+use crate::frame::cost_model::{Cost, CostModel};
+use crate::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
+use crate::passes::field::FieldPipelines;
+use crate::passes::overlay::OverlaySettings;
+use crate::pipelines::cache::{EvalMode, PipelineChoice};
+use crate::pipelines::key::PipelineKey;
+use crate::recipe::Pass;
+use isolith_field::debug_view::ViewMode;
+use isolith_field::{FlatScene, ParamRow};
 
 /// A frame under way.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    pub(in crate::render) plan: FramePlan,
+    pub(crate) plan: FramePlan,
     pub(super) keys: Vec<Option<PipelineKey>>,
     pub(super) choices: Vec<PipelineChoice>,
     pub(super) next: usize,
@@ -31,14 +31,14 @@ pub struct Frame {
     pub(super) relaunches_at_once: u32,
     pub(super) seconds: f64,
     pub(super) slot: Slot,
-    pub(in crate::render) overlay: OverlaySettings,
-    pub(in crate::render) view_mode: ViewMode,
+    pub(crate) overlay: OverlaySettings,
+    pub(crate) view_mode: ViewMode,
     /// How its rays go on.
     pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
     /// Where pipelines for templates find theirs; beside components with such a key.
     pub(super) template_rows: Vec<Option<u32>>,
-    pub(super) origins: Vec<crate::scene::NodeId>,
+    pub(super) origins: Vec<isolith_scene::NodeId>,
 }
 
 /// See [`Frame::relaunches_at_once`]; more would save nothing.

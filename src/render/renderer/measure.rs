@@ -3,10 +3,10 @@
 use super::Frame;
 use super::pixel_counts::COMPONENT_COUNTS;
 use super::resources::SUBTILE_COUNTS;
-use crate::render::frame::plan::Dispatch;
-use crate::render::passes::overlay::OverlaySettings;
-use crate::render::recipe::Pass;
-use crate::render::resources::uniforms::DispatchParams;
+use crate::frame::plan::Dispatch;
+use crate::passes::overlay::OverlaySettings;
+use crate::recipe::Pass;
+use crate::resources::uniforms::DispatchParams;
 
 /// What pipelines that count have counted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

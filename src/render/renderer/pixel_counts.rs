@@ -1,10 +1,10 @@
 //! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without pipelines
 //! that count there is no room for them, and nothing is written.
 
-use crate::render::frame::plan::TILE;
-use crate::render::gpu::readback::read_words_at;
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::resources::buffers::SyncedBuffer;
+use crate::frame::plan::TILE;
+use crate::gpu::readback::read_words_at;
+use crate::gpu::{Gpu, GpuError};
+use crate::resources::buffers::SyncedBuffer;
 
 /// Words that are counted for each component: rays without an end, evaluations by rays, rays started, and by rays and
 /// cones cells and tape entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.

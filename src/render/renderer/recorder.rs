@@ -3,11 +3,11 @@
 use super::Frame;
 use super::resources::{FrameResources, Groups, SlotState};
 use super::timings::Stamps;
-use crate::render::gpu::Gpu;
-use crate::render::passes::field::FieldPipelines;
-use crate::render::recipe::{Extent, Pass};
-use crate::render::resources::targets::{Target, Targets};
-use crate::render::resources::uniforms::UNIFORM_STRIDE;
+use crate::gpu::Gpu;
+use crate::passes::field::FieldPipelines;
+use crate::recipe::{Extent, Pass};
+use crate::resources::targets::{Target, Targets};
+use crate::resources::uniforms::UNIFORM_STRIDE;
 
 /// Passes that evaluate fields share one pass of the device where no time is taken: beginning one for each of thousands of
 /// components would cost more than some of them take.
@@ -171,10 +171,10 @@ mod tests {
     use std::time::Duration;
 
     use super::super::{Renderer, Slot};
-    use crate::flat::flatten;
-    use crate::gallery;
-    use crate::render::pipelines::cache::EvalMode;
-    use crate::render::{Gpu, OverlaySettings};
+    use crate::pipelines::cache::EvalMode;
+    use crate::{Gpu, OverlaySettings};
+    use isolith_field::flatten;
+    use isolith_gallery as gallery;
 
     #[test]
     fn prewarmed_pipelines_are_not_first_used_by_a_picture() {

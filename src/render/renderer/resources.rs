@@ -6,19 +6,19 @@ use wgpu::BindGroup;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::{Frame, Slot};
-use crate::flat::{FlatScene, gpu_lights};
-use crate::geometry::Camera;
-use crate::render::frame::plan::{Dispatch, FramePlan, TILE};
-use crate::render::gpu::Gpu;
-use crate::render::passes::field::FieldBuffers;
-use crate::render::passes::overlay::OverlaySettings;
-use crate::render::passes::shade::mesh_materials;
-use crate::render::passes::{Bound, Passes};
-use crate::render::recipe::Pass;
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::{Layouts, bind, window};
-use crate::render::resources::targets::{Target, Targets};
-use crate::render::resources::uniforms::{DispatchParams, GpuView, strided};
+use crate::frame::plan::{Dispatch, FramePlan, TILE};
+use crate::gpu::Gpu;
+use crate::passes::field::FieldBuffers;
+use crate::passes::overlay::OverlaySettings;
+use crate::passes::shade::mesh_materials;
+use crate::passes::{Bound, Passes};
+use crate::recipe::Pass;
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::{Layouts, bind, window};
+use crate::resources::targets::{Target, Targets};
+use crate::resources::uniforms::{DispatchParams, GpuView, strided};
+use isolith_field::{FlatScene, gpu_lights};
+use isolith_geometry::Camera;
 
 /// Bytes of a subtile in a list.
 const SUBTILE_BYTES: usize = 12;
@@ -230,11 +230,11 @@ impl FrameResources {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flat::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
-    use crate::render::frame::plan::{SUBTILES, TILE};
-    use crate::render::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
-    use crate::render::resources::buffers::DataTexture;
-    use crate::render::wgsl::assemble_plain;
+    use crate::frame::plan::{SUBTILES, TILE};
+    use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
+    use crate::resources::buffers::DataTexture;
+    use isolith_field::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
+    use isolith_wgsl::assemble_plain;
 
     /// The value of a constant in a shader.
     fn constant(file: &str, name: &str) -> u32 {

@@ -4,15 +4,15 @@ use std::sync::Arc;
 
 use wgpu::{BindGroup, BindGroupLayout};
 
-use crate::flat::standpoint::{Standpoint, Standpoints};
-use crate::flat::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT};
-use crate::render::gpu::Gpu;
-use crate::render::pipelines::key::PipelineKey;
-use crate::render::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::render::resources::layouts::{PARAMS_FORMAT, SceneBindings, window};
-use crate::render::resources::tape_texture::TapeTexture;
-use crate::render::resources::uniforms::{GpuComponent, strided};
-use crate::render::wgsl::{MAX_PIPELINE_ROWS, template_rows};
+use crate::gpu::Gpu;
+use crate::pipelines::key::PipelineKey;
+use crate::resources::buffers::{DataTexture, SyncedBuffer};
+use crate::resources::layouts::{PARAMS_FORMAT, SceneBindings, window};
+use crate::resources::tape_texture::TapeTexture;
+use crate::resources::uniforms::{GpuComponent, strided};
+use isolith_field::standpoint::{Standpoint, Standpoints};
+use isolith_field::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT};
+use isolith_wgsl::{MAX_PIPELINE_ROWS, template_rows};
 
 /// Bytes of a pipeline's window on the rows of its component. As much room is kept behind the last row, so
 /// that the window on the last component does not end outside the buffer.

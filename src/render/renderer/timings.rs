@@ -1,8 +1,8 @@
 //! How long the device takes for each pass of the recipe.
 
-use crate::render::gpu::readback::read_words_at;
-use crate::render::gpu::{Gpu, GpuError};
-use crate::render::recipe::Pass;
+use crate::gpu::readback::read_words_at;
+use crate::gpu::{Gpu, GpuError};
+use crate::recipe::Pass;
 
 /// Passes whose time is taken in one submission: a quarter of the timestamps that a set may hold, two each.
 const MOST_TIMED: usize = 512;

@@ -1,10 +1,10 @@
 //! Rays that have not come to an end within the steps of a plan: traced again with more, and reported where that does not do.
 
 use super::Frame;
-use crate::flat::Warning;
-use crate::render::frame::cost_model::Cost;
-use crate::render::frame::plan::{Dispatch, LONGER};
-use crate::scene::NodeId;
+use crate::frame::cost_model::Cost;
+use crate::frame::plan::{Dispatch, LONGER};
+use isolith_field::Warning;
+use isolith_scene::NodeId;
 
 /// How the rays of a frame go on that have not ended as planned.
 #[derive(Clone, Debug, Default)]

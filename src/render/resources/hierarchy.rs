@@ -5,14 +5,14 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
-use crate::flat::FlatScene;
-use crate::flat::hierarchy::{Hierarchy, HierarchyNode};
-use crate::flat::standpoint::Standpoint;
-use crate::render::frame::plan::MAX_ITERATIONS;
-use crate::render::gpu::Gpu;
-use crate::render::resources::buffers::SyncedBuffer;
-use crate::render::resources::layouts::{bind, entry, layout, read_storage, uniform};
-use crate::render::resources::uniforms::{GpuComponent, UNBOUNDED};
+use crate::frame::plan::MAX_ITERATIONS;
+use crate::gpu::Gpu;
+use crate::resources::buffers::SyncedBuffer;
+use crate::resources::layouts::{bind, entry, layout, read_storage, uniform};
+use crate::resources::uniforms::{GpuComponent, UNBOUNDED};
+use isolith_field::FlatScene;
+use isolith_field::hierarchy::{Hierarchy, HierarchyNode};
+use isolith_field::standpoint::Standpoint;
 
 /// A node of the hierarchy; its box is relative to the origin of the query.
 #[repr(C)]

@@ -4,9 +4,9 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use crate::flat::CellTree;
-use crate::render::resources::buffers::DataTexture;
-use crate::render::resources::layouts::TAPES_FORMAT;
+use crate::resources::buffers::DataTexture;
+use crate::resources::layouts::TAPES_FORMAT;
+use isolith_field::CellTree;
 
 /// See the module.
 #[derive(Debug)]

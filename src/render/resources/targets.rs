@@ -17,7 +17,7 @@
 
 use wgpu::{TextureFormat, TextureUsages};
 
-use crate::render::frame::plan::{SUBTILES, TILE};
+use crate::frame::plan::{SUBTILES, TILE};
 
 /// Depth where nothing was hit.
 pub const BACKGROUND: f32 = 1e30;

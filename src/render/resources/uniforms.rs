@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-use crate::flat::standpoint::Standpoint;
-use crate::flat::{CellTree, Component, FlatScene};
-use crate::geometry::Camera;
+use isolith_field::standpoint::Standpoint;
+use isolith_field::{CellTree, Component, FlatScene};
+use isolith_geometry::Camera;
 
 /// Who looks, from where. One a frame.
 #[repr(C)]

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::scene::NodeId;
-use crate::scene::check::Fault;
+use crate::NodeId;
+use crate::check::Fault;
 
 /// Why a file could not be read or written: which file, where in it, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::watch;
-use crate::geometry::Transform;
-use crate::scene::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
-use crate::scene::{
+use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
+use crate::{
     BlendOverride, CameraNode, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot,
     Node, NodeId, NodeKind, Object, whole,
 };
+use isolith_geometry::Transform;
 
 /// The version that is written; every version up to it is read.
 pub const VERSION: u64 = 1;

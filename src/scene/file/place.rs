@@ -7,8 +7,8 @@ use serde_json::{Map, Value};
 use serde_path_to_error::{Path as FieldPath, Segment};
 
 use super::error::{FileError, clipped};
-use crate::scene::NodeId;
-use crate::scene::attachment::cleaned;
+use crate::NodeId;
+use crate::attachment::cleaned;
 
 /// Line and column, counted from 1, of what follows these bytes.
 pub(super) fn line_and_column(before: &[u8]) -> (usize, usize) {

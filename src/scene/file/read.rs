@@ -14,9 +14,9 @@ use super::format::{NodeV1, SceneV1, VERSION};
 use super::place;
 use super::watch;
 use super::weight::weigh;
-use crate::jobs::Task;
-use crate::scene::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
-use crate::scene::{Material, Node, NodeId, Scene, check, decode_budget, whole};
+use crate::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
+use crate::{Material, Node, NodeId, Scene, check, decode_budget, whole};
+use isolith_jobs::Task;
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
 pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {

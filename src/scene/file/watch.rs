@@ -5,7 +5,7 @@ use std::cell::RefCell;
 
 use serde::de::Error;
 
-use crate::jobs::Task;
+use isolith_jobs::Task;
 
 /// Progress of a task when the bytes are there, and when the scene is. What its session makes of it comes after that.
 pub(super) const BYTES_READ: f32 = 0.1;

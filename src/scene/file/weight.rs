@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use crate::scene::limits::MAX_ENTRY_VALUES;
+use crate::limits::MAX_ENTRY_VALUES;
 
 /// An entry of a file that holds too much.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use serde_json::ser::Formatter;
 
 use super::FileError;
 use super::format::{NodeV1, SceneV1, VERSION};
-use crate::scene::{Material, Scene, check};
+use crate::{Material, Scene, check};
 
 /// The text of a scene. Floating-point numbers are the shortest that read back as the same number, so
 /// reading and writing again gives the same bytes.

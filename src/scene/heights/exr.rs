@@ -7,7 +7,7 @@ use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{ImageBuffer, Luma};
 
-use crate::scene::decode_budget::{check_size, spend};
+use crate::decode_budget::{check_size, spend};
 
 /// The weights of red, green and blue in the brightness, as those of Rec. 709, which is what EXR has where it says nothing.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];

@@ -14,9 +14,9 @@ pub(crate) use param_name;
 /// The rows of a table, made once.
 macro_rules! param_rows {
     ($( $(#[doc = $help:literal])+ [$name:expr] $type:ty = $default:expr, $spec:expr; )*) => {{
-        static TABLE: std::sync::LazyLock<Vec<$crate::scene::params::Param>> = std::sync::LazyLock::new(|| {
-            let rows: Vec<Option<$crate::scene::params::Param>> = vec![$(
-                $crate::scene::params::row::<$type>($name, concat!($( $help, )+), $spec, $default),
+        static TABLE: std::sync::LazyLock<Vec<$crate::params::Param>> = std::sync::LazyLock::new(|| {
+            let rows: Vec<Option<$crate::params::Param>> = vec![$(
+                $crate::params::row::<$type>($name, concat!($( $help, )+), $spec, $default),
             )*];
             rows.into_iter().flatten().collect()
         });
@@ -55,7 +55,7 @@ macro_rules! param_struct {
             }
         }
 
-        $crate::scene::params::param_table! { $name { $( $(#[doc = $help])+ $param: $type = $default, $spec; )* } }
+        $crate::params::param_table! { $name { $( $(#[doc = $help])+ $param: $type = $default, $spec; )* } }
     };
 }
 pub(crate) use param_struct;
@@ -65,48 +65,48 @@ macro_rules! param_table {
     ($name:ident { $(
         $(#[doc = $help:literal])+ $param:ident $(as $key:literal)?: $type:ty = $default:expr, $spec:expr;
     )* }) => {
-        impl $crate::scene::params::Params for $name {
-            fn params(&self) -> &'static [$crate::scene::params::Param] {
-                $crate::scene::params::param_rows! { $(
+        impl $crate::params::Params for $name {
+            fn params(&self) -> &'static [$crate::params::Param] {
+                $crate::params::param_rows! { $(
                     $(#[doc = $help])+
-                    [$crate::scene::params::param_name!($param $(, $key)?)] $type = $default, $spec;
+                    [$crate::params::param_name!($param $(, $key)?)] $type = $default, $spec;
                 )* }
             }
 
-            fn visit(&self, prefix: &str, visit: &mut $crate::scene::params::Visit<'_>) {
+            fn visit(&self, prefix: &str, visit: &mut $crate::params::Visit<'_>) {
                 let table = self.params();
                 $( {
-                    let name = $crate::scene::params::param_name!($param $(, $key)?);
-                    let slot = $crate::scene::params::Slot { prefix, name, table };
-                    $crate::scene::params::ParamField::visit_field(&self.$param, slot, visit);
+                    let name = $crate::params::param_name!($param $(, $key)?);
+                    let slot = $crate::params::Slot { prefix, name, table };
+                    $crate::params::ParamField::visit_field(&self.$param, slot, visit);
                 } )*
             }
 
-            fn find(&self, name: &str) -> Option<&'static $crate::scene::params::Param> {
+            fn find(&self, name: &str) -> Option<&'static $crate::params::Param> {
                 $( {
-                    let field = $crate::scene::params::param_name!($param $(, $key)?);
-                    if let Some(below) = $crate::scene::params::below(name, field) {
-                        let slot = $crate::scene::params::Slot { prefix: "", name: field, table: self.params() };
-                        return $crate::scene::params::ParamField::find_field(&self.$param, slot, below);
+                    let field = $crate::params::param_name!($param $(, $key)?);
+                    if let Some(below) = $crate::params::below(name, field) {
+                        let slot = $crate::params::Slot { prefix: "", name: field, table: self.params() };
+                        return $crate::params::ParamField::find_field(&self.$param, slot, below);
                     }
                 } )*
                 None
             }
 
-            fn get(&self, name: &str) -> Option<$crate::scene::params::ParamValue> {
+            fn get(&self, name: &str) -> Option<$crate::params::ParamValue> {
                 $( if let Some(below) =
-                    $crate::scene::params::below(name, $crate::scene::params::param_name!($param $(, $key)?))
+                    $crate::params::below(name, $crate::params::param_name!($param $(, $key)?))
                 {
-                    return $crate::scene::params::ParamField::get_field(&self.$param, below);
+                    return $crate::params::ParamField::get_field(&self.$param, below);
                 } )*
                 None
             }
 
-            fn set(&mut self, name: &str, value: $crate::scene::params::ParamValue) -> bool {
+            fn set(&mut self, name: &str, value: $crate::params::ParamValue) -> bool {
                 $( if let Some(below) =
-                    $crate::scene::params::below(name, $crate::scene::params::param_name!($param $(, $key)?))
+                    $crate::params::below(name, $crate::params::param_name!($param $(, $key)?))
                 {
-                    return $crate::scene::params::ParamField::set_field(&mut self.$param, below, value);
+                    return $crate::params::ParamField::set_field(&mut self.$param, below, value);
                 } )*
                 false
             }
@@ -128,7 +128,7 @@ macro_rules! param_kinds {
         pub enum $name {
             $( $(#[doc = $doc])+ $variant { $(
                 $(#[doc = $help])+
-                #[serde(deserialize_with = "crate::scene::params::ParamField::read" $(, $missing)?)]
+                #[serde(deserialize_with = "crate::params::ParamField::read" $(, $missing)?)]
                 $param: $type,
             )* }, )+
         }
@@ -151,8 +151,8 @@ macro_rules! param_kinds {
             }
 
             /// Its parameters in order.
-            pub fn params(self) -> &'static [$crate::scene::params::Param] {
-                match self { $( Self::$variant => $crate::scene::params::param_rows! { $(
+            pub fn params(self) -> &'static [$crate::params::Param] {
+                match self { $( Self::$variant => $crate::params::param_rows! { $(
                     $(#[doc = $help])+ [stringify!($param)] $type = $default, $spec;
                 )* }, )+ }
             }
@@ -170,21 +170,21 @@ macro_rules! param_kinds {
             }
 
             /// The parameters' values, in the order of their table.
-            pub fn values(&self) -> Vec<$crate::scene::params::ParamValue> {
+            pub fn values(&self) -> Vec<$crate::params::ParamValue> {
                 let mut values = Vec::new();
-                $crate::scene::params::Params::visit(self, "", &mut |_, _, value| values.push(value));
+                $crate::params::Params::visit(self, "", &mut |_, _, value| values.push(value));
                 values
             }
 
             /// Sets the parameter at `index`; false, and nothing changed, where there is none or the value is of another
             /// type.
-            pub fn set_value(&mut self, index: usize, value: $crate::scene::params::ParamValue) -> bool {
+            pub fn set_value(&mut self, index: usize, value: $crate::params::ParamValue) -> bool {
                 let param = self.kind().params().get(index);
-                param.is_some_and(|param| $crate::scene::params::Params::set(self, param.name, value))
+                param.is_some_and(|param| $crate::params::Params::set(self, param.name, value))
             }
         }
 
-        $crate::scene::params::param_variants! { $name by |value| value.kind().params(); { $(
+        $crate::params::param_variants! { $name by |value| value.kind().params(); { $(
             $name::$variant { $( $param, )* }
         )+ } }
     };
@@ -195,44 +195,44 @@ pub(crate) use param_kinds;
 macro_rules! param_variants {
     ($name:ident by |$value:ident| $table:expr; { $( $owner:ident::$variant:ident { $( $param:ident, )* } )+ }) => {
         #[allow(unused_variables, reason = "variants without parameters")]
-        impl $crate::scene::params::Params for $name {
-            fn params(&self) -> &'static [$crate::scene::params::Param] {
+        impl $crate::params::Params for $name {
+            fn params(&self) -> &'static [$crate::params::Param] {
                 let $value = self;
                 $table
             }
 
-            fn visit(&self, prefix: &str, visit: &mut $crate::scene::params::Visit<'_>) {
+            fn visit(&self, prefix: &str, visit: &mut $crate::params::Visit<'_>) {
                 let table = self.params();
                 match self { $( $owner::$variant { $( $param, )* } => { $(
-                    let slot = $crate::scene::params::Slot { prefix, name: stringify!($param), table };
-                    $crate::scene::params::ParamField::visit_field($param, slot, visit);
+                    let slot = $crate::params::Slot { prefix, name: stringify!($param), table };
+                    $crate::params::ParamField::visit_field($param, slot, visit);
                 )* } )+ }
             }
 
-            fn find(&self, name: &str) -> Option<&'static $crate::scene::params::Param> {
+            fn find(&self, name: &str) -> Option<&'static $crate::params::Param> {
                 let table = self.params();
                 match self { $( $owner::$variant { $( $param, )* } => { $(
-                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
-                        let slot = $crate::scene::params::Slot { prefix: "", name: stringify!($param), table };
-                        return $crate::scene::params::ParamField::find_field($param, slot, below);
+                    if let Some(below) = $crate::params::below(name, stringify!($param)) {
+                        let slot = $crate::params::Slot { prefix: "", name: stringify!($param), table };
+                        return $crate::params::ParamField::find_field($param, slot, below);
                     }
                 )* } )+ }
                 None
             }
 
-            fn get(&self, name: &str) -> Option<$crate::scene::params::ParamValue> {
+            fn get(&self, name: &str) -> Option<$crate::params::ParamValue> {
                 match self { $( $owner::$variant { $( $param, )* } => { $(
-                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
-                        return $crate::scene::params::ParamField::get_field($param, below);
+                    if let Some(below) = $crate::params::below(name, stringify!($param)) {
+                        return $crate::params::ParamField::get_field($param, below);
                     }
                 )* } )+ }
                 None
             }
 
-            fn set(&mut self, name: &str, value: $crate::scene::params::ParamValue) -> bool {
+            fn set(&mut self, name: &str, value: $crate::params::ParamValue) -> bool {
                 match self { $( $owner::$variant { $( $param, )* } => { $(
-                    if let Some(below) = $crate::scene::params::below(name, stringify!($param)) {
-                        return $crate::scene::params::ParamField::set_field($param, below, value);
+                    if let Some(below) = $crate::params::below(name, stringify!($param)) {
+                        return $crate::params::ParamField::set_field($param, below, value);
                     }
                 )* } )+ }
                 false
@@ -245,29 +245,25 @@ pub(crate) use param_variants;
 /// Lets a struct with parameters be a part of another one.
 macro_rules! nested_params {
     ($name:ident) => {
-        impl $crate::scene::params::ParamField for $name {
-            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+        impl $crate::params::ParamField for $name {
+            fn to_value(&self) -> Option<$crate::params::ParamValue> {
                 None
             }
-            fn from_value(_: $crate::scene::params::ParamValue) -> Option<Self> {
+            fn from_value(_: $crate::params::ParamValue) -> Option<Self> {
                 None
             }
-            fn visit_field(&self, slot: $crate::scene::params::Slot<'_>, visit: &mut $crate::scene::params::Visit<'_>) {
-                $crate::scene::params::Params::visit(self, &slot.inner_prefix(), visit);
+            fn visit_field(&self, slot: $crate::params::Slot<'_>, visit: &mut $crate::params::Visit<'_>) {
+                $crate::params::Params::visit(self, &slot.inner_prefix(), visit);
             }
-            fn find_field(
-                &self,
-                _: $crate::scene::params::Slot<'_>,
-                below: &str,
-            ) -> Option<&'static $crate::scene::params::Param> {
-                $crate::scene::params::Params::find(self, below.strip_prefix('.')?)
+            fn find_field(&self, _: $crate::params::Slot<'_>, below: &str) -> Option<&'static $crate::params::Param> {
+                $crate::params::Params::find(self, below.strip_prefix('.')?)
             }
-            fn get_field(&self, below: &str) -> Option<$crate::scene::params::ParamValue> {
-                $crate::scene::params::Params::get(self, below.strip_prefix('.')?)
+            fn get_field(&self, below: &str) -> Option<$crate::params::ParamValue> {
+                $crate::params::Params::get(self, below.strip_prefix('.')?)
             }
-            fn set_field(&mut self, below: &str, value: $crate::scene::params::ParamValue) -> bool {
+            fn set_field(&mut self, below: &str, value: $crate::params::ParamValue) -> bool {
                 let name = below.strip_prefix('.');
-                name.is_some_and(|name| $crate::scene::params::Params::set(self, name, value))
+                name.is_some_and(|name| $crate::params::Params::set(self, name, value))
             }
         }
     };
@@ -278,16 +274,16 @@ pub(crate) use nested_params;
 macro_rules! nested_variants {
     ($name:ident, $label:literal, $help:literal) => {
         impl $name {
-            fn type_param() -> &'static $crate::scene::params::Param {
-                static CHOICES: std::sync::LazyLock<Vec<$crate::scene::params::Choice>> =
-                    std::sync::LazyLock::new($crate::scene::params::tags::<$name>);
-                static PARAM: std::sync::LazyLock<$crate::scene::params::Param> =
-                    std::sync::LazyLock::new(|| $crate::scene::params::Param {
+            fn type_param() -> &'static $crate::params::Param {
+                static CHOICES: std::sync::LazyLock<Vec<$crate::params::Choice>> =
+                    std::sync::LazyLock::new($crate::params::tags::<$name>);
+                static PARAM: std::sync::LazyLock<$crate::params::Param> =
+                    std::sync::LazyLock::new(|| $crate::params::Param {
                         name: "type",
                         label: $label.into(),
                         help: $help,
-                        limits: $crate::scene::limits::NO_LIMITS,
-                        default: $crate::scene::params::ParamValue::Choice(&CHOICES[0].key),
+                        limits: $crate::limits::NO_LIMITS,
+                        default: $crate::params::ParamValue::Choice(&CHOICES[0].key),
                         choices: &CHOICES,
                         is_color: false,
                         animatable: false,
@@ -295,48 +291,44 @@ macro_rules! nested_variants {
                 &PARAM
             }
 
-            fn type_value(&self) -> $crate::scene::params::ParamValue {
+            fn type_value(&self) -> $crate::params::ParamValue {
                 let choices = Self::type_param().choices;
-                $crate::scene::params::ParamValue::Choice(&choices[$crate::scene::params::Variants::variant(self)].key)
+                $crate::params::ParamValue::Choice(&choices[$crate::params::Variants::variant(self)].key)
             }
         }
 
-        impl $crate::scene::params::ParamField for $name {
-            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+        impl $crate::params::ParamField for $name {
+            fn to_value(&self) -> Option<$crate::params::ParamValue> {
                 None
             }
-            fn from_value(_: $crate::scene::params::ParamValue) -> Option<Self> {
+            fn from_value(_: $crate::params::ParamValue) -> Option<Self> {
                 None
             }
-            fn visit_field(&self, slot: $crate::scene::params::Slot<'_>, visit: &mut $crate::scene::params::Visit<'_>) {
+            fn visit_field(&self, slot: $crate::params::Slot<'_>, visit: &mut $crate::params::Visit<'_>) {
                 let prefix = slot.inner_prefix();
                 visit(&prefix, Self::type_param(), self.type_value());
-                $crate::scene::params::Params::visit(self, &prefix, visit);
+                $crate::params::Params::visit(self, &prefix, visit);
             }
-            fn find_field(
-                &self,
-                _: $crate::scene::params::Slot<'_>,
-                below: &str,
-            ) -> Option<&'static $crate::scene::params::Param> {
+            fn find_field(&self, _: $crate::params::Slot<'_>, below: &str) -> Option<&'static $crate::params::Param> {
                 match below.strip_prefix('.')? {
                     "type" => Some(Self::type_param()),
-                    name => $crate::scene::params::Params::find(self, name),
+                    name => $crate::params::Params::find(self, name),
                 }
             }
-            fn get_field(&self, below: &str) -> Option<$crate::scene::params::ParamValue> {
+            fn get_field(&self, below: &str) -> Option<$crate::params::ParamValue> {
                 match below.strip_prefix('.')? {
                     "type" => Some(self.type_value()),
-                    name => $crate::scene::params::Params::get(self, name),
+                    name => $crate::params::Params::get(self, name),
                 }
             }
-            fn set_field(&mut self, below: &str, value: $crate::scene::params::ParamValue) -> bool {
+            fn set_field(&mut self, below: &str, value: $crate::params::ParamValue) -> bool {
                 let choices = Self::type_param().choices;
                 match (below.strip_prefix('.'), value) {
-                    (Some("type"), $crate::scene::params::ParamValue::Choice(key)) => {
+                    (Some("type"), $crate::params::ParamValue::Choice(key)) => {
                         let index = choices.iter().position(|choice| choice.key == key);
-                        index.map(|index| $crate::scene::params::change_variant(self, index)).is_some()
+                        index.map(|index| $crate::params::change_variant(self, index)).is_some()
                     }
-                    (Some(name), value) => $crate::scene::params::Params::set(self, name, value),
+                    (Some(name), value) => $crate::params::Params::set(self, name, value),
                     (None, _) => false,
                 }
             }
@@ -348,22 +340,20 @@ pub(crate) use nested_variants;
 /// Lets an enum without fields be a parameter that is chosen: it needs `ALL`, `label` and `help`.
 macro_rules! choices {
     ($name:ident) => {
-        impl $crate::scene::params::ParamField for $name {
+        impl $crate::params::ParamField for $name {
             const ANIMATABLE: bool = false;
 
-            fn choices() -> &'static [$crate::scene::params::Choice] {
-                static CHOICES: std::sync::LazyLock<Vec<$crate::scene::params::Choice>> =
-                    std::sync::LazyLock::new(|| {
-                        $crate::scene::params::choices_of(&$name::ALL, $name::label, $name::help)
-                    });
+            fn choices() -> &'static [$crate::params::Choice] {
+                static CHOICES: std::sync::LazyLock<Vec<$crate::params::Choice>> =
+                    std::sync::LazyLock::new(|| $crate::params::choices_of(&$name::ALL, $name::label, $name::help));
                 &CHOICES
             }
-            fn to_value(&self) -> Option<$crate::scene::params::ParamValue> {
+            fn to_value(&self) -> Option<$crate::params::ParamValue> {
                 let index = Self::ALL.iter().position(|value| value == self)?;
-                Some($crate::scene::params::ParamValue::Choice(&Self::choices()[index].key))
+                Some($crate::params::ParamValue::Choice(&Self::choices()[index].key))
             }
-            fn from_value(value: $crate::scene::params::ParamValue) -> Option<Self> {
-                let $crate::scene::params::ParamValue::Choice(key) = value else { return None };
+            fn from_value(value: $crate::params::ParamValue) -> Option<Self> {
+                let $crate::params::ParamValue::Choice(key) = value else { return None };
                 Self::choices().iter().position(|choice| choice.key == key).map(|index| Self::ALL[index])
             }
         }

@@ -1,7 +1,7 @@
 //! The tables against what is made of them.
 
 use super::*;
-use crate::scene::{
+use crate::{
     BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
     ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamOwner, ParamPath, Part, RadiusUnit,
     Scene, Shape, ShapeKind, check,
@@ -59,8 +59,8 @@ fn another(param: &Param, value: &ParamValue) -> Option<ParamValue> {
 }
 
 /// The scene with another value of the parameter.
-fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, crate::scene::SceneError> {
-    use crate::scene::Changed;
+fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, crate::SceneError> {
+    use crate::Changed;
     let mut scene = scene.clone();
     match path.changed(&scene, value)? {
         Changed::Node(node) => scene.replace(*node)?,
@@ -222,7 +222,7 @@ fn choices_are_named_as_in_files() {
     same(&Operator::ALL);
     same(&BlendKernel::ALL);
     same(&RadiusUnit::ALL);
-    same(&crate::scene::Axis::ALL);
+    same(&crate::Axis::ALL);
 }
 
 #[test]
@@ -245,7 +245,7 @@ fn a_row_of_a_table_is_all_that_a_parameter_costs() {
         #[derive(Clone, Debug, PartialEq)]
         pub struct Thing {
             /// How much it sways.
-            sway: f64 = 0.5, crate::scene::limits::UNIT.labeled("Wind");
+            sway: f64 = 0.5, crate::limits::UNIT.labeled("Wind");
         }
     }
     let mut thing = Thing::default();

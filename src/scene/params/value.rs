@@ -6,13 +6,13 @@ use glam::{DQuat, DVec3};
 use serde::Deserializer;
 
 use super::ParamField;
-use crate::font::Face;
-use crate::scene::attached::Attached;
-use crate::scene::attachment::Attachment;
-use crate::scene::drawn::{Corners, Points};
-use crate::scene::heights::Heights;
-use crate::scene::limits::{CORNERS, Limits, POINTS, SIZE};
-use crate::scene::whole;
+use crate::attached::Attached;
+use crate::attachment::Attachment;
+use crate::drawn::{Corners, Points};
+use crate::heights::Heights;
+use crate::limits::{CORNERS, Limits, POINTS, SIZE};
+use crate::whole;
+use isolith_font::Face;
 
 /// Most numbers in a row of a list.
 pub const LIST_COLUMNS: usize = 4;

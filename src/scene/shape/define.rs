@@ -4,7 +4,7 @@ macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
         $( $(#[doc = $help:literal])+ $(#[serde($missing:ident)])? $param:ident: $type:ty = $default:expr, $limits:expr; )*
     } )+) => {
-        $crate::scene::params::param_kinds! {
+        $crate::params::param_kinds! {
             /// A shape with its parameters, in meters, in local space.
             #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
             #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
@@ -82,9 +82,9 @@ macro_rules! shapes {
         }
 
         /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` behind those that have data.
+        #[macro_export]
         macro_rules! for_each_shape {
             ($callback:ident) => { $callback! { $( $name = $function $(with $data)?, )+ } };
         }
-        pub(crate) use for_each_shape;
     };
 }

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::{Degrees, Shape};
-use crate::geometry::Aabb;
-use crate::scene::drawn::{profile_bounds, text_bounds, tube_bounds};
-use crate::scene::params::ParamValue;
+use crate::drawn::{profile_bounds, text_bounds, tube_bounds};
+use crate::params::ParamValue;
+use isolith_geometry::Aabb;
 
 const INFINITY: f64 = f64::INFINITY;
 

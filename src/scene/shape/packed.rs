@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::font::Face;
-use crate::scene::attachment::Attachment;
-use crate::scene::drawn::{Corners, Points};
-use crate::scene::heights::Heights;
-use crate::scene::params::{ParamField, ParamValue};
+use crate::attachment::Attachment;
+use crate::drawn::{Corners, Points};
+use crate::heights::Heights;
+use crate::params::{ParamField, ParamValue};
+use isolith_font::Face;
 
 /// Most numbers that the packed parameters of one shape may take.
 pub const SHAPE_FLOATS: usize = 8;

@@ -1,7 +1,7 @@
 //! The table against what is made of it.
 
 use super::*;
-use crate::scene::params::{LIST_COLUMNS, ParamValue};
+use crate::params::{LIST_COLUMNS, ParamValue};
 
 #[test]
 fn every_parameter_can_be_read_written_and_packed() {

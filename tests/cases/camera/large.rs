@@ -2,7 +2,7 @@
 //! smaller.
 
 use glam::DQuat;
-use isolith::flat::eval::field;
+use isolith::field::eval::field;
 use isolith::geometry::Ray;
 use isolith::render::{OverlaySettings, Slot};
 use isolith::scene::{Blend, BlendKernel, Group, Modifier, Operator};

@@ -1,7 +1,7 @@
 //! The near and far limits: distances along the ray, for everything that is drawn or picked.
 
 use glam::{DAffine3, DQuat};
-use isolith::flat::pick::pick;
+use isolith::field::pick::pick;
 use isolith::scene::{Blend, Group, Operator};
 
 use super::hand::{self, Seen};

@@ -1,7 +1,7 @@
 //! Narrow and wide pixels: a ball and a plane by hand over all angles of view and long pictures.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use isolith::flat::FlatMesh;
+use isolith::field::FlatMesh;
 use isolith::geometry::Camera;
 use isolith::mesh::MeshLibrary;
 use isolith::render::EvalStrategy;

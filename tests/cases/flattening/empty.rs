@@ -1,8 +1,8 @@
 //! The empty set is an operand like any other.
 
 use glam::DVec3;
-use isolith::flat::reference::image::render_reference;
-use isolith::flat::{FlatScene, Warning};
+use isolith::field::reference::image::render_reference;
+use isolith::field::{FlatScene, Warning};
 use isolith::scene::{Attachment, CameraNode, Group, Light, Modifier, Node, NodeId, NodeKind, Operator, Scene, Shape};
 
 use super::{ALL_AXES, add, around, ball, blended, flat, group, load, object};

@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use isolith::flat::{
+use isolith::field::{
     Cancel, FlatScene, FlattenError, MAX_COMPONENT_NODES, MAX_FLAT_LEVELS, MAX_FLAT_NODES, MAX_STACK, flatten,
     flatten_until,
 };

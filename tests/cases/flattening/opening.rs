@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isolith::document::{Document, Edit};
 use isolith::editor::{Editor, Picture};
-use isolith::flat::flatten;
+use isolith::field::flatten;
 use isolith::scene::{CameraNode, Modifier, Node, NodeId, NodeKind, Scene};
 
 use super::{add, around, ball, flat, load};

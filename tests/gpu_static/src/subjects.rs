@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use isolith::flat::flatten;
+use isolith::field::flatten;
 use isolith::gallery;
-use isolith::render::wgsl::{Evaluator, FILES, Options, SkipMode, assemble, assemble_plain};
 use isolith::render::{EvalStrategy, EvaluatorUse, evaluators_of};
+use isolith::wgsl::{Evaluator, FILES, Options, SkipMode, assemble, assemble_plain};
 use naga::ShaderStage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -127,7 +127,7 @@ const OPTIONS: Options = Options {
     skip_mode: SkipMode::Branches,
     cones: true,
     relaxed: true,
-    quality: isolith::render::wgsl::Quality::Default,
+    quality: isolith::wgsl::Quality::Default,
 };
 
 /// Passes over a field, with their entry points.

@@ -30,7 +30,7 @@ fn parts_cover_every_pixel_once_and_stay_small() {
 
 #[test]
 fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
-    let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+    let flat = isolith_field::flatten(&isolith_gallery::random(32, 1), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
     let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
     let evaluations = vec![slow; flat.components.len()];
@@ -54,7 +54,7 @@ fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
 
 #[test]
 fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
-    let flat = crate::flat::flatten(&crate::gallery::random(32, 1), 0.0).expect("within the limits");
+    let flat = isolith_field::flatten(&isolith_gallery::random(32, 1), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
     let cheap = EvaluationCost { straight: true, iterations: 10, leaves: 8.0 };
     // Of the third one few steps fit in a dispatch.

@@ -7,7 +7,7 @@ use std::time::SystemTime;
 use serde::{Deserialize, Serialize};
 
 use super::bytes_of;
-use crate::scene::limits::MAX_FILE_BYTES;
+use crate::limits::MAX_FILE_BYTES;
 
 /// Length, time of the last change and a hash of the contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

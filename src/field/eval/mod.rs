@@ -1,0 +1,38 @@
+//! The CPU evaluator: the field of the flat scene in f64, from the same numbers and by the same formulas as
+//! the GPU. It visits every node and skips nothing, so it is the reference that the renderer is held to.
+//!
+//! | file | what it holds | its counterpart on the GPU |
+//! |---|---|---|
+//! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
+//! | `sdf` and its folder, `ellipsoid`, `tube`, `profile`, `heightfield` | the shapes | `shaders/sdf/<shape>.wgsl` |
+//! | `op` | the operators | `shaders/sdf/op.wgsl` |
+//! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |
+//! | `component` | the fold over the subtree-extent array | `shaders/field/*.wgsl` |
+
+mod component;
+mod ellipsoid;
+mod heightfield;
+mod modifier;
+mod op;
+mod profile;
+mod real;
+mod sdf;
+mod tube;
+
+pub use crate::mixture::{
+    MIXED, Mixture, SurfaceMaterial, mixture_add, mixture_decoded, mixture_joined, mixture_material, mixture_of,
+};
+pub use component::{SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
+pub use ellipsoid::sdf_ellipsoid;
+pub use heightfield::{
+    heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,
+};
+pub use modifier::*;
+pub use op::{
+    BlendParams, BlendResult, op_difference, op_engrave, op_groove, op_intersection, op_join, op_paint, op_pipe,
+    op_union, op_xor,
+};
+pub use profile::{sdf_extrusion, sdf_profile, sdf_revolution, sdf_text};
+pub use real::{Dual, Real};
+pub use sdf::*;
+pub use tube::sdf_tube;

@@ -1,0 +1,42 @@
+//! Shapes that narrow to a tip, or have no end.
+
+use super::planar::{length2, length3, trapezoid};
+use crate::eval::Real;
+
+/// A cone that opens downward from its tip; has no end.
+pub fn sdf_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
+    let (sine, cosine) = (q[0], q[1]);
+    let at = [length2([p[0], p[2]]), p[1]];
+    let along = at[0] * sine - at[1] * cosine;
+    if along.value() > 0.0 { at[0] * cosine + at[1] * sine } else { length2(at) }
+}
+
+/// A cylinder without ends.
+pub fn sdf_infinite_cylinder<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
+    length2([p[0], p[2]]) - q[0]
+}
+
+/// A pyramid over a square.
+///
+/// By symmetry in the sector of the face toward +X, where |z| < x: outside the nearer of face and square, each in
+/// its own plane; inside the nearer of the planes.
+pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
+    let (half, height) = (0.5 * q[0], q[1]);
+    let (x, z) = (p[0].abs(), p[2].abs());
+    let (x, z, y) = (x.max(z), x.min(z), p[1] + 0.5 * height);
+    let slope = half.hypot(height);
+    let up = if slope > 0.0 { [-half / slope, height / slope] } else { [0.0, 1.0] };
+    let from_edge = x - half;
+    let over = from_edge * up[1] - y * up[0];
+    if over.value() < 0.0 && y.value() > 0.0 {
+        return over.max(-y);
+    }
+    let along = from_edge * up[0] + y * up[1];
+    let beside = trapezoid([z, along - 0.5 * slope], half, 0.0, slope);
+    let to_face = if beside.value() > 0.0 { length2([over, beside]) } else { over.abs() };
+    let beyond = [from_edge.positive(), (z - half).positive()];
+    // At the base itself the field rises downward.
+    let below = if y.value() <= 0.0 { -y } else { y };
+    let to_base = if beyond[0].value() > 0.0 { length3([beyond[0], beyond[1], y]) } else { below };
+    to_face.min(to_base)
+}

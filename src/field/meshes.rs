@@ -1,0 +1,59 @@
+//! The meshes that a scene names, loaded.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+
+use super::{FlatScene, Warning};
+use isolith_mesh::{MeshLibrary, TriangleMesh};
+
+impl FlatScene {
+    /// The meshes beside [`FlatScene::meshes`], as rays and renderer want them, with warnings: about each that cannot be
+    /// had (the scene is drawn without it), and about what files contain that is not drawn, at the first node that
+    /// shows it.
+    pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
+        let mut warnings = Vec::new();
+        let mut told = HashSet::new();
+        let load = |mesh: &super::FlatMesh| match library.get(&mesh.path) {
+            Ok(triangles) => {
+                if !triangles.warnings.is_empty() && told.insert(mesh.path.clone()) {
+                    let warning =
+                        |reason: &String| Warning { node: mesh.id, name: mesh.path.clone(), reason: reason.clone() };
+                    warnings.extend(triangles.warnings.iter().map(warning));
+                }
+                Some(triangles)
+            }
+            Err(error) => {
+                let reason = format!("the mesh is not drawn: {error}");
+                warnings.push(Warning { node: mesh.id, name: mesh.path.clone(), reason });
+                None
+            }
+        };
+        let meshes = self.meshes.iter().map(load).collect();
+        (meshes, warnings)
+    }
+
+    /// The same of a library as it is: nothing is read, and what is not there yet is not drawn.
+    pub fn known_meshes(&self, library: &MeshLibrary) -> Vec<Option<Arc<TriangleMesh>>> {
+        let known = |mesh: &super::FlatMesh| library.known(&mesh.path).and_then(|mesh| mesh.as_ref().ok()).cloned();
+        self.meshes.iter().map(known).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::flatten;
+    use isolith_mesh::MeshLibrary;
+    use isolith_scene::{MeshNode, Node, NodeKind, Scene};
+
+    #[test]
+    fn a_mesh_that_is_missing_is_a_warning_about_its_node() {
+        let mut scene = Scene::new();
+        let node = NodeKind::Mesh(MeshNode { path: "no-such.glb".into(), material: None });
+        let id = scene.insert(None, 0, Node::new("statue", node)).unwrap();
+        let flat = flatten(&scene, 0.0).unwrap();
+        let (meshes, warnings) = flat.load_meshes(&mut MeshLibrary::new(Some(std::env::temp_dir())));
+        assert_eq!((meshes.len(), meshes[0].is_none()), (1, true));
+        assert_eq!((warnings.len(), warnings[0].node), (1, id));
+        assert!(warnings[0].reason.contains("no-such.glb"), "{}", warnings[0].reason);
+    }
+}

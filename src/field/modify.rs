@@ -1,0 +1,421 @@
+//! What modifiers do to bounds and steps, and their numbers as the evaluators read them.
+//!
+//! A deformation stretches space: its field is divided by the largest stretch (its Lipschitz constant), which is
+//! known only near the content. So every deformation has a bound with a margin m: at a distance d from it
+//! the field is max(d, min(g, 2m − d)), g being the divided field. That never grows faster than 1 per meter,
+//! has the sign of g within, and far away is simply d.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
+
+use super::lower_bound::LowerBound;
+use super::modifier_table::modifier_rows;
+use super::operand::Modified;
+use super::prepare::spline;
+use isolith_geometry::Aabb;
+use isolith_scene::{Axis, Heights, Modifier};
+
+/// Why a modifier does nothing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum ModifierRefusal {
+    /// It makes no sense here; the artist is told why.
+    Cannot(String),
+    /// So many copies would have to be evaluated for one point, more than [`MAX_NEIGHBORS`].
+    TooMany(usize),
+}
+
+/// The rows of images that displace, with their steepest slopes, by the modifier: all copies share them.
+pub(super) type Splines = HashMap<*const Modifier, (Rc<[[f64; 4]]>, f64)>;
+
+/// Copies without end reach so many cells in each direction: what f32 can still count and place.
+pub const REPEAT_REACH: f64 = 1e6;
+/// Most copies that are evaluated for one point.
+pub const MAX_NEIGHBORS: u32 = 64;
+/// More cells to one side are not counted, so that those of three axes can be multiplied; far more than [`MAX_NEIGHBORS`].
+const MOST_SIDEWAYS: u32 = 1 << 16;
+/// Margin around a bound relative to its size.
+const MARGIN: f64 = 0.1;
+/// The least margin, in meters.
+const LEAST_MARGIN: f64 = 1e-6;
+/// Stands for no end: far beyond any camera, its square still fits f32.
+const ENDLESS: f64 = 1e18;
+/// A bend uses at most this share of a full turn on each side.
+const MOST_BENT: f64 = 0.95 * std::f64::consts::PI;
+/// What lies toward the center of a bend fills at most this share of its radius.
+const MOST_INWARD: f64 = 0.9;
+/// A taper narrows at most to this share.
+const NARROWEST: f64 = 0.05;
+
+/// What a modifier makes of its content; an error says why it can do nothing.
+pub(super) fn modify(
+    modifier: &Modifier,
+    content: &LowerBound,
+    splines: &mut Splines,
+) -> Result<Modified, ModifierRefusal> {
+    let same = Modified {
+        rows: Vec::new(),
+        data: Rc::default(),
+        bounds: content.bounds,
+        cull_box: content.cull_box,
+        bound_slope: content.bound_slope,
+        copies: 1,
+        warning: None,
+    };
+    let radians = f64::to_radians;
+    let mut modified = match *modifier {
+        Modifier::Mirror { .. } | Modifier::Polar { .. } => unreachable!("these are copied, see operands"),
+        Modifier::Repeat { .. } => repeat(modifier, content, same)?,
+        Modifier::Recursion { count, offset, rotation, scale, mirrored } => {
+            let turn = rotation.map(f64::to_radians);
+            let rotation = DQuat::from_euler(EulerRot::ZYX, turn[2], turn[1], turn[0]);
+            recursion(count, offset.into(), DMat3::from_quat(rotation), scale, mirrored, same)
+        }
+        Modifier::Twist { angle } => twist(radians(angle), bounded(content, "twisted")?, content.radius, same),
+        Modifier::Bend { angle } => bend(radians(angle), bounded(content, "bent")?, same),
+        Modifier::Taper { change } => taper(change, bounded(content, "tapered")?, same),
+        Modifier::Elongate { length } => {
+            let half = DVec3::from(length) * 0.5;
+            let grown = |b: Aabb| Aabb::new(b.min - half, b.max + half);
+            let rows = vec![half.extend(0.0).to_array()];
+            Modified { rows, bounds: grown(same.bounds), cull_box: grown(same.cull_box), ..same }
+        }
+        Modifier::Round { radius } => grown(same, radius, vec![[radius, 0.0, 0.0, 0.0]]),
+        Modifier::Onion { thickness, walls, spacing } => {
+            let half = 0.5 * thickness;
+            grown(same, half, vec![[half, f64::from(walls), spacing, 0.0]])
+        }
+        Modifier::Waves { amplitude, length, phase } => {
+            let frequency = std::f64::consts::TAU / length;
+            // |∇ sin x sin y sin z| is at most 1.
+            let slope = 1.0 / (1.0 + amplitude * frequency);
+            grown(same, amplitude, vec![[amplitude, frequency, radians(phase), slope]])
+        }
+        Modifier::Noise { amplitude, size, octaves, seed } => {
+            let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
+            // Each layer has half the height and half the size of the one before: the same steepness.
+            let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
+            let params = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
+            grown(same, amplitude, vec![params, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
+        }
+        Modifier::Displacement { ref image, height, tile, axis } => {
+            let image = image.content().expect("idle without an image");
+            let side = tile / image.size[0] as f64;
+            let made = splines.entry(std::ptr::from_ref(modifier)).or_insert_with(|| {
+                let (data, steepest) = spline(image, [side; 2], height);
+                (data.into(), steepest)
+            });
+            displacement(image, made.clone(), height, tile, axis, same)
+        }
+    };
+    modified.rows.resize(modifier_rows(modifier.kind()), [0.0; 4]);
+    if !modified.cull_box.is_finite() {
+        modified.bound_slope = 0.0;
+    }
+    Ok(modified)
+}
+
+/// Whether a modifier changes nothing, so that it needs no entry.
+pub(super) fn is_idle(modifier: &Modifier) -> bool {
+    match *modifier {
+        Modifier::Mirror { axes, .. } => axes == [false; 3],
+        Modifier::Polar { .. } | Modifier::Onion { .. } => false,
+        Modifier::Repeat { counts, carve_to, .. } => counts == [1; 3] && carve_to == [0; 3],
+        Modifier::Recursion { count, .. } => count == 1,
+        Modifier::Twist { angle } | Modifier::Bend { angle } => angle == 0.0,
+        Modifier::Taper { change } => change == 0.0,
+        Modifier::Elongate { length } => length == [0.0; 3],
+        Modifier::Round { radius } => radius == 0.0,
+        Modifier::Waves { amplitude, .. } | Modifier::Noise { amplitude, .. } => amplitude == 0.0,
+        Modifier::Displacement { ref image, height, .. } => height == 0.0 || image.content().is_none(),
+    }
+}
+
+/// Steepest slope of value noise between −1 and 1 with cells of size 1 and weights 3u² − 2u³: 2√3. At cell
+/// coordinate u the weights' slope over the spread of the two sides' values is at most √3, and the squares of
+/// the slopes along the three axes, each over its spread, add up to at most the variance of the values
+/// (Parseval's identity for multilinear functions).
+const NOISE_SLOPE: f64 = 3.464_101_615_137_755;
+
+/// The bounds of content that must have an end to be `deformed`.
+fn bounded(content: &LowerBound, deformed: &str) -> Result<Aabb, ModifierRefusal> {
+    if content.bounds.is_finite() {
+        return Ok(content.bounds);
+    }
+    Err(ModifierRefusal::Cannot(format!("has no end, so it cannot be {deformed}")))
+}
+
+fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
+    let reach = if same.bound_slope > 0.0 { by / same.bound_slope } else { 0.0 };
+    Modified { rows, bounds: same.bounds.expanded(by), cull_box: same.cull_box.expanded(reach), ..same }
+}
+
+/// Where the surface is moved outward by h, the field is f − h; its slope is at most 1 and that of the heights.
+fn displacement(
+    image: &Heights,
+    (data, steepest): (Rc<[[f64; 4]]>, f64),
+    height: f64,
+    tile: f64,
+    axis: Axis,
+    same: Modified,
+) -> Modified {
+    let [columns, lines] = image.size.map(|n| n as f64);
+    let side = tile / columns;
+    let heights = || image.values.iter().map(|v| v * height);
+    let (least, greatest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
+    let rows = vec![
+        [1.0 / tile, 1.0 / (side * lines), columns, lines],
+        [1.0 / (1.0 + steepest), least, greatest, f64::from(axis as u8)],
+    ];
+    Modified { data, ..grown(same, greatest.max(0.0), rows) }
+}
+
+/// A deformation whose field is at least the distance to its bound along some axis: of three numbers at right
+/// angles the largest is at least 1/√3 of their length.
+fn enclosed(same: Modified, bounds: Aabb, rows: Vec<[f64; 4]>) -> Modified {
+    Modified { rows, bounds, cull_box: bounds, bound_slope: 1.0 / 3.0_f64.sqrt(), ..same }
+}
+
+/// Farthest distance of a box from the Y axis.
+fn radius_of(b: &Aabb) -> f64 {
+    b.min.x.abs().max(b.max.x.abs()).hypot(b.min.z.abs().max(b.max.z.abs()))
+}
+
+/// Largest stretch of a twist by `bound_slope` radians at right angles to the axis for each meter along it (the larger
+/// singular value of a shear).
+fn shear(slope: f64) -> f64 {
+    0.5 * (slope + (slope * slope + 4.0).sqrt())
+}
+
+fn twist(angle: f64, content: Aabb, radius: f64, same: Modified) -> Modified {
+    let radius = radius_of(&content).min(radius);
+    let (middle, half) = (content.center().y, content.half().y);
+    let margin = (MARGIN * radius.max(0.1 * half)).max(LEAST_MARGIN);
+    let stretch = shear(angle.abs() * (radius + margin));
+    let bounds = Aabb::new(DVec3::new(-radius, content.min.y, -radius), DVec3::new(radius, content.max.y, radius));
+    enclosed(same, bounds, vec![[angle, 1.0 / stretch, radius, margin], [middle, half, 0.0, 0.0]])
+}
+
+fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
+    let sign = angle.signum();
+    let reach = content.min.x.abs().max(content.max.x.abs());
+    // Toward the center of the arc, and away from it.
+    let [low, high] = if sign > 0.0 { [content.min.y, content.max.y] } else { [-content.max.y, -content.min.y] };
+    let inward = if high > 0.0 { MOST_INWARD / high } else { f64::INFINITY };
+    let around = if reach > 0.0 { MOST_BENT / reach } else { f64::INFINITY };
+    let curvature = angle.abs().min(inward).min(around);
+    let warning = (curvature < angle.abs()).then(|| {
+        let degrees = (curvature.to_degrees() * 100.0).round() / 100.0;
+        if inward < around {
+            format!("is bent by {degrees}°/m only: its inner side would fold over")
+        } else {
+            format!("is bent by {degrees}°/m only: its ends would meet")
+        }
+    });
+    let radius = 1.0 / curvature;
+    let open = (std::f64::consts::PI - reach * curvature).min(std::f64::consts::FRAC_PI_2);
+    let room = radius - high;
+    let margin = (MARGIN * content.half().max_element()).min(0.5 * room * open.sin()).max(LEAST_MARGIN);
+    let stretch = (radius / (room - margin).max(1e-3 * room)).max(1.0);
+    let bounds = bent_bounds(curvature, sign, reach, [low, high], &content);
+    let (center, half) = (bounds.center(), bounds.half());
+    let rows = vec![
+        [radius, 1.0 / stretch, margin, sign],
+        [reach * curvature, low, high, 0.0],
+        center.extend(0.0).to_array(),
+        half.extend(0.0).to_array(),
+    ];
+    Modified { warning, ..enclosed(same, bounds, rows) }
+}
+
+/// The box around an arc: its ends, and where it passes an axis.
+fn bent_bounds(curvature: f64, sign: f64, reach: f64, [low, high]: [f64; 2], content: &Aabb) -> Aabb {
+    let radius = 1.0 / curvature;
+    let end = reach * curvature;
+    let mut flat = Aabb::EMPTY;
+    let quarters = [0.0, 0.5, 1.0].map(|q| q * std::f64::consts::PI).into_iter().filter(|a| *a <= end);
+    for angle in quarters.chain([end]) {
+        for r in [radius - low, radius - high] {
+            for side in [-1.0, 1.0] {
+                let at = DVec3::new(side * r * angle.sin(), sign * (radius - r * angle.cos()), 0.0);
+                flat = flat.union(&Aabb::new(at, at));
+            }
+        }
+    }
+    let z = |v: f64| DVec3::Z * v;
+    Aabb::new(flat.min + z(content.min.z), flat.max + z(content.max.z))
+}
+
+fn taper(change: f64, content: Aabb, same: Modified) -> Modified {
+    let width = |y: f64, change: f64| 1.0 + change * y;
+    let narrow = |change: f64| width(content.min.y, change).min(width(content.max.y, change));
+    let mut warning = None;
+    let mut used = change;
+    if narrow(change) < NARROWEST {
+        // The end that becomes too narrow decides: 1 + c y = NARROWEST there.
+        let at = if change < 0.0 { content.max.y } else { content.min.y };
+        used = (NARROWEST - 1.0) / at;
+        warning = Some(format!("is tapered by {:.3}/m only: it would narrow to nothing", used));
+    }
+    let ends = [width(content.min.y, used), width(content.max.y, used)];
+    let (narrowest, widest) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    let margin = (MARGIN * content.half().max_element()).max(LEAST_MARGIN);
+    let radius = radius_of(&content) + 1.5 * margin / narrowest;
+    let (a, b) = (1.0 / narrowest, radius * used.abs() / narrowest);
+    let sum = a * a + b * b + 1.0;
+    let stretch = (0.5 * (sum + (sum * sum - 4.0 * a * a).max(0.0).sqrt())).sqrt().max(1.0);
+    // What lies on one side of the axis is nearest to it where it is narrow.
+    let far = |v: f64, outward: bool| if (v >= 0.0) == outward { v * widest } else { v * narrowest };
+    let corner = |v: DVec3, outward| DVec3::new(far(v.x, outward), v.y, far(v.z, outward));
+    let bounds = Aabb::new(corner(content.min, false), corner(content.max, true));
+    let rows = vec![
+        [used, 1.0 / stretch, margin, 0.0],
+        bounds.center().extend(content.min.y).to_array(),
+        bounds.half().extend(content.max.y).to_array(),
+    ];
+    Modified { warning, ..enclosed(same, bounds, rows) }
+}
+
+fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [bool; 3], same: Modified) -> Modified {
+    let parent_from_child = DAffine3 { matrix3: rotation * scale, translation: offset };
+    let all_levels = |content: Aabb| {
+        let (mut level, mut all) = (content, content);
+        for _ in 1..count {
+            level = level.transformed(&parent_from_child);
+            for axis in (0..3).filter(|a| mirrored[*a]) {
+                let mut flip = DVec3::ONE;
+                flip[axis] = -1.0;
+                level = level.union(&level.transformed(&DAffine3::from_scale(flip)));
+            }
+            all = all.union(&level);
+        }
+        all
+    };
+    // Space is folded to the side on which the next copy stands.
+    let child = if same.bounds.is_finite() { parent_from_child.transform_point3(same.bounds.center()) } else { offset };
+    let flag = |i: usize| (1 << i) + if child[i] < 0.0 { 8 << i } else { 0 };
+    let flags = f64::from((0..3).filter(|i| mirrored[*i]).map(flag).sum::<i32>());
+    let inverse = rotation.transpose();
+    let (center, half) = finite_box(&same.cull_box);
+    let rows = vec![
+        offset.extend(scale).to_array(),
+        inverse.row(0).extend(f64::from(count)).to_array(),
+        inverse.row(1).extend(flags).to_array(),
+        inverse.row(2).extend(0.0).to_array(),
+        center.extend(same.bound_slope).to_array(),
+        half.extend(0.0).to_array(),
+    ];
+    Modified { rows, bounds: all_levels(same.bounds), cull_box: all_levels(same.cull_box), copies: count, ..same }
+}
+
+/// Center and half extent with numbers in the place of no end.
+fn finite_box(bounds: &Aabb) -> (DVec3, DVec3) {
+    let limit = DVec3::splat(ENDLESS);
+    let b = Aabb::new(bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
+    (b.center(), b.half())
+}
+
+/// Along one axis: first and last cell, middle and half extent of the content in its cell, how many neighbors
+/// are evaluated.
+struct Cells {
+    first: f64,
+    last: f64,
+    middle: f64,
+    half: f64,
+    candidates: u32,
+}
+
+/// How many cells around a point are evaluated where content reaches `half` from the middle of cells `spacing`
+/// apart: one where it keeps clear of the walls, two (the cell and its nearer neighbor) up to 7/8 of a cell, and so
+/// on. What is left out is farther away than an eighth of a cell.
+fn candidates(half: f64, spacing: f64) -> u32 {
+    let reach = half / spacing;
+    if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).clamp(1, MOST_SIDEWAYS) }
+}
+
+fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<Modified, ModifierRefusal> {
+    let Modifier::Repeat { counts, spacing, mut offset, turn, mirrored, carve_from, carve_to } = *modifier else {
+        unreachable!("called for repeats only")
+    };
+    let turn = turn.to_radians();
+    // The box that the field is known to grow away from holds the surface too.
+    let held = if content.bound_slope > 0.0 { content.cull_box.union(&content.bounds) } else { content.bounds };
+    let (mut center, mut half) = finite_box(&held);
+    if turn != 0.0 {
+        let radius = radius_of(&held).min(content.radius);
+        (center.x, center.z, half.x, half.z) = (0.0, 0.0, radius.min(ENDLESS), radius.min(ENDLESS));
+    }
+    for axis in (0..3).filter(|a| mirrored[*a]) {
+        half[axis] += center[axis].abs();
+        center[axis] = 0.0;
+    }
+    let mut axes = Vec::with_capacity(3);
+    for i in 0..3 {
+        let (first, last) = match counts[i] {
+            0 => (-REPEAT_REACH, REPEAT_REACH),
+            n => (0.0, f64::from(n - 1)),
+        };
+        if counts[i] != 1 && half[i] >= ENDLESS {
+            let axis = ["X", "Y", "Z"][i];
+            return Err(ModifierRefusal::Cannot(format!("has no end along {axis}, so it cannot be repeated along it")));
+        }
+        let mut candidates = if counts[i] == 1 { 1 } else { candidates(half[i], spacing[i]) };
+        if counts[i] > 1 {
+            candidates = candidates.min(2 * counts[i]);
+        }
+        axes.push(Cells { first, last, middle: center[i], half: half[i], candidates });
+    }
+    // An offset along an axis with cells of its own would leave them; bricks need both X and Y.
+    for i in [1, 2] {
+        offset[i] = if counts[i] == 1 && counts[0] != 1 { offset[i] } else { 0.0 };
+    }
+    offset[0] = if counts[0] != 1 && counts[1] != 1 { offset[0] } else { 0.0 };
+    let copies = axes.iter().map(|a| u64::from(a.candidates)).product::<u64>();
+    if copies > u64::from(MAX_NEIGHBORS) {
+        return Err(ModifierRefusal::TooMany(copies as usize));
+    }
+    let all = |box_: &Aabb| repeated_bounds(box_, &axes, counts, spacing, offset);
+    let in_cell = Aabb::from_center_half(center, half);
+    let bounds = all(&in_cell);
+    let flags: f64 = mirrored.iter().enumerate().map(|(i, on)| f64::from(u8::from(*on)) * f64::from(1 << i)).sum();
+    let each = |f: &dyn Fn(&Cells) -> f64| DVec3::new(f(&axes[0]), f(&axes[1]), f(&axes[2]));
+    let code = axes.iter().rev().fold(0.0, |code, a| code * 128.0 + f64::from(a.candidates));
+    let rows = vec![
+        DVec3::from(spacing).extend(turn).to_array(),
+        each(&|a| a.first).extend(flags).to_array(),
+        each(&|a| a.last).extend(code).to_array(),
+        each(&|a| a.middle).extend(content.bound_slope.min(1.0)).to_array(),
+        each(&|a| a.half).extend(0.0).to_array(),
+        DVec3::from(offset).extend(0.0).to_array(),
+        DVec3::from(carve_from.map(f64::from)).extend(0.0).to_array(),
+        DVec3::from(carve_to.map(f64::from)).extend(0.0).to_array(),
+        bounds.min.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
+        bounds.max.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
+    ];
+    let bound_slope = content.bound_slope.min(1.0);
+    Ok(Modified { rows, bounds, cull_box: bounds, bound_slope, copies: copies as u32, ..same })
+}
+
+fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64; 3], offset: [f64; 3]) -> Aabb {
+    let mut out = *cell;
+    let last = [axes[0].last, axes[1].last];
+    for i in 0..3 {
+        if counts[i] == 0 || axes[i].half >= ENDLESS {
+            (out.min[i], out.max[i]) = (f64::NEG_INFINITY, f64::INFINITY);
+            continue;
+        }
+        out.max[i] += axes[i].last * spacing[i];
+        // How far offsets carry the last copies: of X the rows along Y do, of Y and Z the copies along X.
+        let steps = if i == 0 { last[1] } else { last[0] };
+        let endless = counts[usize::from(i == 0)] == 0;
+        let shift = if offset[i] == 0.0 { 0.0 } else { offset[i] * steps };
+        if endless && shift != 0.0 {
+            (out.min[i], out.max[i]) = (f64::NEG_INFINITY, f64::INFINITY);
+        } else {
+            out.min[i] += shift.min(0.0);
+            out.max[i] += shift.max(0.0);
+        }
+    }
+    out
+}

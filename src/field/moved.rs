@@ -1,0 +1,70 @@
+//! The numbers of a component relative to another point than its origin.
+//!
+//! Flattening rounds them relative to the origin, which suits what is looked at from as far off as it is large. Beside a part
+//! of something a thousand times larger f32 is too coarse for that: then the renderer is given the same numbers relative to
+//! a point near the eye, made in f64 from what rounding has left.
+
+use glam::DVec3;
+
+use super::arrays::{Component, FlatNode, FlatScene, MODIFIER_ROWS, ParamRow};
+use isolith_scene::ModifierKind;
+
+/// Writes the rows of `component` among `params`, which are those of `flat`, anew: relative to the point that is `shift`
+/// from its origin.
+pub fn move_params(flat: &FlatScene, component: &Component, shift: DVec3, params: &mut [ParamRow]) {
+    let mut at = component.first as usize;
+    let end = at + component.count as usize;
+    while at < end {
+        let node = &flat.nodes[at];
+        let rows = &mut params[node.params as usize..];
+        if let (Some(first), Some(placing)) = (node.placing_row(), component.placing(flat, at)) {
+            let mut local = DVec3::from_array(placing.map(|[x, y, z, w]| x * shift.x + y * shift.y + z * shift.z + w));
+            if node.modifier() == Some(ModifierKind::Repeat) {
+                local -= move_repeat(local, &mut rows[MODIFIER_ROWS..]);
+            }
+            for (row, moved) in rows[first..].iter_mut().zip(local.to_array()) {
+                row[3] = moved as f32;
+            }
+        }
+        // Groups, runs and modifiers have bounds, if they have a slope. They were made larger than rounding moves them.
+        if !node.is_leaf() && rows[0][1] > 0.0 {
+            for (center, moved) in rows[1].iter_mut().zip(shift.to_array()) {
+                *center = (f64::from(*center) - moved) as f32;
+            }
+        }
+        // What a modifier holds stands in a space of its own.
+        at += step(node);
+    }
+}
+
+/// To the next entry in the same space.
+fn step(node: &FlatNode) -> usize {
+    if node.modifier().is_some() { node.extent as usize } else { 1 }
+}
+
+/// Counts the cells of a repetition from one near `local`, a point in its space; `rows` are its own, see
+/// `shaders/mod/repeat.wgsl`. Returns where that cell stands.
+fn move_repeat(local: DVec3, rows: &mut [ParamRow]) -> DVec3 {
+    let of = |row: usize| DVec3::from_slice(&rows[row].map(f64::from));
+    let (spacing, turn, flags) = (of(0), rows[0][3], rows[1][3] as u32);
+    let (first, last, middle, offset) = (of(1), of(2), of(3), of(5));
+    // How far a cell is turned follows from its number.
+    if turn != 0.0 {
+        return DVec3::ZERO;
+    }
+    let mut cell = DVec3::ZERO;
+    // Rows along X are moved by their cell along Y.
+    for axis in [1, 2, 0] {
+        let beside = if axis == 0 { offset.x * cell.y } else { 0.0 };
+        let count = ((local[axis] - beside - middle[axis]) / spacing[axis]).clamp(first[axis], last[axis]);
+        // Where every other cell is a mirror image, an even one stands for the first.
+        cell[axis] = if flags >> axis & 1 == 1 { (0.5 * count).round() * 2.0 } else { count.round() };
+    }
+    let place = cell * spacing + DVec3::new(offset.x * cell.y, offset.y * cell.x, offset.z * cell.x);
+    for (row, by) in [(1, cell), (2, cell), (6, cell), (7, cell), (8, place), (9, place)] {
+        for axis in 0..3 {
+            rows[row][axis] = (f64::from(rows[row][axis]) - by[axis]) as f32;
+        }
+    }
+    place
+}

@@ -1,0 +1,105 @@
+//! Heightfields: heights over a rectangle, solid down to a flat bottom.
+//!
+//! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
+//! greatest slope L, how many rows there are, seed or sharpness. Rows: frequency, height and salt of a layer of noise; or
+//! waves for each meter along X and along Z, height and phase of a wave (in turns); or, of an image, each height with
+//! its neighbors along X, line by line, and then the numbers are columns and lines.
+
+use std::f64::consts::{PI, TAU};
+
+use super::prepared_params::PreparedParams;
+use isolith_scene::Heights;
+
+/// The steepest slope of one layer of noise with heights and cells of 1: heights differ by at most 2 between two
+/// corners, and the curve between them is nowhere steeper than 3/2.
+pub const NOISE_SLOPE: f64 = 3.0;
+
+/// Thinner cells of an image are no cells, in meters.
+const LEAST_CELL: f64 = 1e-9;
+
+fn prepared([width, depth, length]: [f64; 3], top: f64, slope: f64, last: f64, rows: Vec<[f64; 4]>) -> PreparedParams {
+    let count = rows.len() as f64;
+    let scale = 1.0 / 1.0_f64.hypot(slope);
+    PreparedParams::new([0.5 * width, depth, 0.5 * length, top], [scale, count, last, 0.0], rows)
+}
+
+/// Fractal noise: each layer is half as wide as the one before it.
+pub fn terrain(
+    size: [f64; 3],
+    amplitude: f64,
+    wavelength: f64,
+    octaves: f64,
+    roughness: f64,
+    seed: f64,
+) -> PreparedParams {
+    let octaves = octaves.floor() as i32;
+    let sum: f64 = (0..octaves).map(|i| roughness.powi(i)).sum();
+    let row = |i: i32| [2.0_f64.powi(i) / wavelength, amplitude * roughness.powi(i) / sum, f64::from(i), 0.0];
+    let rows: Vec<_> = (0..octaves).map(row).collect();
+    let slope = rows.iter().map(|[frequency, height, ..]| NOISE_SLOPE * frequency * height).sum();
+    prepared(size, amplitude, slope, seed.floor(), rows)
+}
+
+/// Waves with crests as in the second order of Stokes' theory (1847): cos x + s/2 cos 2x, which is nowhere steeper than
+/// 1 + s and nowhere farther from 0 than 1 + s/2. In `run` direction, spread and phase, in radians. Shorter waves
+/// run slower, as in deep water.
+pub fn ocean(
+    size: [f64; 3],
+    amplitude: f64,
+    wavelength: f64,
+    waves: f64,
+    [direction, spread, phase]: [f64; 3],
+    sharpness: f64,
+) -> PreparedParams {
+    const SHORTER: f64 = 0.68;
+    /// The golden angle spreads directions and phases evenly, however many there are.
+    const GOLDEN: f64 = 2.399_963_229_728_653;
+    let count = waves.floor() as i32;
+    // Long waves are high.
+    let sum: f64 = (0..count).map(|i| SHORTER.powi(i)).sum();
+    let sharp = 0.5 * sharpness;
+    let row = |i: i32| {
+        let frequency = 1.0 / (wavelength * SHORTER.powi(i));
+        let turned = direction + spread * (GOLDEN * f64::from(i)).sin();
+        let height = amplitude * SHORTER.powi(i) / (sum * (1.0 + 0.5 * sharp));
+        let moved = phase / TAU * SHORTER.powi(-i).sqrt() + GOLDEN * f64::from(i) / PI;
+        [frequency * turned.cos(), frequency * turned.sin(), height, moved.rem_euclid(1.0)]
+    };
+    let rows: Vec<_> = (0..count).map(row).collect();
+    let slope = rows.iter().map(|[x, z, height, _]| TAU * x.hypot(*z) * height * (1.0 + sharp)).sum();
+    prepared(size, amplitude, slope, sharp, rows)
+}
+
+/// A landscape from an image.
+pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> PreparedParams {
+    let [columns, lines] = image.size.map(|n| n as f64);
+    let (rows, steepest) = spline(image, [size[0] / columns, size[2] / lines], height);
+    let mut out = prepared(size, height, steepest, lines, rows);
+    out.parameters[5] = columns;
+    out
+}
+
+/// Heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): it stays among the
+/// heights around it, and its slope along an axis among their differences. Its rows, and its steepest slope where a cell
+/// has these sides, in meters, and white is `height` meters above black.
+pub fn spline(image: &Heights, cell: [f64; 2], height: f64) -> (Vec<[f64; 4]>, f64) {
+    let [columns, lines] = image.size.map(|n| n as isize);
+    let cell = cell.map(|side| side.max(LEAST_CELL));
+    let mut rows = Vec::with_capacity(image.values.len());
+    let mut steepest: f64 = 0.0;
+    for line in 0..lines {
+        for column in 0..columns {
+            let at = |x: isize, z: isize| height * image.at(column + x, line + z);
+            rows.push([at(-1, 0), at(0, 0), at(1, 0), 0.0]);
+            let (mut along_x, mut along_z): (f64, f64) = (0.0, 0.0);
+            for i in -1..=1 {
+                for j in [-1, 0] {
+                    along_x = along_x.max((at(j + 1, i) - at(j, i)).abs());
+                    along_z = along_z.max((at(i, j + 1) - at(i, j)).abs());
+                }
+            }
+            steepest = steepest.max((along_x / cell[0]).hypot(along_z / cell[1]));
+        }
+    }
+    (rows, steepest)
+}

@@ -1,0 +1,64 @@
+//! Shapes as evaluators see them: numbers, and rows of data behind them.
+//!
+//! | file | what it makes |
+//! |---|---|
+//! | `tube` | arcs of a curve with radii |
+//! | `profile` | arcs of a profile, cut so that each only rises |
+//! | `heightfield` | layers of noise, waves, heights of an image |
+//! | `prepared_params` | the numbers that each of them makes |
+
+mod heightfield;
+mod prepared_params;
+mod profile;
+mod tube;
+
+pub(super) use heightfield::spline;
+use prepared_params::{PreparedParams, bounding_sphere};
+
+use isolith_geometry::Aabb;
+use isolith_scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
+
+/// A shape, ready to be evaluated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreparedShape {
+    /// Which function evaluates it.
+    pub kind: ShapeKind,
+    /// Its parameters; of a shape with data what was made of them.
+    pub parameters: [f64; SHAPE_FLOATS],
+    /// Its data, with a sphere around the shape first (center, radius); nothing for a shape without.
+    pub payload: Vec<[f64; 4]>,
+    /// A box around the surface, in local space.
+    pub bounds: Aabb,
+}
+
+impl PreparedShape {
+    /// What a shape is evaluated with.
+    pub fn new(shape: &Shape) -> Self {
+        let (kind, bounds) = (shape.kind(), shape.bounds());
+        let PreparedParams { parameters, payload } = match shape {
+            Shape::Tube { points, radius, closed } => tube::tube(points, *radius, *closed),
+            Shape::Extrusion { corners, smooth, depth, rounding } => {
+                profile::extrusion(corners, *smooth, *depth, *rounding)
+            }
+            Shape::Text { text, font, size, depth, rounding } => {
+                profile::text(&text_profile(text, font, *size), *depth, *rounding)
+            }
+            Shape::Heightmap { image, size, height } => heightfield::heightmap(Heights::of(image), *size, *height),
+            Shape::Revolution { corners, smooth, offset } => profile::revolution(corners, *smooth, *offset),
+            Shape::Terrain { size, amplitude, wavelength, octaves, roughness, seed } => {
+                heightfield::terrain(*size, *amplitude, *wavelength, *octaves, *roughness, *seed)
+            }
+            Shape::Ocean { size, amplitude, wavelength, waves, direction, spread, sharpness, phase } => {
+                let run = [*direction, *spread, *phase].map(f64::to_radians);
+                heightfield::ocean(*size, *amplitude, *wavelength, *waves, run, *sharpness)
+            }
+            _ => PreparedParams { parameters: shape.packed(), payload: Vec::new() },
+        };
+        let mut payload = payload;
+        if kind.has_data() {
+            let bounding_sphere = bounding_sphere(bounds.center(), bounds.half().length());
+            payload.insert(0, bounding_sphere);
+        }
+        Self { kind, parameters, payload, bounds }
+    }
+}

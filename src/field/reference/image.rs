@@ -1,0 +1,241 @@
+//! The whole picture as it should be: every pixel traced by the CPU evaluator.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::{DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+
+use super::shade::{shade_background, shade_decode, shade_encode, shade_surface};
+use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
+use super::trace::{March, TraceError, Tracer};
+use crate::eval::{SurfaceMaterial, surface};
+use crate::lights::{GpuLight, gpu_lights};
+use crate::mesh_rays::{Meshes, trace_meshes};
+use crate::{BACKGROUND_DEPTH, FILE_SHININESS, FILE_SPECULAR, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
+use isolith_geometry::{Camera, Ray};
+use isolith_mesh::{MeshHit, TriangleMesh};
+use isolith_scene::NodeId;
+
+/// A picture, and how sure each pixel of it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReferenceImage {
+    /// The picture.
+    pub buffers: GBuffer,
+    /// Per pixel, in pixel footprints: how far its ray is from hitting something else, see
+    /// [`super::trace::March::margin`].
+    pub margin: Vec<f32>,
+    /// The width of a pixel at distance 1, see [`Camera::footprint`].
+    pub footprint: f64,
+    /// Per pixel the node that is seen.
+    pub nodes: Vec<Option<NodeId>>,
+    /// Per pixel whether another node weighs as much in a blend, see [`crate::eval::SurfacePoint::tied`].
+    pub tied: Vec<bool>,
+    /// Of pixels whose ray passes an edge, or runs along a surface, so closely that rounding may matter: what is seen by rays
+    /// turned to all sides by [`GRAZING_ANGLE`].
+    pub turned: HashMap<usize, Vec<Glimpse>>,
+}
+
+/// What a ray sees.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glimpse {
+    /// Distance along the ray; infinite where nothing is hit.
+    pub depth: f32,
+    /// The node.
+    pub node: Option<NodeId>,
+}
+
+/// The node that a number in [`GBuffer::leaf`] stands for; nothing for the background.
+pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
+    match HitTarget::from_code(code) {
+        HitTarget::Background => None,
+        HitTarget::Leaf(leaf) => flat.ids.get(leaf).copied(),
+        HitTarget::Mesh(mesh) => flat.meshes.get(mesh).map(|mesh| mesh.id),
+    }
+}
+
+/// Rays that are turned, evenly around the one of the pixel.
+const TURNS: u32 = 8;
+/// Pixels whose margin is less than so many times [`GRAZING_ANGLE`] are looked at by turned rays: margins are known within a
+/// factor of two.
+const NEAR_AN_EDGE: f64 = 2.0;
+
+impl ReferenceImage {
+    /// Whether rays turned within rounding see both something and nothing.
+    pub fn is_undecided(&self, pixel: usize) -> bool {
+        let own = self.buffers.depth[pixel].is_finite();
+        self.turned.get(&pixel).is_some_and(|seen| seen.iter().any(|seen| seen.depth.is_finite() != own))
+    }
+
+    /// Whether a ray turned within rounding sees this depth, and this node if that is known: depths between those that are
+    /// seen of the node are seen too, and a footprint more.
+    pub fn may_show(&self, pixel: usize, depth: f32, node: Option<Option<NodeId>>) -> bool {
+        let Some(seen) = self.turned.get(&pixel) else { return false };
+        let own = Glimpse { depth: self.buffers.depth[pixel], node: self.nodes[pixel] };
+        let all = seen.iter().chain([&own]).filter(|seen| node.is_none_or(|node| node == seen.node));
+        let depths: Vec<f64> = all.map(|seen| f64::from(seen.depth)).collect();
+        if !depth.is_finite() {
+            return depths.iter().any(|depth| !depth.is_finite());
+        }
+        let finite = || depths.iter().copied().filter(|depth| depth.is_finite());
+        let room = 1.0 + WRONG_DEPTH * self.footprint;
+        let (least, most) = (finite().fold(f64::INFINITY, f64::min), finite().fold(0.0, f64::max));
+        let depth = f64::from(depth);
+        if node.is_some() {
+            return (least / room..=most * room).contains(&depth);
+        }
+        // Whose depths these are is not known: only what is seen counts, not what is between.
+        finite().any(|seen| (seen / room..=seen * room).contains(&depth))
+    }
+}
+
+/// Renders the scene through the centers of the pixels. `progress` hears the share that is done, from
+/// any thread.
+pub fn render_reference(
+    flat: &FlatScene,
+    meshes: &Meshes,
+    camera: &Camera,
+    [width, height]: [u32; 2],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<ReferenceImage, TraceError> {
+    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height] };
+    let tracer = Tracer::new(flat);
+    let done = AtomicU32::new(0);
+    let rows: Vec<Vec<Pixel>> = (0..height)
+        .into_par_iter()
+        .map_with(tracer, |tracer, y| {
+            let row = (0..width).map(|x| view.pixel(tracer, x, y)).collect();
+            progress(f64::from(done.fetch_add(1, Ordering::Relaxed) + 1) / f64::from(height));
+            row
+        })
+        .collect::<Result<_, _>>()?;
+    let mut buffers = GBuffer::empty(width, height);
+    let mut margin = Vec::with_capacity(buffers.depth.len());
+    let mut tied = Vec::with_capacity(buffers.depth.len());
+    let mut turned = HashMap::new();
+    for (i, pixel) in rows.into_iter().flatten().enumerate() {
+        buffers.depth[i] = pixel.depth;
+        buffers.leaf[i] = pixel.leaf;
+        buffers.normal[i] = pixel.normal.as_vec3().to_array();
+        let [r, g, b] = (shade_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
+        buffers.color[i] = [r, g, b, 255];
+        margin.push(pixel.margin);
+        tied.push(pixel.tied);
+        if !pixel.turned.is_empty() {
+            turned.insert(i, pixel.turned);
+        }
+    }
+    let nodes = buffers.leaf.iter().map(|code| node_of(flat, *code)).collect();
+    Ok(ReferenceImage { buffers, margin, footprint: camera.footprint(f64::from(height)), nodes, tied, turned })
+}
+
+struct View<'a> {
+    flat: &'a FlatScene,
+    meshes: &'a Meshes,
+    camera: &'a Camera,
+    lights: Vec<GpuLight>,
+    size: [u32; 2],
+}
+
+struct Pixel {
+    depth: f32,
+    leaf: u32,
+    normal: DVec3,
+    color: DVec3,
+    margin: f32,
+    tied: bool,
+    turned: Vec<Glimpse>,
+}
+
+/// What a ray met: a field, if any, and a mesh that is not behind it, if any.
+type Met = (March, Option<(usize, MeshHit)>);
+
+impl View<'_> {
+    fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
+        let size = DVec2::new(self.size[0].into(), self.size[1].into());
+        let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+        let (march, mesh) = self.meet(tracer, &ray)?;
+        let footprint = self.camera.footprint(size.y);
+        let margin = (march.margin / footprint) as f32;
+        let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
+        let mut tied = false;
+        let (t, leaf, normal, material) = if let Some(hit) = march.hit {
+            let component = &self.flat.components[hit.component as usize];
+            let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
+            tied = point.tied;
+            (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material)
+        } else if let Some((index, hit)) = mesh {
+            let (normal, material) = self.mesh_surface(index, &hit, ray.direction);
+            (hit.t, MESH_BIT | index as u32, normal, material)
+        } else {
+            let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
+            let color = shade_background(ray.direction.y, sky, horizon);
+            let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+            let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
+            return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
+        };
+        // Turned by the angle, the depth along a surface at this angle moves by more than a footprint.
+        is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
+        let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+        let color = self.shade(&ray, t, normal, &material);
+        Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
+    }
+
+    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Met, TraceError> {
+        let mesh = trace_meshes(self.flat, self.meshes, ray, self.camera.near, self.camera.far);
+        let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
+        Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
+    }
+
+    /// What rays turned by [`GRAZING_ANGLE`] to all sides see.
+    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Vec<Glimpse>, TraceError> {
+        let (right, up) = ray.direction.any_orthonormal_pair();
+        let glimpse = |i: u32| {
+            let (sine, cosine) = (TAU * f64::from(i) / f64::from(TURNS)).sin_cos();
+            let direction = ray.direction + (right * cosine + up * sine) * GRAZING_ANGLE;
+            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray })?;
+            Ok(match (march.hit, mesh) {
+                (Some(hit), _) => Glimpse { depth: hit.t as f32, node: node_of(self.flat, hit.leaf) },
+                (None, Some((index, hit))) => Glimpse { depth: hit.t as f32, node: Some(self.flat.meshes[index].id) },
+                (None, None) => Glimpse { depth: BACKGROUND_DEPTH, node: None },
+            })
+        };
+        (0..TURNS).map(glimpse).collect()
+    }
+
+    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
+        let ambient = DVec3::from(self.flat.environment.ambient);
+        shade_surface(material, ray.direction * t, normal, -ray.direction, ambient, &self.lights)
+    }
+
+    fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {
+        let placed = &self.flat.meshes[index];
+        let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
+        let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
+        // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal
+        // may point away though the triangle faces the eye.
+        let face = self.meshes[index].as_ref().map_or(hit.normal, |mesh| mesh.face_normal(hit.triangle));
+        let normal = if (normal_from_local * face).dot(direction) > 0.0 { -normal } else { normal };
+        let material = match (placed.material, &self.meshes[index]) {
+            (Some(material), _) => (&self.flat.materials[material as usize]).into(),
+            (None, Some(mesh)) => SurfaceMaterial { albedo: albedo(mesh, hit), ..FILE_MATERIAL },
+            (None, None) => FILE_MATERIAL,
+        };
+        (normal, material)
+    }
+}
+
+/// The material of a mesh that keeps its file's colors.
+pub const FILE_MATERIAL: SurfaceMaterial =
+    SurfaceMaterial { albedo: DVec3::ONE, specular: FILE_SPECULAR, emission: DVec3::ZERO, shininess: FILE_SHININESS };
+
+/// The mesh's own color: that of vertices, part and texture.
+fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
+    let linear = |[r, g, b, a]: [u8; 4]| {
+        let [r, g, b, a] = [r, g, b, a].map(|c| f64::from(c) / 255.0);
+        shade_decode(DVec3::new(r, g, b)).extend(a)
+    };
+    let color: DVec4 = mesh.color(hit.triangle, hit.weights, linear);
+    color.truncate()
+}

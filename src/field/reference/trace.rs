@@ -1,0 +1,329 @@
+//! Rays against the CPU evaluator, with certainty instead of a step limit.
+//!
+//! A ray advances by the field, which is a safe step, until the field's sign changes; secants and
+//! bisection then close in on the surface. Close to the surface it steps to where the field's slope along the ray says that
+//! it is 0, and a rounding beyond: so a sheet is entered however thin it is, and a ray that only comes near goes on and is
+//! never taken for a hit.
+//!
+//! Conventions that the renderer shares: what a ray hits is the first point where the field is
+//! negative, so a shape without volume is invisible; a ray that starts inside a solid hits at `near`. The arrays are
+//! rounded to f32. Where a cut ends flush with a face, or two faces coincide, that rounding may leave a skin: between
+//! parallel faces of two shapes what is thinner than the rounding is nothing.
+
+use std::cell::Cell;
+
+use glam::DVec3;
+use thiserror::Error;
+
+use crate::eval::{field, gradient, surface};
+use crate::{Component, FlatScene};
+use isolith_geometry::{Aabb, Ray};
+use isolith_scene::NodeId;
+
+/// Where a ray meets the first component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance along the ray.
+    pub t: f64,
+    /// Index into [`FlatScene::components`].
+    pub component: u32,
+    /// Index into [`FlatScene::nodes`].
+    pub leaf: u32,
+}
+
+/// What a ray met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct March {
+    /// What it hit.
+    pub hit: Option<Hit>,
+    /// How far, as an angle in radians, the ray could be turned before it might hit something else: the
+    /// least field over distance of every surface that it passed, and the depth over distance to which
+    /// it enters what it hits. The first is a lower bound within a factor of two, the second is not
+    /// followed beyond [`CLEAR`].
+    pub margin: f64,
+}
+
+/// A ray that could not be followed to its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("a ray was not at its end after {MAX_EVALUATIONS} evaluations of what node {node} is part of")]
+pub struct TraceError {
+    /// The first node of the component.
+    pub node: NodeId,
+}
+
+/// A ray gives up after so many evaluations of one component, rather than never end.
+pub const MAX_EVALUATIONS: u32 = 10_000_000;
+/// Margins beyond this angle are not measured further; a hundredth of a pixel and more.
+pub const CLEAR: f64 = 1e-4;
+
+/// Below this share of the distance from the eye the field counts as touching.
+const TOUCHING: f64 = 1e-7;
+/// Longest step where the field touches, as a share of the distance from the eye: a shorter chord may be missed, where the
+/// field's slope does not tell of it.
+const LONGEST_CREEP: f64 = 1e-5;
+/// What evaluating a field may round, relative to the numbers that it is evaluated with: some steps of f64.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// The depth of a skin that rounding to f32 may leave between two faces that should coincide, relative to the distance from
+/// the component's origin. Placing a face rounds three coefficients, a shift and a size, each by half a step, and a skin is
+/// twice as thick as it is deep.
+const SKIN: f64 = 2.0 * f32::EPSILON as f64;
+/// A ray that comes nearer to a face by less than this, per distance, follows it.
+const FOLLOWING: f64 = 1e-3;
+/// How far from opposite the normals of such faces may be: 1 + cos of the angle, a thousandth of a radian.
+const PARALLEL: f64 = 5e-7;
+
+/// The first surface on the ray between `near` and `far`. One ray at a time; [`Tracer`] is quicker for
+/// many.
+pub fn trace(flat: &FlatScene, ray: &Ray, near: f64, far: f64) -> Result<Option<Hit>, TraceError> {
+    Tracer::new(flat).march(ray, near, far).map(|march| march.hit)
+}
+
+/// The first surface of one component on the ray between `near` and `far`. Adds to `evaluations` how often the field was
+/// evaluated.
+pub fn trace_component(
+    flat: &FlatScene,
+    index: u32,
+    ray: &Ray,
+    [near, far]: [f64; 2],
+    evaluations: &mut u64,
+) -> Result<Option<f64>, TraceError> {
+    let mut line = Line::new(flat, index, ray);
+    let hit = line.first_hit(near, far);
+    *evaluations += line.fields.get();
+    hit
+}
+
+/// The leaf of a component that the ray meets at `t`: index into [`FlatScene::nodes`].
+pub fn leaf_at(flat: &FlatScene, component: u32, ray: &Ray, t: f64) -> u32 {
+    let line = Line::new(flat, component, ray);
+    surface(flat, line.component, line.at(t)).leaf
+}
+
+/// Traces many rays through one scene.
+#[derive(Clone)]
+pub struct Tracer<'a> {
+    flat: &'a FlatScene,
+    /// Bounds of the components, grown a little: the arrays are rounded to f32, their bounds are not.
+    bounds: Vec<Aabb>,
+    /// Entry, exit and index of the components on the present ray.
+    order: Vec<(f64, f64, u32)>,
+    /// How often the field of a component was evaluated so far.
+    pub evaluations: u64,
+}
+
+impl<'a> Tracer<'a> {
+    /// Prepares a scene.
+    pub fn new(flat: &'a FlatScene) -> Self {
+        Self {
+            flat,
+            bounds: flat.components.iter().map(Component::grown_bounds).collect(),
+            order: Vec::new(),
+            evaluations: 0,
+        }
+    }
+
+    /// Follows the ray from `near` to the first surface, or to `far`.
+    pub fn march(&mut self, ray: &Ray, near: f64, far: f64) -> Result<March, TraceError> {
+        self.order.clear();
+        for (index, component) in self.flat.components.iter().enumerate() {
+            let local = Ray { origin: ray.origin - component.origin, ..*ray };
+            if let Some((entry, exit)) = self.bounds[index].ray_interval(&local) {
+                let (entry, exit) = (entry.max(near), exit.min(far));
+                if entry <= exit {
+                    self.order.push((entry, exit, index as u32));
+                }
+            }
+        }
+        self.order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let mut nearest: Option<(f64, u32)> = None;
+        let mut margin = f64::INFINITY;
+        for &(entry, exit, index) in &self.order {
+            let limit = nearest.map_or(exit, |(t, _)| exit.min(t));
+            if entry > limit {
+                break;
+            }
+            let mut line = Line::new(self.flat, index, ray);
+            let hit = line.first_hit(entry, limit);
+            self.evaluations += line.fields.get();
+            if let Some(t) = hit? {
+                nearest = Some((t, index));
+            }
+            margin = margin.min(line.margin);
+        }
+        let Some((t, component)) = nearest else { return Ok(March { hit: None, margin }) };
+        let line = Line::new(self.flat, component, ray);
+        let leaf = surface(self.flat, line.component, line.at(t)).leaf;
+        let margin = margin.min(line.depth(t));
+        self.evaluations += line.fields.get();
+        Ok(March { hit: Some(Hit { t, component, leaf }), margin })
+    }
+}
+
+/// A ray through one component.
+struct Line<'a> {
+    flat: &'a FlatScene,
+    component: &'a Component,
+    origin: DVec3,
+    direction: DVec3,
+    evaluations: u32,
+    /// How often the field was evaluated, by `field` and `slope`.
+    fields: Cell<u64>,
+    margin: f64,
+}
+
+impl<'a> Line<'a> {
+    fn new(flat: &'a FlatScene, index: u32, ray: &Ray) -> Self {
+        let component = &flat.components[index as usize];
+        let origin = ray.origin - component.origin;
+        Self {
+            flat,
+            component,
+            origin,
+            direction: ray.direction,
+            evaluations: 0,
+            fields: Cell::new(0),
+            margin: f64::INFINITY,
+        }
+    }
+
+    fn at(&self, t: f64) -> DVec3 {
+        self.origin + self.direction * t
+    }
+
+    fn field(&self, t: f64) -> f64 {
+        self.fields.set(self.fields.get() + 1);
+        field(self.flat, self.component, self.at(t))
+    }
+
+    /// The field's slope along the ray.
+    fn slope(&self, t: f64) -> f64 {
+        self.fields.set(self.fields.get() + 1);
+        gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
+    }
+
+    /// What the field's value at `t` may be off by rounding.
+    fn rounding(&self, t: f64) -> f64 {
+        ROUNDING * (self.origin.length() + t)
+    }
+
+    fn first_hit(&mut self, entry: f64, exit: f64) -> Result<Option<f64>, TraceError> {
+        let (mut t, mut f) = (entry, self.field(entry));
+        if f < 0.0 {
+            return Ok(Some(t));
+        }
+        let mut min_step = 0.0;
+        // How the field fell in the last step, per distance.
+        let mut fell = 1.0;
+        while t < exit {
+            self.evaluations += 1;
+            if self.evaluations > MAX_EVALUATIONS {
+                return Err(TraceError { node: self.flat.ids[self.component.first as usize] });
+            }
+            let next = (t + self.step(t, f, fell, &mut min_step)).min(exit);
+            let g = self.field(next);
+            if g < 0.0 {
+                let hit = self.close_in([t, f], [next, g]);
+                let Some(behind) = self.skin_end(hit) else { return Ok(Some(hit)) };
+                (t, f, min_step, fell) = (behind, self.field(behind).max(0.0), 0.0, 1.0);
+                continue;
+            }
+            // Where the field, seen from the eye, begins to widen again, the ray has passed something.
+            if g * t > f * next {
+                self.pass(f, t);
+            }
+            fell = (f - g) / (next - t);
+            (t, f) = (next, g);
+        }
+        self.pass(f, t);
+        Ok(None)
+    }
+
+    /// The next step from `t`, where the field is `f`: the field itself, or where that touches to a rounding beyond the
+    /// place where it should be 0. Steps at least double as long as it touches, so that a ray along a surface gets on.
+    fn step(&self, t: f64, f: f64, fell: f64, min_step: &mut f64) -> f64 {
+        let rounding = self.rounding(t);
+        let touches = f < (TOUCHING * t).max(rounding);
+        // Along a face, the field is what the face was rounded by, all the way.
+        let follows = fell < FOLLOWING && f < SKIN * self.at(t).length();
+        if !touches && !follows {
+            *min_step = 0.0;
+            return f;
+        }
+        let longest = (LONGEST_CREEP * t).max(rounding);
+        *min_step = (2.0 * *min_step).clamp(rounding, longest);
+        let descent = if touches { -self.slope(t) } else { 0.0 };
+        let straight = if descent > 0.0 { f / descent + rounding } else { 0.0 };
+        f.max(straight.min(longest)).max(*min_step)
+    }
+
+    /// Where what the ray enters at `t` ends, if it is a skin that rounding left, see [`SKIN`].
+    fn skin_end(&self, t: f64) -> Option<f64> {
+        let thin = SKIN * self.at(t).length();
+        let is_deep = |f: f64| f < -thin;
+        if is_deep(self.field(t + 4.0 * thin)) {
+            return None;
+        }
+        let (mut end, mut least) = (t, self.rounding(t));
+        let farthest = t + (LONGEST_CREEP * t).max(8.0 * thin);
+        loop {
+            let f = self.field(end);
+            if end > t && f >= 0.0 {
+                break;
+            }
+            if is_deep(f) || end > farthest {
+                return None;
+            }
+            end += least.max(-f);
+            least *= 2.0;
+        }
+        let [front, back] = [t, end].map(|t| surface(self.flat, self.component, self.at(t)));
+        let normals = [front.gradient, back.gradient].map(|gradient| gradient.normalize_or_zero());
+        (front.leaf != back.leaf && normals[0].dot(normals[1]) < PARALLEL - 1.0).then_some(end)
+    }
+
+    fn pass(&mut self, f: f64, t: f64) {
+        self.margin = self.margin.min(f / t.max(f64::MIN_POSITIVE));
+    }
+
+    /// The sign change between a point outside and one inside, each with its field: secants, and the
+    /// middle wherever a secant has not halved what is left.
+    fn close_in(&self, mut outside: [f64; 2], mut inside: [f64; 2]) -> f64 {
+        let precision = 0.25 * self.rounding(inside[0]);
+        let mut use_secant = true;
+        loop {
+            let width = inside[0] - outside[0];
+            if width <= precision {
+                return inside[0];
+            }
+            // A little to either side of the secant's root, so that both ends move.
+            let share = if use_secant { (outside[1] / (outside[1] - inside[1])).clamp(1e-3, 0.999) } else { 0.5 };
+            for t in [share * (1.0 - 1e-6), share * (1.0 + 1e-6)].map(|share| outside[0] + width * share) {
+                let f = self.field(t);
+                if f < 0.0 {
+                    inside = [t, f];
+                    break;
+                }
+                outside = [t, f];
+            }
+            use_secant = inside[0] - outside[0] < 0.5 * width;
+        }
+    }
+
+    /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. Probes at growing
+    /// distances: one of them is close to the middle of the chord, however short that is.
+    fn depth(&self, t: f64) -> f64 {
+        let mut deepest = 0.0;
+        let first = (1e-10 * t).max(self.rounding(t));
+        let mut ahead = first;
+        while ahead < t && deepest < CLEAR {
+            let depth = -self.field(t + ahead) / (t + ahead);
+            // The first probes are no farther from the surface than rounding.
+            if depth < 0.0 && ahead > 100.0 * first {
+                break;
+            }
+            deepest = f64::max(deepest, depth);
+            ahead *= 1.3;
+        }
+        deepest
+    }
+}

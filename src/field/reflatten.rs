@@ -1,0 +1,229 @@
+//! Flattening after a small change: only the component that the change is in is made anew.
+
+use std::sync::Arc;
+
+use super::arrays::{Component, FlatScene};
+use super::batch::{may_be_joined, united};
+use super::budget::Cancel;
+use super::collect::{component_of, is_opened};
+use super::emit::emit;
+use super::error::FlattenError;
+use super::flatten::flatten_with_cuts;
+use super::lower_bound::fold_bounds;
+use super::operand::Operand;
+use isolith_scene::{Material, Node, NodeKind, Scene};
+
+/// Keeps the arrays of the last scene, and makes those of the next one from them where little has
+/// changed. Gives what [`super::flatten`] gives, but that small components stay joined as they were.
+#[derive(Debug, Default)]
+pub struct Flattener {
+    last: Option<Last>,
+}
+
+#[derive(Debug)]
+struct Last {
+    nodes: Vec<Arc<Node>>,
+    materials: Vec<Arc<Material>>,
+    time: f64,
+    has_cuts: bool,
+    flat: Arc<FlatScene>,
+}
+
+/// More changed objects than this are not worth looking at one by one.
+const MOST_CHANGED: usize = 8;
+
+impl Flattener {
+    /// The arrays of `scene` at `time` seconds.
+    ///
+    /// # Errors
+    /// A limit is hit, see [`super::flatten`]; the next call starts from nothing.
+    pub fn flatten(&mut self, scene: &Scene, time: f64) -> Result<Arc<FlatScene>, FlattenError> {
+        let flat = self.flatten_until(scene, time, &Cancel::default())?;
+        Ok(flat.expect("nobody else holds the flag, so nobody cancels"))
+    }
+
+    /// The arrays if little has changed since the last time, so that they are there at once.
+    pub fn update(&mut self, scene: &Scene, time: f64) -> Option<Arc<FlatScene>> {
+        let mut last = self.last.take()?;
+        if !last.update(scene, time) {
+            return None;
+        }
+        let flat = last.flat.clone();
+        self.last = Some(last);
+        Some(flat)
+    }
+
+    /// The same as [`Flattener::flatten`]; nothing where it was canceled.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn flatten_until(
+        &mut self,
+        scene: &Scene,
+        time: f64,
+        cancel: &Cancel,
+    ) -> Result<Option<Arc<FlatScene>>, FlattenError> {
+        if let Some(flat) = self.update(scene, time) {
+            return Ok(Some(flat));
+        }
+        let Some((flat, has_cuts)) = flatten_with_cuts(scene, time, cancel)? else { return Ok(None) };
+        let flat = Arc::new(flat);
+        self.last = Some(Last {
+            nodes: scene.nodes().to_vec(),
+            materials: scene.materials().to_vec(),
+            time,
+            has_cuts,
+            flat: flat.clone(),
+        });
+        Ok(Some(flat))
+    }
+}
+
+impl Last {
+    /// Brings the arrays up to date; false where they have to be made anew.
+    fn update(&mut self, scene: &Scene, time: f64) -> bool {
+        // A cut reaches into other components.
+        if self.has_cuts || self.time != time || self.flat.environment != scene.environment {
+            return false;
+        }
+        let same = |a: &[Arc<Material>], b: &[Arc<Material>]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
+        };
+        if !same(&self.materials, scene.materials()) || self.nodes.len() != scene.nodes().len() {
+            return false;
+        }
+        let pairs = self.nodes.iter().zip(scene.nodes()).enumerate();
+        let changed: Vec<usize> =
+            pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b)).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
+        if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(scene, &self.nodes[*i], &scene.nodes()[*i]))
+        {
+            return false;
+        }
+        for index in changed {
+            if !self.patch(scene, index) {
+                return false;
+            }
+            self.nodes[index] = scene.nodes()[index].clone();
+        }
+        true
+    }
+
+    /// Makes the component of the node at `index` anew, in its place.
+    fn patch(&mut self, scene: &Scene, index: usize) -> bool {
+        let id = scene.nodes()[index].id;
+        let Some(entry) = self.flat.ids.iter().position(|i| *i == id) else { return false };
+        let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
+        let old = self.flat.components[at].clone();
+        let Some(operands) = self.operands(scene, &old) else { return false };
+        let had_warnings = old.is_modified() && !self.flat.warnings.is_empty();
+        if fold_bounds(&operands).bounds.is_empty() || had_warnings {
+            return false;
+        }
+        let flat = Arc::make_mut(&mut self.flat);
+        // Lent for a moment: their values stand among the rows.
+        let materials = std::mem::take(&mut flat.materials);
+        let mut scratch = FlatScene { environment: flat.environment, materials, ..FlatScene::default() };
+        let mut known = true;
+        let new = emit(&mut scratch, &operands, &mut |_, id| {
+            let found = flat.material_ids.iter().position(|m| *m == id);
+            known &= found.is_some();
+            found.unwrap_or(0) as u32
+        });
+        flat.materials = scratch.materials;
+        if !known
+            || (new.count, new.param_rows, new.payload_rows, new.stack)
+                != (old.count, old.param_rows, old.payload_rows, old.stack)
+        {
+            return false;
+        }
+        for node in &mut scratch.nodes {
+            node.params += old.params;
+        }
+        let range = |first: u32, count: u32| first as usize..(first + count) as usize;
+        flat.nodes[range(old.first, old.count)].copy_from_slice(&scratch.nodes);
+        flat.ids[range(old.first, old.count)].copy_from_slice(&scratch.ids);
+        flat.params[range(old.params, old.param_rows)].copy_from_slice(&scratch.params);
+        flat.components[at] = Component { first: old.first, params: old.params, ..new };
+        flat.refit_hierarchy(at);
+        true
+    }
+}
+
+impl Last {
+    /// The fold of a component, from the same nodes as before; nothing where they do not make one component any more.
+    fn operands<'a>(&self, scene: &'a Scene, component: &Component) -> Option<Vec<Operand<'a>>> {
+        let top = |entry: usize| outermost(scene, scene.index_of(self.flat.ids[entry])?);
+        let (first, end) = (component.first as usize, (component.first + component.count) as usize);
+        let only = top(first)?;
+        if top(end - 1)? == only {
+            return component_of(scene, only);
+        }
+        let mut tops = Vec::new();
+        let mut at = first;
+        while at < end {
+            let node = &self.flat.nodes[at];
+            if node.is_run() {
+                at += 1;
+            } else {
+                tops.push(top(at)?);
+                at += node.extent as usize;
+            }
+        }
+        let folds = tops.into_iter().map(|top| component_of(scene, top)).collect::<Option<Vec<_>>>()?;
+        may_be_joined(&folds).then(|| united(folds))
+    }
+}
+
+/// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
+fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
+    let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.blend_override, n.apart.clone());
+    let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
+    let kinds = match (&old.kind, &new.kind) {
+        (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
+        // An opened group holds more than one component.
+        (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(scene, old) && !is_opened(scene, new),
+        _ => false,
+    };
+    kinds && form(old) == form(new) && modifiers(old) == modifiers(new)
+}
+
+/// The node at the top of the component that the node at `index` is part of.
+fn outermost(scene: &Scene, index: usize) -> Option<usize> {
+    let mut path = vec![index];
+    let mut at = scene.nodes()[index].parent;
+    while let Some(id) = at {
+        let parent = scene.index_of(id)?;
+        path.push(parent);
+        at = scene.nodes()[parent].parent;
+    }
+    path.into_iter().rev().find(|i| !is_opened(scene, &scene.nodes()[*i]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flatten;
+    use isolith_gallery as gallery;
+    use isolith_scene::{ParamValue, Shape};
+
+    #[test]
+    fn a_changed_object_gives_the_same_arrays_as_a_fresh_start() {
+        // The pedestals of all shapes are joined by place, see `batch`.
+        for (name, mut scene) in gallery::all().into_iter().filter(|(name, _)| *name != "shapes") {
+            let mut flattener = Flattener::default();
+            flattener.flatten(&scene, 0.0).unwrap();
+            for index in (0..scene.nodes().len()).step_by(5) {
+                let mut node = Node::clone(&scene.nodes()[index]);
+                node.transform.translation.x += 0.01;
+                if let NodeKind::Object(object) = &mut node.kind
+                    && let Shape::Sphere { radius } = object.shape
+                {
+                    object.shape.set_value(0, ParamValue::Scalar(radius * 1.1));
+                }
+                scene.replace(node).unwrap();
+                let again = flattener.flatten(&scene, 0.0).unwrap();
+                assert_eq!(*again, flatten(&scene, 0.0).unwrap(), "{name}, node {index}");
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The scene evaluator: distances and rays to all components at once, in f64. `eval` knows one component; this knows
+//! which of them matter, by the hierarchy over their bounds. Counterpart of `shaders/scene/`.
+//!
+//! The value of a component at a point is its field, or the distance to its bounds where that is more: both are lower
+//! bounds of the distance to its surface. The value of the scene is the least of all, so a component whose bounds are
+//! farther than a value that is known cannot change it.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+
+use super::eval::field;
+use super::hierarchy::{Hierarchy, HierarchyNode};
+use super::reference::trace::{Hit, TraceError, leaf_at, trace_component};
+use super::{Component, FlatScene};
+use isolith_geometry::{Aabb, Ray};
+
+/// How far a ray that leaves a surface begins above it, in footprints of a pixel there: more than what a picture's depth may
+/// be off. `shaders/scene/march.wgsl` has the same number.
+pub const SURFACE_BIAS: f64 = 0.25;
+
+/// What a half space is taken for lower, relative to the coordinates: the arrays are rounded to f32, it is not.
+const HALF_SPACE_SLACK: f64 = 1e-6;
+
+/// The value of the scene at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneDistance {
+    /// Never more than the distance to the nearest surface; negative inside.
+    pub value: f64,
+    /// The component that it belongs to: index into [`FlatScene::components`]; `None` for a scene without any.
+    pub component: Option<u32>,
+}
+
+/// Where on a ray a hit counts, as distances from its origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayLimits {
+    /// Not before; what is solid here is hit here.
+    pub near: f64,
+    /// Not beyond.
+    pub far: f64,
+}
+
+/// What was done so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneCounts {
+    /// Evaluations of the field of one component.
+    pub evaluations: u64,
+    /// Boxes that a point or a ray was compared with.
+    pub boxes: u64,
+}
+
+/// Asks a scene.
+#[derive(Clone, Debug)]
+pub struct SceneEvaluator<'a> {
+    flat: &'a FlatScene,
+    hierarchy: &'a Hierarchy,
+    /// What was done since it was made.
+    pub counts: SceneCounts,
+}
+
+impl<'a> SceneEvaluator<'a> {
+    /// By the scene's own hierarchy, which is built here if nobody needed it before.
+    pub fn new(flat: &'a FlatScene) -> Self {
+        Self::with_hierarchy(flat, flat.hierarchy())
+    }
+
+    /// By another hierarchy over the scene's components.
+    pub fn with_hierarchy(flat: &'a FlatScene, hierarchy: &'a Hierarchy) -> Self {
+        Self { flat, hierarchy, counts: SceneCounts::default() }
+    }
+
+    /// The value of the scene at a point of the world. Where it is not less than `within`, any lower bound of the distance
+    /// that is not less than `within` either may stand for it: then fields of what is farther are not evaluated.
+    pub fn distance(&mut self, point: DVec3, within: f64) -> SceneDistance {
+        let mut nearest = SceneDistance { value: f64::INFINITY, component: None };
+        let nodes = &self.hierarchy.nodes;
+        let mut open: Vec<(f64, usize)> =
+            nodes.first().map(|root| (root.bounds.distance(point), 0)).into_iter().collect();
+        self.counts.boxes += open.len() as u64;
+        while let Some((bound, index)) = open.pop() {
+            if bound > 0.0 && bound >= nearest.value {
+                continue;
+            }
+            let node = &nodes[index];
+            if node.is_leaf() {
+                self.consider(node.link, point, bound, within, &mut nearest);
+                continue;
+            }
+            let [left, right] =
+                [index + 1, node.link as usize].map(|child| (nodes[child].bounds.distance(point), child));
+            self.counts.boxes += 2;
+            open.extend(if left.0 <= right.0 { [right, left] } else { [left, right] });
+        }
+        for index in self.hierarchy.unbounded.iter() {
+            self.consider(*index, point, 0.0, within, &mut nearest);
+        }
+        nearest
+    }
+
+    /// Lowers `nearest` to the value of a component whose bounds are `bound` away.
+    fn consider(&mut self, index: u32, point: DVec3, bound: f64, within: f64, nearest: &mut SceneDistance) {
+        let component = &self.flat.components[index as usize];
+        let local = point - component.origin;
+        let bound = bound.max(half_space_bound(component, local));
+        let is_outside = bound > 0.0;
+        if is_outside && bound >= nearest.value {
+            return;
+        }
+        let value = if is_outside && bound >= within {
+            bound
+        } else {
+            self.counts.evaluations += 1;
+            let value = field(self.flat, component, local);
+            if is_outside { value.max(bound) } else { value }
+        };
+        if value < nearest.value {
+            *nearest = SceneDistance { value, component: Some(index) };
+        }
+    }
+
+    /// The first surface on the ray within the limits.
+    ///
+    /// # Errors
+    /// A ray could not be followed to its end.
+    pub fn ray(&mut self, ray: &Ray, limits: RayLimits) -> Result<Option<Hit>, TraceError> {
+        let mut nearest: Option<(f64, u32)> = None;
+        let mut open = BinaryHeap::new();
+        self.open(0, ray, limits, &mut open);
+        while let Some(Open { entry, exit, index }) = open.pop() {
+            let limit = nearest.map_or(exit, |(t, _)| exit.min(t));
+            if entry > limit {
+                break;
+            }
+            let HierarchyNode { link, .. } = self.hierarchy.nodes[index];
+            if self.hierarchy.nodes[index].is_leaf() {
+                self.follow(link, ray, RayLimits { near: entry, far: limit }, &mut nearest)?;
+            } else {
+                let limits = RayLimits { far: nearest.map_or(limits.far, |(t, _)| t), ..limits };
+                self.open(index + 1, ray, limits, &mut open);
+                self.open(link as usize, ray, limits, &mut open);
+            }
+        }
+        for index in self.hierarchy.unbounded.iter() {
+            let far = nearest.map_or(limits.far, |(t, _)| t);
+            self.follow(*index, ray, RayLimits { far, ..limits }, &mut nearest)?;
+        }
+        let hit = |(t, component)| Hit { t, component, leaf: leaf_at(self.flat, component, ray, t) };
+        Ok(nearest.map(hit))
+    }
+
+    /// Puts a node that the ray meets among those that are open.
+    fn open(&mut self, index: usize, ray: &Ray, limits: RayLimits, open: &mut BinaryHeap<Open>) {
+        let Some(node) = self.hierarchy.nodes.get(index) else { return };
+        self.counts.boxes += 1;
+        let Some((entry, exit)) = widened(&node.bounds, ray).ray_interval(ray) else { return };
+        let (entry, exit) = (entry.max(limits.near), exit.min(limits.far));
+        if entry <= exit {
+            open.push(Open { entry, exit, index });
+        }
+    }
+
+    fn follow(
+        &mut self,
+        index: u32,
+        ray: &Ray,
+        limits: RayLimits,
+        nearest: &mut Option<(f64, u32)>,
+    ) -> Result<(), TraceError> {
+        let hit = trace_component(self.flat, index, ray, [limits.near, limits.far], &mut self.counts.evaluations)?;
+        if let Some(t) = hit {
+            *nearest = Some((t, index));
+        }
+        Ok(())
+    }
+}
+
+/// The ray that leaves a surface at `point` along `direction`: it begins [`SURFACE_BIAS`] footprints off the surface, on the
+/// side to which it goes. `normal` has unit length.
+pub fn surface_ray(point: DVec3, normal: DVec3, direction: DVec3, footprint: f64) -> Ray {
+    let side = if normal.dot(direction) < 0.0 { -normal } else { normal };
+    Ray { origin: point + side * (SURFACE_BIAS * footprint), direction }
+}
+
+/// How far a point, relative to the component's origin, is from the half space that holds the component; 0 where nothing is
+/// known.
+fn half_space_bound(component: &Component, p: DVec3) -> f64 {
+    let Some([x, y, z, d]) = component.half_space else { return 0.0 };
+    (DVec3::new(x, y, z).dot(p) + d - HALF_SPACE_SLACK * (p.length() + d.abs())).max(0.0)
+}
+
+/// The box grown by some steps of f64, so that rounding never loses what lies in a side of it.
+fn widened(bounds: &Aabb, ray: &Ray) -> Aabb {
+    let reach = bounds.min.abs().max(bounds.max.abs()).max_element() + ray.origin.abs().max_element();
+    bounds.expanded(reach * 1e-14)
+}
+
+/// A node that the ray meets, the nearest first.
+#[derive(Clone, Copy, Debug)]
+struct Open {
+    entry: f64,
+    exit: f64,
+    index: usize,
+}
+
+impl Ord for Open {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.entry.total_cmp(&self.entry).then(other.index.cmp(&self.index))
+    }
+}
+
+impl PartialOrd for Open {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Open {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Open {}

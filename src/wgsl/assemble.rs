@@ -1,0 +1,117 @@
+//! The whole WGSL source of each pass: what depends on the evaluator is generated.
+
+use std::fmt::Write as _;
+
+use super::calls::{gradients_wgsl, shapes_wgsl};
+use super::dual::DUAL_PRELUDE;
+use super::evaluator::Evaluator;
+use super::files::{ShaderError, resolve};
+use super::gradients::gradient_wgsl;
+use super::lookahead;
+use super::modifiers::{modifier_gradients_wgsl, modifiers_wgsl};
+use super::op_set::OpSet;
+use super::options::{Options, SkipMode};
+use super::specialize::{Fold, specialize};
+
+/// The whole source of the shader `entry`, each file included once, before its first user.
+pub fn assemble(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
+    let mut out = String::new();
+    let (fineness, ops) = (options.quality.fineness(), evaluator.op_set());
+    let extended = ops.extended;
+    write!(
+        out,
+        "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst RELAXED: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
+         {fineness:?};\nconst MIN_STEP_SCALE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst EXTENDED_JOINS: bool = {};\nconst EXTENDED_KERNELS: bool = {};\n",
+        options.counting,
+        options.cones,
+        options.relaxed,
+        options.skip_mode != SkipMode::Never,
+        options.skip_mode == SkipMode::Branches || !evaluator.is_straight(),
+        fineness.sqrt(),
+        !ops.is_rough(),
+        extended.joins,
+        extended.kernels
+    )
+    .expect("strings take all");
+    out += &lookahead::constants(evaluator, options);
+    out += &resolve(entry, !ops.modifiers.is_empty(), &|name| generated(name, evaluator, options))?;
+    Ok(out)
+}
+
+/// The same for a shader that evaluates no field.
+pub fn assemble_plain(entry: &str) -> Result<String, ShaderError> {
+    let nothing = Evaluator::Interpreter(OpSet::none());
+    assemble(entry, &nothing, Options::default())
+}
+
+/// Files that do not exist: the evaluator decides what is in them.
+fn generated(name: &str, evaluator: &Evaluator, options: Options) -> Option<String> {
+    use Evaluator::{Baked, Interpreter, StraightLine, Tape};
+    let include = |file: &str| Some(format!("#include \"field/{file}.wgsl\""));
+    let special = |structure, rows, fold| Some(specialize(structure, rows, fold, options));
+    match (name, evaluator) {
+        ("generated/value.wgsl", Interpreter(_)) => include("interpreted_value"),
+        ("generated/surface.wgsl", Interpreter(_)) => include("interpreted_surface"),
+        ("generated/value.wgsl", Tape(f)) if f.modifiers.is_empty() => include("tape_value"),
+        ("generated/surface.wgsl", Tape(f)) if f.modifiers.is_empty() => include("tape_surface"),
+        ("generated/value.wgsl", Tape(_)) => include("tape_modified_value"),
+        ("generated/surface.wgsl", Tape(_)) => include("tape_modified_surface"),
+        ("generated/value.wgsl", StraightLine(structure)) => special(structure, None, Fold::Value),
+        ("generated/surface.wgsl", StraightLine(s) | Baked(s, _)) if s.is_modified() => include("interpreted_surface"),
+        ("generated/surface.wgsl", StraightLine(structure)) => special(structure, None, Fold::Surface),
+        ("generated/value.wgsl", Baked(structure, rows)) => special(structure, Some(rows), Fold::Value),
+        ("generated/surface.wgsl", Baked(structure, rows)) => special(structure, Some(rows), Fold::Surface),
+        ("generated/shapes.wgsl", _) => Some(shapes_wgsl(&evaluator.op_set())),
+        ("generated/gradients.wgsl", _) => Some(gradients_wgsl(&evaluator.op_set())),
+        ("generated/modifiers.wgsl", _) => Some(modifiers_wgsl(&evaluator.op_set().modifiers)),
+        ("generated/modifier_gradients.wgsl", _) => Some(modifier_gradients_wgsl(&evaluator.op_set().modifiers)),
+        ("generated/dual.wgsl", _) => Some(DUAL_PRELUDE.to_owned()),
+        _ => {
+            let function = name.strip_prefix("generated/dual/")?.strip_suffix(".wgsl")?;
+            gradient_wgsl(function).map(|text| format!("#include \"generated/dual.wgsl\"\n{text}"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::super::op_set::shape_loops;
+    use super::*;
+    use isolith_scene::ShapeKind;
+
+    #[test]
+    fn files_are_included_once_and_missing_ones_are_named() {
+        let text = assemble("trace.wgsl", &Evaluator::Interpreter(OpSet::all()), Options::default()).unwrap();
+        assert_eq!(text.matches("fn view_direction").count(), 1);
+        assert!(!text.contains("#include"));
+        let error = assemble_plain("no_such.wgsl").unwrap_err();
+        assert!(error.to_string().contains("no_such.wgsl"));
+    }
+
+    #[test]
+    fn loops_of_shapes_are_known() {
+        for kind in ShapeKind::ALL {
+            let text = assemble_plain(&format!("sdf/{}.wgsl", kind.function().trim_start_matches("sdf_"))).unwrap();
+            let found: usize = ["for (", "while ", "loop {"].map(|word| text.matches(word).count()).iter().sum();
+            assert_eq!(shape_loops(*kind)[0] as usize, found, "{kind:?}");
+        }
+    }
+
+    #[test]
+    fn a_source_holds_only_the_shapes_in_use() {
+        let ops = OpSet { shapes: [ShapeKind::Sphere].into(), ..OpSet::none() };
+        let text = assemble("trace.wgsl", &Evaluator::Interpreter(ops), Options::default()).unwrap();
+        assert!(text.contains("fn sdf_sphere") && !text.contains("fn sdf_torus"));
+        for &kind in &OpSet::all().modifiers {
+            let holds = |modifiers: BTreeSet<_>| {
+                let ops = OpSet { modifiers, stack: 2, ..OpSet::none() };
+                let text = assemble("trace.wgsl", &Evaluator::Interpreter(ops), Options::default()).unwrap();
+                text.contains(&format!("fn mod_{}", super::super::modifiers::file(kind)))
+            };
+            let others = OpSet::all().modifiers.into_iter().filter(|other| *other != kind).collect();
+            assert!(holds([kind].into()) && !holds(others) && !holds(BTreeSet::new()), "{kind:?}");
+        }
+    }
+}

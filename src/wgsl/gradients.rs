@@ -1,0 +1,71 @@
+//! The functions of shapes and modifiers together with their gradients; derived once, however many pipelines hold
+//! them.
+
+use std::collections::BTreeMap;
+use std::sync::{LazyLock, Mutex, PoisonError};
+
+use super::dual::dual;
+use super::files::library;
+use super::modifiers::{file, own_rows};
+use isolith_scene::ModifierKind;
+
+/// A shape's function, or one about a modifier (see [`modifier_gradient`]), with its gradient.
+pub fn gradient_wgsl(function: &str) -> Option<String> {
+    static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
+    let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(text) = derived.get(function) {
+        return Some(text.clone());
+    }
+    // What has no derivative has no pipeline; a test derives every one.
+    let text = match function.strip_prefix("sdf_") {
+        Some(shape) => dual(&with_rows(library(&format!("sdf/{shape}.wgsl")).ok()?), function).ok()?,
+        None => modifier_gradient(function)?,
+    };
+    derived.insert(function.to_owned(), text.clone());
+    Some(text)
+}
+
+/// A source with something that stands for the data it reads; their derivative is zero.
+pub(super) fn with_rows(text: String) -> String {
+    if !text.contains("scene_row(") {
+        return text;
+    }
+    format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
+}
+
+/// The derivatives of one of three functions of a modifier: `pull_mod_x`, of the point in the copy along a vector;
+/// `along_mod_x`, of the value by the point; `through_mod_x`, of the value by the field of the content.
+fn modifier_gradient(function: &str) -> Option<String> {
+    let (way, name) = function.split_once("_mod_")?;
+    let kind = ModifierKind::ALL.iter().copied().find(|kind| file(*kind) == name)?;
+    // All three may differentiate the same function by other arguments: each has its own copy of the source.
+    let text = renamed(&library(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
+    let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
+    let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
+    let passed = own_rows(kind, &|i| format!("r{i}"), &|_| "data".to_owned());
+    let wrapper = match way {
+        "pull" => format!(
+            "fn {function}(p: vec3f, v: vec3f, k: u32{rows}) -> f32 {{\n    return dot(v, \
+             mod_{name}_point_pull_{name}(p, k{passed}));\n}}\n"
+        ),
+        "along" => format!(
+            "fn {function}(p: vec3f, f: f32{rows}) -> f32 {{\n    return mod_{name}_value_along_{name}(f, p{passed});\n}}\n"
+        ),
+        "through" => format!(
+            "fn {function}(f: vec3f, p: vec3f{rows}) -> f32 {{\n    return mod_{name}_value_through_{name}(f.x, \
+             p{passed});\n}}\n"
+        ),
+        _ => return None,
+    };
+    let source = format!("{text}\n{wrapper}");
+    let derived = dual(&with_rows(source.clone()), function).ok()?;
+    Some(format!("{source}{derived}"))
+}
+
+/// The source with every function's name followed by `_suffix`.
+fn renamed(source: &str, suffix: &str) -> String {
+    let mut names: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).collect();
+    // Longer ones first: a name may begin another.
+    names.sort_unstable_by_key(|name| std::cmp::Reverse(name.len()));
+    names.iter().fold(source.to_owned(), |text, name| text.replace(&format!("{name}("), &format!("{name}_{suffix}(")))
+}
