@@ -21,6 +21,7 @@ run: setup ## Open the editor on the showcase scene; without a display, render i
 
 test: lint ## Check formatting and lints, then run every test
 	cargo test --workspace --lib --tests
+	cargo test --workspace --doc
 
 # 200 times the points of `make test`: a million for each repetition against its copies. Numerical stress by all methods.
 # 50 real editors under Xvfb are driven by keys and killed: that takes half an hour and installs xvfb and xdotool.
@@ -39,6 +40,7 @@ lint: setup ## Check formatting and lints only
 	@cargo fmt --version >/dev/null 2>&1 && cargo clippy --version >/dev/null 2>&1 || rustup component add rustfmt clippy
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps
 
 bench: setup ## Measure speed and accuracy; tables go into benches/README.md, charts into target/bench
 	cargo bench --bench frame

@@ -12,6 +12,7 @@ mod debug_view;
 mod documents;
 mod drag;
 mod editor;
+mod embed;
 mod files;
 mod golden;
 mod gpu;

@@ -171,42 +171,53 @@ fn caught(path: &str, body: &str, what: &str) -> bool {
 }
 
 #[test]
+fn manifests_say_what_the_table_of_modules_says() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (name, uses) in MODULES.iter().filter(|(name, _)| !rules::PROGRAM.contains(name)) {
+        let manifest = std::fs::read_to_string(root.join("src").join(name).join("Cargo.toml")).unwrap();
+        assert_eq!(own_dependencies(&manifest), *uses, "the manifest of {name}");
+    }
+    let sample = "[dependencies]\nisolith-b.workspace = true\n[dev-dependencies]\nisolith-c.workspace = true\n";
+    assert_eq!(own_dependencies(sample), ["b"]);
+}
+
+/// Members of the workspace that a manifest names under `[dependencies]`.
+fn own_dependencies(manifest: &str) -> Vec<&str> {
+    let body = manifest.split("[dependencies]").nth(1).unwrap_or_default();
+    let lines = body.lines().take_while(|line| !line.starts_with('['));
+    lines.filter_map(|line| line.strip_prefix("isolith-")?.split(['.', ' ']).next()).collect()
+}
+
+#[test]
 fn forbidden_uses_are_caught() {
-    assert!(caught("src/scene/a.rs", "use crate::field::FlatScene;", "scene may not use flat"));
-    assert!(caught("src/scene/a.rs", "use crate::{geometry::Aabb, render};", "scene may not use render"));
-    assert!(caught("src/scene/a.rs", "use super::super::render::X;", "scene may not use render"));
-    assert!(caught("src/scene/mod.rs", "use super::flat;", "scene may not use flat"));
-    assert!(caught("src/editor/a/b.rs", "fn f() { crate::render::g() }", "editor may not use render"));
-    assert!(caught("src/novelty/a.rs", "use crate::scene::Scene;", "stands in no table"));
+    assert!(caught("src/bench/a.rs", "use crate::editor::Editor;", "bench may not use editor"));
+    assert!(caught("src/bench/a.rs", "use crate::{geometry::Aabb, app};", "bench may not use app"));
+    assert!(caught("src/app/a.rs", "use super::super::cli::X;", "app may not use cli"));
+    assert!(caught("src/app/mod.rs", "use super::cli;", "app may not use cli"));
+    assert!(caught("src/app/a/b.rs", "fn f() { crate::cli::g() }", "app may not use cli"));
     assert!(caught("src/editor/a.rs", "use wgpu::Device;", "only render and app may use wgpu"));
     assert!(caught("src/editor/a.rs", "fn f(d: &wgpu::Device) {}", "only render and app may use wgpu"));
     assert!(caught("src/render/a.rs", "use egui::Ui;", "only editor and app may use egui"));
     assert!(caught("src/render/a.rs", "use egui_ltreeview::X;", "only editor and app may use egui"));
-    assert!(caught("src/render/a.rs", "use crate::scene::Scene;", "the renderer sees no Scene"));
-    assert!(caught("src/render/a.rs", "use crate::field::eval::field;", "it never evaluates"));
-    assert!(caught(
-        "src/render/wgsl/a.rs",
-        "use crate::field::{FlatScene, reference::X};",
-        "may not use field::reference"
-    ));
-    assert!(caught("src/render/a.rs", "fn f() { crate::field::pick::pick() }", "may not use field::pick"));
+    assert!(caught("src/render/a.rs", "use isolith_scene::Scene;", "the renderer sees no Scene"));
+    assert!(caught("src/render/a.rs", "use isolith_field::eval::field;", "it never evaluates"));
+    assert!(caught("src/render/a.rs", "use isolith_field::{FlatScene, reference::trace};", "it never evaluates"));
     assert!(caught("src/document/mod.rs", "fn f() { std::fs::read(\"x\"); }", "touch the file system"));
-    assert!(caught("src/flat/mod.rs", "use std::fs;", "touch the file system"));
-    assert!(caught("src/flat/mod.rs", "fn f() { File::open(\"x\"); }", "touch the file system"));
+    assert!(caught("src/field/mod.rs", "use std::fs;", "touch the file system"));
+    assert!(caught("src/field/mod.rs", "fn f() { File::open(\"x\"); }", "touch the file system"));
 }
 
 #[test]
 fn allowed_uses_are_let_through() {
     let fine = |path: &str, body: &str| assert_eq!(problems(path, &format!("//! A sample.\n{body}\n")), [""; 0]);
-    fine("src/scene/a.rs", "use crate::geometry::Aabb;\nuse super::Node;\nuse crate::scene::Light;");
+    fine("src/bench/a.rs", "use crate::geometry::Aabb;\nuse super::Node;\nuse crate::bench::Row;");
     fine("src/scene/mod.rs", "mod tests {\n use super::*;\n}");
-    fine("src/scene/a.rs", "/// See [`crate::field`] and `wgpu::Device`.\nfn f() {}");
-    fine("src/scene/a.rs", "#[cfg(test)]\nmod tests {\n use crate::render::X;\n}");
-    fine("src/render/gpu.rs", "use wgpu::util::DeviceExt;\nuse crate::scene::ShapeKind;");
-    fine("src/render/a.rs", "use crate::field::{FlatScene, standpoint::Standpoint};");
-    fine("src/render/a.rs", "#[cfg(test)]\nmod tests {\n use crate::field::eval::field;\n}");
+    fine("src/bench/a.rs", "/// See [`crate::app`] and `wgpu::Device`.\nfn f() {}");
+    fine("src/bench/a.rs", "#[cfg(test)]\nmod tests {\n use crate::app::X;\n}");
+    fine("src/render/gpu.rs", "use wgpu::util::DeviceExt;\nuse isolith_scene::ShapeKind;");
+    fine("src/render/a.rs", "#[cfg(test)]\nmod tests {\n use isolith_field::eval::field;\n}");
     fine("src/scene/file/mod.rs", "use std::fs;");
-    fine("src/flat/a.rs", "#[cfg(test)]\nmod tests {\n fn f() { std::fs::read(\"x\").unwrap(); }\n}");
+    fine("src/field/a.rs", "#[cfg(test)]\nmod tests {\n fn f() { std::fs::read(\"x\").unwrap(); }\n}");
 }
 
 #[test]

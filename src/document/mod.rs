@@ -2,6 +2,23 @@
 //!
 //! [`Document::apply`] is the only gate through which a scene changes. Undo is by snapshot: a scene
 //! shares its nodes, so keeping the one from before an edit copies pointers and no contents.
+//!
+//! # Example
+//!
+//! An edit, and its undo:
+//!
+//! ```
+//! use isolith_document::{Document, Edit};
+//! use isolith_scene::{Group, Node, NodeKind, Scene};
+//!
+//! let mut document = Document::new(Scene::new());
+//! let node = Node::new("Parts", NodeKind::Group(Group::UNION));
+//! let new = document.apply(Edit::Insert { parent: None, position: 0, node })?;
+//! assert_eq!(document.scene().nodes()[0].id, new[0]);
+//! assert!(document.undo());
+//! assert!(document.scene().nodes().is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod edit;
 mod history;

@@ -26,6 +26,33 @@
 //! | `mesh_rays` | rays against them |
 //! | `view` | the view of a scene when nobody chose one |
 //! | `debug_view` | what a picture can show instead of light, and its colors |
+//!
+//! # Example
+//!
+//! A sphere is flattened, sampled and traced:
+//!
+//! ```
+//! use glam::DVec3;
+//! use isolith_field::reference::trace::trace;
+//! use isolith_field::{eval, flatten};
+//! use isolith_geometry::Ray;
+//! use isolith_scene::{Node, NodeKind, Object, Scene, Shape};
+//!
+//! let mut scene = Scene::new();
+//! let material = scene.materials()[0].id;
+//! let shape = Shape::Sphere { radius: 1.0 };
+//! scene.insert(None, 0, Node::new("Ball", NodeKind::Object(Object { shape, material })))?;
+//! let flat = flatten(&scene, 0.0)?;
+//!
+//! let ball = &flat.components[0];
+//! let (distance, gradient) = eval::gradient(&flat, ball, DVec3::new(3.0, 0.0, 0.0) - ball.origin);
+//! assert!((distance - 2.0).abs() < 1e-12 && (gradient - DVec3::X).length() < 1e-12);
+//!
+//! let ray = Ray { origin: DVec3::Z * 5.0, direction: DVec3::NEG_Z };
+//! let hit = trace(&flat, &ray, 0.0, 100.0)?.expect("the ray meets the ball");
+//! assert!((hit.t - 4.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod arrays;
 mod batch;

@@ -9,6 +9,21 @@
 //! | the frame | `FrameResources`: view, lights, dispatches; [`Frame`]: what is still to be done |
 //!
 //! In which order the passes of a frame come stands in `recipe`. See `frame::plan` for how it is cut into dispatches.
+//!
+//! # Example
+//!
+//! `examples/embed.rs` renders on a device that another program owns. On a device of its own:
+//!
+//! ```
+//! use isolith_render::{Gpu, Renderer};
+//!
+//! let flat = isolith_field::flatten(&isolith_scene::Scene::new(), 0.0)?;
+//! let camera = flat.default_camera(&[], 1.0);
+//! let mut renderer = Renderer::new(&Gpu::headless()?)?;
+//! let (buffers, warnings) = renderer.render(&flat, &[], &camera, [32, 32], &mut |_| true)?;
+//! assert_eq!((buffers.depth.len(), warnings.len()), (32 * 32, 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod frame;
 mod gpu;

@@ -1,6 +1,22 @@
 //! What the artist made, as plain data: a flat table of nodes, a table of materials, an environment.
 //!
 //! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
+//!
+//! # Example
+//!
+//! A scene in a file, and back:
+//!
+//! ```
+//! use isolith_scene::{Node, NodeKind, Object, Scene, Shape, file};
+//!
+//! let mut scene = Scene::new();
+//! let material = scene.materials()[0].id;
+//! let shape = Shape::Sphere { radius: 1.0 };
+//! scene.insert(None, 0, Node::new("Ball", NodeKind::Object(Object { shape, material })))?;
+//! let text = file::to_json(&scene)?;
+//! assert_eq!(file::parse(text.as_bytes(), "ball.json".as_ref())?, scene);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod attached;
 mod attachment;

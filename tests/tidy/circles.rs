@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::rules::test_ranges;
+use super::rules::{PROGRAM, test_ranges};
 use super::source::{Token, tokens};
 
 /// A path in segments, as it is written: `super::node::Node`.
@@ -72,6 +72,10 @@ fn resolve<'a>(modules: &'a BTreeMap<Path, Uses>, from: &Path, path: &[String], 
 
 fn absolute(modules: &BTreeMap<Path, Uses>, from: &Path, path: &[String]) -> Option<Path> {
     match path.first()?.as_str() {
+        // In a member of the workspace `crate` is the member's own root.
+        "crate" if from.first().is_some_and(|top| !PROGRAM.contains(&top.as_str())) => {
+            Some([&from[..1], &path[1..]].concat())
+        }
         "crate" => Some(path[1..].to_vec()),
         "super" | "self" => {
             let mut base = from.clone();
@@ -182,7 +186,7 @@ fn circles_are_found_through_reexports_and_braces() {
     let files =
         |list: &[(&str, &str)]| list.iter().map(|(p, t)| ((*p).to_owned(), (*t).to_owned())).collect::<Vec<_>>();
     let root = ("m/mod.rs", "mod a; mod b; mod c; pub use a::A; pub use b::{B, deep::{D as E}};");
-    let circle = files(&[root, ("m/a.rs", "use super::{E, c::C};"), ("m/b.rs", "use crate::m::A;"), ("m/c.rs", "")]);
+    let circle = files(&[root, ("m/a.rs", "use super::{E, c::C};"), ("m/b.rs", "use crate::A;"), ("m/c.rs", "")]);
     assert_eq!(circles(&circle), [["m/a.rs", "m/b.rs"]]);
     let by_path =
         files(&[root, ("m/a.rs", "fn f() { super::c::g() }"), ("m/b.rs", ""), ("m/c.rs", "fn g() { super::a::f() }")]);
@@ -196,7 +200,7 @@ fn uses_in_tests_and_towards_other_modules_make_no_circle() {
     let one_way = [
         ("m/mod.rs", "mod a; mod b; pub use a::A;"),
         ("m/a.rs", "use super::b::B; #[cfg(test)] mod tests { use super::super::b::x; }"),
-        ("m/b.rs", "struct B; #[cfg(test)] mod tests { use crate::m::a::A; }"),
+        ("m/b.rs", "struct B; #[cfg(test)] mod tests { use crate::a::A; }"),
         ("n.rs", "use crate::m::A;"),
     ];
     assert!(circles(&one_way.map(|(p, t)| (p.to_owned(), t.to_owned()))).is_empty());

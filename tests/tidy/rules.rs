@@ -2,7 +2,8 @@
 
 use super::source::{Token, closing, tokens};
 
-/// What each module may use, besides itself. Nothing else is allowed: not by name, not through `super`.
+/// What each module may use, besides itself. Nothing else is allowed. All but [`PROGRAM`] are members of the workspace, whose
+/// manifests must say the same.
 pub const MODULES: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("guard", &[]),
@@ -10,22 +11,32 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("font", &["geometry"]),
     ("scene", &["font", "geometry", "guard", "jobs"]),
     ("mesh", &["geometry", "guard"]),
-    ("document", &["scene", "geometry", "jobs"]),
-    ("gallery", &["scene", "geometry"]),
-    ("flat", &["scene", "mesh", "geometry", "guard", "jobs"]),
-    ("session", &["document", "flat", "scene", "mesh", "geometry", "jobs"]),
-    ("render", &["flat", "scene", "mesh", "geometry", "guard"]),
-    ("bench", &["render", "flat", "scene", "mesh", "geometry"]),
-    ("editor", &["session", "document", "scene", "flat", "mesh", "geometry", "jobs"]),
-    ("app", &["editor", "session", "render", "document", "gallery", "scene", "flat", "mesh", "geometry", "jobs"]),
+    ("document", &["geometry", "jobs", "scene"]),
+    ("gallery", &["geometry", "scene"]),
+    ("field", &["geometry", "guard", "jobs", "mesh", "scene"]),
+    ("wgsl", &["field", "scene"]),
+    ("render", &["field", "geometry", "guard", "mesh", "scene", "wgsl"]),
+    ("session", &["document", "field", "geometry", "jobs", "mesh", "scene"]),
+    ("editor", &["document", "field", "geometry", "guard", "jobs", "mesh", "scene", "session"]),
+    ("bench", &["field", "geometry", "guard", "mesh", "render", "scene", "wgsl"]),
+    (
+        "app",
+        &[
+            "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh", "render", "scene",
+            "session", "wgsl",
+        ],
+    ),
     (
         "cli",
         &[
-            "app", "bench", "editor", "session", "render", "document", "gallery", "scene", "flat", "mesh", "geometry",
-            "jobs",
+            "app", "bench", "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh",
+            "render", "scene", "session", "wgsl",
         ],
     ),
 ];
+
+/// The modules of the program itself.
+pub const PROGRAM: &[&str] = &["app", "bench", "cli"];
 
 /// Crates that only some modules may name. A crate also stands for those whose name it starts.
 const CRATES: &[(&str, &[&str])] = &[
@@ -63,7 +74,7 @@ const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const
 const UNSAFE_FILE: &str = "tests/gpu_static/src/vulkan.rs";
 
 /// The build script stands beside what it serves, but is a program of its own.
-const BUILD_SCRIPT: &str = "src/render/embed_shaders.rs";
+const BUILD_SCRIPT: &str = "src/wgsl/embed_shaders.rs";
 
 /// Most lines of a Rust file, of a shader, of a Rust function, and of a WGSL function.
 pub const MAX_LINES: [usize; 4] = [500, 250, 70, 80];
@@ -146,7 +157,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
                 report(word.line, format!("`{next}` is a name that says nothing"));
             }
             name if module == Some("render") && HIDDEN_FROM_RENDER.contains(&name) && !tested => {
-                report(word.line, format!("the renderer sees no {name}, only what flat makes of it"));
+                report(word.line, format!("the renderer sees no {name}, only what flattening makes of it"));
             }
             name if in_path || words.get(i.wrapping_sub(1)).is_some_and(|w| w.text == "use") => {
                 for (owned, owners) in CRATES.iter().filter(|(owned, _)| of_crate(name, owned)) {
@@ -158,7 +169,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
             _ => {}
         }
     }
-    if let Some(module) = module {
+    if let Some(module) = module.filter(|module| PROGRAM.contains(module)) {
         for (at, used) in edges(path, &words) {
             // Tests stand above everything.
             if tests.iter().any(|range| range.contains(&at)) {
@@ -185,9 +196,9 @@ fn evaluators(path: &str, text: &str, found: &mut Vec<String>) {
     let words = tokens(text);
     let tests = test_ranges(&words);
     for (i, word) in words.iter().enumerate().filter(|(i, _)| !tests.iter().any(|range| range.contains(i))) {
-        let parts = if word.text == "flat" { named(&words, i + 1) } else { Vec::new() };
+        let parts = if word.text == "isolith_field" { named(&words, i + 1) } else { Vec::new() };
         for (_, part) in parts.into_iter().filter(|(_, part)| EVALUATORS.contains(part)) {
-            found.push(format!("{path}:{}: the renderer may not use flat::{part}: it never evaluates", word.line));
+            found.push(format!("{path}:{}: the renderer may not use field::{part}: it never evaluates", word.line));
         }
     }
 }
