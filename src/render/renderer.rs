@@ -4,11 +4,14 @@ mod choice;
 mod error;
 pub(super) mod evaluation;
 mod frame;
+mod going_on;
 mod measure;
+mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
 pub(super) mod scene;
+mod slot;
 pub(super) mod timings;
 mod unfinished;
 
@@ -16,8 +19,9 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::passes::overlay::OverlaySettings;
-use super::passes::{Building, Passes};
+use super::passes::Passes;
+use super::passes::frame_pass::Building;
+use super::passes::overlay_settings::OverlaySettings;
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
 use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
@@ -42,20 +46,12 @@ pub use pixel_counts::{Distribution, PixelCounts, TraceCounts};
 use recorder::{Recorder, meet};
 use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
+pub use slot::Slot;
 pub use timings::PassTime;
 use timings::PassTimings;
 
 /// What a frame is expected to take that cannot be drawn yet.
 const LONGEST: Duration = Duration::from_secs(1_000_000);
-
-/// Which picture a frame makes: the editor keeps a coarse one for quick answers beside the full one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
-    /// The picture at full size.
-    Full,
-    /// The coarse picture.
-    Preview,
-}
 
 /// Draws flat scenes.
 #[derive(Debug)]
@@ -254,7 +250,7 @@ impl Renderer {
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
-        self.resources.bind(device, slot, &self.scene, &self.passes);
+        self.resources.bind(device, slot, &self.scene, |bound| self.passes.bind(device, bound));
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
@@ -359,7 +355,8 @@ impl Renderer {
         };
         if self.resources.restart(&self.gpu, frame, planned, &|component| meant[component as usize]) {
             self.resources.forget_groups();
-            self.resources.bind(&self.gpu.device, frame.slot, &self.scene, &self.passes);
+            let device = &self.gpu.device;
+            self.resources.bind(device, frame.slot, &self.scene, |bound| self.passes.bind(device, bound));
         }
         Ok(())
     }

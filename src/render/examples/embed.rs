@@ -107,5 +107,5 @@ fn read_back(
     queue.submit([encoder.finish()]);
     buffer.slice(..).map_async(wgpu::MapMode::Read, |_| {});
     device.poll(wgpu::PollType::wait_indefinitely())?;
-    Ok(buffer.slice(..).get_mapped_range().to_vec())
+    Ok(buffer.slice(..).get_mapped_range()?.to_vec())
 }

@@ -5,10 +5,11 @@ use std::ops::Range;
 use bytemuck::{Pod, Zeroable};
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
-use super::{Bound, Building, FramePass};
+use super::frame_pass::{Building, FramePass};
 use crate::frame::plan::TILE;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
+use crate::renderer::resources::Bound;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::*;
 use isolith_field::FlatScene;

@@ -4,16 +4,17 @@ use std::ops::Range;
 
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, TextureFormat};
 
-use super::{Bound, Building, FramePass};
+use super::frame_pass::{Building, FramePass};
 use crate::frame::plan::{SUBTILES, TILE};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
+use crate::renderer::resources::Bound;
 use crate::resources::layouts::*;
 use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
     /// Group 2.
-    FarthestBindings, "hiz targets", COMPUTE {
+    HizBindings, "hiz targets", COMPUTE {
         depth: read_texture(false),
         hiz: write_texture(TextureFormat::R32Float),
     }
@@ -30,7 +31,7 @@ pub struct HizPass {
 
 impl FramePass for HizPass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
-        let (targets, nothing) = (FarthestBindings::layout(device), layout(device, "nothing", &[]));
+        let (targets, nothing) = (HizBindings::layout(device), layout(device, "nothing", &[]));
         let groups = [&layouts.view, &nothing, &targets, &layouts.dispatch_params];
         let text = assemble_plain(Pass::Hiz.file())?;
         let pipeline = compute_pipeline(device, Pass::Hiz.label(), text, "hiz", &groups);
@@ -39,7 +40,7 @@ impl FramePass for HizPass {
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
         let (depth, hiz) = (bound.targets.depth.binding(), bound.targets.hiz.binding());
-        vec![FarthestBindings { depth, hiz }.bind(device, &self.targets)]
+        vec![HizBindings { depth, hiz }.bind(device, &self.targets)]
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {

@@ -10,7 +10,7 @@ use glam::{DAffine3, DVec3};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
-use super::{Building, FramePass};
+use super::frame_pass::{Building, FramePass};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::timings::Stamps;

@@ -2,68 +2,30 @@
 
 pub mod debug_view;
 pub mod field;
+pub mod frame_pass;
 pub mod hiz;
 pub mod mesh;
 pub mod overlay;
+pub mod overlay_settings;
 pub mod shade;
 
 use std::ops::Range;
 
 use super::recipe::{Pass, recipe};
 use super::renderer::recorder::Recorder;
-use super::renderer::resources::FrameResources;
-use crate::resources::layouts::Layouts;
-use crate::resources::targets::Targets;
+use super::renderer::resources::Bound;
 use debug_view::DebugViewPass;
-use field::{ConePass, FieldLayouts, SurfacePass, TracePass};
+use field::{ConePass, SurfacePass, TracePass};
+use frame_pass::{Building, FramePass};
 use hiz::HizPass;
 use isolith_wgsl::ShaderError;
 use mesh::MeshPass;
 use overlay::OverlayPass;
 use shade::ShadePass;
 
-/// What passes are built of.
-#[derive(Clone, Copy, Debug)]
-pub struct Building<'a> {
-    /// The device.
-    pub device: &'a wgpu::Device,
-    /// Layouts that several passes share.
-    pub layouts: &'a Layouts,
-    /// Layouts of the targets of passes that evaluate fields.
-    pub field: &'a FieldLayouts,
-}
-
-/// What passes bind.
-#[derive(Clone, Debug)]
-pub struct Bound<'a> {
-    /// The textures of the picture.
-    pub targets: &'a Targets,
-    /// The buffers that passes work on.
-    pub resources: &'a FrameResources,
-    /// The materials of the scene.
-    pub materials: wgpu::BindingResource<'a>,
-}
-
-/// A pass of the frame.
-pub trait FramePass: Sized {
-    /// Builds what depends on no frame.
-    ///
-    /// # Errors
-    /// A shader file is missing.
-    fn new(building: Building<'_>) -> Result<Self, ShaderError>;
-
-    /// Its own bind groups for the targets of a picture; made anew when a buffer or the size is another one.
-    fn bind(&self, _device: &wgpu::Device, _bound: &Bound<'_>) -> Vec<wgpu::BindGroup> {
-        Vec::new()
-    }
-
-    /// Writes these dispatches of the frame down, all of which are its own. A pass over the finished picture has none.
-    fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>);
-}
-
 /// Declares [`Passes`] by the recipe.
 macro_rules! passes {
-    ($($(#[$doc:meta])* $stage:ident: $field:ident = $type:ident, $file:literal, over $extent:ident;)*) => {
+    ($($(#[$doc:meta])* $pass:ident: $field:ident = $type:ident, $file:literal, over $extent:ident;)*) => {
         /// All passes of the recipe.
         #[derive(Debug)]
         pub struct Passes {
@@ -85,10 +47,10 @@ macro_rules! passes {
             }
 
             /// Has a pass write these dispatches down, all of which are its own.
-            pub fn record(&self, stage: Pass, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
-                recorder.begin(stage);
-                match stage {
-                    $(Pass::$stage => self.$field.record(recorder, dispatches),)*
+            pub fn record(&self, pass: Pass, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+                recorder.begin(pass);
+                match pass {
+                    $(Pass::$pass => self.$field.record(recorder, dispatches),)*
                 }
             }
         }

@@ -4,12 +4,12 @@ use std::ops::Range;
 
 use wgpu::{BindGroup, BindGroupLayout};
 
-use super::{Bound, Building, FramePass};
+use super::frame_pass::{Building, FramePass};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
+use crate::renderer::resources::Bound;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
-use isolith_field::{FILE_SHININESS, FILE_SPECULAR, FlatMaterial, FlatScene};
 use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
@@ -85,15 +85,4 @@ impl FramePass for ShadePass {
             pass.draw(0..3, 0..1);
         }
     }
-}
-
-/// What each mesh is made of: the material that stands for its own ones, where there is one. Its color stands in a target.
-pub fn mesh_materials(flat: &FlatScene) -> Vec<FlatMaterial> {
-    let own = FlatMaterial {
-        albedo: [1.0; 3],
-        specular: FILE_SPECULAR as f32,
-        emission: [0.0; 3],
-        shininess: FILE_SHININESS as f32,
-    };
-    flat.meshes.iter().map(|mesh| mesh.material.map_or(own, |i| flat.materials[i as usize])).collect()
 }

@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 
 use super::evaluators::tape_evaluators;
 use crate::gpu::Gpu;
-use crate::passes::field::{FieldLayouts, FieldPipelines};
+use crate::pipelines::field::{FieldLayouts, FieldPipelines};
 use crate::pipelines::key::{PipelineKey, Templates};
 use crate::pipelines::prewarm::Prewarmer;
 use crate::pipelines::strategy::EvalStrategy;

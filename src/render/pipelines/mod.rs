@@ -2,6 +2,7 @@
 
 pub mod cache;
 pub mod evaluators;
+pub mod field;
 pub mod key;
 pub mod prewarm;
 pub mod strategy;

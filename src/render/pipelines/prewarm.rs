@@ -1,7 +1,7 @@
 //! Has a driver compile pipelines before they are needed, on a device of its own.
 
 use crate::gpu::{Gpu, GpuError};
-use crate::passes::field::{FieldBuffers, FieldLayouts, FieldPipelines};
+use crate::pipelines::field::{FieldBuffers, FieldLayouts, FieldPipelines};
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::layouts::{Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
 use crate::resources::targets::Targets;

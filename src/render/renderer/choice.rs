@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::RenderError;
+use super::error::RenderError;
 use super::evaluation::EvaluationCost;
 use crate::pipelines::cache::{EvalMode, PipelineCache, PipelineChoice};
 use crate::pipelines::key::PipelineKey;

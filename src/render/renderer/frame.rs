@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use super::Slot;
 use super::choice::Chosen;
-use super::unfinished::GoingOn;
+use super::going_on::GoingOn;
+use super::slot::Slot;
 use crate::frame::cost_model::{Cost, CostModel};
 use crate::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
-use crate::passes::field::FieldPipelines;
-use crate::passes::overlay::OverlaySettings;
+use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::cache::{EvalMode, PipelineChoice};
+use crate::pipelines::field::FieldPipelines;
 use crate::pipelines::key::PipelineKey;
 use crate::recipe::Pass;
 use isolith_field::debug_view::ViewMode;

@@ -1,10 +1,10 @@
 //! What is measured by a finished frame: counts, and the least work that its picture takes.
 
-use super::Frame;
+use super::frame::Frame;
 use super::pixel_counts::COMPONENT_COUNTS;
 use super::resources::SUBTILE_COUNTS;
 use crate::frame::plan::Dispatch;
-use crate::passes::overlay::OverlaySettings;
+use crate::passes::overlay_settings::OverlaySettings;
 use crate::recipe::Pass;
 use crate::resources::uniforms::DispatchParams;
 

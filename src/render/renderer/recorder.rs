@@ -1,10 +1,10 @@
 //! Writes the passes of a frame down, each under its label and, where time is taken, between two timestamps.
 
-use super::Frame;
+use super::frame::Frame;
 use super::resources::{FrameResources, Groups, SlotState};
 use super::timings::Stamps;
 use crate::gpu::Gpu;
-use crate::passes::field::FieldPipelines;
+use crate::pipelines::field::FieldPipelines;
 use crate::recipe::{Extent, Pass};
 use crate::resources::targets::{Target, Targets};
 use crate::resources::uniforms::UNIFORM_STRIDE;

@@ -3,15 +3,15 @@
 
 use wgpu::BindGroup;
 
+use super::frame::Frame;
+use super::mesh_materials::mesh_materials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
-use super::{Frame, Slot};
+use super::slot::Slot;
 use crate::frame::plan::{Dispatch, FramePlan, TILE};
 use crate::gpu::Gpu;
-use crate::passes::field::FieldBuffers;
-use crate::passes::overlay::OverlaySettings;
-use crate::passes::shade::mesh_materials;
-use crate::passes::{Bound, Passes};
+use crate::passes::overlay_settings::OverlaySettings;
+use crate::pipelines::field::FieldBuffers;
 use crate::recipe::Pass;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
@@ -33,6 +33,17 @@ pub const RAY_COUNTS: usize = 7;
 /// Of a list of subtiles before its cones, and of what its rays leave.
 const NO_SUBTILES: [u32; SUBTILE_COUNTS] = [0, 1, 1, 0, 0];
 const NO_RAYS: [u32; RAY_COUNTS] = [0, 1, 1, 0, 1, 1, 0];
+
+/// What passes bind.
+#[derive(Clone, Debug)]
+pub struct Bound<'a> {
+    /// The textures of the picture.
+    pub targets: &'a Targets,
+    /// The buffers that passes work on.
+    pub resources: &'a FrameResources,
+    /// The materials of the scene.
+    pub materials: wgpu::BindingResource<'a>,
+}
 
 /// Bind groups for the targets of a slot.
 #[derive(Debug)]
@@ -159,8 +170,14 @@ impl FrameResources {
         self.slots.iter_mut().flatten().for_each(|state| state.groups = None);
     }
 
-    /// Makes the bind groups of the slot that it lacks.
-    pub fn bind(&mut self, device: &wgpu::Device, slot: Slot, scene: &SceneResources, passes: &Passes) {
+    /// Makes the bind groups of the slot that it lacks; `own` those of the passes.
+    pub fn bind(
+        &mut self,
+        device: &wgpu::Device,
+        slot: Slot,
+        scene: &SceneResources,
+        own: impl FnOnce(&Bound<'_>) -> Vec<Vec<BindGroup>>,
+    ) {
         let state = self.slot(slot);
         if state.groups.is_some() {
             return;
@@ -173,7 +190,7 @@ impl FrameResources {
             scene: of_scene,
             templates,
             dispatch_params: bind(device, "dispatch_params", &self.layouts.dispatch_params, &[dispatch_params]),
-            own: passes.bind(device, &bound),
+            own: own(&bound),
         };
         if let Some(state) = &mut self.slots[slot as usize] {
             state.groups = Some(groups);

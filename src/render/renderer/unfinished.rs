@@ -1,21 +1,10 @@
 //! Rays that have not come to an end within the steps of a plan: traced again with more, and reported where that does not do.
 
-use super::Frame;
+use super::frame::Frame;
 use crate::frame::cost_model::Cost;
 use crate::frame::plan::{Dispatch, LONGER};
 use isolith_field::Warning;
 use isolith_scene::NodeId;
-
-/// How the rays of a frame go on that have not ended as planned.
-#[derive(Clone, Debug, Default)]
-pub(super) struct GoingOn {
-    /// How many of [`LONGER`] were tried.
-    pub(super) times: usize,
-    /// Pieces of the plan before any ray went on.
-    planned: Option<usize>,
-    /// Rays without an end by component, as far as that was asked.
-    unfinished: Option<Vec<u32>>,
-}
 
 impl Frame {
     /// The dispatches that were planned before any ray went on.
