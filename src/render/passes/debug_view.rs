@@ -104,7 +104,7 @@ impl FramePass for DebugViewPass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let (own, targets) = (DebugViewBindings::layout(device), DebugViewTargets::layout(device));
         let (text, groups) = (assemble_plain(Pass::DebugView.file())?, [&layouts.view, &own, &targets]);
-        let pipeline = compute_pipeline(device, Pass::DebugView.label(), text, "debug view", &groups);
+        let pipeline = compute_pipeline(device, Pass::DebugView.label(), text, "debug_view", &groups);
         let (uniform, colors) =
             (SyncedBuffer::uniform(device, "debug view"), SyncedBuffer::storage(device, "debug view colors"));
         Ok(Self { pipeline, own, targets, uniform, colors })
