@@ -70,10 +70,15 @@ impl Place {
     }
 
     /// Runs the program there, without a display.
-    fn run(&self, arguments: &[&str]) -> Outcome {
+    fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_isolith"));
         command.current_dir(self.folder.path()).args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
-        let output = command.env("XDG_RUNTIME_DIR", self.folder.path()).output().expect("the program starts");
+        command.env("XDG_RUNTIME_DIR", self.folder.path());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Outcome {
+        let output = self.command(arguments).output().expect("the program starts");
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         let code = output.status.code().expect("it was not killed");
         Outcome { code, out: text(&output.stdout), err: text(&output.stderr) }
@@ -458,4 +463,20 @@ fn shader_prints_what_naga_accepts_and_says_what_there_is() {
     place.run(&["shader", "scene.json", "--evaluator", "3"]).failed(2, &["evaluator 3", "--list"]);
     place.run(&["shader", "scene.json", "--method", "fastest"]).failed(2, &["fastest", "auto"]);
     place.run(&["shader", "missing.json"]).failed(3, &["missing.json"]);
+}
+
+#[test]
+fn spans_are_told_where_the_environment_asks_for_them() {
+    let place = Place::new();
+    let run = |filter: Option<&str>| {
+        let mut command = place.command(&["render", "scene.json", "--size", "32x32", "-o", "out.png"]);
+        command.env_remove("RUST_LOG");
+        filter.map(|filter| command.env("RUST_LOG", filter));
+        String::from_utf8(command.output().expect("the program starts").stderr).expect("text")
+    };
+    let told = run(Some("isolith_field=debug,isolith_render=debug"));
+    for span in ["flatten{nodes=", "plan{components=", "upload", "pass{name=\"trace\"", "pass{name=\"shade\""] {
+        assert!(told.contains(span), "{span}: {told}");
+    }
+    assert!(!run(None).contains("flatten"), "nobody asked");
 }

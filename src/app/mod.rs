@@ -14,12 +14,12 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use crate::document::recovery::Recovery;
-use crate::document::{Document, state_folder};
+use crate::document::{Document, data_folder, state_folder};
 use crate::editor::{Editor, Example, Message};
 use crate::gallery;
 use crate::jobs::Task;
 use crate::render::{AdapterChoice, Gpu};
-use crate::scene::Scene;
+use crate::scene::{NodeKind, Scene};
 use shared_app::SharedApp;
 use window::{SMALLEST, Window};
 
@@ -123,12 +123,21 @@ fn options(adapter: &AdapterChoice) -> eframe::NativeOptions {
     }
 }
 
-/// The shipped scenes, for the File menu: from their files where the program is started beside them,
-/// because meshes are looked for beside the file.
+/// The shipped scenes, for the File menu. Meshes are looked for beside the file of a scene: so one with meshes is opened from
+/// its file where the program is started beside them, and else from one that is written into the user's data folder.
 fn examples() -> Vec<Example> {
-    let open = |name: &str, scene: &Scene, task: &Task| match Path::new("scenes").join(name).with_extension("json") {
-        file if file.exists() => Document::open_by(&file, task).map_err(|error| error.to_string()),
-        _ => Ok(Document::new(scene.clone())),
+    let open = |name: &str, scene: &Scene, task: &Task| {
+        let shipped = Path::new("scenes").join(name).with_extension("json");
+        let has_meshes = scene.nodes().iter().any(|node| matches!(node.kind, NodeKind::Mesh(_)));
+        let file = match data_folder() {
+            _ if shipped.exists() => shipped,
+            Some(data) if has_meshes => {
+                let folder = data.join("examples").join(env!("CARGO_PKG_VERSION"));
+                gallery::install(name, scene, &folder).map_err(|error| error.to_string())?
+            }
+            _ => return Ok(Document::new(scene.clone())),
+        };
+        Document::open_by(&file, task).map_err(|error| error.to_string())
     };
     gallery::all()
         .into_iter()

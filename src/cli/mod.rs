@@ -12,6 +12,7 @@
 //! | `input` | scene files, standard input |
 //! | `text` | what is printed |
 //! | `exr_ids` | ids as OpenEXR channels |
+//! | `log` | spans and events of the program, where `RUST_LOG` asks for them |
 //! | `runtime_folder` | the folder that drivers ask for |
 //! | `failure` | what can go wrong, with its exit code |
 
@@ -21,6 +22,7 @@ mod check;
 mod exr_ids;
 mod failure;
 mod input;
+mod log;
 mod outputs;
 mod progress;
 mod render;
@@ -32,9 +34,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::app;
-use crate::document::{Document, state_folder};
-use crate::editor::new_document;
+use crate::document::state_folder;
 use clap::{Parser, Subcommand};
 
 use crate::render::Gpu;
@@ -96,6 +96,7 @@ enum CliCommand {
 
 /// Runs the program with the arguments that it was started with.
 pub fn main() -> ExitCode {
+    log::listen();
     runtime_folder::provide();
     let arguments = Arguments::parse();
     if let Some(folder) = state_folder() {
@@ -128,7 +129,11 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
 /// Opens the editor; where no window can be shown, renders the scene to a file instead.
 fn open(scene: Option<&Path>, adapter: &adapters::AdapterArguments) -> Result<(), Failure> {
     scene.map_or(Ok(()), input::refuse_unknown_word)?;
+    let missing =
+        if cfg!(feature = "window") { "There is no display" } else { "The program was built without its window" };
+    #[cfg(feature = "window")]
     if has_display(|name| std::env::var_os(name)) {
+        use crate::{app, document::Document, editor::new_document};
         let document = match scene {
             Some(path) => Document::open(path).map_err(Failure::Scene)?,
             None => new_document(),
@@ -136,16 +141,17 @@ fn open(scene: Option<&Path>, adapter: &adapters::AdapterArguments) -> Result<()
         return app::run(document, &adapter.choice(), complain).map_err(|e| Failure::Graphics(e.to_string()));
     }
     let Some(scene) = scene else {
-        return Err(Failure::Graphics("no display is set; give a scene and it is rendered to a picture".into()));
+        return Err(Failure::Graphics(format!("{missing}; give a scene and it is rendered to a picture")));
     };
     let stem = scene.file_stem().unwrap_or(scene.as_os_str());
     let output = PathBuf::from(stem).with_extension("png");
-    say(&format!("There is no display: rendering {} to {}.", scene.display(), output.display()))?;
+    say(&format!("{missing}: rendering {} to {}.", scene.display(), output.display()))?;
     render::render(&render::RenderArguments::still(scene, &output, adapter))
 }
 
 /// Whether a window can be shown. Only X11 and Wayland say it through the environment; elsewhere there is
 /// always a display.
+#[cfg(feature = "window")]
 fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let set = |name: &str| variable(name).is_some_and(|value| !value.is_empty());
     !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY")

@@ -37,7 +37,7 @@ use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
 pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
-pub use state_folder::state_folder;
+pub use state_folder::{data_folder, state_folder};
 
 use isolith_jobs::Task;
 use isolith_scene::file::{self, FileError, Stamp};

@@ -101,6 +101,7 @@ fn flatten_within(
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
     debug_assert!(time.is_finite(), "time is checked at the border");
+    let _span = tracing::debug_span!("flatten", nodes = scene.nodes().len()).entered();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
 }

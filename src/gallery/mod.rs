@@ -19,13 +19,13 @@ mod random_groups;
 mod scene_builder;
 mod shapes;
 mod showcase;
+mod write;
 
-use std::path::{Path, PathBuf};
-
-use isolith_scene::{Scene, file};
+use isolith_scene::Scene;
 
 pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;
+pub use write::{install, write_all};
 
 /// The scene that opens first.
 pub const SHOWCASE: &str = "showcase";
@@ -61,20 +61,6 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),
     ]
-}
-
-/// Writes every scene as `NAME.json` into `folder`, which must exist, and returns the files.
-///
-/// # Errors
-/// The first file that cannot be written.
-pub fn write_all(folder: &Path) -> Result<Vec<PathBuf>, file::FileError> {
-    all()
-        .into_iter()
-        .map(|(name, scene)| {
-            let path = folder.join(format!("{name}.json"));
-            file::save(&scene, &path).map(|()| path)
-        })
-        .collect()
 }
 
 #[cfg(test)]

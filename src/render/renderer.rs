@@ -236,7 +236,11 @@ impl Renderer {
         if !self.resources.counts.fit(flat.components.len(), size, limits.max_storage_buffer_binding_size) {
             return Err(RenderError::Counts(size[0], size[1]));
         }
-        let Prepared { chosen, plan } = self.prepare(flat, camera, size)?;
+        let Prepared { chosen, plan } = {
+            let _span = tracing::debug_span!("plan", components = flat.components.len()).entered();
+            self.prepare(flat, camera, size)?
+        };
+        let _span = tracing::debug_span!("upload").entered();
         self.gpu.check()?;
         let Gpu { device, queue, .. } = &self.gpu;
         self.resources.resize(device, slot, size, &overlay);

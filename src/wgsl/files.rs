@@ -1,11 +1,27 @@
 //! The files of `shaders/`, put together by what they include.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use thiserror::Error;
 
+use super::disk;
+
 /// Every file of `shaders/`, by its path there.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+/// The text of a file of `shaders/`: as it was when the program was built or, with `shaders-from-disk`, as it is now.
+fn text_of(name: &str) -> Option<Cow<'static, str>> {
+    let shipped = FILES.iter().find(|(file, _)| *file == name).map(|(_, text)| Cow::Borrowed(*text))?;
+    if cfg!(feature = "shaders-from-disk") {
+        return disk::read(Path::new(ROOT), name).map(Cow::Owned).or(Some(shipped));
+    }
+    Some(shipped)
+}
+
+/// Where `shaders/` was when the program was built.
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders");
 
 /// Why a shader could not be put together.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -55,11 +71,11 @@ impl Resolver<'_> {
             let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));
             *text = fresh.collect::<Vec<_>>().join("\n\n");
         }
-        let text = match &generated {
-            Some(text) => text,
+        let text = match generated {
+            Some(text) => Cow::Owned(text),
             None => {
                 let missing = || ShaderError::NoFile { from: from.to_owned(), name: name.to_owned() };
-                FILES.iter().find(|(file, _)| *file == name).ok_or_else(missing)?.1
+                text_of(name).ok_or_else(missing)?
             }
         };
         let mut is_wanted = true;

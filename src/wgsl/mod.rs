@@ -16,6 +16,7 @@
 
 mod assemble;
 mod calls;
+mod disk;
 mod dual;
 mod evaluator;
 mod files;

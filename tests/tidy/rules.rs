@@ -57,8 +57,15 @@ const CRATES: &[(&str, &[&str])] = &[
 ];
 
 /// Starts of the paths of the files that own files; nothing else touches the file system.
-const FILE_OWNERS: &[&str] =
-    &["src/scene/file", "src/mesh/", "src/document/recent", "src/document/recovery", "src/cli/", "src/gallery/write"];
+const FILE_OWNERS: &[&str] = &[
+    "src/scene/file",
+    "src/mesh/",
+    "src/document/recent",
+    "src/document/recovery",
+    "src/cli/",
+    "src/gallery/write",
+    "src/wgsl/disk",
+];
 
 /// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
 const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind"];

@@ -48,6 +48,7 @@ macro_rules! passes {
 
             /// Has a pass write these dispatches down, all of which are its own.
             pub fn record(&self, pass: Pass, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
+                let _span = tracing::debug_span!("pass", name = pass.label(), dispatches = dispatches.len()).entered();
                 recorder.begin(pass);
                 match pass {
                     $(Pass::$pass => self.$field.record(recorder, dispatches),)*
