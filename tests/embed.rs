@@ -1,5 +1,6 @@
 //! The example of the renderer crate: the renderer inside of another program's device draws what it draws on its own.
 
+#[allow(dead_code, reason = "`main` is for who runs the example")]
 #[path = "../src/render/examples/embed.rs"]
 mod example;
 

@@ -107,7 +107,7 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
     })
 }
 
-/// The profiles of a text whose font is `size` meters high; nothing where [`text_fault`] finds something.
+/// The profiles of a text whose font is `size` meters high; nothing where `text_fault` finds something.
 pub fn text_profile(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
     // Without a size, or without ink, a point is left.
     if size < LEAST_TEXT {

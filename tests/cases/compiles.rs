@@ -133,7 +133,7 @@ fn first_pictures(scene: &Scene) -> [Duration; 2] {
     loop {
         renderer.pipelines().collect();
         let waits = full > WORTH_WAITING[0] && renderer.pipelines_building() > 0;
-        if !waits && !(full > WORTH_WAITING[1] && renderer.tape_cache().building() > 0) {
+        if !(waits || full > WORTH_WAITING[1] && renderer.tape_cache().building() > 0) {
             break;
         }
         std::thread::sleep(Duration::from_millis(10));

@@ -218,16 +218,22 @@ fn paint_is_whole_inside_and_fades_over_its_edge() {
     assert_eq!([hard(-1e-9), hard(1e-9)], [1.0, 0.0]);
 }
 
+/// `SmoothChamfer` as shaders write it: `SMOOTH_CHAMFER`.
+fn screaming(name: &str) -> String {
+    let word = |(i, c): (usize, char)| if i > 0 && c.is_uppercase() { format!("_{c}") } else { c.to_string() };
+    name.char_indices().map(word).collect::<String>().to_uppercase()
+}
+
 #[test]
 fn the_shader_numbers_joins_and_kernels_alike() {
     let shader = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/sdf/op.wgsl")).unwrap();
     for (number, kernel) in kernels() {
-        let name = format!("{kernel:?}").to_uppercase();
+        let name = screaming(&format!("{kernel:?}"));
         assert!(shader.contains(&format!("const KERNEL_{name}: u32 = {number}u;")), "{name}");
     }
     for (number, join) in Join::ALL.into_iter().enumerate() {
         assert_eq!(join as usize, number);
-        let name = format!("{join:?}").to_uppercase();
+        let name = screaming(&format!("{join:?}"));
         assert!(shader.contains(&format!("const JOIN_{name}: u32 = {number}u;")), "{name}");
     }
     let joins: Vec<Join> = Operator::ALL.into_iter().map(Join::of).collect();

@@ -20,7 +20,7 @@ pub enum TapeOp {
 
 /// A tape entry: two words.
 ///
-/// First word: bits 0–7 the shape's code, or [`MODIFIED`] and a modifier's (of no meaning unless a leaf), 8–9 the [`TapeOp`], 10–13 the [`Join`]
+/// First word: bits 0–7 the shape's code, or `MODIFIED` and a modifier's (of no meaning unless a leaf), 8–9 the [`TapeOp`], 10–13 the [`Join`]
 /// (the group's for both of its ends), 14–16 the blend kernel, 17–31 the entry, counted from the
 /// component's first. Second word: bits 0–23 the entry's first row, counted from the component's first; the
 /// numbers of the blend stand there. Bits 24–31 which of [`Component::modifier_domains`](crate::Component::modifier_domains) a
