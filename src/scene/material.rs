@@ -39,7 +39,7 @@ param_struct! {
         /// Strength of the highlight; 0 is matte.
         specular: f64 = 0.25, UNIT;
         /// Blinn-Phong exponent: larger is a smaller, sharper highlight.
-        shininess: f64 = 48.0, SHININESS.labeled("Sharpness");
+        shininess: f64 = 48.0, SHININESS.labeled("Specular exponent");
         /// Light that it emits.
         emission: [f64; 3] = [0.0; 3], INTENSITY.color();
     }

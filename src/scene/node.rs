@@ -221,7 +221,7 @@ param_table! { Node {
     /// Cut away from what stands before it in its group, instead of joined; objects and groups only.
     negative: bool = false, NO_LIMITS.fixed();
     /// How this node blends with its siblings; objects and groups only.
-    blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blends");
+    blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blend");
 } }
 
 param_table! { Transform {

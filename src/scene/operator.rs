@@ -249,12 +249,12 @@ param_struct! {
     #[serde(deny_unknown_fields)]
     pub struct Blend {
         /// The curve of the blend; all thicken equally.
-        kernel: BlendKernel = BlendKernel::Circular, NO_LIMITS.labeled("Blend curve");
+        kernel: BlendKernel = BlendKernel::Circular, NO_LIMITS.labeled("Blend profile");
         /// Fillet radius: how round the blends are; 0 is a sharp edge.
         radius: f64 = 0.0, BLEND_RADIUS.labeled("Blend radius");
         /// What the radius is measured in.
         #[serde(default, skip_serializing_if = "is_default")]
-        unit: RadiusUnit = RadiusUnit::Meters, NO_LIMITS.labeled("Radius in");
+        unit: RadiusUnit = RadiusUnit::Meters, NO_LIMITS.labeled("Blend units");
         /// How many steps or columns; only those kernels have them.
         #[serde(default = "few_steps", skip_serializing_if = "is_few_steps", deserialize_with = "super::whole::read")]
         steps: u32 = few_steps(), STEPS;
@@ -310,9 +310,9 @@ impl BlendOverride {
     /// Name for people.
     fn label(self) -> &'static str {
         match self {
-            Self::Inherit => "As its group",
-            Self::Hard => "Hard",
-            Self::Radius(_) => "Own radius",
+            Self::Inherit => "Inherit",
+            Self::Hard => "None",
+            Self::Radius(_) => "Custom",
         }
     }
 
@@ -329,7 +329,7 @@ impl BlendOverride {
     fn radius_param() -> &'static Param {
         let table = param_rows! {
             /// The blend radius of this node's blend.
-            ["radius"] f64 = BlendOverride::FIRST_RADIUS, BLEND_RADIUS.labeled("Own radius");
+            ["radius"] f64 = BlendOverride::FIRST_RADIUS, BLEND_RADIUS.labeled("Custom radius");
         };
         &table[0]
     }
