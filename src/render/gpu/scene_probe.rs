@@ -11,8 +11,8 @@ use crate::renderer::scene::PIPELINE_WINDOW;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
 use crate::resources::layouts::{
-    Layouts, PARAMS_FORMAT, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform, window,
-    write_storage,
+    Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
+    window, write_storage,
 };
 use crate::resources::uniforms::{GpuComponent, GpuView};
 use isolith_field::hierarchy::Hierarchy;
@@ -148,21 +148,19 @@ impl SceneProbe {
         let view = uploaded(bytemuck::bytes_of(&GpuView::new(camera, [rows, rows], flat, 0)));
         let nodes = uploaded(bytemuck::cast_slice(&flat.nodes));
         let params = texture("params", PARAMS_FORMAT, bytemuck::cast_slice(&flat.params));
-        let materials = uploaded(bytemuck::cast_slice(&flat.materials));
         let tapes = texture("tapes", TAPES_FORMAT, bytemuck::cast_slice(&tapes));
         // What is at a dynamic offset for one component is not read.
         let none = uploaded(&[]);
-        let bindings = [
-            nodes.binding(),
-            params.binding(),
-            window(none.buffer(), size_of::<GpuComponent>()),
-            materials.binding(),
-            window(none.buffer(), PIPELINE_WINDOW),
-            tapes.binding(),
-        ];
+        let bindings = SceneBindings {
+            nodes: nodes.binding(),
+            params: params.binding(),
+            subject: window(none.buffer(), size_of::<GpuComponent>()),
+            rows: window(none.buffer(), PIPELINE_WINDOW),
+            tapes: tapes.binding(),
+        };
         let groups = [
             bind(device, "view", &self.layouts.view, &[view.binding()]),
-            bind(device, "scene", &self.layouts.scene, &bindings),
+            bindings.bind(device, &self.layouts.scene),
             buffers.bind(device, &self.hierarchy),
         ];
         LoadedScene { probe: self, gpu, origin, groups }
