@@ -55,6 +55,8 @@ pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
-pub use params::{Choice, LIST_COLUMNS, List, Param, ParamField, ParamSpec, ParamValue, Params, Slot, Variants, Visit};
+pub use params::{
+    Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
+};
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;

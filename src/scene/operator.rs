@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::limits::{BLEND_RADIUS, NO_LIMITS, STEPS};
 use super::params::{
-    Choice, Param, ParamField, ParamValue, Slot, Visit, choices, choices_of, named, nested_params, param_rows,
+    Choice, Param, ParamField, ParamSlot, ParamValue, Visit, choices, choices_of, named, nested_params, param_rows,
     param_struct,
 };
 
@@ -359,7 +359,7 @@ impl ParamField for BlendOverride {
         Self::choices().iter().position(|choice| choice.key == key).map(|index| Self::ALL[index])
     }
 
-    fn visit_field(&self, slot: Slot<'_>, visit: &mut Visit<'_>) {
+    fn visit_field(&self, slot: ParamSlot<'_>, visit: &mut Visit<'_>) {
         if let (Some(value), Some(param)) = (self.to_value(), named(slot.table, slot.name)) {
             visit(slot.prefix, param, value);
         }
@@ -368,7 +368,7 @@ impl ParamField for BlendOverride {
         }
     }
 
-    fn find_field(&self, slot: Slot<'_>, below: &str) -> Option<&'static Param> {
+    fn find_field(&self, slot: ParamSlot<'_>, below: &str) -> Option<&'static Param> {
         match (below, self) {
             ("", _) => named(slot.table, slot.name),
             (".radius", Self::Radius(_)) => Some(Self::radius_param()),

@@ -17,12 +17,12 @@ pub(super) struct Arrays {
     /// The revision that was looked at last.
     revision: Option<u64>,
     problem: Option<String>,
-    job: Option<Job<Answer>>,
+    job: Option<Job<FlattenReply>>,
     is_canceled: bool,
 }
 
 /// What a job gives back: what it flattens with, and what came of it; nothing where it was canceled.
-type Answer = (Flattener, Result<Option<Arc<FlatScene>>, String>);
+type FlattenReply = (Flattener, Result<Option<Arc<FlatScene>>, String>);
 
 const CANCELED: &str = "preparing it was canceled";
 
@@ -111,7 +111,7 @@ impl Arrays {
     }
 }
 
-fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, mut flattener: Flattener) -> Job<Answer> {
+fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, mut flattener: Flattener) -> Job<FlattenReply> {
     jobs.start(Task::new("Preparing the scene"), move |task| {
         let made = flattener.flatten_until(&scene, 0.0, task.flag()).map_err(|error| error.to_string());
         (flattener, made)

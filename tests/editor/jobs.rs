@@ -18,7 +18,7 @@ use crate::settle::Settle;
 /// What a slow reader does next.
 enum Order {
     Progress(f32),
-    Answer(Box<Result<Document, String>>),
+    Reply(Box<Result<Document, String>>),
     Panic,
 }
 
@@ -26,7 +26,7 @@ fn read(orders: &Mutex<Receiver<Order>>, task: &Task) -> Result<Document, String
     loop {
         match orders.lock().expect("nobody has panicked").recv() {
             Ok(Order::Progress(share)) => task.set_progress(share),
-            Ok(Order::Answer(answer)) => return *answer,
+            Ok(Order::Reply(answer)) => return *answer,
             Ok(Order::Panic) => break,
             Err(_) => return Err("the test is over".into()),
         }
@@ -108,7 +108,7 @@ fn while_a_scene_opens_frames_go_on_and_the_old_one_stays_until_the_new_one_is_w
     harness.key_press(Key::Num1);
     harness.run_steps(3);
     assert!(harness.query_by_label(OPENING).is_some());
-    orders.send(Order::Answer(Box::new(Ok(another())))).expect("it listens");
+    orders.send(Order::Reply(Box::new(Ok(another())))).expect("it listens");
     harness.settle();
     assert!(is_another(&harness) && harness.query_by_label(OPENING).is_none());
     assert!(!harness.state().document().is_changed());
@@ -129,12 +129,12 @@ fn canceling_leaves_the_old_scene_at_once() {
         // The reader has not heard of it yet: nobody waits for it.
         assert!(harness.query_by_label(OPENING).is_none(), "by key: {by_key}");
         assert_eq!(last(&harness), "Opening Slow was canceled.");
-        assert!(orders.send(Order::Answer(Box::new(Ok(another())))).is_ok(), "it reads on");
+        assert!(orders.send(Order::Reply(Box::new(Ok(another())))).is_ok(), "it reads on");
         harness.settle();
         assert_eq!(*harness.state().document().scene(), old);
         // Nothing runs: Escape means what it meant before, and another scene can be opened.
         order_example(&mut harness);
-        orders.send(Order::Answer(Box::new(Ok(another())))).expect("it listens");
+        orders.send(Order::Reply(Box::new(Ok(another())))).expect("it listens");
         harness.settle();
         assert!(is_another(&harness));
     }
@@ -145,7 +145,7 @@ fn a_reader_that_panics_or_refuses_is_a_message() {
     let (mut harness, orders) = with_slow_example();
     let old = harness.state().document().scene().clone();
     order_example(&mut harness);
-    orders.send(Order::Answer(Box::new(Err("slow.json: nodes: must be a list".into())))).expect("it listens");
+    orders.send(Order::Reply(Box::new(Err("slow.json: nodes: must be a list".into())))).expect("it listens");
     harness.settle();
     assert_eq!(last(&harness), "slow.json: nodes: must be a list");
     order_example(&mut harness);
@@ -166,7 +166,7 @@ fn what_is_changed_while_a_scene_opens_is_asked_about() {
     harness.get_by_label("Add sphere").click();
     harness.run_steps(4);
     assert!(harness.state().document().is_changed(), "it can be edited meanwhile");
-    orders.send(Order::Answer(Box::new(Ok(another())))).expect("it listens");
+    orders.send(Order::Reply(Box::new(Ok(another())))).expect("it listens");
     harness.settle();
     assert!(harness.query_by_label("Discard").is_some() && !is_another(&harness));
     press(&mut harness, Modifiers::NONE, Key::Escape);
@@ -179,7 +179,7 @@ fn what_is_opened_later_is_what_is_opened() {
     order_example(&mut harness);
     press_new(&mut harness);
     assert_eq!(harness.state().document().scene().nodes().len(), 1, "a new scene has a sun");
-    orders.send(Order::Answer(Box::new(Ok(another())))).ok();
+    orders.send(Order::Reply(Box::new(Ok(another())))).ok();
     harness.settle();
     assert!(!is_another(&harness), "nobody waits for it any more");
 }

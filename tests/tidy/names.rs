@@ -49,7 +49,6 @@ pub const RETIRED: &[(&str, &str)] = &[
     ("Method", "EvalStrategy"),
     ("Way", "Baseline"),
     ("Plan", "FramePlan"),
-    ("Features", "OpSet"),
     ("Forms", "Templates"),
     ("Spread", "Distribution"),
     ("Span", "DepthRange"),
@@ -99,7 +98,7 @@ pub fn defined_twice(files: &[(String, String)]) -> Vec<(String, Vec<String>)> {
             let is_public = i > 0 && words[i - 1].text == "pub" && !tests.iter().any(|range| range.contains(&i));
             if is_type
                 && is_public
-                && let Some(name) = words.get(i + 1)
+                && let Some(name) = words.get(i + 1).filter(|name| name.text != "$")
             {
                 places.entry(name.text.to_owned()).or_default().push(path.clone());
             }

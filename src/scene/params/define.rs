@@ -77,7 +77,7 @@ macro_rules! param_table {
                 let table = self.params();
                 $( {
                     let name = $crate::params::param_name!($param $(, $key)?);
-                    let slot = $crate::params::Slot { prefix, name, table };
+                    let slot = $crate::params::ParamSlot { prefix, name, table };
                     $crate::params::ParamField::visit_field(&self.$param, slot, visit);
                 } )*
             }
@@ -86,7 +86,7 @@ macro_rules! param_table {
                 $( {
                     let field = $crate::params::param_name!($param $(, $key)?);
                     if let Some(below) = $crate::params::below(name, field) {
-                        let slot = $crate::params::Slot { prefix: "", name: field, table: self.params() };
+                        let slot = $crate::params::ParamSlot { prefix: "", name: field, table: self.params() };
                         return $crate::params::ParamField::find_field(&self.$param, slot, below);
                     }
                 } )*
@@ -204,7 +204,7 @@ macro_rules! param_variants {
             fn visit(&self, prefix: &str, visit: &mut $crate::params::Visit<'_>) {
                 let table = self.params();
                 match self { $( $owner::$variant { $( $param, )* } => { $(
-                    let slot = $crate::params::Slot { prefix, name: stringify!($param), table };
+                    let slot = $crate::params::ParamSlot { prefix, name: stringify!($param), table };
                     $crate::params::ParamField::visit_field($param, slot, visit);
                 )* } )+ }
             }
@@ -213,7 +213,7 @@ macro_rules! param_variants {
                 let table = self.params();
                 match self { $( $owner::$variant { $( $param, )* } => { $(
                     if let Some(below) = $crate::params::below(name, stringify!($param)) {
-                        let slot = $crate::params::Slot { prefix: "", name: stringify!($param), table };
+                        let slot = $crate::params::ParamSlot { prefix: "", name: stringify!($param), table };
                         return $crate::params::ParamField::find_field($param, slot, below);
                     }
                 )* } )+ }
@@ -252,10 +252,14 @@ macro_rules! nested_params {
             fn from_value(_: $crate::params::ParamValue) -> Option<Self> {
                 None
             }
-            fn visit_field(&self, slot: $crate::params::Slot<'_>, visit: &mut $crate::params::Visit<'_>) {
+            fn visit_field(&self, slot: $crate::params::ParamSlot<'_>, visit: &mut $crate::params::Visit<'_>) {
                 $crate::params::Params::visit(self, &slot.inner_prefix(), visit);
             }
-            fn find_field(&self, _: $crate::params::Slot<'_>, below: &str) -> Option<&'static $crate::params::Param> {
+            fn find_field(
+                &self,
+                _: $crate::params::ParamSlot<'_>,
+                below: &str,
+            ) -> Option<&'static $crate::params::Param> {
                 $crate::params::Params::find(self, below.strip_prefix('.')?)
             }
             fn get_field(&self, below: &str) -> Option<$crate::params::ParamValue> {
@@ -304,12 +308,16 @@ macro_rules! nested_variants {
             fn from_value(_: $crate::params::ParamValue) -> Option<Self> {
                 None
             }
-            fn visit_field(&self, slot: $crate::params::Slot<'_>, visit: &mut $crate::params::Visit<'_>) {
+            fn visit_field(&self, slot: $crate::params::ParamSlot<'_>, visit: &mut $crate::params::Visit<'_>) {
                 let prefix = slot.inner_prefix();
                 visit(&prefix, Self::type_param(), self.type_value());
                 $crate::params::Params::visit(self, &prefix, visit);
             }
-            fn find_field(&self, _: $crate::params::Slot<'_>, below: &str) -> Option<&'static $crate::params::Param> {
+            fn find_field(
+                &self,
+                _: $crate::params::ParamSlot<'_>,
+                below: &str,
+            ) -> Option<&'static $crate::params::Param> {
                 match below.strip_prefix('.')? {
                     "type" => Some(Self::type_param()),
                     name => $crate::params::Params::find(self, name),

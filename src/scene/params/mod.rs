@@ -118,7 +118,7 @@ pub trait Params {
 
 /// Where a field stands in its table.
 #[derive(Clone, Copy)]
-pub struct Slot<'a> {
+pub struct ParamSlot<'a> {
     /// Before the field's name.
     pub prefix: &'a str,
     /// The field's name.
@@ -127,7 +127,7 @@ pub struct Slot<'a> {
     pub table: &'static [Param],
 }
 
-impl Slot<'_> {
+impl ParamSlot<'_> {
     /// What stands before the names of what is below the field.
     pub fn inner_prefix(&self) -> String {
         format!("{}{}.", self.prefix, self.name)
@@ -160,14 +160,14 @@ pub trait ParamField: Sized {
     }
 
     /// See [`Params::visit`].
-    fn visit_field(&self, slot: Slot<'_>, visit: &mut Visit<'_>) {
+    fn visit_field(&self, slot: ParamSlot<'_>, visit: &mut Visit<'_>) {
         if let (Some(value), Some(param)) = (self.to_value(), named(slot.table, slot.name)) {
             visit(slot.prefix, param, value);
         }
     }
 
     /// See [`Params::find`].
-    fn find_field(&self, slot: Slot<'_>, below: &str) -> Option<&'static Param> {
+    fn find_field(&self, slot: ParamSlot<'_>, below: &str) -> Option<&'static Param> {
         below.is_empty().then(|| named(slot.table, slot.name)).flatten()
     }
 

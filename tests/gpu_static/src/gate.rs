@@ -1,7 +1,7 @@
 //! Limits, and the exceptions from them.
 
 use crate::cards::{Card, Report};
-use crate::subjects::{Purpose, Subjects, Way};
+use crate::subjects::{EvaluatorKind, Purpose, Subjects};
 
 /// What a card's compiler makes of all pipelines of one purpose: the worst of each figure.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +65,7 @@ pub struct Exception {
     /// Name of the scene.
     pub scene: &'static str,
     /// How fields are evaluated.
-    pub way: Way,
+    pub way: EvaluatorKind,
     /// The pass.
     pub pass: &'static str,
     /// Most vector registers, on whichever card takes more.
@@ -87,17 +87,17 @@ const COPIES: &str = "with modifiers three surfaces are alive at once, beside a 
 /// What is allowed beyond the limits, as measured with Mesa 22.3.6. Its compiler gives a lane of GFX11 no more than 132
 /// registers, and spills the rest.
 pub const EXCEPTIONS: &[Exception] = &[
-    surface("shapes", Way::Interpreter, 256, 371, ORBIT),
-    surface("shapes", Way::Straight, 232, 295, ORBIT),
-    surface("fractals", Way::Interpreter, 256, 408, ORBIT),
-    surface("fractals", Way::Straight, 232, 292, ORBIT),
-    surface("modifiers", Way::Interpreter, 136, 4, COPIES),
-    surface("modifiers", Way::Straight, 136, 4, COPIES),
-    surface("chessboard", Way::Interpreter, 136, 4, COPIES),
-    surface("chessboard", Way::Straight, 136, 4, COPIES),
+    surface("shapes", EvaluatorKind::Interpreter, 256, 371, ORBIT),
+    surface("shapes", EvaluatorKind::Straight, 232, 295, ORBIT),
+    surface("fractals", EvaluatorKind::Interpreter, 256, 409, ORBIT),
+    surface("fractals", EvaluatorKind::Straight, 232, 295, ORBIT),
+    surface("modifiers", EvaluatorKind::Interpreter, 136, 4, COPIES),
+    surface("modifiers", EvaluatorKind::Straight, 136, 4, COPIES),
+    surface("chessboard", EvaluatorKind::Interpreter, 136, 4, COPIES),
+    surface("chessboard", EvaluatorKind::Straight, 136, 4, COPIES),
 ];
 
-const fn surface(scene: &'static str, way: Way, vgprs: u64, spilled: u64, reason: &'static str) -> Exception {
+const fn surface(scene: &'static str, way: EvaluatorKind, vgprs: u64, spilled: u64, reason: &'static str) -> Exception {
     Exception { scene, way, pass: "surface", vgprs, spilled, reason }
 }
 
@@ -138,7 +138,7 @@ mod tests {
     const MOST: u64 = CARDS[0].max_vgprs;
 
     fn row(vgprs: u64, spilled_vgprs: u64) -> Row {
-        let purpose = Purpose { scene: "pawn".into(), way: Way::Straight, pass: "trace".into() };
+        let purpose = Purpose { scene: "pawn".into(), way: EvaluatorKind::Straight, pass: "trace".into() };
         Row {
             card: CARDS[0],
             purpose,
@@ -155,8 +155,14 @@ mod tests {
         }
     }
 
-    const FOR_PAWN: Exception =
-        Exception { scene: "pawn", way: Way::Straight, pass: "trace", vgprs: 192, spilled: 2, reason: "a sample" };
+    const FOR_PAWN: Exception = Exception {
+        scene: "pawn",
+        way: EvaluatorKind::Straight,
+        pass: "trace",
+        vgprs: 192,
+        spilled: 2,
+        reason: "a sample",
+    };
 
     #[test]
     fn what_spills_and_what_takes_too_many_registers_is_refused() {

@@ -29,7 +29,7 @@ pub enum Resource {
 
 /// One shader, ready for a driver.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Stage {
+pub struct SpirvStage {
     /// Name of its entry point.
     pub entry_point: String,
     /// `compute`, `vertex` or `fragment`.
@@ -83,12 +83,12 @@ impl Shader {
     }
 
     /// One entry point as SPIR-V.
-    pub fn stage(&self, entry_point: &str, kind: ShaderStage) -> Result<Stage, Error> {
+    pub fn stage(&self, entry_point: &str, kind: ShaderStage) -> Result<SpirvStage, Error> {
         let pipeline = spv::PipelineOptions { shader_stage: kind, entry_point: entry_point.to_owned() };
         let words = spv::write_vec(&self.module, &self.info, &options(&self.module), Some(&pipeline));
         let refused = |error: spv::Error| Error::Refused { what: self.name.clone(), reason: error.to_string() };
         let kind = format!("{kind:?}").to_lowercase();
-        Ok(Stage { entry_point: entry_point.to_owned(), kind, words: words.map_err(refused)? })
+        Ok(SpirvStage { entry_point: entry_point.to_owned(), kind, words: words.map_err(refused)? })
     }
 }
 

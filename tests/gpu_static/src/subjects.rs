@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
-use crate::spirv::{Resource, Shader, Stage};
+use crate::spirv::{Resource, Shader, SpirvStage};
 
 /// Of a vertex attribute or a target of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ pub struct Pipeline {
     /// For messages.
     pub name: String,
     /// One of compute, or one of vertices and one of fragments.
-    pub stages: Vec<Stage>,
+    pub stages: Vec<SpirvStage>,
     /// Everything that is bound, by group and binding.
     pub bindings: Vec<([u32; 2], Resource)>,
     /// Of each vertex buffer.
@@ -67,14 +67,14 @@ pub struct Purpose {
     /// The example scene, or [`NO_FIELD`].
     pub scene: String,
     /// How fields are evaluated.
-    pub way: Way,
+    pub way: EvaluatorKind,
     /// The pass, and for those that have several its entry point.
     pub pass: String,
 }
 
 /// How fields are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Way {
+pub enum EvaluatorKind {
     /// Not at all.
     None,
     /// By the interpreter.
@@ -87,7 +87,7 @@ pub enum Way {
     Straight,
 }
 
-impl Way {
+impl EvaluatorKind {
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
@@ -148,7 +148,7 @@ pub fn subjects() -> Result<Subjects, Error> {
                 sources.push((text.clone(), entry_point));
                 sources.len() - 1
             });
-            let purpose = Purpose { scene: scene.clone(), way: Way::of(&evaluator), pass: pass.to_owned() };
+            let purpose = Purpose { scene: scene.clone(), way: EvaluatorKind::of(&evaluator), pass: pass.to_owned() };
             match purposes.iter_mut().find(|(other, _)| *other == purpose) {
                 Some((_, all)) if all.contains(&index) => {}
                 Some((_, all)) => all.push(index),
@@ -159,7 +159,7 @@ pub fn subjects() -> Result<Subjects, Error> {
     let made = sources.par_iter().map(|(text, entry_point)| compute(entry_point, text, entry_point, &FIELD_OFFSETS));
     let mut all = Subjects { pipelines: made.collect::<Result<_, _>>()?, purposes };
     for (pass, pipeline) in passes_without_fields()? {
-        let purpose = Purpose { scene: NO_FIELD.to_owned(), way: Way::None, pass };
+        let purpose = Purpose { scene: NO_FIELD.to_owned(), way: EvaluatorKind::None, pass };
         all.purposes.push((purpose, vec![all.pipelines.len()]));
         all.pipelines.push(pipeline);
     }

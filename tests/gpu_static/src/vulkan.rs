@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use ash::{khr, vk};
 
-use crate::spirv::{Resource, Stage};
+use crate::spirv::{Resource, SpirvStage};
 use crate::subjects::{Format, Pipeline};
 use crate::{Error, Statistics};
 
@@ -138,7 +138,7 @@ impl Made<'_> {
         Ok((pipeline, compile_ms))
     }
 
-    fn module(&mut self, stage: &Stage) -> Result<vk::ShaderModule, vk::Result> {
+    fn module(&mut self, stage: &SpirvStage) -> Result<vk::ShaderModule, vk::Result> {
         let create = vk::ShaderModuleCreateInfo::default().code(&stage.words);
         // SAFETY: naga has made the words from a valid module.
         let module = unsafe { self.device.create_shader_module(&create, None) }?;
