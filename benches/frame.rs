@@ -1,5 +1,5 @@
-//! What the processor does between a drag and the GPU, at ten thousand nodes. The promise is less than a
-//! millisecond in all, and that no pipeline is built.
+//! CPU time between a drag and the GPU, at ten thousand nodes. The target is less than a millisecond in all, without
+//! building a pipeline.
 
 mod ten_thousand;
 
@@ -19,7 +19,7 @@ fn stations(c: &mut Criterion) {
     c.bench_function("flatten 10 000 nodes", |b| b.iter(|| black_box(flatten(document.scene(), 0.0))));
     c.bench_function("snapshot of 10 000 nodes", |b| {
         b.iter(|| {
-            // The first edit of a gesture copies the table, because undo still holds the old one.
+            // The first edit of a gesture copies the node table, because the undo history still holds the old one.
             document.begin_gesture();
             ten_thousand::drag(&mut document, dragged, 0.31);
             document.end_gesture();
@@ -47,7 +47,7 @@ fn drag(c: &mut Criterion) {
         b.iter(|| {
             radius = if radius > 0.5 { 0.3 } else { radius + 0.001 };
             ten_thousand::drag(&mut document, dragged, radius);
-            // The arrays that are shown stay alive meanwhile, as in the editor.
+            // Keep the displayed arrays alive during the measurement, as the editor does.
             let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
             assert_eq!(begin(&flat), built, "a drag built a pipeline");
             shown = flat;
@@ -57,7 +57,7 @@ fn drag(c: &mut Criterion) {
     drop(shown);
 }
 
-/// Light and overlay alone, over what is found already.
+/// Lighting and overlay only, on top of existing hits.
 fn light(c: &mut Criterion) {
     let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));
     let mut renderer = Renderer::new(&gpu).expect("a renderer on a device that answers");

@@ -1,15 +1,15 @@
-//! The same picture by somebody else: `fidget`, a library that compiles an implicit surface to machine code, skips
-//! space by interval arithmetic over tiles, and shortens the code for each tile to what matters there.
+//! Draws the same picture with `fidget`, for comparison. `fidget` compiles an implicit surface to machine code, culls
+//! space by interval arithmetic over tiles, and simplifies the tape of each tile.
 //!
-//! It draws a height map: each pixel is a column of voxels, and what it gives is the first voxel inside, with the
-//! gradient there. Its transform may be projective, so a column can be a ray of our camera: the voxels of a column
-//! are evenly spaced in 1 / depth. It is exact to half a voxel, so finer depths take more voxels and more time, and
-//! a time says little without the error at which it was taken.
+//! It renders a height map: each pixel is a column of voxels, and its result is the first voxel inside, with the
+//! gradient there. Its transform may be projective, so a column can be a ray of our camera: the voxels of a column are
+//! evenly spaced in 1 / depth. Its result is exact to half a voxel. Finer depths take more voxels and more time, so a
+//! time means little without its error.
 //!
-//! The peer is treated as its author would: the expression stands in the camera's space, where a tile is a box that
-//! is aligned with the axes and intervals are tightest; scales are multiplied into the constants; a ball is not
-//! turned; where two operands do not blend, what is left of the blend is two instructions. What depends on the
-//! camera only is not counted in the time of a frame, and neither is the conversion of voxels to distances.
+//! The comparison treats the peer as its author would. The expression is in camera space, where tiles are axis-aligned
+//! boxes and intervals are tightest. Scales are multiplied into the constants. Balls are not rotated. Where two
+//! operands do not blend, the simplified blend is two instructions. The frame time excludes work that depends on the
+//! camera only, and the conversion of voxels to distances.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -26,46 +26,47 @@ use isolith::scene::ShapeKind;
 
 /// Threads that the peer draws with.
 pub const THREADS: usize = 2;
-/// The tiles that `fidget` recommends for its compiler: edges in voxels, each level within the one before.
+/// Tile sizes that `fidget` recommends for its compiler: edge lengths in voxels, each level nested in the previous one.
 pub const DEFAULT_TILES: [usize; 3] = [64, 16, 8];
-/// Most often the quickest of a dozen for scenes of up to 145 nodes: fewer tiles need code of their own, and making
-/// it is what takes the time. For 577 nodes it is no better than the default, so measure both and take the lesser.
+/// Usually the fastest of a dozen settings for scenes of up to 145 nodes: fewer tiles need their own code, and
+/// compiling it takes most of the time. For 577 nodes it is no better than the default, so measure both and take the
+/// smaller time.
 pub const TUNED_TILES: [usize; 3] = [128, 32, 8];
 
-/// Voxels left free before and behind the scene: in the first two the peer does not tell depths apart.
+/// Voxels left free in front of and behind the scene: the peer cannot tell depths apart in the first two.
 const MARGIN: f64 = 4.0;
 
-/// What the peer drew.
+/// A picture drawn by the peer.
 pub struct PeerPicture {
-    /// Distance along the pixel's ray; infinity where nothing is hit.
+    /// Distance along the pixel's ray; infinity for a miss.
     pub depth: Vec<f32>,
-    /// Unit world normal; zero where nothing is hit.
+    /// Unit world normal; zero for a miss.
     pub normal: Vec<[f32; 3]>,
-    /// Time of all threads for the frame.
+    /// CPU time of all threads for the frame.
     pub cpu: Duration,
 }
 
 impl PeerPicture {
-    /// The picture as it is compared with the reference. The peer knows no leaves and no colors.
+    /// The picture in the form that the comparison with the reference takes. The peer has no leaves and no colors.
     pub fn buffers(&self, size: u32) -> GBuffer {
         GBuffer { depth: self.depth.clone(), normal: self.normal.clone(), ..GBuffer::empty(size, size) }
     }
 }
 
-/// A scene, ready to be drawn by the peer for one camera.
+/// A scene prepared for the peer and one camera.
 pub struct Peer {
     shape: JitShape,
     camera: Camera,
-    /// Depths along the view axis between which the scene lies.
+    /// Range of depths along the view axis that contains the scene.
     range: Range<f64>,
     threads: ThreadPool,
-    /// Time of all threads to build the expression and the peer's instructions from it. Machine code is made while
-    /// a frame is drawn, as it depends on the tile, and is counted there.
+    /// CPU time of all threads to build the expression and the peer's tape. The peer generates machine code per tile
+    /// while it draws a frame, so that time counts as frame time.
     pub build: Duration,
 }
 
 impl Peer {
-    /// `None` where the peer cannot express the scene, or nothing of it is in view.
+    /// `None` if the peer cannot express the scene, or if the camera sees none of it.
     pub fn new(flat: &FlatScene, camera: &Camera) -> Option<Self> {
         let start = cpu_time();
         let shape = JitShape::from(tree(flat, camera)?);
@@ -75,7 +76,7 @@ impl Peer {
         Some(Self { shape, camera: *camera, range, threads: ThreadPool::Custom(pool), build })
     }
 
-    /// Draws a square picture of `size` pixels a side, over `depth` voxels from front to back.
+    /// Draws a square picture, `size` pixels a side, with `depth` voxels from front to back.
     pub fn render(&self, size: u32, depth: u32, tiles: &[usize]) -> PeerPicture {
         let view = View::new(&self.camera, &self.range, size, depth);
         let shape = self.shape.clone().try_into().expect("the expression has no other variables than the point");
@@ -89,8 +90,8 @@ impl Peer {
     }
 }
 
-/// How the peer's columns stand in the camera's space. The point at (x, y, z), in pixels and voxels, is
-/// (a, b, -1) / w, where a, b and w are each `[v0, v1]`, meaning v0 + v1 times x, y and z.
+/// Placement of the peer's columns in camera space. The point at (x, y, z), in pixels and voxels, is (a, b, -1) / w,
+/// where a, b and w are each `[v0, v1]`, meaning v0 + v1 times x, y and z.
 struct View {
     a: [f64; 2],
     b: [f64; 2],
@@ -112,7 +113,7 @@ impl View {
         }
     }
 
-    /// The peer takes the map from a cube of its own, whose corners it maps to pixels and voxels: undone here.
+    /// The peer applies its own map from a cube to pixels and voxels; this transform undoes it.
     fn config(&self) -> RenderConfig {
         let mut config = RenderConfig::from_size(self.size);
         let cube = self.size.screen_to_world();
@@ -130,7 +131,7 @@ impl View {
         config
     }
 
-    /// Distances along the rays, to the middle between the last voxel outside and the first inside, and normals.
+    /// Normals, and distances along the rays to the midpoint between the last voxel outside and the first one inside.
     fn converted(&self, image: &Image) -> (Vec<f32>, Vec<[f32; 3]>) {
         let width = image.width();
         let pixel = |(i, pixel): (usize, &fidget::raster::voxel::GeometryPixel)| {
@@ -140,7 +141,7 @@ impl View {
             let line = |[v0, v1]: [f64; 2], at: f64| v0 + v1 * at;
             let (a, b) = (line(self.a, (i % width) as f64), line(self.b, (i / width) as f64));
             let distance = DVec3::new(a, b, 1.0).length() / line(self.w, f64::from(pixel.depth) - 0.5);
-            // The gradient is by pixels and voxels, at the first voxel inside: the chain rule leads back.
+            // The gradient is per pixel and voxel, at the first voxel inside; convert it by the chain rule.
             let w = line(self.w, f64::from(pixel.depth) - 1.0);
             let by = DVec3::from(pixel.normal.map(f64::from)) * w;
             let (x, y) = (by.x / self.a[1], by.y / self.b[1]);
@@ -152,7 +153,7 @@ impl View {
     }
 }
 
-/// Depths along the view axis between which lies what the camera can see of the scene; `None` for nothing.
+/// Depth range along the view axis of the visible part of the scene; `None` if the camera sees none of it.
 fn depth_range(flat: &FlatScene, camera: &Camera) -> Option<Range<f64>> {
     let camera_from_world = DAffine3::from_rotation_translation(camera.rotation, camera.position).inverse();
     let t = camera.tan_half_fov();
@@ -171,8 +172,8 @@ fn depth_range(flat: &FlatScene, camera: &Camera) -> Option<Range<f64>> {
     (range.start < range.end).then_some(range)
 }
 
-/// The whole scene as one expression in the camera's space: the components in hard union. `None` where the peer
-/// cannot express it: meshes, what has no end, shapes without a closed form, operators beyond the first three.
+/// The whole scene as one expression in camera space: the hard union of its components. `None` if the peer cannot
+/// express it: meshes, unbounded shapes, shapes without a closed form, operators beyond the first three.
 pub fn tree(flat: &FlatScene, camera: &Camera) -> Option<Tree> {
     if !flat.meshes.is_empty() || flat.components.iter().any(|c| !c.bounds.is_finite()) {
         return None;
@@ -186,7 +187,7 @@ pub fn tree(flat: &FlatScene, camera: &Camera) -> Option<Tree> {
     components.collect::<Option<Vec<_>>>()?.into_iter().reduce(|a, b| a.min(b))
 }
 
-/// The siblings in `range`, each joined to what stands before it. Runs only say what may be skipped.
+/// Folds the siblings in `range` in order. Ignores runs: they only serve culling.
 fn fold(flat: &FlatScene, range: Range<usize>, space: &DAffine3) -> Option<Tree> {
     let mut so_far: Option<Tree> = None;
     let mut at = range.start;
@@ -210,7 +211,7 @@ fn fold(flat: &FlatScene, range: Range<usize>, space: &DAffine3) -> Option<Tree>
     so_far
 }
 
-/// What stands so far, and what joins it.
+/// Joins the running result `a` and the next operand `b`.
 fn joined(node: &FlatNode, support: f32, a: Tree, b: Tree) -> Tree {
     const INTERSECTION: u32 = Join::Intersection as u32;
     const DIFFERENCE: u32 = Join::Difference as u32;
@@ -222,8 +223,8 @@ fn joined(node: &FlatNode, support: f32, a: Tree, b: Tree) -> Tree {
     }
 }
 
-/// What a blend takes from the lesser of two operands that differ by `difference`. `and` yields its left side where
-/// that is 0, and its right side elsewhere: where nothing blends, the peer drops all that comes before.
+/// The amount that a blend subtracts from the smaller of two operands that differ by `difference`. `and` yields its
+/// left side if that is 0, else its right side: where nothing blends, the peer drops the rest of the expression.
 fn blend(difference: Tree, support: f32, kernel: u32) -> Tree {
     if !support.recip().is_finite() {
         return Tree::constant(0.0);
@@ -240,7 +241,7 @@ fn blend(difference: Tree, support: f32, kernel: u32) -> Tree {
     h.and(value)
 }
 
-/// The field of a leaf. A shape's size is scaled along with its space, so that the field needs no scale.
+/// The field of a leaf. The space's scale is applied to the shape's size, so that the field needs no scale.
 fn leaf(flat: &FlatScene, node: &FlatNode, space: &DAffine3) -> Option<Tree> {
     let params = &flat.params[node.params as usize..];
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
@@ -268,7 +269,7 @@ fn is_rotation(m: &DMat3) -> bool {
     (m.transpose() * *m).abs_diff_eq(DMat3::IDENTITY, 1e-6)
 }
 
-/// The shapes' distances without branches; `None` for those that it is not compared in.
+/// Branch-free distance of a shape; `None` for kinds that the comparison leaves out.
 fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
     let [x, y, z] = p;
     Some(match kind {
@@ -307,12 +308,12 @@ fn shape(kind: ShapeKind, p: [Tree; 3], q: &[f32; 8]) -> Option<Tree> {
     })
 }
 
-/// Distance to what lies below 0 along every one of some perpendicular axes.
+/// Distance to the intersection of half spaces along perpendicular axes.
 fn solid<const N: usize>(d: [Tree; N]) -> Tree {
     beyond(d.clone()) + greatest(d).min(0.0)
 }
 
-/// The length of the positive parts. The root of 0 has no derivative; `and` yields a constant there instead.
+/// Length of the positive parts. The root of 0 has no derivative, so `and` yields a constant there.
 fn beyond<const N: usize>(d: [Tree; N]) -> Tree {
     greatest(d.clone()).max(0.0).and(length(d.map(|d| d.max(0.0))))
 }
@@ -321,7 +322,8 @@ fn greatest<const N: usize>(d: [Tree; N]) -> Tree {
     d.into_iter().reduce(|a, b| a.max(b)).expect("there is an axis")
 }
 
-/// The twelve edges of a cuboid: outside the least distance to four bars along each axis, inside the way out.
+/// The twelve edges of a cuboid: outside, the least distance to four bars along each axis; inside, the distance to the
+/// surface.
 fn box_frame(p: [Tree; 3], q: &[f32; 8]) -> Tree {
     let outer = [0, 1, 2].map(|i| p[i].abs() - 0.5 * q[i]);
     let reaches = |i: usize| 0.5 * q[i] <= q[3];
@@ -335,7 +337,7 @@ fn box_frame(p: [Tree; 3], q: &[f32; 8]) -> Tree {
     bar(0).min(bar(1)).min(bar(2)) + inside.min(0.0)
 }
 
-/// In the half plane through the axis a convex profile: the distance to its three sides, and the sign of its planes.
+/// A convex profile in the half plane through the axis: the distance to its three sides, with the sign from its planes.
 fn capped_cone(radius: Tree, y: Tree, q: &[f32; 8]) -> Tree {
     let (bottom, top, half) = (q[0], q[1], 0.5 * q[2]);
     let square = |d: [Tree; 2]| d[0].square() + d[1].square();
@@ -349,7 +351,8 @@ fn capped_cone(radius: Tree, y: Tree, q: &[f32; 8]) -> Tree {
     sign * bottom_cap.min(top_cap).min(side).sqrt()
 }
 
-/// The hull of two balls is one of balls whose radius changes evenly along the axis: the nearest of them decides.
+/// The hull of two balls is a family of balls whose radius changes linearly along the axis; the nearest one gives the
+/// distance.
 fn round_cone(radius: Tree, y: Tree, q: &[f32; 8]) -> Tree {
     let (bottom, top, height) = (q[0], q[1], q[2]);
     let y = y + 0.5 * height;
@@ -365,7 +368,7 @@ fn round_cone(radius: Tree, y: Tree, q: &[f32; 8]) -> Tree {
     length([radius, y - along.clone()]) + along * sine - bottom
 }
 
-/// From the nearest point of a segment to a point given from the segment's start.
+/// The vector from the nearest point of a segment. Both points are relative to the segment's start.
 fn from_segment<const N: usize>(from_start: [Tree; N], axis: [f32; N]) -> [Tree; N] {
     let square: f32 = axis.iter().map(|a| a * a).sum();
     let dot = from_start.iter().zip(axis).fold(Tree::constant(0.0), |sum, (p, a)| sum + p.clone() * a);

@@ -1,5 +1,5 @@
-//! How exact every scene's picture is, what a drag costs, and how another library does: as tables, printed and
-//! written into `benches/README.md` between their marks. Names of tables choose among them.
+//! Accuracy of every scene's picture, cost of a drag, and a comparison with another library, as tables. The program
+//! prints them and writes them into `benches/README.md` between their marks. Arguments select tables by name.
 
 #[path = "../tests/gpu.rs"]
 mod gpu;
@@ -20,7 +20,7 @@ use isolith::wgsl::Quality;
 
 /// Width and height of the measured pictures, in pixels.
 const SIDE: u32 = 256;
-/// How often a time is taken; the median is shown.
+/// Number of samples of a time; the table shows their median.
 const REPEATS: usize = 101;
 
 fn main() {
@@ -42,7 +42,7 @@ fn main() {
     std::fs::write(&path, text).expect("benches/README.md can be written");
 }
 
-/// `text` with what stands between the marks of this name replaced.
+/// Returns `text` with the table between the marks of this name replaced.
 fn replaced(text: &str, mark: &str, table: &str) -> String {
     let [begin, end] = ["begin", "end"].map(|side| format!("<!-- {mark}:{side} -->"));
     let start = text.find(&begin).expect("the mark that begins a table") + begin.len();
@@ -82,14 +82,14 @@ fn accuracy() -> String {
     out
 }
 
-/// Width and height of the pictures that are compared with the peer's, in pixels.
+/// Width and height of the pictures for the comparison with the peer, in pixels.
 const PEER_SIDE: u32 = 512;
-/// Voxels along the peer's columns: its error halves where they double.
+/// Voxels along the peer's columns: doubling them halves its error.
 const PEER_DEPTHS: [u32; 2] = [512, 2048];
-/// How often the peer draws; the quickest counts.
+/// Number of times the peer draws; the fastest counts.
 const PEER_REPEATS: usize = 2;
 
-/// The peer beside the editor's own way, in one run: times of all threads.
+/// The peer beside the editor's own strategy, in one run: CPU times of all threads.
 fn peer() -> String {
     let mut out = String::from("| scene | by | voxels | CPU ms | build ms | depth p99 | normal p50 | ratio |\n");
     out += "|---|---|--:|--:|--:|--:|--:|--:|\n";
@@ -146,7 +146,7 @@ fn drag() -> String {
         let start = Instant::now();
         ten_thousand::drag(&mut document, dragged, 0.3 + 0.001 * i as f64);
         let edited = Instant::now();
-        // The arrays that are shown stay alive meanwhile, as in the editor.
+        // Keep the displayed arrays alive during the measurement, as the editor does.
         let flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
         let flattened = Instant::now();
         renderer.begin(Slot::Full, &flat, &[], &camera, size, OverlaySettings::default()).expect("a frame");

@@ -1,4 +1,4 @@
-//! A document of ten thousand nodes, and one drag of a radius in it: what the benches measure.
+//! A document of ten thousand nodes, and one drag of a radius in it: the subject of the benches.
 
 use glam::DVec3;
 use isolith::document::{Document, Edit};
@@ -41,7 +41,7 @@ pub fn document() -> (Document, NodeId) {
     (Document::new(scene), dragged)
 }
 
-/// Begins frames until every pipeline of the scene is built, as they are after a moment in the editor.
+/// Renders frames until every pipeline of the scene is built, as they soon are in the editor.
 pub fn warm(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u32; 2]) {
     loop {
         renderer.begin(Slot::Full, flat, &[], camera, size, OverlaySettings::default()).expect("a frame");
@@ -52,7 +52,7 @@ pub fn warm(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera, size: [u
     }
 }
 
-/// The edit that one frame of a drag makes.
+/// The edit of one frame of a drag.
 pub fn drag(document: &mut Document, dragged: NodeId, radius: f64) {
     let mut node = Node::clone(document.scene().node(dragged).expect("the node that is dragged"));
     let NodeKind::Object(object) = &mut node.kind else { unreachable!("it is a sphere") };

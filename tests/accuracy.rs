@@ -1,4 +1,4 @@
-//! Every scene's picture against the reference, on the same rays.
+//! Compares every scene's picture with the reference, ray for ray.
 
 use isolith::field::Accuracy;
 use isolith::field::reference::accuracy::{MAX_WRONG_SHARE, verdicts};
@@ -12,14 +12,14 @@ use crate::gpu::{BenchScene, scenes, shared};
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 256;
 
-/// Every way to evaluate a component: the command line draws by the interpreter and by tapes, the window by pipelines too.
+/// Every evaluator: the command line draws with the interpreter and tapes, the window with pipelines too.
 const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
-/// Scenes that are known to be drawn wrong, with how many pixels at most by each of [`METHODS`]. The list only shrinks: an
-/// entry that is no longer needed, or that allows more than is there, fails the test.
+/// Scenes known to be drawn incorrectly, with the most wrong pixels allowed per strategy of [`STRATEGIES`]. The list
+/// only shrinks: an entry that is no longer needed, or that allows more than is measured, fails the test.
 const KNOWN: [(&str, [usize; 3]); 0] = [];
 
-/// The errors of what the renderer draws of `drawn`, by each method, measured against the reference of `meant`.
+/// Errors of the renderer's picture of `drawn`, per strategy, measured against the reference of `meant`.
 fn measure(drawn: &BenchScene, meant: &BenchScene, side: u32) -> [Accuracy; 3] {
     let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [side, side], &|_| ());
     let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
@@ -48,7 +48,7 @@ fn every_scene_is_as_exact_as_promised() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A ball before the background.
+/// A ball in front of the background.
 fn ball(radius: f64, lifted: f64) -> BenchScene {
     let mut scene = Scene::new();
     let object = Object { shape: Shape::Sphere { radius }, material: MaterialId(1) };
@@ -70,7 +70,7 @@ fn a_ball_is_exact_and_a_slightly_different_one_is_refused() {
     }
 }
 
-/// Ellipsoids before the background: one like an egg, a needle, and a disc seen nearly edge on.
+/// Ellipsoids in front of the background: an egg, a needle, and a disc seen nearly edge-on.
 fn ellipsoids() -> BenchScene {
     let mut scene = Scene::new();
     for (radii, at) in [([0.7, 0.45, 0.5], 0.0), ([0.03, 0.9, 0.03], -1.0), ([0.8, 0.02, 0.8], 1.7)] {
@@ -84,14 +84,15 @@ fn ellipsoids() -> BenchScene {
     bench_scene
 }
 
-/// The thesis drew its ellipsoid by few steps and by many, and neither was right along the outline. Here nobody says how
-/// many steps there are: a ray ends where its sign changes or where nothing is left. What can be chosen is how near it
-/// comes before a straight line is trusted. By the fewest steps and by the most each pixel shows what it should, but for a
-/// few along the outline of coarse pictures, and what roundings decide, which differ from processor to processor.
+/// The thesis drew its ellipsoid with few steps and with many, and both were wrong along the outline. Here a ray has no
+/// step count to choose: it ends at a sign change or when nothing remains ahead. The quality only sets the distance
+/// below which a ray takes a straight line for granted. With the fewest steps and with the most, each pixel is right,
+/// except for a few along the outline of coarse pictures and for pixels that rounding decides, which differs between
+/// processors.
 #[test]
 fn outlines_of_ellipsoids_are_right_by_few_and_by_many_steps() {
     let shipped = scenes().find(|scene| scene.name == "ellipsoid-and-plane").expect("it is shipped");
-    // Toward the horizon of the plane rays take many steps, each of them at a grazing angle.
+    // Toward the plane's horizon, rays take many steps, all at a grazing angle.
     for (bench_scene, most) in [(ellipsoids(), 3.0), (shipped, 40.0)] {
         let reference =
             render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], &|_| ())
@@ -111,7 +112,7 @@ fn outlines_of_ellipsoids_are_right_by_few_and_by_many_steps() {
             let steps = renderer.pixel_counts(&frame).expect("counts").steps();
             let verdicts = verdicts(&picture, &bench_scene.flat, &reference);
             let other = (0..verdicts.len()).filter(|i| verdicts[*i].is_wrong());
-            // Coarse pictures may have outlines a tenth of a pixel off, which is what they promise.
+            // Coarse pictures guarantee outlines to a tenth of a pixel only.
             let is_near = |i: &usize| quality == Quality::Draft && reference.margin[*i] <= 0.1;
             let (near, wrong): (Vec<_>, Vec<_>) = other.partition(is_near);
             let fits = wrong.len() as f64 <= MAX_WRONG_SHARE * reference.margin.len() as f64 && near.len() < 40;

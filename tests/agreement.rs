@@ -1,5 +1,5 @@
-//! The GPU's field is the CPU evaluator's: for every shape, every operator and random trees,
-//! |gpu − cpu| ≤ 1e-4 (1 + |d|) at 4 096 points.
+//! The GPU's field agrees with the CPU evaluator: for every shape, every operator and random trees, |gpu − cpu| ≤ 1e-4
+//! (1 + |d|) at 4 096 points.
 
 mod gradients;
 mod lookahead;
@@ -22,8 +22,8 @@ use crate::gpu::shared;
 
 const POINTS: usize = 4_096;
 
-/// Points that f32 holds exactly, so that both sides see the same: in a wide cube, in a tight one, on
-/// planes of symmetry.
+/// Points that f32 represents exactly, so that both sides get the same input: in a wide cube, in a tight one, on planes
+/// of symmetry.
 fn points(random: &mut Random, count: usize) -> Vec<DVec3> {
     (0..count)
         .map(|i| {
@@ -41,7 +41,7 @@ fn compare(flat: &FlatScene, component: usize, points: &[DVec3], values: &[f32])
     assert_eq!(points.len(), values.len());
     for (p, gpu) in points.iter().zip(values) {
         let (gpu, cpu) = (f64::from(*gpu), field(flat, &flat.components[component], *p));
-        // Written so that what is no number disagrees.
+        // The form of the comparison makes NaN disagree.
         let agrees = (gpu - cpu).abs() <= 1e-4 * (1.0 + cpu.abs());
         if !agrees {
             return Err(format!("at {p} the GPU says {gpu}, the CPU {cpu}"));
@@ -50,12 +50,12 @@ fn compare(flat: &FlatScene, component: usize, points: &[DVec3], values: &[f32])
     Ok(())
 }
 
-/// Compares every component of the scene at as many points as make 4 096 together.
+/// Compares every component of the scene, at 4 096 points in all.
 fn agree(what: &str, scene: &Scene, random: &mut Random) {
     agree_with_skip_mode(what, scene, random, SkipMode::Branches);
 }
 
-/// The same; specialized pipelines skip what is out of reach in the given way.
+/// Like [`agree`], with the given skip mode of specialized pipelines.
 fn agree_with_skip_mode(what: &str, scene: &Scene, random: &mut Random, skip_mode: SkipMode) {
     let options = Options { skip_mode, ..Options::default() };
     let flat = flatten(scene, 0.0).unwrap();
@@ -85,7 +85,7 @@ fn every_shape_agrees() {
     for &kind in ShapeKind::ALL {
         let mut random = Random::new(kind as u64);
         let mut scene = Scene::new();
-        // The default, all zero, random, random with zeros; turned and moved.
+        // The default, all zeros, random, and random with zeros; rotated and translated.
         for shape in ordinary(kind, 3) {
             let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, 6.0));
             add(&mut scene, None, object(shape).at(random.point(0.5)).rotated(turn));
@@ -140,7 +140,7 @@ fn long_rows(random: &mut Random) -> Scene {
     scene
 }
 
-/// Long rows of operands are skipped run by run, at every place and in both ways to skip.
+/// Runs of operands are skipped correctly in long rows, at every place and in both skip modes.
 #[test]
 fn runs_agree() {
     for (seed, skip_mode) in [(1, SkipMode::Branches), (2, SkipMode::Selects)] {
@@ -153,7 +153,7 @@ fn runs_agree() {
     }
 }
 
-/// A pipeline for a template serves all structures of the template: few shapes, and so many that they are skipped.
+/// A template's pipeline serves all its structures: few shapes, and enough shapes for skipping.
 #[test]
 fn templates_agree() {
     let few = gallery::random(16, 1);
@@ -178,8 +178,8 @@ fn templates_agree() {
     }
 }
 
-/// Tapes: every component that can have them, against the CPU evaluator of the same tapes. A point near the border of
-/// two cells may fall to either.
+/// Compares every component that can have tapes with the CPU evaluator of the same tapes. A point near the border of
+/// two cells may fall into either.
 #[test]
 fn tapes_agree() {
     const NEAR: f64 = 1e-5;
@@ -191,7 +191,7 @@ fn tapes_agree() {
         let points = points(&mut Random::new(seed), POINTS);
         let mut ops = OpSet::of(&flat);
         if flat.components[0].is_modified() {
-            // One pipeline is compiled for all of them.
+            // Compile one pipeline for all of them.
             ops = OpSet { modifiers: OpSet::all().modifiers, stack: 4, ..ops };
         }
         let evaluator = Evaluator::Tape(ops);
@@ -203,7 +203,7 @@ fn tapes_agree() {
                 let cpu = around.map(|d| tape_field(&flat, &flat.components[0], &tree, *p + d * NEAR));
                 let reference = field(&flat, &flat.components[0], *p);
                 let is_same = |gpu: f64, cpu: f64| (gpu - cpu).abs() <= 1e-4 * (1.0 + cpu.abs());
-                // The GPU leaves out copies by their bounds, which may say more than cells without a tape.
+                // The GPU skips copies by their bounds, which may give a larger value than cells without a tape.
                 let is_between = |gpu: f64, cpu: f64| cpu <= gpu && gpu <= reference;
                 let agrees = |cpu: &f64| is_same(gpu.into(), *cpu) || is_between(gpu.into(), *cpu);
                 assert!(cpu.iter().any(agrees), "crowd {seed}: at {p} the GPU says {gpu}, the CPU {cpu:?}");
@@ -228,7 +228,7 @@ fn a_disagreement_is_caught() {
     assert!(compare(&flat, 0, &points, &values(&|_| f64::NAN)).is_err());
 }
 
-/// Every modifier, alone and one upon the other, over lopsided content.
+/// Every modifier, alone and on top of another, over asymmetric content.
 #[test]
 fn every_modifier_agrees() {
     for &kind in ModifierKind::ALL {
@@ -244,7 +244,7 @@ fn every_modifier_agrees() {
     }
 }
 
-/// What has data, at blends that need all of their numbers, below modifiers and twice below copies.
+/// Shapes with a payload, in blends that use all its values, below modifiers and below two levels of copies.
 #[test]
 fn data_are_found_below_blends_and_modifiers() {
     let mut scene = Scene::new();

@@ -1,5 +1,5 @@
-//! Kernels that skip by branches are right. Graphics cards get them; here lavapipe runs them, slowly, because it executes
-//! both sides of each branch. Interpreter and lists have the same source for every device.
+//! Pipelines that skip by branches are correct. Graphics cards get them. Here lavapipe runs them, slowly, because it
+//! executes both sides of each branch. Interpreter and tapes have the same source on every device.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::Duration;
@@ -17,13 +17,13 @@ use crate::contract::trees::{Recipe, tree};
 use crate::golden::{Gate, compare_with_accepted};
 use crate::gpu::{BenchScene, shared};
 
-/// Random trees, and how many of them have one structure: each structure takes half a second to compile.
+/// Number of random trees, and of trees that share a structure: compiling a structure takes half a second.
 const TREES: u64 = 200;
 const TREES_OF_A_STRUCTURE: u64 = 10;
 /// Width and height of their pictures, in pixels.
 const SIDE: u32 = 24;
 
-/// Draws with kernels that skip by branches, once they are all there.
+/// Draws with pipelines that skip by branches, once all of them are compiled.
 fn draw(bench_scene: &BenchScene, side: u32, method: EvalStrategy) -> GBuffer {
     static RENDERER: LazyLock<Mutex<Renderer>> = LazyLock::new(|| {
         let gpu = shared().gpu.clone();
@@ -53,7 +53,7 @@ fn every_scene_looks_as_accepted_by_branching_kernels() {
     compare_with_accepted("branching", Gate::Close, |scene, side| draw(scene, side, EvalStrategy::Auto));
 }
 
-/// A random tree of any shapes; those of a structure differ in their numbers only.
+/// A random tree of any shapes; trees of one structure differ in their parameters only.
 fn random_tree(seed: u64) -> BenchScene {
     let of_structure = 5000 + seed / TREES_OF_A_STRUCTURE;
     let recipe = Recipe { blends: true, stretching: of_structure.is_multiple_of(2), kinds: ShapeKind::ALL };
@@ -62,7 +62,7 @@ fn random_tree(seed: u64) -> BenchScene {
     BenchScene::new(&format!("tree {seed}"), &scene, None)
 }
 
-/// Moves, turns and scales every node, and changes sizes and blends, all of them a little.
+/// Slightly moves, turns and scales every node, and changes sizes and blends.
 fn vary(scene: &mut Scene, random: &mut Random) {
     let nodes: Vec<Node> = scene.nodes().iter().map(|node| Node::clone(node)).collect();
     for mut node in nodes {
@@ -85,7 +85,7 @@ fn vary(scene: &mut Scene, random: &mut Random) {
     }
 }
 
-/// How many pixels of the picture are wrong against the reference of `meant`, and how many show anything.
+/// Number of wrong pixels against the reference of `meant`, and of pixels that show anything.
 fn wrong(picture: &GBuffer, drawn: &BenchScene, meant: &BenchScene) -> [usize; 2] {
     let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [SIDE; 2], &|_| ());
     let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
@@ -100,7 +100,7 @@ fn another_tree_is_refused() {
     assert!(wrong > 20, "{wrong}");
 }
 
-/// If these kernels had no branches, the tests above would not test what they say.
+/// Without branches in these pipelines, the tests above would prove nothing.
 #[test]
 fn kernels_for_cards_have_branches_that_others_have_not() {
     let branches = |pass: &str, skip_mode: SkipMode| {

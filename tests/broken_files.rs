@@ -1,4 +1,4 @@
-//! Files broken by hand: each is refused with the node, the field and the reason.
+//! Scene files broken by hand: the reader refuses each with the node, the field and the reason.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ const GOOD: &str = r#"{
   ]
 }"#;
 
-/// What to replace by what, and which node, field and reason the message must hold.
+/// Old and new text, and the node, field and reason that the message must contain.
 type Case = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 const CASES: &[Case] = &[
@@ -42,7 +42,7 @@ const CASES: &[Case] = &[
     (r#""isolith": 1,"#, r#""isolith": 2,"#, "", "isolith", "version 2 is newer"),
     (r#""isolith": 1,"#, r#""isolith": "one","#, "", "isolith", "must be the number of a version"),
     (r#""isolith": 1,"#, r#""isolith": 1, "isolith": 1,"#, "", "isolith", "duplicate field"),
-    // The text itself.
+    // JSON syntax.
     (r#""next_id": 9,"#, r#""next_id": 9"#, "", "", "line 13, column 3: expected `,` or `}`"),
     (r#""name": "Head","#, r#""name": Head,"#, "#2", "nodes[1].name", "expected value"),
     (r#""radius": 0.5}"#, r#""radius": 0.5"#, "Head #2", "nodes[1].object.shape.material", "unknown field"),
@@ -207,7 +207,7 @@ const CASES: &[Case] = &[
     (r#""sky": [0.1, 0.2, 0.3]"#, r#""sky": [0.1, -0.2, 0.3]"#, "", "environment.sky[1]", "must be 0 to"),
     (r#""specular": 0.75"#, r#""specular": 1.5"#, "", "materials[1].specular", "must be 0 to 1, not 1.5"),
     (r#""shininess": 96.0"#, r#""shininess": 0.5"#, "", "materials[1].shininess", "must be 1 to"),
-    // Files that are kept.
+    // Attachments.
     (
         r#"{"type": "sphere", "radius": 0.5}"#,
         r#"{"type": "heightmap", "image": {"name": "x.png", "base64": "AAAA"}, "size": [1, 1, 1], "height": 1}"#,
@@ -257,7 +257,7 @@ const CASES: &[Case] = &[
         "nodes[1].object.shape.image",
         "expected a file in braces",
     ),
-    // The second of two modifiers, whose file has the name of the first one's.
+    // The second of two modifiers; its file has the same name as the first one's.
     (
         r#""name": "Foot","#,
         concat!(
@@ -351,7 +351,7 @@ fn refused(bytes: &[u8]) -> file::FileError {
     }
 }
 
-/// Whether the message names all of it.
+/// Whether the message contains all three.
 fn names(error: &file::FileError, node: &str, field: &str, reason: &str) -> bool {
     error.file == "dir/scene.json"
         && error.node.is_some() != node.is_empty()
@@ -412,7 +412,7 @@ fn long_circles_of_parents_are_found() {
 
 #[test]
 fn bombs_are_refused_before_they_grow() {
-    // Nesting, where values are skipped and where they are read.
+    // Nesting, both in values that the reader skips and in those that it reads.
     let deep = "[".repeat(1_000_000);
     for text in [deep.clone(), GOOD.replacen("0.5}", &format!("{deep}}}"), 1), format!("{{\"isolith\": {deep}")] {
         let reason = refused(text.as_bytes()).reason;

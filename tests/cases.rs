@@ -1,5 +1,5 @@
-//! Inputs that once went wrong. `tests/cases/README.md` says what is right about each; a module for each kind holds
-//! the tests.
+//! Regression tests for faulty inputs. `tests/cases/README.md` gives the right result for each; the tests are in one
+//! module per kind.
 
 mod camera;
 mod commands;

@@ -1,4 +1,4 @@
-//! The program from outside: every command, every exit code, what it writes and what it says.
+//! The program from outside: every command and exit code, its files and its messages.
 
 use std::path::{Path, PathBuf};
 
@@ -30,7 +30,7 @@ struct Place {
     folder: tempfile::TempDir,
 }
 
-/// What a run left behind.
+/// The result of a run.
 struct Outcome {
     code: i32,
     out: String,
@@ -53,7 +53,7 @@ impl Place {
         std::fs::write(self.path(name), file::to_json(scene).expect("a sound scene")).expect("it can be written");
     }
 
-    /// Writes the scene with a radius that is not allowed.
+    /// Writes the scene with a radius outside its limits.
     fn write_broken(&self, name: &str) {
         let text = file::to_json(&sample()).expect("a sound scene");
         let broken = text.replace("\"radius\": 0.5", "\"radius\": -0.5");
@@ -69,7 +69,7 @@ impl Place {
         names
     }
 
-    /// Runs the program there, without a display.
+    /// The program, to be run in this folder without a display.
     fn command(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_isolith"));
         command.current_dir(self.folder.path()).args(arguments).env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY");
@@ -86,7 +86,7 @@ impl Place {
 }
 
 impl Outcome {
-    /// It failed with this code and an error that holds each of `parts`.
+    /// Asserts that the run failed with this code and an error that contains each of `parts`.
     fn failed(&self, code: i32, parts: &[&str]) -> &Self {
         assert_eq!(self.code, code, "{}", self.err);
         assert!(self.err.contains("error: "), "{}", self.err);
@@ -278,7 +278,7 @@ fn without_a_driver_it_says_so() {
     let place = Place::new();
     let mut command = Command::new(env!("CARGO_BIN_EXE_isolith"));
     command.current_dir(place.folder.path()).args(["render", "scene.json", "-o", "out.png"]);
-    // No backend at all stands for a machine without a driver.
+    // A missing backend simulates a machine without a driver.
     let output = command.env("WGPU_BACKEND", "dx12").output().expect("the program starts");
     if cfg!(windows) {
         return;
@@ -385,7 +385,7 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
         .stderr(std::process::Stdio::piped())
         .spawn()
         .expect("the program starts");
-    // Long enough for the march to be under way, far less than it takes.
+    // Long enough for the march to start, far less than it takes.
     std::thread::sleep(std::time::Duration::from_secs(3));
     let interrupted = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
     assert!(interrupted.expect("kill can be run").success());
@@ -419,7 +419,7 @@ fn bench_measures_every_method_and_writes_tables_and_charts() {
             assert!(row[key].as_f64().is_some_and(|v| v >= 0.0), "{key} of {row}");
         }
         assert_eq!(row["wrong_share"].as_f64(), Some(0.0), "{row}");
-        // What finds normals counts too: the floor and the ball fill more than half of the picture.
+        // Evaluations for normals count too: the floor and the ball fill more than half of the picture.
         let [all, surfaces] = ["evals_per_px", "surface_evals_per_px"].map(|key| row[key].as_f64().unwrap_or(0.0));
         assert!(all > surfaces && surfaces > 0.5, "{row}");
     }

@@ -1,6 +1,6 @@
-//! The field contract: for every shape, every operator and random trees of both, the sign and the zero
-//! set are right, the value is a safe step, it is finite, and bounds enclose. Generated over the enums,
-//! so that a new variant is tested without a line here, except for its surface in `surfaces`.
+//! The field contract, for every shape, every operator and random trees of both: the sign and the zero set are right,
+//! the value is a safe step, it is finite, and bounds enclose. The tests iterate over the enums, so a new variant is
+//! covered without a line here, except for its surface in `surfaces`.
 
 mod blends;
 mod drawn;

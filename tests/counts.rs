@@ -1,4 +1,4 @@
-//! What is evaluated, counted on the device: exact numbers, so they are gates.
+//! Counts of evaluations, taken on the device. They are exact, so they serve as gates.
 
 use glam::DVec3;
 use isolith::gallery;
@@ -12,12 +12,12 @@ use crate::gpu::{BenchScene, scenes, shared};
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 128;
 
-/// What drawing the bench_scene by tapes counts.
+/// Counts for drawing the bench_scene by tapes.
 fn count(bench_scene: &BenchScene, options: impl Fn(Options) -> Options) -> Counts {
     count_by(EvalStrategy::Tape, SIDE, bench_scene, options)
 }
 
-/// What drawing the bench_scene counts, in a picture of `side` by `side` pixels.
+/// Counts for drawing the bench_scene in a picture of `side` by `side` pixels.
 fn count_by(
     strategy: EvalStrategy,
     side: u32,
@@ -62,12 +62,12 @@ fn what_is_hidden_or_out_of_view_costs_nothing() {
     assert_eq!([hidden, behind_the_eye], [0, 0]);
 }
 
-/// Evaluations of fields per pixel, by rays and cones.
+/// Field evaluations per pixel, by rays and cones.
 fn per_pixel(counts: &Counts, side: u32) -> f64 {
     (counts.steps + counts.cone_steps) as f64 / f64::from(side * side)
 }
 
-/// A wrong hit is as cheap as a right one: that the pictures are right is for the tests of agreement.
+/// A wrong hit is as cheap as a right one: the tests of agreement check the pictures.
 #[test]
 fn straight_line_code_takes_few_evaluations_up_to_145_nodes() {
     for (name, most) in [("random-37", 1.7), ("random-145", 2.25)] {
@@ -97,7 +97,7 @@ fn without_cones_more_is_evaluated() {
     assert!(without > 1.5 * with, "{without} without cones, {with} with them");
 }
 
-/// Evaluations per pixel that are allowed: those of 2026-11, with a twentieth of room for drivers that round otherwise.
-/// Of the first one 4.35 were allowed when nearness was a hit: to look behind costs 2 to 4 %.
-/// The second one was 5.95 when groups of eight shapes had no tapes: cells end steps, but for each less is read.
+/// Allowed evaluations per pixel: those of 2026-11, plus a twentieth for drivers that round differently. The first was
+/// 4.35 when nearness was a hit: looking behind costs 2 to 4 %. The second was 5.95 when groups of eight shapes had no
+/// tapes: cells end steps, but each step reads less.
 const MOST: [f64; 4] = [4.5, 7.9, 5.3, 9.3];

@@ -1,4 +1,5 @@
-//! Counts of pixels, and the looks that show them: they cost nothing unless asked for, add up, and show what they say.
+//! Counters per pixel, and the view modes that show them: they are free unless requested, add up, and show correct
+//! values.
 
 use glam::{DVec3, Vec3};
 use isolith::field::debug_view::{
@@ -14,7 +15,7 @@ use isolith::wgsl::Options;
 
 use crate::gpu::{BenchScene, shared};
 
-/// Width and height of the pictures, in pixels: no multiple of a tile's.
+/// Width and height of the pictures, in pixels: not a multiple of a tile's.
 const SIDE: u32 = 90;
 
 /// A blended crowd, which has tapes.
@@ -22,7 +23,7 @@ fn crowd() -> BenchScene {
     BenchScene::new("crowd", &gallery::crowd(150, true, 2), None)
 }
 
-/// A ball, and one stretched, so that its field is flatter; between them the background.
+/// A ball and a stretched one, whose field is flatter, with background between them.
 fn balls() -> BenchScene {
     let mut scene = Scene::new();
     for (x, scale) in [(-1.0, DVec3::ONE), (1.0, DVec3::new(1.0, 0.4, 1.0))] {
@@ -44,7 +45,7 @@ fn renderer(counting: bool) -> Renderer {
     renderer
 }
 
-/// Draws the bench_scene by this look.
+/// Draws the bench_scene in this view mode.
 fn draw(renderer: &mut Renderer, bench_scene: &BenchScene, view_mode: ViewMode) -> (Frame, GBuffer) {
     let BenchScene { flat, meshes, camera, .. } = bench_scene;
     let overlay = OverlaySettings::default();
@@ -77,7 +78,7 @@ fn without_counting_there_is_no_room_for_counts_and_with_it_the_same_picture() {
 fn pixels_and_tiles_add_up_to_components() {
     for bench_scene in [crowd(), balls()] {
         let mut renderer = renderer(true);
-        // Twice: what the first picture took must be forgotten.
+        // Draw twice: the renderer must forget the counts of the first picture.
         draw(&mut renderer, &bench_scene, ViewMode::Shaded);
         let (frame, _) = draw(&mut renderer, &bench_scene, ViewMode::Shaded);
         let (counts, pixels) =
@@ -98,7 +99,7 @@ fn pixels_and_tiles_add_up_to_components() {
         let mean = counts.steps as f64 / f64::from(SIDE * SIDE);
         assert!((pixels.steps().mean - mean).abs() < 1e-9);
         if bench_scene.name == "crowd" {
-            // One cell at least for each evaluation.
+            // At least one cell per evaluation.
             assert!(sum(&|t| t.cells, true) >= sum(&|t| t.evaluations, true) && counts.entries[0] > 0);
         }
     }
@@ -111,7 +112,8 @@ fn color(buffers: &GBuffer, at: usize) -> Vec3 {
     Vec3::new(f32::from(r), f32::from(g), f32::from(b)) / 255.0
 }
 
-/// Every pixel has the color that `expected` gives, but for one step of 8 bits and the rounding of logarithms.
+/// Asserts that every pixel has the color that `expected` gives, to within one step of 8 bits and the rounding of
+/// logarithms.
 fn assert_colors(buffers: &GBuffer, what: &str, expected: impl Fn(usize) -> Option<Vec3>) {
     for at in 0..buffers.color.len() {
         let Some(expected) = expected(at) else { continue };
@@ -171,7 +173,7 @@ fn what_is_found_is_shown_as_the_cpu_says() {
                     let is_line = (color(&buffers, at) - plain * 0.5).abs().max_element() < 1.5 / 255.0;
                     Some(if is_line { plain * 0.5 } else { plain })
                 }
-                // Between the two balls nothing is blended: the leaf is the component's first entry.
+                // Nothing blends between the two balls: the leaf is the component's first entry.
                 ViewMode::Nodes | ViewMode::Components => {
                     Some(debug_view_lit(of_id(bench_scene.flat.ids[leaf]), facing(at)))
                 }

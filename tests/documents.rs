@@ -1,4 +1,4 @@
-//! Documents: every edit can be undone and done again, byte for byte, and a refused one changes nothing.
+//! Documents: every edit can be undone and redone, byte for byte, and a refused edit changes nothing.
 
 use glam::{DQuat, DVec3};
 use isolith::document::{Document, Edit, MAX_STEPS, RecentFiles};
@@ -56,7 +56,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
         let parsed: isolith::scene::ParamPath = path.parse().expect("a path");
         assert_eq!(parsed.get(document.scene()).as_ref(), Ok(&value), "{path}");
         assert!(document.revision() > revision);
-        // The same again changes nothing and is no step.
+        // Repeating the edit changes nothing and adds no step.
         let steps = document.undo_labels().count();
         set(&mut document, &path, value).expect(&path);
         assert_eq!(document.undo_labels().count(), steps, "{path}");
@@ -79,7 +79,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
     assert_eq!(text(&document), before);
 }
 
-/// Some ids of the scene, now and then one that does not exist.
+/// Some ids of the scene, occasionally one that does not exist.
 fn some_ids(random: &mut Random, scene: &Scene) -> Vec<NodeId> {
     let count = random.below(4) + usize::from(!random.once_in(10));
     let mut pick = || match scene.nodes().len() {
@@ -90,7 +90,7 @@ fn some_ids(random: &mut Random, scene: &Scene) -> Vec<NodeId> {
     (0..count).map(|_| pick()).collect()
 }
 
-/// Any edit, often one that must be refused.
+/// A random edit, often one that must be refused.
 fn some_edit(random: &mut Random, scene: &Scene) -> Edit {
     let materials: Vec<MaterialId> = scene.materials().iter().map(|m| m.id).collect();
     let parent = some_ids(random, scene).first().copied().filter(|_| !random.once_in(3));
@@ -209,7 +209,7 @@ fn gestures_nest_end_with_undo_and_leave_nothing_when_nothing_changed() {
     let steps = |d: &Document| d.undo_labels().count();
     document.end_gesture();
     assert_eq!(steps(&document), 1);
-    // There and back again; what had been undone stays to be done again.
+    // An edit and its undo; the redo history stays.
     document.apply(Edit::Remove(vec![id])).expect("there");
     assert!(document.undo());
     let original = (**document.scene().node(id).expect("there")).clone();
@@ -236,7 +236,7 @@ fn gestures_nest_end_with_undo_and_leave_nothing_when_nothing_changed() {
     document.end_gesture();
     document.end_gesture();
     assert_eq!(steps(&document), 2);
-    // What changes nothing is no step.
+    // An edit without an effect adds no step.
     document.apply(Edit::Replace(with_radius(&original, 3.0))).expect("valid");
     document.apply(Edit::Remove(Vec::new())).expect("nothing to do");
     assert_eq!(steps(&document), 2);
@@ -288,7 +288,7 @@ fn nodes_stay_in_the_world_when_they_change_groups() {
     }
     let after = document.scene().node(ball).expect("there").transform;
     assert!(after.scale.abs_diff_eq(before.scale, 1e-12) && after.translation.abs_diff_eq(before.translation, 1e-12));
-    // No translation, rotation and scale stands for a shear: the node keeps its own transform.
+    // Translation, rotation and scale cannot express a shear: the node keeps its own transform.
     to(&mut document, Some(sheared));
     assert_eq!(document.scene().node(ball).expect("there").transform, after);
 }
@@ -306,13 +306,13 @@ fn grouping_takes_the_place_of_the_first_and_keeps_order_and_world() {
     assert_eq!(names(&document, Some(new)), ["b", "c", "d"]);
     let c = document.scene().world_from_local(c).translation;
     assert_eq!(c, DVec3::new(1.0, 5.0, 0.0));
-    // A group that is chosen with one of its children goes as it is.
+    // A group selected together with one of its children moves as a whole.
     let outer = document.apply(Edit::Group { ids: vec![b, new, a], group: Group::UNION }).expect("grouped")[0];
     assert_eq!(
         (names(&document, None), names(&document, Some(outer))),
         (strings(["Group", "g"]), strings(["a", "Group"]))
     );
-    // Not into itself.
+    // A group cannot move into itself.
     let inside = Edit::Move { ids: vec![outer], parent: Some(new), position: 0 };
     assert_eq!(document.apply(inside), Err(SceneError::Cycle(outer)));
 }
@@ -421,7 +421,7 @@ fn recent_files_are_kept_in_order_and_forgive_everything() {
         std::fs::write(&store, text).expect("written");
         assert!(RecentFiles::load_from(&store).paths().is_empty(), "{text}");
     }
-    // A folder where the list should be: kept in memory only.
+    // A folder at the path of the list: the list stays in memory only.
     let mut recent = RecentFiles::load_from(folder.path());
     recent.add(&paths[0]);
     assert_eq!(recent.paths(), &paths[..1]);

@@ -1,4 +1,4 @@
-//! A dragged number reaches the picture in the same frame, builds no pipeline and uploads next to nothing.
+//! A dragged value reaches the picture in the same frame, builds no pipeline and uploads next to nothing.
 
 use isolith::document::{Document, Edit};
 use isolith::field::{GBuffer, flatten};
@@ -8,10 +8,10 @@ use isolith::scene::{MaterialId, Node, NodeId, NodeKind, Object, Scene, Shape};
 use crate::gpu::{Shared, shared};
 
 const SIZE: [u32; 2] = [64, 64];
-/// More than one number's worth, far less than the scene: what an edit of a leaf may upload.
+/// Upload limit for an edit of a leaf: more than one value, far less than the scene.
 const MOST_BYTES: u64 = 256;
 
-/// A row of balls, the first of them to be dragged.
+/// A row of balls; the test drags the first.
 fn document() -> (Document, NodeId) {
     let mut scene = Scene::new();
     let mut dragged = None;
@@ -57,7 +57,7 @@ fn a_dragged_radius_is_in_the_next_picture_and_builds_nothing() {
         }
         document.end_gesture();
         assert_eq!(renderer.pipelines().built(), built, "{strategy:?}: a drag built a pipeline");
-        // A renderer that has seen nothing of the drag draws the same.
+        // A renderer without the history of the drag draws the same picture.
         let mut fresh = Renderer::new(gpu).expect("a renderer");
         fresh.set_strategy(strategy);
         assert_eq!(picture(&mut fresh, &document), last);
@@ -67,7 +67,7 @@ fn a_dragged_radius_is_in_the_next_picture_and_builds_nothing() {
 
 #[test]
 fn a_new_shape_does_build_a_pipeline() {
-    // The count above can move: a shape that the renderer has not seen needs a pipeline.
+    // The count above can change: a shape new to the renderer needs a pipeline.
     let gpu = shared().gpu.clone();
     let mut renderer = Renderer::new(&gpu).expect("a renderer");
     renderer.set_strategy(EvalStrategy::Interpreter);

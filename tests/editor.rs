@@ -21,7 +21,7 @@ use isolith::scene::{Group, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeK
 
 use crate::settle::Settle;
 
-/// A group with a ball and a box, and a torus beside it.
+/// A group of a ball and a box, and a torus beside it.
 fn scene() -> (Scene, [NodeId; 4]) {
     let mut scene = Scene::new();
     let material = scene.materials()[0].id;
@@ -39,7 +39,7 @@ fn open(scene: Scene) -> Harness<'static, Editor> {
     open_sized(scene, 800.0)
 }
 
-/// The same in a window so high that the inspector need not be scrolled.
+/// Opens the editor in a window so tall that the inspector does not scroll.
 fn open_tall(scene: Scene) -> Harness<'static, Editor> {
     open_sized(scene, 2400.0)
 }
@@ -59,18 +59,18 @@ fn open_in(document: Document, size: egui::Vec2) -> Harness<'static, Editor> {
     harness
 }
 
-/// Nothing drawn yet, but something to say in the status bar.
+/// No picture yet, but a text for the status bar.
 fn no_picture() -> Picture {
     Picture { progress: Some(0.4), status: "adapter, 12 ms".into(), ..Picture::default() }
 }
 
-/// The place of a row's name in the tree, which is on the left.
+/// The position of a row's name in the tree, on the left.
 fn row(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
     let rows = harness.get_all_by_label(name).filter(|n| n.rect().center().x < 200.0);
     rows.map(|n| n.rect().center()).next().unwrap_or_else(|| panic!("no row {name}"))
 }
 
-/// The field of this name, not the label beside it.
+/// The field of this name, not its label.
 fn field<'h>(harness: &'h Harness<'_, Editor>, name: &'h str) -> egui_kittest::Node<'h> {
     let found = harness.get_all_by_label(name).find(|n| n.accesskit_node().role() != Role::Label);
     found.unwrap_or_else(|| panic!("no field {name}"))
@@ -96,7 +96,7 @@ fn click(harness: &mut Harness<'_, Editor>, pos: Pos2) {
 fn select(harness: &mut Harness<'_, Editor>, name: &str) {
     let pos = row(harness, name);
     click(harness, pos);
-    // Long enough that the next click is no double click.
+    // Long enough that the next click is not a double click.
     harness.run_steps(40);
 }
 
@@ -105,7 +105,7 @@ fn press(harness: &mut Harness<'_, Editor>, modifiers: Modifiers, key: Key) {
     harness.settle();
 }
 
-/// Takes back every step and counts them.
+/// Undoes every step and returns their number.
 fn undo_all(harness: &mut Harness<'_, Editor>) -> usize {
     let mut steps = 0;
     while harness.state_mut().document_mut().undo() {
@@ -422,7 +422,7 @@ fn work_is_not_lost_without_a_question() {
     press(&mut harness, Modifiers::COMMAND, Key::Q);
     harness.get_by_label("Save").click();
     harness.run();
-    // There is no file yet, so a path is asked for; then the window may close.
+    // The document has no file yet, so the editor asks for a path; then the window may close.
     press(&mut harness, Modifiers::COMMAND, Key::A);
     harness.event(Event::Text(path.display().to_string()));
     harness.run();

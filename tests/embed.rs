@@ -1,4 +1,5 @@
-//! The example of the renderer crate: the renderer inside of another program's device draws what it draws on its own.
+//! The example of the renderer crate: inside another program's device, the renderer draws the same picture as on its
+//! own.
 
 #[allow(dead_code, reason = "`main` is for who runs the example")]
 #[path = "../src/render/examples/embed.rs"]

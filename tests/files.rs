@@ -1,4 +1,4 @@
-//! Scene files: what is written is read back byte for byte, and no bytes whatever bring the reader down.
+//! Scene files: written files read back byte for byte, and no input crashes the reader.
 
 use std::path::Path;
 
@@ -6,9 +6,9 @@ use isolith::scene::{Blend, BlendKernel, BlendOverride, Group, NodeId, NodeKind,
 
 use crate::random_scene::{Random, random_scene};
 
-/// Random documents whose text must survive reading and writing again.
+/// Random documents whose text must survive reading and writing.
 const ROUND_TRIPS: u64 = 10_000;
-/// Scenes with a few bytes changed that must be read or refused, never panic.
+/// Number of scenes with a few bytes changed. The reader reads or refuses each and never panics.
 const MUTATIONS: u64 = 1_000;
 
 fn read(text: &[u8]) -> Result<Scene, file::FileError> {
@@ -87,7 +87,7 @@ fn a_changed_value_is_one_changed_line() {
     assert_eq!(differing, ["\"translation\": [0.25, 2.0, -1e-7]"]);
 }
 
-/// What later versions of the program added is optional: a file from before it reads as it did.
+/// Later additions to the format are optional: an older file reads as before.
 #[test]
 fn files_of_the_first_program_mean_what_they_meant() {
     let text = r#"{"isolith": 1, "nodes": [
@@ -196,7 +196,7 @@ fn the_schema_describes_the_format() {
     let node = &schema["$defs"]["NodeV1"];
     assert_eq!(node["additionalProperties"], false);
     assert_eq!(node["oneOf"].as_array().map(Vec::len), Some(5));
-    // Whatever is written is described.
+    // The schema describes every written file.
     let written = file::to_json(&random_scene(4, 40)).expect("valid");
     let written: serde_json::Value = serde_json::from_str(&written).expect("JSON");
     for entry in written["nodes"].as_array().expect("a list") {

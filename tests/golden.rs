@@ -1,4 +1,4 @@
-//! Every scene's picture is the one that was accepted; `make golden` accepts those of now.
+//! Every scene's picture matches the accepted one; `make golden` accepts the current pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -12,22 +12,22 @@ use crate::gpu::{BenchScene, scenes, shared};
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 256;
 
-/// How equal two pictures must be.
+/// Required similarity of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gate {
-    /// To the last bit. Lavapipe gives the same bits on every machine and in every version.
+    /// Bit-exact. Lavapipe gives the same bits on every machine and in every version.
     Exact,
-    /// As near as another driver's rounding allows, see [`CHANNEL_TOLERANCE`] and [`PIXEL_TOLERANCE`].
+    /// Within another driver's rounding, see [`CHANNEL_TOLERANCE`] and [`PIXEL_TOLERANCE`].
     Close,
 }
 
-/// On other drivers: how far each channel may be off.
+/// Tolerance of each channel on other drivers.
 const CHANNEL_TOLERANCE: u8 = 2;
-/// On other drivers: share of the pixels that may be farther off, because edges fall on either side.
+/// On other drivers: fraction of the pixels that may differ more, because edges fall on either side.
 const PIXEL_TOLERANCE: f64 = 5e-4;
 
 impl Gate {
-    /// What is different, in words.
+    /// Describes the difference of the two pictures, if it is too large.
     fn check(self, actual: &RgbaImage, accepted: &RgbaImage) -> Result<(), String> {
         if actual.dimensions() != accepted.dimensions() {
             return Err(format!("the size is {:?}, not {:?}", actual.dimensions(), accepted.dimensions()));
@@ -45,7 +45,7 @@ impl Gate {
     }
 }
 
-/// The greatest difference of a channel.
+/// The largest difference of a channel.
 fn distance(a: &Rgba<u8>, b: &Rgba<u8>) -> u8 {
     a.0.iter().zip(b.0).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
 }
@@ -65,13 +65,14 @@ fn every_scene_looks_as_accepted() {
     compare_with_accepted("interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
 }
 
-/// Straight-line code may be rounded otherwise than the interpreter, so bits are not compared.
+/// Straight-line code may round differently from the interpreter, so the test does not compare bits.
 #[test]
 fn every_scene_looks_the_same_with_straight_line_code() {
     compare_with_accepted("specialized", Gate::Close, |scene, side| scene.render(side, EvalStrategy::StraightLine));
 }
 
-/// Fails where a scene looks otherwise as `draw` draws it. `how` is for messages and names of files.
+/// Fails if a scene's picture from `draw` differs from the accepted one. `how` names the strategy in messages and file
+/// names.
 pub fn compare_with_accepted(how: &str, gate: Gate, draw: impl Fn(&BenchScene, u32) -> GBuffer) {
     let mut faults = Vec::new();
     for scene in scenes() {
@@ -127,7 +128,7 @@ fn refused_by_both(wrong: &RgbaImage, right: &RgbaImage) {
     }
 }
 
-/// A ball, a floor, and a small ball a hundredth of the picture wide.
+/// A ball, a floor, and a small ball whose width is a hundredth of the picture's.
 fn sample(radius: f64, with_small: bool) -> Scene {
     let mut scene = Scene::new();
     let mut add = |name: &str, shape: Shape, at: [f64; 3]| {
@@ -143,7 +144,7 @@ fn sample(radius: f64, with_small: bool) -> Scene {
     scene
 }
 
-/// The scene from a camera that does not depend on what is in it.
+/// The scene from a camera that does not depend on its content.
 fn picture_of(scene: &Scene) -> RgbaImage {
     let mut bench_scene = BenchScene::new("sample", scene, None);
     let eye = glam::DVec3::new(0.5, 0.7, 2.5);
@@ -170,7 +171,7 @@ fn keep(name: &str, actual: &RgbaImage, accepted: &RgbaImage) -> PathBuf {
     std::fs::create_dir_all(&folder).expect("the folder for failures can be made");
     let difference = RgbaImage::from_fn(actual.width(), actual.height(), |x, y| {
         let other = accepted.get_pixel_checked(x, y).unwrap_or(&Rgba([0; 4]));
-        // Everything that differs is at least a quarter bright, so that it can be seen.
+        // Every difference is at least a quarter bright, so that it is visible.
         let d = distance(actual.get_pixel(x, y), other);
         Rgba([if d == 0 { 0 } else { d.max(64) }, 0, 0, 255])
     });

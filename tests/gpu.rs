@@ -1,4 +1,4 @@
-//! One graphics device for all tests, because each one made costs time, and pictures of scenes.
+//! One graphics device for all tests, because opening each one takes time; and pictures of scenes.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, LazyLock, Mutex, MutexGuard};
@@ -9,13 +9,13 @@ use isolith::mesh::{MeshLibrary, TriangleMesh};
 use isolith::render::{EvalStrategy, Gpu, Renderer};
 use isolith::scene::{Scene, file};
 
-/// The device and what draws with it.
+/// The device and its renderers.
 pub struct Shared {
     pub gpu: Gpu,
     pub renderer: Renderer,
 }
 
-/// The shared device. Fails the test where no driver answers.
+/// The shared device. Fails the test if no driver answers.
 pub fn shared() -> MutexGuard<'static, Shared> {
     static SHARED: LazyLock<Mutex<Shared>> = LazyLock::new(|| {
         let gpu = Gpu::headless().unwrap_or_else(|error| {
@@ -24,11 +24,11 @@ pub fn shared() -> MutexGuard<'static, Shared> {
         let renderer = Renderer::new(&gpu).unwrap_or_else(|error| panic!("{error}"));
         Mutex::new(Shared { gpu, renderer })
     });
-    // A test that failed while it held the device does not make the others fail.
+    // A test that failed while it held the device does not fail the others.
     SHARED.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// A scene, ready to be drawn.
+/// A scene to draw.
 pub struct BenchScene {
     pub name: String,
     pub flat: FlatScene,
@@ -37,7 +37,7 @@ pub struct BenchScene {
 }
 
 impl BenchScene {
-    /// A scene that stands in no file, seen as it is by itself, in a square picture.
+    /// A scene without a file, in its default view, for a square picture.
     pub fn new(name: &str, scene: &Scene, folder: Option<PathBuf>) -> Self {
         let flat = flatten(scene, 0.0).unwrap_or_else(|error| panic!("{name}: {error:?}"));
         let (meshes, missing) = flat.load_meshes(&mut MeshLibrary::new(folder));

@@ -1,4 +1,4 @@
-//! glTF files: what is read from good ones, and how bad ones are refused. The shipped scenes.
+//! glTF files: the content read from good ones, the refusal of bad ones, and the shipped scenes.
 
 mod asset;
 mod broken;

@@ -1,4 +1,4 @@
-//! The outline of the selection: around what is selected, wherever that is, and nowhere else.
+//! The outline of the selection: around the selected nodes wherever they are, and nowhere else.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use isolith::scene::NodeId;
 
 use crate::gpu::{BenchScene, scenes, shared};
 
-/// Width and height of the pictures, in pixels: no multiple of a tile's.
+/// Width and height of the pictures, in pixels: not a multiple of a tile's.
 const SIDE: u32 = 150;
 /// The color of the outline, sRGB.
 const ORANGE: [u8; 4] = [255, 158, 51, 255];
@@ -27,7 +27,7 @@ fn draw(bench_scene: &BenchScene, outline: &[NodeId]) -> GBuffer {
     renderer.read(&frame).expect("buffers")
 }
 
-/// The node that is seen in each pixel.
+/// The node visible in each pixel.
 fn seen(bench_scene: &BenchScene, buffers: &GBuffer) -> Vec<Option<NodeId>> {
     let node = |leaf: &u32| {
         let leaf = *leaf as usize;
@@ -37,7 +37,7 @@ fn seen(bench_scene: &BenchScene, buffers: &GBuffer) -> Vec<Option<NodeId>> {
     buffers.leaf.iter().map(node).collect()
 }
 
-/// The pixels outside of what is selected with one of it within two pixels.
+/// Unselected pixels with a selected one within two pixels.
 fn edges(seen: &[Option<NodeId>], selected: &[NodeId]) -> Vec<bool> {
     let side = SIDE as i32;
     let is_selected = |x: i32, y: i32| {
@@ -56,7 +56,7 @@ fn an_outline_is_around_what_is_selected_and_nowhere_else() {
         let plain = draw(&bench_scene, &[]);
         let seen = seen(&bench_scene, &plain);
         let nodes: Vec<NodeId> = seen.iter().flatten().copied().collect::<BTreeSet<_>>().into_iter().collect();
-        // Each alone, and the first with the last: components that stand apart.
+        // Each node alone, and the first with the last: components apart from each other.
         let alone = nodes.iter().map(|id| vec![*id]);
         for selected in alone.chain([vec![nodes[0], nodes[nodes.len() - 1]]]) {
             let outlined = draw(&bench_scene, &selected);
@@ -75,14 +75,14 @@ fn an_outline_is_around_what_is_selected_and_nowhere_else() {
 #[test]
 fn what_is_not_seen_has_no_outline() {
     let mut bench_scene = scenes().find(|s| s.name == "pawn").expect("it is shipped");
-    // Looking away from everything.
+    // A camera that faces away from everything.
     let up = bench_scene.camera.rotation;
     bench_scene.camera.rotation = up * glam::DQuat::from_rotation_y(std::f64::consts::PI);
     let all: Vec<NodeId> = bench_scene.flat.ids.clone();
     assert!(draw(&bench_scene, &all).color == draw(&bench_scene, &[]).color);
 }
 
-/// The pixels that the outline changes in a picture of this size that is shown at [`SIDE`].
+/// The pixels that the outline changes in a picture of this size, scaled to [`SIDE`].
 fn marked(bench_scene: &BenchScene, size: u32, selected: &[NodeId]) -> Vec<bool> {
     let renderer = &mut shared().renderer;
     renderer.set_strategy(EvalStrategy::Interpreter);
@@ -97,13 +97,13 @@ fn marked(bench_scene: &BenchScene, size: u32, selected: &[NodeId]) -> Vec<bool>
         renderer.read_shown(Slot::Preview).expect("colors")
     };
     let (plain, outlined) = (shown(&[]), shown(selected));
-    // Half a pixel of smoothing on either side does not count.
+    // Half a pixel of antialiasing on either side does not count.
     let differs = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 60);
     plain.iter().zip(&outlined).map(differs).collect()
 }
 
-/// The most pixels side by side in a row that are marked, in the median of the rows that have some: the outline of an
-/// upright edge.
+/// The longest run of marked pixels in a row, as the median over the rows that have any: the width of the outline at a
+/// vertical edge.
 fn thickness(marked: &[bool]) -> usize {
     let mut runs: Vec<usize> = marked
         .chunks(SIDE as usize)
@@ -126,7 +126,7 @@ fn the_outline_in_coarse_pictures_is_as_thin_as_in_fine_ones() {
         let of_coarse = coarse.iter().filter(|is_marked| **is_marked).count();
         let ratio = of_coarse as f64 / of_fine as f64;
         assert!((0.6..1.6).contains(&ratio), "{size}: {of_coarse} pixels, {of_fine} in the fine picture");
-        // Along the same line: near each pixel of it there is one of the other.
+        // Both outlines follow the same line: near each pixel of one there is a pixel of the other.
         let side = SIDE as i32;
         let far = (0..side * side).filter(|at| coarse[*at as usize]).filter(|at| {
             let reach = side / size as i32 + 3;

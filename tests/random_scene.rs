@@ -1,4 +1,4 @@
-//! Random scenes, the same for the same seed on every machine.
+//! Random scenes, identical for the same seed on every machine.
 
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
@@ -10,7 +10,7 @@ use isolith::scene::{
 
 use crate::contract::samples::image;
 
-/// A small generator of numbers: splitmix64 (Steele, Lea and Flood, 2014).
+/// A small random number generator: splitmix64 (Steele, Lea and Flood, 2014).
 pub struct Random(u64);
 
 impl Random {
@@ -28,7 +28,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Less than `n`.
+    /// A random integer below `n`.
     pub fn below(&mut self, n: usize) -> usize {
         (self.bits() % n as u64) as usize
     }
@@ -43,12 +43,12 @@ impl Random {
         self.below(n) == 0
     }
 
-    /// One of these.
+    /// A random element.
     pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
         from[self.below(from.len())]
     }
 
-    /// A number within limits: ends, zeros, tiny and round ones often.
+    /// A number within limits, often an end of the range, zero, tiny or round.
     pub fn number(&mut self, limits: &Limits) -> f64 {
         let [least, most] = limits.hard;
         let value = match self.below(8) {
@@ -65,7 +65,7 @@ impl Random {
         [self.number(limits), self.number(limits), self.number(limits)]
     }
 
-    /// A name, now and then a hard one.
+    /// A name, occasionally a difficult one.
     pub fn name(&mut self) -> String {
         let parts = ["Pawn", "Häuschen", "球", "a \"b\" \\ c", "🙂", "", " ", "Torus 2", "x\u{202e}y", "{}[],:", "é́"];
         (0..=self.below(3)).map(|_| self.pick(&parts)).collect()
@@ -149,7 +149,7 @@ impl Random {
         material
     }
 
-    /// Surroundings within their limits.
+    /// An environment within its limits.
     pub fn environment(&mut self) -> Environment {
         let mut color = || self.numbers(&limits::INTENSITY);
         Environment { sky: color(), horizon: color(), ambient: color() }

@@ -1,5 +1,5 @@
-//! What the renderer promises beside its pictures: it can be stopped, survives the loss of its device,
-//! uploads what has changed and nothing else.
+//! Guarantees of the renderer besides its pictures: it can be stopped, survives the loss of its device, and uploads
+//! changed data only.
 
 use std::time::{Duration, Instant};
 
@@ -93,19 +93,19 @@ fn a_picture_larger_than_the_device_allows_is_refused_with_the_limit() {
     }
 }
 
-/// Width and height of the pictures whose time is taken, in pixels. As most windows no power of two, nor a part of one:
+/// Width and height of the timed pictures, in pixels. Like most windows neither a power of two nor a divisor of one:
 /// lavapipe compiles a pipeline once more for such targets.
 const TIMED_SIDE: u32 = 300;
-/// What a picture may take at once; the window shows a coarse one where a whole one would take longer.
+/// Time limit of a picture at full resolution; the window shows a coarse one if a full one would take longer.
 const AT_ONCE: Duration = Duration::from_millis(60);
 
-/// Times are shown with `--nocapture`; machines that others share are no judges of them.
+/// Prints times with `--nocapture`; the test does not judge them, because other processes share the machine.
 #[expect(clippy::print_stdout, reason = "a test has no other way to say how long something took")]
 fn note(text: &str) {
     println!("{text}");
 }
 
-/// Begins and draws a picture as the window does after an edit. Returns how long that took, and the picture's size.
+/// Starts and draws a picture as the window does after an edit. Returns the time and the size of the picture.
 fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> (Duration, [u32; 2]) {
     let start = Instant::now();
     let full = renderer.estimate(flat, camera, [TIMED_SIDE; 2]).expect("an estimate");
@@ -116,17 +116,17 @@ fn answer(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> (Durati
     (start.elapsed(), size)
 }
 
-/// Shares of the pixels that may differ in depth between pipelines of two kinds, as in `strategies`.
+/// Fraction of the pixels that may differ in depth between two kinds of pipelines, as in `strategies`.
 const MAX_SHARE: f64 = 2e-3;
 
-/// Whether two pictures show the same: hit or miss everywhere, depth but for a few pixels at edges.
+/// Whether two pictures show the same: hit or miss everywhere, and depth except for a few pixels at edges.
 fn is_same(a: &GBuffer, b: &GBuffer) -> bool {
     let pairs = || a.depth.iter().zip(&b.depth);
     let far = pairs().filter(|(a, b)| a.is_finite() && (*a - *b).abs() > 1e-3 * **a).count();
     pairs().all(|(a, b)| a.is_finite() == b.is_finite()) && far as f64 <= MAX_SHARE * a.depth.len() as f64
 }
 
-/// Width and height of the pictures that the interpreter draws too, in pixels.
+/// Width and height of the pictures that the interpreter draws as well, in pixels.
 const SMALL_SIDE: u32 = 60;
 
 fn picture(renderer: &mut Renderer, flat: &FlatScene, camera: &Camera) -> GBuffer {
@@ -193,14 +193,14 @@ fn tapes_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     let mut flattener = Flattener::default();
     let mut flat = flattener.flatten(document.scene(), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
-    // The interpreter is built, which is not what is timed.
+    // Build the interpreter first, to keep it out of the time.
     let few = flatten(&gallery::crowd(8, true, 3), 0.0).expect("within the limits");
     wait_for_pipelines(&mut renderer, &few, &camera);
     let start = Instant::now();
     renderer.estimate(&flat, &camera, [SIDE, SIDE]).expect("an estimate");
     note(&format!("200 blended leaves: first answer after {:.1} ms", start.elapsed().as_secs_f64() * 1e3));
     assert!(renderer.tape_cache().building() > 0, "tapes of this size are not waited for");
-    // Without them this would be millions of dispatches, which is no reason to refuse it.
+    // Without pipelines this would be millions of dispatches, but that alone is not a reason to refuse it.
     let huge = renderer.estimate(&flat, &camera, [8_192; 2]).expect("an estimate");
     assert!(huge > Duration::from_secs(100_000), "{huge:?}");
     let refused = renderer.begin(Slot::Full, &flat, &[], &camera, [8_192; 2], OverlaySettings::default());
@@ -235,7 +235,7 @@ fn tapes_are_made_beside_the_frames_and_a_picture_never_follows_old_ones() {
     assert_eq!(renderer.uploaded(), uploaded_once, "what has not changed is not uploaded");
 }
 
-/// Passes that every picture has. Others are for meshes, looks and marks.
+/// Passes of every picture. The others are for meshes, view modes and marks.
 const ALWAYS: [&str; 5] = ["mesh", "cone", "trace", "surface", "shade"];
 
 #[test]
@@ -257,7 +257,7 @@ fn each_pass_has_a_row_with_its_time() {
     assert!(rows.iter().all(|row| (row.runs > 0) == ALWAYS.contains(&row.label)), "{rows:?}");
     let sum: f64 = rows.iter().map(|row| row.seconds).sum();
     assert!(sum > 0.0 && sum <= whole, "{sum} of {whole} s: {rows:?}");
-    // Grid and look are passes over the finished picture.
+    // Grid and view mode are passes over the finished picture.
     let BenchScene { flat, meshes, camera, .. } = &bench_scene;
     let grid = OverlaySettings { grid: true, ..OverlaySettings::default() };
     let mut frame = renderer.begin(Slot::Full, flat, meshes, camera, [SIDE, SIDE], grid).expect("a frame");

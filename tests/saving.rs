@@ -1,4 +1,4 @@
-//! Saving: whatever goes wrong, the file that was there is there.
+//! Saving: whatever fails, the previous file survives.
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -11,14 +11,14 @@ use isolith::scene::{Scene, file};
 
 use crate::random_scene::{Random, random_scene};
 
-/// How often a saver is killed.
+/// Number of times the test kills a saver.
 const KILLS: u64 = 500;
-/// Tells this test, started once more as a process of its own, which file to save for ever.
+/// Environment variable that makes this test, started again as a process, save a file forever. Its value is the file.
 const SAVER: &str = "ISOLITH_TEST_SAVER";
 /// The file and its backups.
 const KEPT: [&str; 4] = ["scene.json", "scene.json~", "scene.json~2~", "scene.json~3~"];
 
-/// Savers leave records of their temporaries here, and whoever opens a scene looks for them here.
+/// Savers record their temporaries here, and opening a scene looks for the records here.
 fn keep_records() {
     file::keep_records_in(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("temporaries"));
 }
@@ -37,7 +37,7 @@ fn killed_savers_lose_nothing() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("scene.json");
         let scenes = big_scenes();
-        // So often that there are all backups from the start.
+        // Save often enough that all backups exist from the start.
         [1, 0, 1].iter().for_each(|i| file::save(&scenes[*i], &path).expect("the first saves"));
         let start = Instant::now();
         file::save(&scenes[0], &path).expect("one more save");
@@ -66,8 +66,8 @@ fn killed_savers_lose_nothing() {
     assert!(second > 0 && second < KILLS, "all kills left the same scene: {second}");
 }
 
-/// Starts a saver, lets it save up to three times and for some part of the next, and kills it. Saves are counted and not
-/// timed: a slow disk takes longer for each.
+/// Starts a saver, lets it save up to three times and into part of the next save, and kills it. Counts saves rather
+/// than time, because a slow disk takes longer for each.
 fn kill_one(path: &Path, seed: u64, one_save: Duration) {
     let mut saver = Command::new(std::env::current_exe().expect("this program"))
         .args(["--exact", "saving::killed_savers_lose_nothing", "--nocapture"])
@@ -136,7 +136,7 @@ fn saving_where_nothing_can_be_saved_says_why_and_stays_changed() {
     assert_eq!(names(folder.path()), ["plain.txt", "read_only.json"]);
 }
 
-/// Root may write everywhere but where the system itself allows nothing.
+/// Root may write everywhere except where the system itself forbids it.
 #[cfg(unix)]
 #[test]
 fn a_read_only_folder_is_told_of_and_loses_nothing() {
@@ -161,8 +161,8 @@ fn a_read_only_folder_is_told_of_and_loses_nothing() {
     assert!(Document::open(&path).is_ok());
 }
 
-/// Starts a test once more as a process of its own, in which no file may become longer than 4 KiB: the system fails the
-/// write in its middle, as on a full disk.
+/// Starts a test again as a process in which no file may exceed 4 KiB: the system fails the write midway, as on a full
+/// disk.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_loses_nothing() {
@@ -178,10 +178,10 @@ fn a_full_disk_loses_nothing() {
     let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" --exact saving::a_full_disk_loses_nothing";
     let mut shell = Command::new("sh");
     shell.args(["-c", limited]).arg(program).env(FOLDER, folder.path());
-    // The limit holds for files that its output goes to as well.
+    // The limit also holds for files that receive its output.
     let output = shell.output().expect("the shell starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
-    // What was done there, and nothing else, is here.
+    // The folder holds exactly what the process saved.
     assert_eq!(file::load(&path), Ok(random_scene(3, 0)));
     assert_eq!(file::load(&folder.path().join("scene.json~")), Ok(random_scene(2, 0)));
     assert_eq!(names(folder.path()), ["scene.json", "scene.json~", "scene.json~2~"]);
@@ -214,7 +214,7 @@ fn loading_what_is_not_there_or_no_file_says_why() {
         (folder.path().to_path_buf(), "is not a file"),
         (PathBuf::from("/dev/zero"), "is not a file"),
         (huge, "is larger than 256 MiB"),
-        // Where it exists, a file that opens and cannot be read.
+        // On Linux: a file that opens but cannot be read.
         #[cfg(target_os = "linux")]
         (PathBuf::from("/proc/self/mem"), "cannot be read: Input/output error"),
     ];

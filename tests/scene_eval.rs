@@ -1,5 +1,5 @@
-//! The scene evaluator: distances and rays to all components at once, on both sides, against the reference and against
-//! every component asked by itself.
+//! The scene evaluator: distances and rays to all components at once, on CPU and GPU, against the reference and against
+//! each component alone.
 
 mod figures;
 mod scenes;
@@ -20,26 +20,26 @@ use crate::contract::samples::Random;
 use crate::gpu::{BenchScene, shared};
 use scenes::{SCENES, TestScene, camera_at, crowds, op_set, random_scene};
 
-/// Rows of the picture whose footprints are used.
+/// Picture height in pixels that defines the footprints.
 const ROWS: u32 = 512;
-/// How long the path from the eye to the rays' origins is said to be.
+/// Assumed length of the path from the eye to the rays' origins.
 const GONE: f64 = 3.0;
-/// The limits of rays.
+/// Start and end of rays.
 const LIMITS: [f64; 2] = [0.01, 30.0];
-/// Rays that pass something by less than this, as an angle, may be rounded into hitting it: f32 moves points by 1e-6 m here.
+/// Rays that pass a surface by less than this angle may hit it by rounding: f32 moves points by 1e-6 m here.
 const GRAZING: f64 = 2e-5;
-/// How far depths may differ, in footprints.
+/// Tolerance of depths, in footprints.
 const MOST_FOOTPRINTS: f64 = 1.0;
-/// How far values may differ, relative to 1 m and themselves.
+/// Tolerance of values, relative to 1 m plus the value.
 const TOLERANCE: f64 = 1e-4;
 
-/// The least field of all components, each asked by itself.
+/// The minimum of the fields of all components.
 fn least_field(flat: &FlatScene, p: DVec3) -> f64 {
     flat.components.iter().map(|c| field(flat, c, p - c.origin)).fold(f64::INFINITY, f64::min)
 }
 
-/// Looks whether a value at `p` is not more than the distance: rays in some directions, one of them down the field's
-/// slope, meet nothing nearer.
+/// Checks that a value at `p` does not exceed the distance: rays in some directions, one of them along the field's
+/// descent, hit nothing nearer.
 fn is_safe(flat: &FlatScene, tracer: &mut Tracer<'_>, p: DVec3, value: f64, random: &mut Random) -> Result<(), String> {
     let nearest = flat.components.iter().min_by(|a, b| {
         let [a, b] = [a, b].map(|c| field(flat, c, p - c.origin));
@@ -56,7 +56,7 @@ fn is_safe(flat: &FlatScene, tracer: &mut Tracer<'_>, p: DVec3, value: f64, rand
     Ok(())
 }
 
-/// Compares values on both sides with all components, and with the reference.
+/// Compares values on both sides with all components and with the reference.
 fn values_are_right(test: &TestScene, hierarchy: &Hierarchy, loaded: &LoadedScene<'_>) -> Result<(), String> {
     let flat = &test.flat;
     let mut random = Random::new(test.seed + 7);
@@ -96,7 +96,7 @@ fn probe_rays(test: &TestScene, count: usize) -> Vec<ProbeRay> {
     let components = &test.flat.components;
     let ray = |i: usize| {
         let origin = position + random.point(6.0).as_vec3().as_dvec3();
-        // Half of them into the middle of something, so that enough is hit.
+        // Aim half of them at the middle of a component, so that enough rays hit.
         let component = components.get(random.index(components.len().max(1)));
         let aimed = component.filter(|component| i.is_multiple_of(2) && component.bounds.is_finite());
         let direction = match aimed {
@@ -108,7 +108,7 @@ fn probe_rays(test: &TestScene, count: usize) -> Vec<ProbeRay> {
     (0..count).map(ray).collect()
 }
 
-/// The ray as the CPU sees it.
+/// The ray in the form of the CPU.
 fn as_ray(ray: &ProbeRay, footprint: f64) -> Ray {
     match ray.normal {
         Some(normal) => surface_ray(ray.origin, normal, ray.direction, footprint * ray.gone),
@@ -116,7 +116,7 @@ fn as_ray(ray: &ProbeRay, footprint: f64) -> Ray {
     }
 }
 
-/// Compares hits on both sides with the reference. Returns how many rays were compared, and how many hit something.
+/// Compares hits on both sides with the reference. Returns the number of compared rays and of hits.
 fn rays_are_right(
     test: &TestScene,
     hierarchy: &Hierarchy,
@@ -136,7 +136,7 @@ fn rays_are_right(
         let is_same = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (1.0 + a);
         let same = match (march.hit, cpu) {
             (Some(a), Some(b)) => {
-                // Within two solids at once either is met.
+                // Inside two solids at once, either hit is right.
                 is_same(a.t, b.t) && (a.leaf == b.leaf || march.margin < GRAZING || is_same(a.t, near))
             }
             (a, b) => a.is_none() && b.is_none(),
@@ -164,7 +164,7 @@ fn rays_are_right(
     Ok(counts)
 }
 
-/// The scene with another component in place of the one that most rays hit, which is left out.
+/// The scene without the component that most rays hit, replaced by another.
 fn without_a_component(test: &TestScene) -> Option<Hierarchy> {
     let mut broken = test.flat.hierarchy().clone();
     let mut tracer = Tracer::new(&test.flat);
@@ -201,7 +201,7 @@ fn both_sides_agree_with_the_reference_on_random_scenes() {
             [0; 2]
         });
         compared = [0, 1].map(|i| compared[i] + counts[i]);
-        // The comparison must be able to fail: on each side by itself.
+        // The comparison must be able to fail, on each side alone.
         if test.seed.is_multiple_of(10)
             && let Some(broken) = without_a_component(test)
         {
@@ -235,7 +235,7 @@ fn a_march_that_is_interrupted_goes_on() {
             let rays = probe_rays(test, 32);
             let found = loaded.rays(&rays).unwrap();
             rays_are_right(test, hierarchy, &rays, &found).unwrap_or_else(|e| panic!("{most:?}, {}: {e}", test.seed));
-            // Values say when they had to stop, and are still no more than the distance.
+            // Values report that they stopped early, and still do not exceed the distance.
             let points: Vec<DVec3> = rays.iter().map(|ray| ray.origin).collect();
             for (p, found) in points.iter().zip(loaded.values(&points, 1e30).unwrap()) {
                 let least = SceneEvaluator::new(&test.flat).distance(*p, f64::INFINITY).value;
@@ -245,7 +245,7 @@ fn a_march_that_is_interrupted_goes_on() {
             }
         }
     }
-    // A ray that cannot even visit the tree once says so.
+    // A ray that cannot visit the tree even once reports it.
     probe.most = Some([100, 2]);
     let test = tests.iter().max_by_key(|test| test.flat.components.len()).expect("a scene");
     let loaded = probe.load(&shared.gpu, &test.flat, test.flat.hierarchy(), (&test.camera, ROWS));
@@ -268,13 +268,13 @@ fn rays_leave_a_surface_without_meeting_it() {
             let own = as_ray(&ray, footprint);
             let march = tracer.march(&own, LIMITS[0], LIMITS[1]).unwrap();
             let Some(hit) = march.hit.filter(|hit| hit.t > 0.5) else { continue };
-            // As a picture would have it: rounded to f32 relative to the eye.
+            // As in a picture: rounded to f32 relative to the eye.
             let p = test.camera.position + (own.at(hit.t) - test.camera.position).as_vec3().as_dvec3();
             let component = &flat.components[hit.component as usize];
             let normal = gradient(flat, component, p - component.origin).1.normalize_or_zero();
             let direction = random.direction();
             let direction = if normal.dot(direction) < 0.0 { -direction } else { direction };
-            // Those that leave by the front, not along the surface.
+            // Rays that leave by the front, not along the surface.
             if normal.dot(direction) > 0.2 && normal.dot(own.direction) < -0.2 {
                 let limits = [0.0, LIMITS[1]];
                 rays.push(ProbeRay { origin: p, direction, limits, gone: hit.t, normal: Some(normal) });
@@ -309,7 +309,7 @@ fn components_with_tapes_are_asked_by_them() {
     let rays = probe_rays(&test, 256);
     let counts = rays_are_right(&test, hierarchy, &rays, &loaded.rays(&rays).unwrap()).unwrap();
     assert!(counts[1] > 10, "{counts:?}");
-    // In cells where no surface is, tapes say less than the field.
+    // In cells without a surface, tapes give a smaller bound than the field.
     let mut random = Random::new(3);
     let mut tracer = Tracer::new(&test.flat);
     let points: Vec<DVec3> = rays.iter().map(|ray| ray.origin).collect();
@@ -329,7 +329,7 @@ fn nothing_is_built_that_nobody_asks_for() {
     let ray = Ray { origin: subject.camera.position, direction: subject.camera.rotation * DVec3::NEG_Z };
     isolith::field::pick::pick(&subject.flat, &subject.meshes, &ray, 0.1, 100.0);
     assert!(subject.flat.has_hierarchy());
-    // No pass of the frame has the code.
+    // No pass of the frame contains the code.
     let passes = FILES.iter().filter(|(name, _)| !name.contains('/') && !name.starts_with("probe_scene"));
     assert!(passes.clone().count() > 8);
     for (name, text) in passes {

@@ -1,15 +1,15 @@
-//! Waits for what the editor does beside its frames.
+//! Waits for the editor's jobs.
 
 use std::time::{Duration, Instant};
 
 use egui_kittest::Harness;
 use isolith::editor::Editor;
 
-/// Longer than any job of a test takes.
+/// Longer than any job of a test.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 pub trait Settle {
-    /// Shows frames until nothing moves any more and no job is under way.
+    /// Shows frames until nothing moves and no job runs.
     fn settle(&mut self);
 }
 

@@ -1,4 +1,4 @@
-//! Every shader is valid, is used, and agrees with Rust about how its structs lie in memory.
+//! Every shader is valid and used, and its structs have the memory layout of their Rust counterparts.
 
 use std::mem::{offset_of, size_of};
 
@@ -10,7 +10,7 @@ use isolith::scene::ShapeKind;
 use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
-/// The passes: the files that stand in no folder.
+/// The passes: the files outside of all folders.
 fn passes() -> impl Iterator<Item = &'static str> {
     FILES.iter().map(|(name, _)| *name).filter(|name| !name.contains('/'))
 }
@@ -36,7 +36,7 @@ fn evaluators() -> Vec<Evaluator> {
     interpreted.chain(tape).chain(structures.into_iter().map(Evaluator::StraightLine)).collect()
 }
 
-/// Every file of a pass with the interpreter for everything, then with a specialized pipeline.
+/// Every file of a pass, with the interpreter for everything, then with a specialized pipeline.
 fn sources() -> Vec<(&'static str, String)> {
     let everything = Evaluator::Interpreter(OpSet::all());
     let special =
@@ -48,7 +48,7 @@ fn sources() -> Vec<(&'static str, String)> {
     passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
 }
 
-/// The module that a source makes, or what is wrong with it.
+/// The module of a source, or the error in it.
 fn validate(source: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
@@ -65,7 +65,7 @@ fn every_pass_is_valid_with_every_evaluator() {
         for evaluator in &choices {
             for options in options {
                 let text = assemble(pass, evaluator, options).unwrap_or_else(|error| panic!("{error}"));
-                // Passes without a field are the same for all.
+                // Passes without a field are the same for all evaluators.
                 if !text.contains("fn field(") && !text.contains("fn surface(") && count > 0 {
                     continue;
                 }
@@ -103,7 +103,7 @@ fn a_broken_shader_is_refused() {
     assert!(validate("fn f() -> f32 { return 1.0; }").is_ok());
 }
 
-/// How a Rust struct lies in memory.
+/// Memory layout of a Rust struct.
 struct Layout {
     name: &'static str,
     size: usize,
@@ -121,7 +121,7 @@ macro_rules! layout {
 }
 
 impl Layout {
-    /// Where the WGSL struct of the same name lies differently; an empty text where it does not.
+    /// Differences from the WGSL struct of the same name; empty if there are none.
     fn differences(&self, module: &naga::Module) -> String {
         let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(self.name));
         let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {

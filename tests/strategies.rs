@@ -1,4 +1,5 @@
-//! All methods draw the same picture: equal in hit or miss pixel for pixel, depths within what refinement leaves.
+//! All strategies draw the same picture: hit or miss is equal for each pixel, and depths agree to the tolerance of
+//! refinement.
 
 use std::sync::LazyLock;
 use std::time::Duration;
@@ -19,18 +20,18 @@ use crate::gpu::{BenchScene, scenes, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 48;
-/// Largest difference of two depths, in pixel footprints, of all but the most extreme pixels: refinement stops at a
-/// thousandth, of pipelines that overstep far at four, at grazing angles at three hundredths of a step.
+/// Largest difference of two depths, in pixel footprints, of all but the most extreme pixels. Refinement stops at a
+/// thousandth; for pipelines with large oversteps at four thousandths; at grazing angles at three hundredths of a step.
 const MAX_DEPTH: f64 = 0.05;
-/// Share of the pixels that may differ by more: where a ray meets two surfaces within a footprint of one another,
-/// methods may find either.
+/// Fraction of the pixels that may differ more: where a ray meets two surfaces within a footprint of each other,
+/// strategies may find either.
 const MAX_SHARE: f64 = 2e-3;
-/// Random trees that are drawn, and how many of them are made of the same few shapes.
+/// Number of random trees, and of trees that share a palette of shapes.
 const TREES: u64 = 200;
 const TREES_OF_A_KIND: u64 = 20;
 
-/// What differs between two pictures; nothing where they are equal. A pixel whose ray passes an edge so closely that rounding
-/// decides may be either.
+/// Describes how two pictures differ; `None` if they agree. A pixel whose ray passes an edge within rounding may show
+/// either side.
 fn difference(bench_scene: &BenchScene, side: u32, a: &GBuffer, b: &GBuffer) -> Option<String> {
     let BenchScene { flat, meshes, camera, .. } = bench_scene;
     let footprint = camera.footprint(f64::from(side));
@@ -73,9 +74,10 @@ fn crowds_are_the_same_with_tapes() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A few shapes without loops and one with, for some of the trees: together all shapes there are.
+/// Palettes for some of the trees each: a few shapes without loops and one with. Together they contain all shapes.
 ///
-/// A pipeline that walks takes seconds to compile and serves all scenes whose shapes are few less than its own.
+/// An interpreter pipeline takes seconds to compile. It serves all scenes whose shapes are a slightly smaller subset of
+/// its own.
 fn palettes() -> &'static [Vec<ShapeKind>] {
     static PALETTES: LazyLock<Vec<Vec<ShapeKind>>> = LazyLock::new(|| {
         let (looping, plain): (Vec<_>, Vec<_>) = ShapeKind::ALL.iter().partition(|kind| shape_loops(**kind)[0] > 0);
@@ -91,7 +93,7 @@ fn palettes() -> &'static [Vec<ShapeKind>] {
     &PALETTES
 }
 
-/// These shapes, nested as deep as trees are, by every operator and every blend.
+/// These shapes, nested to the usual depth of trees, with every operator and every blend.
 fn sheet(kinds: &[ShapeKind]) -> Scene {
     let mut scene = Scene::new();
     let mut parent = None;
@@ -117,7 +119,7 @@ fn random_trees_are_the_same_by_every_method() {
         }
         let scene = tree(1000 + seed, Recipe { blends: true, stretching: seed % 2 == 0, kinds });
         let bench_scene = BenchScene::new(&format!("tree {seed}"), &scene, None);
-        // Each structure is compiled; every fourth is enough of them.
+        // Each structure needs compiling, so test every fourth only.
         let strategies: &[EvalStrategy] =
             if seed % 4 == 0 { &[EvalStrategy::Tape, EvalStrategy::StraightLine] } else { &[EvalStrategy::Tape] };
         faults.extend(compare(&bench_scene, SIDE, strategies));
@@ -125,7 +127,7 @@ fn random_trees_are_the_same_by_every_method() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Many structures share kernels for their templates, one for each kind of blend.
+/// Many structures share pipelines through their templates, one for each kind of blend.
 #[test]
 fn many_structures_share_pipelines_and_are_the_same() {
     let bench_scene = BenchScene::new("random", &gallery::random(384, 5), None);
@@ -163,7 +165,7 @@ fn what_is_modified_is_the_same_by_every_method() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What a modifier holds has tapes of its own, in its own space.
+/// The content of a modifier has its own tapes, in its own space.
 #[test]
 fn large_blends_below_modifiers_are_the_same_with_tapes() {
     let mut all = Scene::new();

@@ -1,4 +1,5 @@
-//! Numerical stress: what `isolith bench --stress` draws, held to what is allowed and to what is known to be wrong.
+//! Numerical stress: compares the pictures of `isolith bench --stress` with the allowed errors and with the known
+//! faults.
 
 use isolith::bench::{Allowed, Metrics, cases};
 use isolith::field::reference::image::{ReferenceImage, render_reference};
@@ -8,9 +9,9 @@ use isolith::scene::{MaterialId, ModifierKind, Node, NodeKind, Object, Operator,
 
 use crate::gpu::{BenchScene, shared};
 
-/// The file with what is known to be drawn wrong, by the worst method: wrong pixels, pixels that methods show otherwise, and the depth's
-/// error at the 99th percentile in footprints, neither more than measured on lavapipe. Why stands beside them, and in
-/// `benches/README.md`. No case is added, and no number of wrong pixels grows.
+/// The file of the known faults, by the worst strategy: wrong pixels, pixels on which strategies disagree, and the
+/// depth's error at the 99th percentile in footprints, none above the measurement on lavapipe. The reasons are in the
+/// file and in `benches/README.md`. The list gains no cases, and no count of wrong pixels grows.
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/stress/known.txt");
 
 /// A line of [`KNOWN`].
@@ -22,7 +23,7 @@ struct Known<'a> {
     depth: f64,
 }
 
-/// The lines of [`KNOWN`], without those that explain them.
+/// The lines of [`KNOWN`] without comments.
 fn known_cases(text: &str) -> Vec<Known<'_>> {
     let read = |line| {
         let fields: Vec<&str> = str::split(line, '|').map(str::trim).collect();
@@ -34,10 +35,10 @@ fn known_cases(text: &str) -> Vec<Known<'_>> {
     text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')).map(read).collect()
 }
 
-/// The command line draws by the interpreter and by tapes, the window by pipelines.
+/// The command line draws with the interpreter and tapes, the window with pipelines.
 const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
-/// The line of [`KNOWN`] that a case would have.
+/// The line of a case in [`KNOWN`].
 fn line(metrics: &Metrics) -> String {
     let Metrics { node, circumstance, wrong, differ, depth_p99, .. } = metrics;
     format!("{node} | {circumstance} | {wrong} | {differ} | {:.4}", (depth_p99 * 1e4).ceil() * 1e-4)
@@ -72,7 +73,7 @@ fn what_is_difficult_is_drawn_as_it_is() {
     }
     assert!(faults.is_empty(), "{}\nAll that is beyond what is allowed:\n{}", faults.join("\n"), lines.join("\n"));
     assert_eq!(met, known.len());
-    // The others have no surface where they are looked at.
+    // The other cases have no surface in view.
     assert!(drawn > 1_200, "{drawn} cases were drawn");
 }
 
@@ -87,7 +88,7 @@ fn every_shape_operator_and_modifier_is_stressed() {
     }
 }
 
-/// A ball before the background.
+/// A ball in front of the background.
 fn ball(radius: f64) -> BenchScene {
     let mut scene = Scene::new();
     let object = Object { shape: Shape::Sphere { radius }, material: MaterialId(1) };

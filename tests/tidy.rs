@@ -1,5 +1,5 @@
-//! The rules of the house: who may use whom, how long a file may be, which words are not used. Each rule
-//! has a counterexample below that breaks it and must be caught.
+//! The rules of the house: allowed dependencies, length of files, retired words. For each rule, a counterexample below
+//! breaks it and must be caught.
 
 mod circles;
 mod names;
@@ -12,7 +12,7 @@ use circles::circles;
 use names::{defined_twice, retired};
 use rules::{MODULES, edges, problems};
 
-/// Folders and files that hold what people write.
+/// Folders and files written by people.
 const WRITTEN: &[&str] = &[
     "src",
     "shaders",
@@ -43,12 +43,12 @@ fn every_file_keeps_the_rules() {
     assert!(found.is_empty(), "{} problems:\n{}", found.len(), found.join("\n"));
 }
 
-/// Circles of files that are still there. The list only shrinks.
+/// Remaining circles of files. The list only shrinks.
 const CIRCLES_LEFT: &[&[&str]] = &[];
-/// Public types that more than one file defines still. The list only shrinks.
+/// Public types that more than one file still defines. The list only shrinks.
 const TWICE_LEFT: &[&str] = &[];
 
-/// Rust files below `src`, with their path from there and their text.
+/// Rust files below `src`, with their path relative to it and their text.
 fn sources() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let rust = written_files(root).into_iter().filter(|path| path.starts_with("src/") && path.ends_with(".rs"));
@@ -89,7 +89,7 @@ fn written_files(root: &Path) -> Vec<String> {
     let mut files = Vec::new();
     while let Some(path) = open.pop() {
         if path.is_symlink() {
-            // What a package takes along from elsewhere is looked at there.
+            // Third-party files of a package are checked in their own folder.
             continue;
         }
         if path.is_dir() {
@@ -109,7 +109,7 @@ fn written_files(root: &Path) -> Vec<String> {
 
 #[test]
 fn the_table_of_modules_has_no_cycle_and_names_every_module() {
-    // Each module stands behind everything that it uses, so no chain of uses comes back.
+    // Each module follows all modules that it uses, so no chain of uses returns.
     for (i, (name, uses)) in MODULES.iter().enumerate() {
         for used in *uses {
             assert!(MODULES[..i].iter().any(|(earlier, _)| earlier == used), "{name} uses {used}, which stands later");
@@ -123,7 +123,7 @@ fn the_table_of_modules_has_no_cycle_and_names_every_module() {
     }
 }
 
-/// Whether the rules find something whose text contains `what` in a file of this text.
+/// Whether the rules report a problem whose text contains `what`, for a file of this path and text.
 fn caught(path: &str, body: &str, what: &str) -> bool {
     problems(path, &format!("//! A sample.\n{body}\n")).iter().any(|p| p.contains(what))
 }

@@ -1,5 +1,5 @@
-//! The arrays have the field of the scene that they were made of: what flattening makes is compared with an evaluator that
-//! walks the scene's tree in f64.
+//! The flattened arrays have the field of their scene: compares them with an evaluator that walks the scene's tree in
+//! f64.
 
 use glam::{DQuat, DVec3};
 use isolith::field::eval::field;
@@ -18,24 +18,24 @@ use crate::contract::samples::Random;
 use crate::contract::trees::{Recipe, tree};
 use crate::random_scene::random_scene;
 
-/// Rays through each component, and points at random in it.
+/// Rays through each component, and random points in it.
 const RAYS: usize = 60;
 const POINTS: usize = 120;
-/// What rounding the arrays to f32 may move a surface by, relative to the size of the component: some steps of each number
-/// that places it.
+/// Allowed movement of a surface by rounding the arrays to f32, relative to the size of the component: a few steps of
+/// each number that places it.
 const ROUNDED: f64 = 4e-6;
-/// The values are the same so near to the surface, relative to the component's size. Farther away what is cut from several
-/// components is cut only from those that it can reach.
+/// Distance from the surface within which the values agree, relative to the component's size. Farther away, a cut of
+/// several components applies only to those that it can reach.
 const NEAR: f64 = 0.02;
-/// Warnings of a modifier that does less than the scene says.
+/// Warnings of a modifier with less effect than the scene asks for.
 const LESSENED: [&str; 3] = ["is bent by", "is tapered by", "has no end"];
 
-/// The least of the fields of all components.
+/// The minimum of the fields of all components.
 fn of_arrays(flat: &FlatScene, p: DVec3) -> f64 {
     flat.components.iter().map(|c| field(flat, c, p - c.origin)).fold(f64::INFINITY, f64::min)
 }
 
-/// Around a component, in the world.
+/// Center and radius of a component, in world space.
 fn around(component: &Component) -> (DVec3, f64) {
     let is_finite = component.bounds.is_finite();
     let (center, reach) =
@@ -43,8 +43,8 @@ fn around(component: &Component) -> (DVec3, f64) {
     (center + component.origin, reach)
 }
 
-/// Compares both near the surface of each component and elsewhere; how many points told the sides apart, or the first
-/// disagreement.
+/// Compares both near the surface of each component and elsewhere. Returns the number of points that distinguish the
+/// two sides, or the first disagreement.
 fn compare(flat: &FlatScene, tree: &SceneField, random: &mut Random) -> Result<usize, String> {
     let mut tracer = Tracer::new(flat);
     let mut told = 0;
@@ -63,7 +63,8 @@ fn compare(flat: &FlatScene, tree: &SceneField, random: &mut Random) -> Result<u
     Ok(told)
 }
 
-/// The same, the surface found by halving the way between points inside and outside: what is wild may take a ray minutes.
+/// Like [`compare`], but finds the surface by bisection between points inside and outside: a ray through a wild scene
+/// may take minutes.
 fn compare_by_halving(flat: &FlatScene, tree: &SceneField, random: &mut Random) -> Result<usize, String> {
     let mut told = 0;
     for component in &flat.components {
@@ -83,7 +84,7 @@ fn compare_by_halving(flat: &FlatScene, tree: &SceneField, random: &mut Random) 
     Ok(told)
 }
 
-/// Where both are compared on a line through the surface, relative to the size of the component.
+/// Offsets along a line through the surface for the comparison, relative to the size of the component.
 const STEPS: [f64; 6] = [0.0, 1e-4, -1e-4, 3e-3, -3e-3, 0.03];
 
 /// Compares both at these points.
@@ -107,7 +108,7 @@ fn agree(flat: &FlatScene, tree: &SceneField, component: &Component, points: Vec
     Ok(told)
 }
 
-/// The gallery; of the largest scenes the smaller ones of their kind are enough.
+/// The gallery, without the largest scenes: the smaller ones of their kind suffice.
 fn scenes() -> impl Iterator<Item = (&'static str, Scene)> {
     gallery::all().into_iter().filter(|(name, _)| *name != "random-577")
 }
@@ -127,7 +128,7 @@ fn the_arrays_of_every_example_are_the_scene() {
     assert!(told > 50_000, "{told}");
 }
 
-/// The scene with all that is hidden shown, and blends measured in meters.
+/// The scene with all hidden nodes shown, and blends in meters.
 fn plain(scene: &Scene) -> Scene {
     let mut plain = scene.clone();
     for node in scene.nodes() {
@@ -157,14 +158,14 @@ fn the_arrays_of_random_trees_are_the_scene() {
     assert!(told > 10_000, "{told}");
 }
 
-/// Whether flattening does what the scene says, and this evaluator can say what that is.
+/// Flattens and builds the evaluator; `None` if flattening changes the scene, or if this evaluator does not support it.
 fn both(scene: &Scene) -> Option<(FlatScene, SceneField)> {
     let flat = flatten(scene, 0.0).ok()?;
     let is_whole = !flat.warnings.iter().any(|w| LESSENED.iter().any(|lessened| w.reason.contains(lessened)));
     if is_whole { Some((flat, SceneField::new(scene).ok()?)) } else { None }
 }
 
-/// One ball under each modifier, with a box that is blended with it where the modifier keeps values.
+/// One ball under each modifier, blended with a box if the modifier keeps values.
 #[test]
 fn the_arrays_of_every_modifier_are_the_scene() {
     let mut told = 0;
@@ -181,8 +182,8 @@ fn the_arrays_of_every_modifier_are_the_scene() {
     assert!(told > 5_000, "{told}");
 }
 
-/// What is twisted fills a cylinder: its copies keep clear of each other however they are turned, where the corners of a box
-/// would not.
+/// Twisted content fills a cylinder, so its copies stay clear of each other at every angle; the corners of a box would
+/// not.
 #[test]
 fn turned_copies_of_what_is_twisted_are_the_scene() {
     let twist = |angle| Modifier::Twist { angle };
@@ -197,11 +198,11 @@ fn turned_copies_of_what_is_twisted_are_the_scene() {
     };
     let mut told = 0;
     for (modifiers, copies) in [
-        // The box reaches 0.283 from its axis, its corners when it is turned 0.4.
+        // The post reaches 0.283 from its axis; the corners of its bounding box, when rotated, 0.4.
         (vec![twist(300.0), repeat(0.45, [3, 1, 3])], 4),
         (vec![twist(90.0), twist(-300.0), repeat(0.45, [0, 1, 3])], 4),
         (vec![twist(300.0), repeat(0.8, [3, 1, 0])], 1),
-        // What is elongated as well is known by its box only.
+        // For content that is elongated as well, only the box is known.
         (vec![twist(300.0), Modifier::Elongate { length: [0.0, 0.1, 0.0] }, repeat(0.45, [3, 1, 3])], 16),
     ] {
         let object = Object { shape: Shape::Box { size: [0.4, 1.2, 0.4], rounding: 0.0 }, material: MaterialId(1) };
@@ -216,10 +217,10 @@ fn turned_copies_of_what_is_twisted_are_the_scene() {
     assert!(told > 500, "{told}");
 }
 
-/// Seeds of wild scenes of which the arrays differ from the scene; why is not known yet. One that agrees must be taken off.
+/// Seeds of wild scenes whose arrays differ from the scene for unknown reasons. Remove a seed that agrees.
 const UNEXPLAINED: [u64; 3] = [80, 85, 134];
 
-/// Wild scenes: any parameters within their limits, modifiers on anything, children that join as they like, nested at random.
+/// Wild scenes: any parameters within their limits, any modifiers, children with any operators, random nesting.
 #[test]
 fn the_arrays_of_wild_scenes_are_the_scene() {
     let (mut faults, mut compared, mut told) = (Vec::new(), 0, 0);
@@ -265,7 +266,7 @@ fn moved(scene: &Scene) -> Option<Scene> {
     Some(changed)
 }
 
-/// Two balls in a blend and a box cut from them, the whole turned.
+/// Two blended balls with a box cut from them, all of it rotated.
 fn blended() -> Scene {
     let mut scene = Scene::new();
     let group = Group::new(Operator::Union, Blend::new(BlendKernel::Circular, 0.2));

@@ -1,4 +1,4 @@
-//! Files of every version of the format mean what they meant when they were written: `tests/versions/N` holds such files.
+//! Files of every version of the format keep their meaning: `tests/versions/N` holds such files.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,12 @@ use isolith::field::eval::field;
 use isolith::field::flatten;
 use isolith::scene::{NodeKind, Scene, file};
 
-/// Of a file: groups, objects, meshes, lights and cameras, then the field at some points, in meters, to a millimeter.
+/// Meaning of a file: numbers of groups, objects, meshes, lights and cameras; then the field at some points, in meters,
+/// to a millimeter.
 type Meaning = ([usize; 5], [f64; 5]);
 
-/// Taken when the format's first version was still the only one. They are never changed: a change of what is read is what
-/// they are there to refuse.
+/// Recorded while the format's first version was the only one. Never change them: they exist to catch a change of the
+/// reader.
 const MEANINGS: [(&str, Meaning); 2] = [
     ("1/mesh-and-fields.json", ([7, 16, 1, 3, 1], [-0.05, 0.076, 0.732, 1.924, 0.212])),
     ("1/showcase.json", ([17, 67, 0, 4, 1], [-0.131, -0.302, 0.805, 1.28, 0.141])),
@@ -44,7 +45,7 @@ fn files_of_every_version_mean_what_they_meant() {
         let path = folder().join(name);
         let scene = file::parse(&std::fs::read(&path).unwrap(), &path).unwrap();
         assert_eq!(meaning(&scene), expected, "{name}");
-        // Written anew it is a file of today's version, which means the same.
+        // Written again, it is a file of the current version with the same meaning.
         let text = file::to_json(&scene).unwrap();
         let version: serde_json::Value = serde_json::from_str(&text).unwrap();
         assert_eq!(version["isolith"], file::VERSION);

@@ -1,4 +1,4 @@
-//! Joins editor and renderer in one window, and opens the window again when the graphics device is lost.
+//! Joins editor and renderer in one window, and reopens the window when the graphics device is lost.
 
 mod shared_app;
 mod viewport_renderer;
@@ -23,7 +23,7 @@ use crate::scene::{NodeKind, Scene};
 use shared_app::SharedApp;
 use window::{SMALLEST, Window};
 
-/// Why the window closed otherwise than by the artist's wish.
+/// Why the window closed, other than by the artist's order.
 #[derive(Debug, Error)]
 pub enum AppError {
     /// There is no window or no device.
@@ -34,21 +34,21 @@ pub enum AppError {
     Lost(usize),
 }
 
-/// What the window left behind.
+/// How the window ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Ending {
     /// The artist closed it.
     Closed,
-    /// The device was lost: another window is to be opened.
+    /// The device was lost: open another window.
     DeviceLost,
 }
 
-/// Most losses of the device within a minute before the program gives up.
+/// The program gives up after more device losses than this within a minute.
 const MAX_LOSSES: usize = 5;
 
-/// Opens the editor on the document, drawn by the chosen adapter, and returns when it is closed. The document survives
-/// the loss of the graphics device: everything on the device is made anew from it. A panic keeps what is not saved, and
-/// is told through `tell`.
+/// Opens the editor on the document, drawn by the chosen adapter, and returns when the artist closes it. The document
+/// survives the loss of the graphics device: each new window rebuilds everything on the device from it. A panic keeps
+/// unsaved work and reports it through `tell`.
 pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Result<(), AppError> {
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
@@ -86,7 +86,7 @@ fn start_recovery() -> Result<Recovery, String> {
 
 fn open_window(shared: &SharedApp, adapter: &AdapterChoice) -> Result<Ending, AppError> {
     let for_window = shared.clone();
-    // Painting on a lost device panics in places. The editor is not part of what is torn then.
+    // Painting on a lost device panics in places. Such a panic does not leave the editor inconsistent.
     let result = catch_unwind(AssertUnwindSafe(|| {
         eframe::run_native(
             "isolith",
@@ -123,8 +123,8 @@ fn options(adapter: &AdapterChoice) -> eframe::NativeOptions {
     }
 }
 
-/// The shipped scenes, for the File menu. Meshes are looked for beside the file of a scene: so one with meshes is opened from
-/// its file where the program is started beside them, and else from one that is written into the user's data folder.
+/// The shipped scenes, for the File menu. A scene finds its meshes beside its own file. So a scene with meshes opens
+/// from the shipped file if the program starts beside it, otherwise from a copy in the user's data folder.
 fn examples() -> Vec<Example> {
     let open = |name: &str, scene: &Scene, task: &Task| {
         let shipped = Path::new("scenes").join(name).with_extension("json");

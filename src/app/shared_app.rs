@@ -1,4 +1,4 @@
-//! The editor and the device, shared by the windows that follow each other.
+//! The editor and the device, shared by successive windows.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -6,10 +6,10 @@ use std::rc::Rc;
 use crate::editor::Editor;
 use crate::render::Gpu;
 
-/// What outlives a window.
+/// State that outlives a window.
 #[derive(Clone)]
 pub(super) struct SharedApp {
     pub editor: Rc<RefCell<Editor>>,
-    /// The device of the window that is open or was last.
+    /// The device of the current or the last window.
     pub gpu: Rc<RefCell<Option<Gpu>>>,
 }

@@ -1,5 +1,5 @@
-//! The viewport's picture: a coarse one at once where the full one would take too long, the full one
-//! bit by bit while nothing changes, nothing at all while it is up to date.
+//! The viewport's picture: first a coarse one if the full one would take too long, then the full one bit by bit until
+//! something changes. An up-to-date picture costs nothing.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,20 +14,21 @@ use crate::mesh::TriangleMesh;
 use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;
 
-/// A picture that takes longer than this is made coarse first.
+/// A picture that takes longer than this starts with a coarse one.
 const AT_ONCE: Duration = Duration::from_millis(60);
-/// Time given to the full picture in each frame of the window, in parts of what painting the window takes: that is a
-/// sixtieth of a second on a graphics card, but a tenth on a software driver, where less would mostly repaint.
+/// Time for the full picture in each frame of the window, as a multiple of the time for painting the window. The result
+/// is a sixtieth of a second on a graphics card, but a tenth on a software driver, where a shorter time would be spent
+/// mostly on repainting.
 const PER_PAINTING: f32 = 2.0;
-/// That time, at least and at most.
+/// Lower and upper limit of that time.
 const PER_FRAME: [Duration; 2] = [Duration::from_millis(16), Duration::from_millis(150)];
-/// A full picture that takes longer than this waits for the pipelines that are being built: they make it
-/// many times faster than the interpreter would.
+/// A full picture that takes longer than this waits for pipelines in the making: they are many times faster than the
+/// interpreter.
 const WORTH_WAITING: Duration = Duration::from_millis(1500);
-/// The same for tapes, which are made sooner: some 200 ms in most scenes.
+/// The same for tapes, which are ready sooner: after some 200 ms in most scenes.
 const TAPES_WORTH_WAITING: Duration = Duration::from_millis(300);
 
-/// See the module.
+/// Draws the viewport's picture and hands it to egui.
 pub(super) struct ViewportRenderer {
     renderers: Renderers,
     state: RenderState,
@@ -36,34 +37,34 @@ pub(super) struct ViewportRenderer {
     request: Option<RenderRequest>,
     in_flight: Option<(Frame, Instant)>,
     elapsed: Duration,
-    /// What painting the window took the last time that it was measured.
+    /// The last measured time for painting the window.
     painting: Duration,
-    /// When the last update ended, if it asked for the next one at once.
+    /// When the last update ended, if it requested an immediate repaint.
     painting_since: Option<Instant>,
-    /// The camera or a value is being dragged.
+    /// The artist drags the camera or a value.
     navigating: bool,
-    /// The full picture waits for the end of a drag, or for pipelines or tapes that are being made.
+    /// The full picture waits for the end of a drag, or for pipelines or tapes in the making.
     waiting: bool,
-    /// Pipelines may have become ready that no picture has used.
+    /// Pipelines may be ready that no picture has used yet.
     needs_prewarm: bool,
-    /// Of the last coarse picture, before it is enlarged.
+    /// Size of the last coarse picture before scaling.
     preview_size: Option<[u32; 2]>,
 }
 
-/// What draws the lit picture, and what draws the looks that count: counting costs time and memory, so the second one
-/// is there only while such a view mode is shown.
+/// One renderer for the lit picture and one for the view modes that count. Counting costs time and memory, so the
+/// second exists only while such a view mode is active.
 struct Renderers {
     plain: Renderer,
     counting: Option<Renderer>,
 }
 
 impl Renderers {
-    /// The one that draws what is shown now.
+    /// The renderer of the current view mode.
     fn active(&mut self) -> &mut Renderer {
         self.counting.as_mut().unwrap_or(&mut self.plain)
     }
 
-    /// From now on this look is shown.
+    /// Switches to the renderer of this view mode.
     fn choose(&mut self, view_mode: ViewMode) -> Result<(), RenderError> {
         if !view_mode.counts() {
             self.counting = None;
@@ -74,7 +75,7 @@ impl Renderers {
     }
 }
 
-/// Everything that the picture depends on.
+/// All inputs of the picture.
 #[derive(Clone)]
 struct RenderRequest {
     view: ViewSettings,
@@ -84,7 +85,8 @@ struct RenderRequest {
 }
 
 impl PartialEq for RenderRequest {
-    /// A flat scene is another one when it has been made anew: comparing its numbers in every frame would take longer.
+    /// Compares flat scenes by pointer: each rebuild makes another one, and comparing values in every frame would take
+    /// longer.
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.flat, &other.flat)
             && self.view == other.view
@@ -116,7 +118,7 @@ impl ViewportRenderer {
         self.renderers.plain.gpu().is_lost()
     }
 
-    /// What there is to show now.
+    /// The picture to show now.
     pub fn picture(&self) -> Picture {
         let shown = self.shown.and_then(|slot| self.textures[slot as usize]);
         Picture {
@@ -134,16 +136,16 @@ impl ViewportRenderer {
         status_text(name, self.elapsed, renderer.pipelines_building(), renderer.pipelines_failed())
     }
 
-    /// Brings the picture nearer to what the editor wants, in bounded time.
+    /// Advances the picture toward the editor's request, in bounded time.
     pub fn update(&mut self, editor: &mut Editor, ctx: &egui::Context) -> Result<(), RenderError> {
         self.renderers.plain.gpu().check()?;
         self.painting = self.painting_since.take().map_or(self.painting, |since| since.elapsed());
         if editor.take_stop_drawing() {
-            // What is shown is what is request; only another wish begins a picture.
+            // The current picture is final until the request changes.
             (self.in_flight, self.waiting) = (None, false);
         }
         let ViewSettings { navigating, .. } = editor.view();
-        // Not part of what the picture depends on: letting go changes nothing in it.
+        // Not an input of the picture: the end of a drag changes nothing in it.
         let view = ViewSettings { navigating: false, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
         let flat = editor.flat().clone();
@@ -190,8 +192,8 @@ impl ViewportRenderer {
         Ok(())
     }
 
-    /// Whether the full picture is there and only grid, outline or view mode are to change, and the view mode by what is found
-    /// already.
+    /// Whether the full picture is complete and only the grid, the outline or the view mode differ, and the hits at
+    /// hand suffice for the new view mode.
     fn differs_in_marks_only(&self, request: &RenderRequest) -> bool {
         let complete = self.shown == Some(Slot::Full) && self.in_flight.is_none() && !self.waiting;
         let marked_alike = |shown: &RenderRequest| {
@@ -204,7 +206,7 @@ impl ViewportRenderer {
         complete && self.request.as_ref().is_some_and(|shown| *shown == marked_alike(shown))
     }
 
-    /// Draws the marks anew over the picture that is there.
+    /// Redraws the marks over the complete picture.
     fn restyle(&mut self, request: &RenderRequest, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
         let mut frame = self.begin(Slot::Full, request, meshes, request.view.size_px)?;
         frame.skip_to_shading();
@@ -213,7 +215,7 @@ impl ViewportRenderer {
         Ok(())
     }
 
-    /// Pipelines and tapes that are being made are waited for without hurry; pipelines that failed are told of.
+    /// Polls pipelines and tapes in the making at a low rate, and reports failed pipelines.
     /// True when another one has become ready.
     fn follow_pipelines(&mut self, editor: &mut Editor, ctx: &egui::Context) -> bool {
         let tapes = self.renderers.plain.tape_cache();
@@ -234,14 +236,14 @@ impl ViewportRenderer {
             editor.report(Message::warning(failure));
         }
         if pipelines.building() > 0 {
-            // Painting takes from the threads that compile what a processor's driver draws with.
+            // Painting slows down the threads that compile pipelines for a software driver.
             ctx.request_repaint_after(Duration::from_millis(if self.waiting { 200 } else { 1_000 }));
         }
         news
     }
 
-    /// Begins the full picture, after a coarse one if the full one is not to be had at once. Where nothing but the pipelines is
-    /// other than before, that is drawn again only if it becomes finer and has to last.
+    /// Begins the full picture, after a coarse one if the full one takes too long. If only the pipelines have changed,
+    /// draws another coarse picture only if it is finer than the last and the full one has to wait.
     fn start(
         &mut self,
         request: &RenderRequest,
@@ -271,7 +273,7 @@ impl ViewportRenderer {
         }
         let mut frame = self.begin(Slot::Full, request, meshes, size_px)?;
         if full <= AT_ONCE {
-            // Rays that have not ended go on for longer than anybody could expect.
+            // Rays that have not ended can take much longer than the estimate.
             self.renderers.active().advance(&mut frame, 4 * AT_ONCE)?;
         }
         if frame.is_done() && self.renderers.active().unfinished_rays(&frame)?.is_empty() {
@@ -293,7 +295,7 @@ impl ViewportRenderer {
         size_px: [u32; 2],
     ) -> Result<Frame, RenderError> {
         let RenderRequest { view: ViewSettings { camera, show_grid, view_mode, .. }, flat, outline, .. } = request;
-        // Lines would change the colors that a view mode is read by.
+        // Grid lines would falsify the colors of a view mode.
         let grid = *show_grid && *view_mode == ViewMode::Shaded;
         let shown_at = Some(request.view.size_px);
         let overlay = OverlaySettings { grid, outline: outline.clone(), shown_at };
@@ -310,7 +312,7 @@ impl ViewportRenderer {
         Ok(frame)
     }
 
-    /// Makes the picture in `slot` the one that egui draws.
+    /// Makes egui draw the picture in `slot`.
     fn show(&mut self, slot: Slot) {
         let Some((view, size)) = self.renderers.active().picture(slot) else { return };
         let filter = match slot {
@@ -332,7 +334,7 @@ impl ViewportRenderer {
     }
 }
 
-/// The selected nodes and all below them.
+/// The selected nodes and their descendants.
 fn with_descendants(editor: &Editor) -> Vec<NodeId> {
     let document = editor.document();
     let scene = document.scene();
@@ -340,7 +342,7 @@ fn with_descendants(editor: &Editor) -> Vec<NodeId> {
     ranges.flat_map(|range| scene.nodes()[range].iter().map(|n| n.id)).collect()
 }
 
-/// Adapter, time of the last picture, pipelines on the way, pipelines that failed.
+/// Adapter, time of the last picture, pipelines in the making, failed pipelines.
 fn status_text(adapter: &str, elapsed: Duration, building: usize, failed: usize) -> String {
     let mut text = format!("{adapter} · {:.0} ms", elapsed.as_secs_f64() * 1e3);
     if building > 0 {
@@ -352,7 +354,7 @@ fn status_text(adapter: &str, elapsed: Duration, building: usize, failed: usize)
     text
 }
 
-/// The adapter's name without the parenthesis that many carry.
+/// The adapter's name without a parenthesized suffix.
 fn short_name(name: &str) -> &str {
     name.split(" (").next().unwrap_or(name)
 }

@@ -1,4 +1,4 @@
-//! The window: shows the editor, keeps its picture up to date.
+//! The window: shows the editor and keeps its picture up to date.
 
 use std::time::Duration;
 
@@ -9,24 +9,25 @@ use super::viewport_renderer::ViewportRenderer;
 use crate::editor::{Editor, Message};
 use crate::render::{Gpu, RenderError};
 
-/// The smallest that the window can be made, in points.
+/// Minimum size of the window, in points.
 pub(super) const SMALLEST: Vec2 = vec2(800.0, 500.0);
 
-/// The window's content, as eframe runs it.
+/// The window's content, run by eframe.
 pub(super) struct Window {
     viewport: ViewportRenderer,
     shared: SharedApp,
-    /// Whether the window has been painted: before its first picture, for which a driver may compile for seconds.
+    /// Whether the window has been painted once. The first picture comes later, because a driver may compile for
+    /// seconds.
     is_open: bool,
-    /// How long each frame waits, to see the window as it is on a slow machine.
+    /// Artificial delay of each frame, to simulate a slow machine.
     delay: Duration,
 }
 
-/// Names that time, in milliseconds.
+/// Environment variable with that delay in milliseconds.
 const FRAME_DELAY: &str = "ISOLITH_FRAME_DELAY";
 
 impl Window {
-    /// Shows the editor that is in `shared`.
+    /// Shows the editor in `shared`.
     pub fn new(context: &eframe::CreationContext<'_>, shared: SharedApp) -> Result<Self, RenderError> {
         Editor::setup(&context.egui_ctx);
         let state = context.wgpu_render_state.clone().expect("the window is opened with the wgpu renderer");
@@ -43,10 +44,10 @@ impl Window {
     }
 }
 
-/// Room for the frame around a window and for bars at the edges of a screen, in points.
+/// Room for window borders and screen bars, in points.
 const AROUND: Vec2 = vec2(16.0, 72.0);
 
-/// Makes the window smaller where it would not fit the screen that it is on.
+/// Shrinks the window to the screen.
 fn fit_to_screen(ctx: &egui::Context) {
     let (inner, monitor, fills) = ctx.input(|i| {
         let viewport = i.viewport();
@@ -60,7 +61,7 @@ fn fit_to_screen(ctx: &egui::Context) {
     }
 }
 
-/// The size that fits a monitor, where this one does not; never less than a window can be.
+/// The size that fits the monitor, at least [`SMALLEST`]; `None` if the window fits already.
 fn fitting(inner: Vec2, monitor: Vec2) -> Option<Vec2> {
     let most = (monitor - AROUND).max(SMALLEST);
     (inner.x > most.x || inner.y > most.y).then(|| inner.min(most))
@@ -69,7 +70,7 @@ fn fitting(inner: Vec2, monitor: Vec2) -> Option<Vec2> {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         if self.viewport.is_lost() {
-            // Nothing can be painted any more.
+            // Painting is impossible from here on.
             ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             return;
         }
@@ -86,7 +87,7 @@ impl eframe::App for Window {
         }
         match self.viewport.update(editor, ui.ctx()) {
             Ok(()) => {}
-            // What this frame has drawn cannot be painted: the pass is repeated, empty.
+            // The output of this frame cannot be painted: discard it and repeat the pass, which paints nothing.
             Err(_) if self.viewport.is_lost() => ui.ctx().request_discard("the device is lost"),
             Err(error) => editor.report(Message::error(error.to_string())),
         }

@@ -10,9 +10,9 @@ use plotters::style::{Color, RGBColor};
 
 use super::canvas::{ChartCanvas, FINE, Failed, ImageBackend, letters};
 
-/// The color of words that must be read.
+/// The color of important text.
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
-/// The color of words that explain.
+/// The color of secondary text.
 pub(super) const SOFT_INK: RGBColor = RGBColor(0x50, 0x50, 0x50);
 const AXIS: RGBColor = RGBColor(0x80, 0x80, 0x80);
 const GRID: RGBColor = RGBColor(0xd8, 0xd8, 0xd8);
@@ -20,18 +20,18 @@ const FINE_GRID: RGBColor = RGBColor(0xf0, 0xf0, 0xf0);
 const TICK_EM: f64 = 15.0;
 const NAME_EM: f64 = 17.0;
 
-/// A stretch of a logarithmic axis, as logarithms to the base of ten.
+/// A range of a logarithmic axis, as logarithms to base ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LogAxis {
-    /// Where the axis begins.
+    /// Start of the range.
     pub low: f64,
-    /// Where the axis ends.
+    /// End of the range.
     pub high: f64,
 }
 
 impl LogAxis {
-    /// An axis with room for all the logarithms and some around them; from 1 to 100 where there are none. It is
-    /// never shorter than half a decade, so that values that are almost equal do not look different.
+    /// An axis that covers all logarithms with a margin; 1 to 100 if there are none. It spans at least half a decade,
+    /// so that almost equal values look equal.
     pub fn around(logs: impl Iterator<Item = f64>) -> Self {
         let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
@@ -42,7 +42,7 @@ impl LogAxis {
         Self { low: middle - half, high: middle + half }
     }
 
-    /// The multiples of powers of ten at which ticks stand: as many as can be read.
+    /// The multiples of powers of ten at which ticks stand: as many as stay readable.
     fn multiples(&self) -> &'static [f64] {
         match self.high - self.low {
             ..0.9 => &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0],
@@ -51,18 +51,18 @@ impl LogAxis {
         }
     }
 
-    /// How many decades lie between two ticks, where the axis is so long that not each gets one.
+    /// The number of decades from one tick to the next; more than one on a long axis.
     fn stride(&self) -> i32 {
         ((self.high - self.low) / 10.0).ceil().max(1.0) as i32
     }
 
-    /// The logarithms of the numbers that stand at the axis.
+    /// The logarithms of the labeled ticks.
     pub fn ticks(&self) -> Vec<f64> {
         let stride = self.stride();
         self.marks(self.multiples()).filter(|(decade, _)| decade.rem_euclid(stride) == 0).map(|(_, log)| log).collect()
     }
 
-    /// The logarithms between them that get a thin line.
+    /// The logarithms that get a thin grid line.
     fn thin(&self) -> Vec<f64> {
         if self.high - self.low > 6.0 {
             return Vec::new();
@@ -101,7 +101,7 @@ impl ValueFormatter<f64> for LogAxis {
     }
 }
 
-/// The number with this logarithm, in full. It is one of those at which ticks stand.
+/// The number with this logarithm, written in full. It must be one of the ticks.
 pub(super) fn tick_text(log: f64) -> String {
     let decade = (log + 1e-9).floor();
     let first_digit = 10_f64.powf(log - decade);
@@ -111,7 +111,7 @@ pub(super) fn tick_text(log: f64) -> String {
     if digits.len() < 5 || decimals > 0 {
         return digits;
     }
-    // As elsewhere in the house, a space stands between thousands.
+    // A space separates thousands, as everywhere in Isolith.
     let ends = digits.char_indices().map(|(i, c)| {
         let gap = if i > 0 && (digits.len() - i).is_multiple_of(3) { "\u{a0}" } else { "" };
         format!("{gap}{c}")
@@ -119,23 +119,23 @@ pub(super) fn tick_text(log: f64) -> String {
     ends.collect()
 }
 
-/// The words of a chart around its plane.
+/// The text around the plane of a chart.
 pub(super) struct Words<'a> {
     /// Below the x axis.
     pub x: &'a str,
     /// Beside the y axis.
     pub y: &'a str,
-    /// Written at this logarithm on the x axis in place of the number; nothing is written left of it.
+    /// A logarithm on the x axis and the text that replaces its number; ticks left of it get no number.
     pub floor: Option<(f64, &'a str)>,
 }
 
-/// The part of a chart between its axes.
+/// The area of a chart between its axes.
 pub(super) struct Plane<'a> {
     area: DrawingArea<ImageBackend<'a>, Cartesian2d<LogAxis, LogAxis>>,
 }
 
 impl<'a> Plane<'a> {
-    /// Draws the axes. `margins` are those above and to the right, in pixels of the chart.
+    /// Draws the axes. `margins` are the upper and the right margin, in pixels of the chart.
     pub fn draw(
         canvas: &ChartCanvas<'a>,
         (x, y): (LogAxis, LogAxis),
@@ -171,7 +171,7 @@ impl<'a> Plane<'a> {
         Ok(Self { area: chart.plotting_area().clone() })
     }
 
-    /// Where the point with these logarithms lies on the canvas.
+    /// The position of the point with these logarithms on the canvas.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         let (x, y) = self.area.map_coordinate(&(x, y));
         (f64::from(x) / f64::from(FINE), f64::from(y) / f64::from(FINE))

@@ -1,4 +1,4 @@
-//! The methods of drawing a picture that are compared.
+//! The methods of drawing a picture that `isolith bench` compares.
 
 use std::str::FromStr;
 
@@ -8,31 +8,31 @@ use crate::wgsl::{Options, SkipMode};
 /// A method of drawing a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Baseline {
-    /// Every node at every step of every ray, each from sphere to sphere, as the thesis "Ray Marching Scene Creator" (Basov
-    /// 2024) does.
+    /// Sphere tracing that evaluates every node at every step of every ray, as in the thesis "Ray Marching Scene
+    /// Creator" (Basov 2024).
     Thesis,
-    /// The whole scene as one generated pipeline with its numbers written into it, as a person would write it.
+    /// The whole scene as one generated pipeline with its parameters as constants, as a person would write it.
     Baked,
-    /// Components by the interpreter.
+    /// Each component by the interpreter.
     Interpreter,
-    /// Components by tapes.
+    /// Each component by its tapes.
     Tape,
-    /// Components by pipelines of their own.
+    /// Each component by a pipeline with straight-line code.
     StraightLine,
-    /// No way to draw, but what one could come to that found each surface by a single evaluation: each ray starts at its
-    /// true depth, the field is evaluated once to confirm it, and once for normal and material; by whichever of
-    /// interpreter, tapes and pipelines takes the least time. What evaluates fields by other means may take less.
+    /// A lower bound instead of a usable method: the cost of finding each surface by a single evaluation. Each ray
+    /// starts at its true depth; one evaluation confirms it and one more gives normal and material. Uses the fastest of
+    /// interpreter, tapes and straight-line code. Other kinds of evaluators may take less.
     Limit,
-    /// What the editor does once its pipelines are ready.
+    /// The choice of the editor once its pipelines are ready.
     Auto,
 }
 
 impl Baseline {
-    /// All of them.
+    /// All methods.
     pub const ALL: [Self; 7] =
         [Self::Thesis, Self::Baked, Self::Interpreter, Self::Tape, Self::StraightLine, Self::Limit, Self::Auto];
 
-    /// Its name, as the command line and reports write it.
+    /// The name of the method on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Thesis => "thesis",
@@ -45,24 +45,24 @@ impl Baseline {
         }
     }
 
-    /// Whether earlier versions used this name for it; scripts may still do.
+    /// Whether earlier versions used this name for the method; scripts may still use it.
     fn was_called(self, name: &str) -> bool {
         match self {
             Self::Baked => name == "generated",
             Self::Interpreter => name == "interpreted",
             Self::Tape => name == "pruned",
-            // In both spellings.
+            // British and American spelling.
             Self::StraightLine => name.strip_prefix("speciali").is_some_and(|rest| ["sed", "zed"].contains(&rest)),
             Self::Thesis | Self::Limit | Self::Auto => false,
         }
     }
 
-    /// Whether the scene is one component.
+    /// Whether the method draws the whole scene as one component.
     pub(super) fn is_whole(self) -> bool {
         matches!(self, Self::Thesis | Self::Baked)
     }
 
-    /// How its components are evaluated; of several the quickest counts.
+    /// The evaluation strategies of the method; of several, the fastest counts.
     pub(super) fn strategies(self) -> &'static [EvalStrategy] {
         match self {
             Self::Thesis | Self::Interpreter => &[EvalStrategy::Interpreter],
@@ -74,7 +74,7 @@ impl Baseline {
         }
     }
 
-    /// What its pipelines do, from what they do by default.
+    /// The options of its pipelines, derived from the default `options`.
     pub(super) fn options(self, options: Options) -> Options {
         let relaxed = self != Self::Thesis;
         if self.is_whole() { Options { skip_mode: SkipMode::Never, cones: false, relaxed, ..options } } else { options }
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn the_limit_is_that_of_whichever_pipelines_are_quickest() {
-        // Auto chooses among these, and a bad choice must show.
+        // Auto chooses among these strategies, and a bad choice must show.
         for baseline in [Baseline::Interpreter, Baseline::Tape, Baseline::StraightLine] {
             assert!(
                 baseline.strategies().iter().all(|strategy| Baseline::Limit.strategies().contains(strategy)),

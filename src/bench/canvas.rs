@@ -1,6 +1,6 @@
-//! Where charts are drawn. plotters does the lines and areas on an image three times as large as the one
-//! that is wanted, so that edges come out smooth when it is shrunk. Text is set here: plotters' own
-//! way leaves out what stands before each letter, so that words come out uneven.
+//! The canvas of charts. plotters draws lines and areas on an image three times as large as the chart, and shrinking it
+//! smooths the edges. Text is set here: plotters ignores the side bearing of each letter, so its letter spacing is
+//! uneven.
 
 use std::convert::Infallible;
 use std::sync::LazyLock;
@@ -14,29 +14,29 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{Color, FontFamily, IntoFont, RGBColor, ShapeStyle, TextStyle};
 use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingBackend, DrawingErrorKind};
 
-/// Pixels that are drawn for each pixel of the chart, along each side.
+/// Fine pixels per pixel of the chart, along each side.
 pub(super) const FINE: i32 = 3;
-/// Letters are drawn with this power of what they cover of a pixel: below one, the thin strokes of the
-/// editor's font stay readable when they are small.
+/// The exponent applied to the coverage of a pixel by a letter. Below one, the thin strokes of the editor's font stay
+/// readable at small sizes.
 const WEIGHT: f64 = 0.7;
-/// Behind everything.
+/// The background color.
 pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
 
-/// Why nothing could be drawn. Nothing but memory is written, so it does not happen.
+/// A drawing error. It never occurs, because drawing only writes to memory.
 pub(super) type Failed = DrawingAreaErrorKind<Infallible>;
 
-/// An image as plotters draws on it.
+/// An image as a drawing backend of plotters.
 pub(super) struct ImageBackend<'a> {
     image: &'a mut RgbImage,
 }
 
-/// A chart that is being drawn. All lengths are in pixels of the finished chart.
+/// A chart under construction. All lengths are in pixels of the finished chart.
 pub(super) struct ChartCanvas<'a> {
     /// The whole chart, in fine pixels.
     pub area: DrawingArea<ImageBackend<'a>, Shift>,
 }
 
-/// A chart of this size, drawn by `draw` on empty paper.
+/// A chart of this size, drawn by `draw` on an empty background.
 pub(super) fn canvas(size: (u32, u32), draw: impl FnOnce(&ChartCanvas<'_>) -> Result<(), Failed>) -> RgbImage {
     let fine = FINE.unsigned_abs();
     let mut image = RgbImage::from_pixel(size.0 * fine, size.1 * fine, Rgb([PAPER.0, PAPER.1, PAPER.2]));
@@ -52,10 +52,10 @@ fn fine((x, y): (f64, f64)) -> (i32, i32) {
 }
 
 impl ChartCanvas<'_> {
-    /// A line through all the points.
+    /// Draws a line through all points.
     pub fn line(&self, points: &[(f64, f64)], color: RGBColor, width: f64) -> Result<(), Failed> {
         let mut path: Vec<(i32, i32)> = points.iter().copied().map(fine).collect();
-        // A piece without length has no direction, and plotters would make one up.
+        // A segment of zero length has no direction, and plotters would invent one.
         path.dedup();
         if path.len() < 2 {
             return Ok(());
@@ -63,7 +63,7 @@ impl ChartCanvas<'_> {
         self.area.draw(&PathElement::new(path, stroke(color, width)))
     }
 
-    /// A straight line of dashes.
+    /// Draws a straight dashed line.
     pub fn dashed(&self, ends: [(f64, f64); 2], color: RGBColor, width: f64, dash: [f64; 2]) -> Result<(), Failed> {
         let [(ax, ay), (bx, by)] = ends;
         let length = (bx - ax).hypot(by - ay);
@@ -76,29 +76,29 @@ impl ChartCanvas<'_> {
         Ok(())
     }
 
-    /// A filled disc.
+    /// Draws a filled disc.
     pub fn disc(&self, center: (f64, f64), radius: f64, color: RGBColor) -> Result<(), Failed> {
         self.area.draw(&Circle::new(fine(center), (radius * f64::from(FINE)).round() as i32, color.filled()))
     }
 
-    /// A circle of this width, outside of which nothing is drawn.
+    /// Draws a ring of this width inside the radius.
     pub fn circle(&self, center: (f64, f64), radius: f64, color: RGBColor, width: f64) -> Result<(), Failed> {
         let radius = ((radius - width / 2.0) * f64::from(FINE)).round() as i32;
         self.area.draw(&Circle::new(fine(center), radius, stroke(color, width)))
     }
 
-    /// A filled polygon.
+    /// Draws a filled polygon.
     pub fn polygon(&self, corners: &[(f64, f64)], color: RGBColor) -> Result<(), Failed> {
         let corners: Vec<(i32, i32)> = corners.iter().copied().map(fine).collect();
         self.area.draw(&Polygon::new(corners, color.filled()))
     }
 
-    /// A filled rectangle: left, upper, right and lower edge.
+    /// Draws a filled rectangle with these left, upper, right and lower edges.
     pub fn rectangle(&self, [left, top, right, bottom]: [f64; 4], color: RGBColor) -> Result<(), Failed> {
         self.polygon(&[(left, top), (right, top), (right, bottom), (left, bottom)], color)
     }
 
-    /// One line of text. `anchor` says which part of it is at `at`; `em` is the size of the letters.
+    /// Draws one line of text. `anchor` is the part of it that lies at `at`; `em` is the font size.
     pub fn text(&self, text: &str, at: (f64, f64), em: f64, color: RGBColor, anchor: Pos) -> Result<(), Failed> {
         self.area.draw(&Text::new(text, fine(at), letters(em, color).pos(anchor)))
     }
@@ -108,20 +108,20 @@ fn stroke(color: RGBColor, width: f64) -> ShapeStyle {
     color.stroke_width((width * f64::from(FINE)).round() as u32)
 }
 
-/// Letters of `em` pixels of the finished chart, for plotters.
+/// A plotters font of `em` pixels of the finished chart.
 pub(super) fn letters(em: f64, color: RGBColor) -> TextStyle<'static> {
     (FontFamily::SansSerif, em * f64::from(FINE)).into_font().color(&color)
 }
 
-/// The text from its left edge, at half its height.
+/// The anchor at the left edge, at half the height of the text.
 pub(super) const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// How wide a text is, in the unit of `em`.
+/// The width of a text, in the unit of `em`.
 pub(super) fn text_width(text: &str, em: f64) -> f64 {
     f64::from(set(text, em as f32).1)
 }
 
-/// As much of the text as fits into `width`, with an ellipsis in place of the rest.
+/// The text truncated to `width`, with an ellipsis in place of the rest.
 pub(super) fn fitting(text: &str, em: f64, width: f64) -> String {
     if text_width(text, em) <= width {
         return text.into();
@@ -136,13 +136,13 @@ pub(super) fn fitting(text: &str, em: f64, width: f64) -> String {
     String::new()
 }
 
-/// The fonts of the editor. The second one knows more letters.
+/// The fonts of the editor. The second one covers more characters.
 static FONTS: LazyLock<[FontRef<'static>; 2]> = LazyLock::new(|| {
     [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR]
         .map(|bytes| FontRef::try_from_slice(bytes).expect("a font that comes with a library is whole"))
 });
 
-/// The letters of a text from (0, 0) on their base line, each with its font, and the width of all.
+/// The glyphs of a text on a baseline through (0, 0), each with its font, and their total width.
 fn set(text: &str, em: f32) -> (Vec<(&'static FontRef<'static>, Glyph)>, f32) {
     let [first, second] = &*FONTS;
     let mut glyphs: Vec<(&FontRef<'_>, Glyph)> = Vec::new();
@@ -161,8 +161,8 @@ fn set(text: &str, em: f32) -> (Vec<(&'static FontRef<'static>, Glyph)>, f32) {
     (glyphs, x)
 }
 
-/// Where the text begins on its base line, relative to its anchor, without rotation. The heights, in em, are
-/// those of capitals and of what hangs below the line.
+/// The start of the baseline relative to the anchor, without rotation. The heights, in em, are those of capitals and
+/// descenders.
 fn start(anchor: Pos, width: f32, em: f32) -> Point {
     let x = match anchor.h_pos {
         HPos::Left => 0.0,
@@ -244,7 +244,7 @@ mod tests {
 
     const BLACK: RGBColor = RGBColor(0, 0, 0);
 
-    /// The smallest and the largest column with ink.
+    /// The first and the last column with ink.
     fn ink(image: &RgbImage) -> (u32, u32) {
         let dark: Vec<u32> = image.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 128).map(|(x, _, _)| x).collect();
         (dark.iter().copied().min().unwrap(), dark.iter().copied().max().unwrap())

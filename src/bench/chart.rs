@@ -1,4 +1,4 @@
-//! The chart of one scene: what each method and quality costs, and how wrong its picture is.
+//! The chart of one scene: cost and error of each method and quality.
 
 use image::RgbImage;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -18,13 +18,13 @@ pub(super) const SIZE: (u32, u32) = (1100, 760);
 pub(super) const LEGEND: u32 = 236;
 /// Height of the title with its margins, in pixels.
 pub(super) const TITLE: u32 = 84;
-/// Errors below this, in pixel footprints, are drawn here: zero has no logarithm.
+/// Smaller errors, in pixel footprints, are drawn at this value, because zero has no logarithm.
 const LEAST_ERROR: f64 = 1e-6;
-/// Times below this, in milliseconds, are drawn here.
+/// Smaller times, in milliseconds, are drawn at this value.
 pub(super) const LEAST_TIME: f64 = 1e-3;
 const LABEL_EM: f64 = 14.5;
 
-/// A measurement as a point, in the logarithms of its error and of its time.
+/// A measurement as a point, in logarithms of its error and its time.
 struct Dot<'a> {
     row: &'a BenchRow,
     x: f64,
@@ -32,12 +32,12 @@ struct Dot<'a> {
 }
 
 impl Dot<'_> {
-    /// Whether too many pixels are wrong, or nobody knows.
+    /// Whether too many pixels are wrong, or their number is unknown.
     fn is_wrong(&self) -> bool {
         self.row.wrong_share.is_nan() || self.row.wrong_share > MAX_WRONG_SHARE
     }
 
-    /// The words at the mark. The default quality is not named, so that most labels are short.
+    /// The label at the mark. It omits the default quality, so that most labels are short.
     fn label(&self) -> String {
         if self.row.is_the_default() {
             return format!("default ({})", self.row.method);
@@ -50,12 +50,12 @@ impl Dot<'_> {
     }
 }
 
-/// Draws the CPU time of every method and quality against the error of its picture, both logarithmic. The
-/// rows are those of one scene at one size; rows whose time or error is not finite are left out.
+/// Draws the CPU time of every method and quality against the error of its picture, both logarithmic. The rows are
+/// those of one scene at one size; rows with a time or error that is not finite are skipped.
 ///
-/// The frontier joins what no other point beats. It leaves out the method `limit`, which nobody can choose, and
-/// whatever is wrong in too many pixels: depth errors are only taken where both pictures show a surface, so they say
-/// little there.
+/// The Pareto frontier joins the points that no other point beats. It skips the method `limit`, which is not
+/// selectable, and rows with too many wrong pixels: depth errors cover only pixels where both pictures show a surface,
+/// so they say little there.
 pub fn time_against_error(rows_of_one_scene: &[BenchRow]) -> RgbImage {
     let dots: Vec<Dot<'_>> = rows_of_one_scene
         .iter()
@@ -101,12 +101,12 @@ fn words(rows: &[BenchRow], drawn: usize) -> (String, String) {
         count => format!(" {count} rows without finite numbers are left out."),
     };
     let facts = format!(", {} × {} pixels, {}", first.size, first.size, first.node_count());
-    // A long name is cut, not what follows it.
+    // Truncate a long name instead of the facts after it.
     let name = fitting(&first.scene, TITLE_EM, TITLE_WIDTH - text_width(&facts, TITLE_EM));
     (name + &facts, below + &left_out)
 }
 
-/// Says that there is nothing to see.
+/// Draws the note that there are no measurements.
 pub(super) fn nothing(canvas: &ChartCanvas<'_>, plane: &Plane<'_>) -> Result<(), Failed> {
     let [left, top, right, bottom] = plane.edges();
     let middle = Pos { h_pos: HPos::Center, v_pos: VPos::Center };
@@ -115,7 +115,7 @@ pub(super) fn nothing(canvas: &ChartCanvas<'_>, plane: &Plane<'_>) -> Result<(),
     canvas.text("no measurements", at, 20.0, SOFT_INK, middle)
 }
 
-/// Draws what lies behind the marks, and returns points along it for the labels to keep away from.
+/// Draws the lines behind the marks, and returns points along them that labels should avoid.
 fn draw_lines(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<Vec<(f64, f64)>, Failed> {
     let mut lines: Vec<Vec<(f64, f64)>> = Vec::new();
     let choices: Vec<&Dot<'_>> = dots.iter().filter(|dot| dot.row.method != LIMIT && !dot.is_wrong()).collect();
@@ -140,14 +140,14 @@ fn draw_lines(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> 
     Ok(lines.iter().flat_map(|line| line.windows(2)).flat_map(|pair| along(pair[0], pair[1])).collect())
 }
 
-/// The limit whose height is drawn across the plane: that at the default quality, or else the lowest.
+/// The limit drawn as a line across the plane: that at the default quality, or else the lowest.
 fn limit<'a, 'b>(dots: &'a [Dot<'b>]) -> Option<&'a Dot<'b>> {
     let mut limits: Vec<&Dot<'_>> = dots.iter().filter(|dot| dot.row.method == LIMIT).collect();
     limits.sort_by(|a, b| (a.row.quality != DEFAULT).cmp(&(b.row.quality != DEFAULT)).then(a.y.total_cmp(&b.y)));
     limits.first().copied()
 }
 
-/// The marks, the default above the others: it is where somebody looks for it.
+/// Draws the marks, the default row above the others, so that it stays visible.
 fn draw_dots(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, dots: &[Dot<'_>]) -> Result<(), Failed> {
     let mut order: Vec<&Dot<'_>> = dots.iter().collect();
     order.sort_by_key(|dot| dot.row.is_the_default());
@@ -170,7 +170,7 @@ fn draw_labels(
     dots: &[Dot<'_>],
     lines: Vec<(f64, f64)>,
 ) -> Result<(), Failed> {
-    // What people look for is placed first: the default, then the default quality, then the rest.
+    // Place the most important labels first: the default row, then the default quality, then the rest.
     let mut order: Vec<&Dot<'_>> = dots.iter().collect();
     order.sort_by_key(|dot| (!dot.row.is_the_default(), dot.row.quality != DEFAULT));
     let texts: Vec<String> = order.iter().map(|dot| dot.label()).collect();

@@ -1,8 +1,7 @@
-//! Which of many compromises are worth anything.
+//! The Pareto frontier of points in two quantities.
 
-/// The indices of the points that no other point beats: none is at most as large in both numbers. They come
-/// in the order of the first number, smallest first. Of equal points the first one counts; points that are
-/// not finite never do.
+/// The indices of the points on the Pareto frontier: no other point is at most as large in both numbers. Sorted by the
+/// first number, smallest first. Of equal points only the first one counts; points that are not finite never count.
 pub fn frontier(points: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();

@@ -1,4 +1,4 @@
-//! The chart of how the time grows with the number of nodes.
+//! The chart of run time against the number of nodes.
 
 use image::RgbImage;
 use plotters::style::RGBColor;
@@ -12,25 +12,25 @@ use super::row::{AUTO, BenchRow, DEFAULT, LIMIT};
 
 /// The guide goes through the point of `auto` whose scene is nearest to this number of nodes.
 const GUIDE_NODES: f64 = 145.0;
-/// The promise is that so many times the nodes ...
+/// The guide shows the target: this many times the nodes ...
 const TIMES_NODES: f64 = 8.0;
-/// ... take at most so many times the time.
+/// ... take at most this many times the time.
 const TIMES_TIME: f64 = 2.5;
 const GUIDE: RGBColor = SOFT_INK;
 const LABEL_EM: f64 = 14.5;
 
-/// The line of a method, in the logarithms of nodes and time.
+/// The curve of a method, in logarithms of nodes and time.
 struct Curve<'a> {
     method: &'a str,
     /// Every measurement.
     points: Vec<(f64, f64)>,
-    /// One point for each number of nodes: where there are several scenes, the mean of their logarithms.
+    /// One point for each number of nodes; for several scenes, the mean of their logarithms.
     line: Vec<(f64, f64)>,
 }
 
-/// Draws the CPU time of each method against the number of nodes, both logarithmic, at the default quality; at
-/// the first one in the rows where that is not among them. Rows without a finite time or without nodes are
-/// left out. A dotted line shows the promise: 2.5 times the time for 8 times the nodes.
+/// Draws the CPU time of each method against the number of nodes, both logarithmic, at the default quality, or at the
+/// first quality in the rows if the default is missing. Skips rows without a finite time or without nodes. A dotted
+/// line shows the target: 2.5 times the time for 8 times the nodes.
 pub fn growth(rows: &[BenchRow]) -> RgbImage {
     let names = || rows.iter().map(|row| row.quality.as_str());
     let quality = names().find(|name| *name == DEFAULT).or_else(|| names().next()).unwrap_or(DEFAULT);
@@ -68,7 +68,7 @@ fn draw(canvas: &ChartCanvas<'_>, rows: &[&BenchRow], curves: &[Curve<'_>], qual
     if let Some([from, to]) = guide {
         canvas.dashed([plane.at(from.0, from.1), plane.at(to.0, to.1)], GUIDE, 1.5, DOTS)?;
     }
-    // The first methods of the legend are drawn last, above the others.
+    // Draw the first methods of the legend last, above the others.
     for curve in curves.iter().rev() {
         draw_curve(canvas, &plane, curve, quality)?;
     }
@@ -77,12 +77,12 @@ fn draw(canvas: &ChartCanvas<'_>, rows: &[&BenchRow], curves: &[Curve<'_>], qual
     legend(canvas, (right + 22.0, top + 10.0), f64::from(LEGEND) - 32.0, &groups(curves, guide.is_some()))
 }
 
-/// The axis, longer at its end, where the names of the methods stand behind their last points.
+/// The axis, extended at its end for the names of the methods beside their last points.
 fn with_room_for_names(axis: LogAxis) -> LogAxis {
     LogAxis { high: axis.high + (axis.high - axis.low) * 0.07, ..axis }
 }
 
-/// The line below the title: what all the points have in common.
+/// The line below the title: the common properties of all points.
 fn below(rows: &[&BenchRow], quality: &str) -> String {
     let sizes = || rows.iter().map(|row| row.size);
     match (sizes().min(), sizes().max()) {
@@ -98,7 +98,7 @@ fn below(rows: &[&BenchRow], quality: &str) -> String {
     }
 }
 
-/// The ends of the guide, cut at the edges of the plane.
+/// The ends of the guide, clipped at the edges of the plane.
 fn guide(curves: &[Curve<'_>], (x, y): (LogAxis, LogAxis)) -> Option<[(f64, f64); 2]> {
     let auto = curves.iter().find(|curve| curve.method == AUTO)?;
     let far = |point: &(f64, f64)| (10_f64.powf(point.0) - GUIDE_NODES).abs();
@@ -122,7 +122,7 @@ fn draw_curve(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, curve: &Curve<'_>, qu
     curve.points.iter().try_for_each(|point| mark(canvas, plane.at(point.0, point.1), quality, color))
 }
 
-/// The name of each method behind its last point; names that would lie on each other are moved apart.
+/// Draws the name of each method beside its last point; names that would overlap move apart.
 fn draw_names(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, curves: &[Curve<'_>]) -> Result<(), Failed> {
     let [_, _, right, _] = plane.edges();
     let mut names: Vec<(f64, f64, &str)> = curves
@@ -141,9 +141,9 @@ fn draw_names(canvas: &ChartCanvas<'_>, plane: &Plane<'_>, curves: &[Curve<'_>])
     Ok(())
 }
 
-/// Heights in rising order, moved so that each is at least `gap` below the one before, and no more than needed.
+/// Sorted heights, moved apart as little as possible so that each is at least `gap` from the one before.
 fn apart(heights: &[f64], gap: f64) -> Vec<f64> {
-    // Heights that touch become one stack, which stands around the mean of what its members wanted.
+    // Heights that collide become one stack, centered on the mean of the original heights of its members.
     let mut stacks: Vec<(f64, usize)> = Vec::new();
     for &height in heights {
         let mut stack = (height, 1);

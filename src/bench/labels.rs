@@ -3,45 +3,45 @@
 /// A rectangle on the canvas: left, upper, right and lower edge, in pixels.
 pub(super) type Edges = [f64; 4];
 
-/// What wants a label.
+/// A label to place.
 pub(super) struct Wish {
     /// The point that the label belongs to.
     pub at: (f64, f64),
     /// Width and height of the label.
     pub size: (f64, f64),
-    /// How far from the point its mark reaches.
+    /// The radius of the mark around the point.
     pub reach: f64,
 }
 
-/// A label with a place.
+/// The place of a label.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct LabelPlace {
     /// The rectangle that the label fills.
     pub edges: Edges,
-    /// Where a line from the mark to the label ends, if it stands so far away that it needs one.
+    /// The end of the leader line from the mark, for a label far from its mark.
     pub leader: Option<(f64, f64)>,
 }
 
-/// What labels must not cover, and what they should not.
+/// Areas that labels must not cover, and lines that they should avoid.
 pub(super) struct Obstacles {
-    /// Labels stay inside of this.
+    /// Labels stay inside this rectangle.
     pub inside: Edges,
     /// Rectangles around marks and other labels.
     pub taken: Vec<Edges>,
-    /// Points along lines; the fewer are covered, the better.
+    /// Points along lines; labels cover as few as possible.
     pub lines: Vec<(f64, f64)>,
 }
 
 const DIRECTIONS: usize = 24;
 const DISTANCES: [f64; 9] = [3.0, 8.0, 16.0, 26.0, 38.0, 52.0, 68.0, 86.0, 106.0];
-/// A label that stands farther away than this gets a line to its mark.
+/// A label farther away than this, in pixels, gets a leader line to its mark.
 const NEAR: f64 = 10.0;
-/// How many pixels farther away a label may go to cover one point of a line less.
+/// The extra distance, in pixels, that a label accepts to cover one point of a line less.
 const COST_OF_LINE: f64 = 5.0;
 
 impl Obstacles {
-    /// Places the labels in their order; whoever comes first has the choice. A label that fits nowhere gets
-    /// no place: color and shape still say what its mark is, and a heap of words would say nothing.
+    /// Places the labels in order; earlier labels get the better places. A label that fits nowhere gets no place: color
+    /// and shape still identify its mark, and overlapping text would be unreadable.
     pub fn place(&mut self, wishes: &[Wish]) -> Vec<Option<LabelPlace>> {
         wishes
             .iter()
@@ -70,7 +70,7 @@ impl Obstacles {
         best.map(|(_, place)| place)
     }
 
-    /// How bad a place is; none where it covers what it must not.
+    /// The cost of a place; `None` if it covers something that it must not cover.
     fn cost(&self, wish: &Wish, place: &LabelPlace, distance: f64) -> Option<f64> {
         let [left, top, right, bottom] = place.edges;
         let inside =
@@ -78,7 +78,7 @@ impl Obstacles {
         if !inside || self.taken.iter().any(|taken| overlap(*taken, place.edges)) {
             return None;
         }
-        // The line to the label must lead past other marks, else it seems to belong to them.
+        // The leader line must avoid other marks, else it seems to belong to them.
         if let Some(end) = place.leader {
             let own = |taken: &Edges| contains(*taken, wish.at);
             let mut others = self.taken.iter().filter(|taken| !own(taken));
@@ -87,13 +87,13 @@ impl Obstacles {
             }
         }
         let covered = self.lines.iter().filter(|point| contains(place.edges, **point)).count();
-        // Upright letters read best beside their mark.
+        // Horizontal text reads best beside its mark.
         let steep = ((top + bottom) / 2.0 - wish.at.1).abs() * 0.15;
         Some(distance + steep + covered as f64 * COST_OF_LINE)
     }
 }
 
-/// The label whose nearest point to the mark lies in this direction, so far from it.
+/// The label whose nearest point to the mark lies in this direction at this distance.
 fn candidate(wish: &Wish, distance: f64, direction: usize) -> LabelPlace {
     let (sin, cos) = (direction as f64 * std::f64::consts::TAU / DIRECTIONS as f64).sin_cos();
     let far = wish.reach + distance;

@@ -1,4 +1,4 @@
-//! What colors and shapes mean, in a column beside the plane, and the words above it.
+//! The title of a chart, and its legend of colors and shapes in a column beside the plane.
 
 use plotters::style::RGBColor;
 
@@ -6,54 +6,54 @@ use super::axes::{INK, SOFT_INK};
 use super::canvas::{ChartCanvas, Failed, LEFT, fitting};
 use super::marks::{RADIUS, cross, mark, ring};
 
-/// The line through what no other point beats.
+/// Color of the frontier.
 pub(super) const FRONTIER: RGBColor = RGBColor(0x9f, 0xc5, 0xe8);
-/// How wide that line is, in pixels.
+/// Width of the frontier, in pixels.
 pub(super) const FRONTIER_WIDTH: f64 = 6.0;
 /// Dash and gap of the lines for bounds, in pixels.
 pub(super) const DASH: [f64; 2] = [9.0, 6.0];
-/// Dot and gap of the lines that guide the eye, in pixels.
+/// Dot and gap of guide lines, in pixels.
 pub(super) const DOTS: [f64; 2] = [1.5, 3.5];
 
 /// Size of the letters of the title, in pixels.
 pub(super) const TITLE_EM: f64 = 23.0;
-/// Room for the title, in pixels.
+/// Width available for the title, in pixels.
 pub(super) const TITLE_WIDTH: f64 = 1056.0;
 
 const EM: f64 = 15.0;
 const LINE: f64 = 24.0;
-/// From the middle of a sign to its words.
+/// Distance from the middle of a sign to its text.
 const GAP: f64 = 24.0;
 
-/// What stands before the words of an entry.
+/// The sign before the text of an entry.
 pub(super) enum Sign<'a> {
     /// A stroke in the color of a method.
     Stroke(RGBColor),
     /// The shape of a quality.
     Shape(&'a str),
-    /// The line through what no other point beats.
+    /// The frontier line.
     Frontier,
-    /// The ring around the default.
+    /// The ring around the default row.
     Ring,
-    /// The cross over what is wrong.
+    /// The cross over rows with too many wrong pixels.
     Cross,
     /// A dashed line.
     Dashed(RGBColor),
     /// A dotted line.
     Dotted(RGBColor),
-    /// Nothing: the words go on from the entry above.
+    /// No sign: the text continues the entry above.
     More,
 }
 
 /// A group of entries below a heading.
 pub(super) struct LegendGroup<'a> {
-    /// What the entries are; empty for a gap without words.
+    /// The heading; empty for a gap without text.
     pub heading: &'a str,
-    /// The signs and what they mean.
+    /// The signs and their meanings.
     pub entries: Vec<(Sign<'a>, String)>,
 }
 
-/// Draws the groups from `at` downward, into a column of this width.
+/// Draws the groups from `at` downward, in a column of `width`.
 pub(super) fn legend(
     canvas: &ChartCanvas<'_>,
     at: (f64, f64),
@@ -93,7 +93,7 @@ fn draw_sign(canvas: &ChartCanvas<'_>, at: (f64, f64), sign: &Sign<'_>) -> Resul
     }
 }
 
-/// The title of a chart and the line below it, cut at the edge of the chart.
+/// Draws the title of a chart and the line below it, both clipped at the edge of the chart.
 pub(super) fn title(canvas: &ChartCanvas<'_>, title: &str, below: &str) -> Result<(), Failed> {
     canvas.text(&fitting(title, TITLE_EM, TITLE_WIDTH), (22.0, 32.0), TITLE_EM, INK, LEFT)?;
     canvas.text(&fitting(below, EM, TITLE_WIDTH), (22.0, 60.0), EM, SOFT_INK, LEFT)

@@ -1,5 +1,5 @@
-//! One scene by one method: how long it takes, what it evaluates, how wrong it is. Only what finds the visible
-//! surface is measured (depth, normal, material), not light.
+//! Measures one scene by one method: run time, evaluations, errors. Covers only the passes that find the visible
+//! surface (depth, normal, material), not light.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,44 +18,44 @@ use crate::render::{Counts, EvalStrategy, Frame, Gpu, OverlaySettings, PixelCoun
 use crate::scene::Scene;
 use crate::wgsl::{Options, Quality};
 
-/// Why something could not be measured.
+/// Why a measurement failed.
 #[derive(Debug, Error)]
 pub enum BenchError {
     /// The scene is beyond a limit.
     #[error(transparent)]
     Scene(#[from] FlattenError),
-    /// The picture could not be made.
+    /// The renderer failed.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The ray that finds a view has no end.
+    /// The ray that determines a view does not end.
     #[error(transparent)]
     View(#[from] TraceError),
-    /// The reference could not be found.
+    /// The reference renderer failed.
     #[error("{scene}: {error}")]
     Reference {
         /// The scene.
         scene: String,
-        /// Where a ray had no end.
+        /// The node at which a ray did not end.
         error: TraceError,
     },
-    /// A measurement is no number.
+    /// A measurement is infinite or NaN.
     #[error(transparent)]
     NotFinite(#[from] super::row::NotFinite),
 }
 
-/// Most runs of a measurement.
+/// Maximum number of runs of a measurement.
 const RUNS: usize = 7;
-/// Fewer where they take longer than this together.
+/// No further run starts once all runs together have taken this long.
 const ENOUGH: Duration = Duration::from_millis(1500);
 
-/// Time of all threads of the program so far.
+/// CPU time of all threads of the process so far.
 #[cfg(unix)]
 pub fn cpu_time() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Time since the first call: what systems without a clock of the process have.
+/// Wall time since the first call, for systems without a clock for the process.
 #[cfg(not(unix))]
 pub fn cpu_time() -> Duration {
     static START: std::sync::LazyLock<std::time::Instant> = std::sync::LazyLock::new(std::time::Instant::now);
@@ -72,12 +72,12 @@ pub struct BenchScene {
     pub flat: FlatScene,
     /// Its meshes.
     pub meshes: Vec<Option<Arc<TriangleMesh>>>,
-    /// Who looks.
+    /// The view.
     pub camera: Camera,
 }
 
 impl BenchScene {
-    /// A scene as it is seen by itself in a square picture.
+    /// A scene with its default view in a square picture.
     ///
     /// # Errors
     /// The scene is beyond a limit.
@@ -89,7 +89,7 @@ impl BenchScene {
     }
 }
 
-/// The reference of each scene, found once.
+/// The reference of each scene, rendered once.
 #[derive(Default)]
 pub struct ReferenceCache {
     found: HashMap<(String, u32), Arc<ReferenceImage>>,
@@ -99,7 +99,7 @@ impl ReferenceCache {
     /// The reference of `bench_scene` at `size` pixels a side.
     ///
     /// # Errors
-    /// A ray has no end.
+    /// A ray does not end.
     pub fn of(&mut self, bench_scene: &BenchScene, size: u32) -> Result<Arc<ReferenceImage>, BenchError> {
         let key = (bench_scene.name.clone(), size);
         if let Some(found) = self.found.get(&key) {
@@ -113,12 +113,12 @@ impl ReferenceCache {
     }
 }
 
-/// Measures on one device.
+/// Measurements on one device.
 pub struct Bench {
     gpu: Gpu,
 }
 
-/// What the runs of one renderer gave.
+/// Results of the runs of one renderer.
 struct Runs {
     cpu: Vec<Duration>,
     wall: Vec<Duration>,
@@ -128,7 +128,7 @@ struct Runs {
 }
 
 impl Bench {
-    /// On this device.
+    /// Measurements on `gpu`.
     pub fn new(gpu: Gpu) -> Self {
         Self { gpu }
     }
@@ -138,7 +138,7 @@ impl Bench {
         &self.gpu
     }
 
-    /// Measures `bench_scene` by `baseline`; errors against `reference`.
+    /// Measures `bench_scene` by `baseline`, with errors against `reference`.
     ///
     /// # Errors
     /// The scene is too large for this baseline, or the device fails.
@@ -160,7 +160,7 @@ impl Bench {
             .filter(|i| matches!(timed.buffers.hit_target(*i), HitTarget::Leaf(_)))
             .count();
         let Counts { steps, cone_steps, .. } = counted.counts;
-        // The limit counts only what it evaluates itself.
+        // The limit counts only its own evaluations.
         let cones = if baseline == Baseline::Limit { 0 } else { cone_steps };
         let ms = |times: &[Duration]| times.iter().map(|t| t.as_secs_f64() * 1e3).collect::<Vec<_>>();
         let (cpu, wall) = (ms(&timed.cpu), ms(&timed.wall));
@@ -192,7 +192,7 @@ impl Bench {
         Ok(row)
     }
 
-    /// What the runs of the quickest of the baseline's methods gave, and which that is: the limit is that of the quickest.
+    /// The fastest strategy of the baseline and the results of its runs.
     fn quickest(
         &self,
         bench_scene: &BenchScene,
@@ -235,7 +235,7 @@ impl Bench {
             frame.skip_shading();
             Ok::<_, RenderError>(frame)
         };
-        // Pipelines and tapes are built and the pace is learned before anything counts.
+        // Build pipelines and tapes and train the cost model before timing.
         renderer.estimate(flat, &bench_scene.camera, [size, size])?;
         while strategy == EvalStrategy::Auto && renderer.is_preparing() {
             std::thread::sleep(Duration::from_millis(5));

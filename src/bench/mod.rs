@@ -1,13 +1,13 @@
-//! Run time against error: every scene by every method, measured, as lines, tables and charts.
+//! Run time against error: measures every scene by every method and reports JSON lines, tables and charts.
 //!
 //! | file | what it does |
 //! |---|---|
 //! | `measure` | one scene by one method: times, counts, errors |
 //! | `baseline` | the methods |
-//! | `row`, `table` | what was measured, as JSON, CSV and Markdown |
+//! | `row`, `table` | measurements as JSON, CSV and Markdown |
 //! | `chart`, `growth`, `frontier` | run time against error, run time against nodes |
-//! | `stress` | shapes, operators and modifiers where numbers get difficult |
-//! | `canvas`, `axes`, `legend`, `labels`, `marks` | what the charts are drawn with |
+//! | `stress` | shapes, operators and modifiers under numerically difficult circumstances |
+//! | `canvas`, `axes`, `legend`, `labels`, `marks` | the elements of charts |
 
 mod axes;
 mod baseline;

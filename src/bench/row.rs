@@ -1,40 +1,40 @@
-//! What one measurement says: one scene, by one method, at one quality.
+//! One measurement: one scene by one method at one quality.
 
 use serde::Serialize;
 use thiserror::Error;
 
-/// The method that the program takes when nobody chooses one; others are compared with it.
+/// The default method of the program, with which the others are compared.
 pub(super) const AUTO: &str = "auto";
-/// The method that is a bound for the others and no way to draw.
+/// The method that is a lower bound for the others and not usable for drawing.
 pub(super) const LIMIT: &str = "limit";
-/// The quality that the program takes when nobody chooses one.
+/// The default quality of the program.
 pub(super) const DEFAULT: &str = "default";
 
-/// One measurement. The fields stand in the order in which they are written, as JSON and as CSV.
+/// One measurement. JSON and CSV write the fields in this order.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BenchRow {
     /// Name of the scene.
     pub scene: String,
-    /// How many nodes the scene has.
+    /// Number of nodes of the scene.
     pub nodes: usize,
-    /// How the picture was made: thesis, baked, interpreter, tape, straight-line, limit or auto.
+    /// Method: thesis, baked, interpreter, tape, straight-line, limit or auto.
     pub method: String,
     /// Pixels along each side of the picture.
     pub size: u32,
-    /// Milliseconds of all threads together, the median of several runs.
+    /// CPU time of all threads together in milliseconds, median of several runs.
     pub cpu_ms: f64,
-    /// Milliseconds on the clock, the median of several runs.
+    /// Wall time in milliseconds, median of several runs.
     pub wall_ms: f64,
     /// Steps of the march per pixel.
     pub steps_per_px: f64,
-    /// Evaluations of a component's field per pixel, of all passes together: by rays, by cones around tiles, and for normal
-    /// and material.
+    /// Evaluations of a component's field per pixel in all passes: by rays, by cones around tiles, and for normal and
+    /// material.
     pub evals_per_px: f64,
-    /// Those of them for normal and material: one for each pixel that shows a field.
+    /// The part of `evals_per_px` for normal and material: one for each pixel that shows a field.
     pub surface_evals_per_px: f64,
-    /// Share of the pixels, 0 to 1, that are wrong: in hit or miss, in the node, or by more than a footprint in depth.
+    /// Fraction of wrong pixels, 0 to 1: in hit or miss, in the node, or by more than a footprint in depth.
     pub wrong_share: f64,
-    /// Share of the pixels, 0 to 1, that differ like that because their rays graze.
+    /// Fraction of pixels, 0 to 1, that differ in this way because their rays graze.
     pub grazing_share: f64,
     /// Median of the depth errors, in pixel footprints.
     pub depth_p50: f64,
@@ -42,25 +42,25 @@ pub struct BenchRow {
     pub depth_p99: f64,
     /// Largest depth error, in pixel footprints.
     pub depth_max: f64,
-    /// Median of the angles between the normals and the true ones, in degrees.
+    /// Median angle between the normals and those of the reference, in degrees.
     pub normal_p50: f64,
-    /// 99th percentile of the angles between the normals and the true ones, in degrees.
+    /// 99th percentile of the angles between the normals and those of the reference, in degrees.
     pub normal_p99: f64,
-    /// How fine the march was: draft, default or fine.
+    /// Quality of the march: draft, default or fine.
     pub quality: String,
-    /// The slowest run's `cpu_ms` less the fastest's, in milliseconds: below it, differences say nothing.
+    /// CPU time of the slowest run minus that of the fastest, in milliseconds. Smaller differences mean nothing.
     pub cpu_ms_spread: f64,
-    /// Steps that 99 of 100 pixels do not exceed.
+    /// 99th percentile of the steps per pixel.
     pub steps_p99: f64,
-    /// Most steps of a pixel.
+    /// Maximum of the steps per pixel.
     pub steps_max: f64,
-    /// Cells of tapes looked up per pixel, by rays and cones.
+    /// Tape cells looked up per pixel by rays and cones.
     pub cells_per_px: f64,
-    /// Entries of tapes read per pixel, by rays and cones.
+    /// Tape entries read per pixel by rays and cones.
     pub entries_per_px: f64,
 }
 
-/// A number of a row that is infinite or not a number, and so says nothing.
+/// The error for a number of a row that is infinite or NaN.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{scene}, {method}: {field} is not a finite number")]
 pub struct NotFinite {
@@ -68,13 +68,13 @@ pub struct NotFinite {
     pub scene: String,
     /// The method of the row.
     pub method: String,
-    /// The name of the first such field.
+    /// The name of the first field that is not finite.
     pub field: &'static str,
 }
 
 impl BenchRow {
-    /// Says which number is not finite, if one is. Whoever measures asks this first, so that a failed
-    /// measurement ends as an error and not as a number.
+    /// Returns an error for the first number that is not finite. Measurements call this first, so that a failed one
+    /// ends as an error instead of a number.
     pub fn check(&self) -> Result<(), NotFinite> {
         let mut copy = self.clone();
         match copy.numbers().into_iter().find(|(_, value)| !value.is_finite()) {
@@ -83,14 +83,14 @@ impl BenchRow {
         }
     }
 
-    /// The row as one JSON object without line breaks. JSON knows no infinity, and a `null` would read as
-    /// "not measured"; so what is not finite becomes the largest number there is, which passes no limit.
+    /// The row as one JSON object without line breaks. JSON has no infinity, and a `null` would mean "not measured", so
+    /// numbers that are not finite become the largest finite number, which passes no limit.
     pub fn to_json_line(&self) -> String {
         serde_json::to_string(&self.clamped()).expect("texts and finite numbers can always be written")
     }
 
-    /// The row with the largest number there is in place of what is not finite: a number that nobody knows must
-    /// not look like a good one.
+    /// The row with the largest finite number in place of those that are not finite: an unknown number must not look
+    /// like a good one.
     pub(super) fn clamped(&self) -> Self {
         let mut row = self.clone();
         for (_, value) in row.numbers() {
@@ -125,12 +125,12 @@ impl BenchRow {
         ]
     }
 
-    /// How many nodes the scene has, in words.
+    /// The number of nodes as text.
     pub(super) fn node_count(&self) -> String {
         if self.nodes == 1 { "1 node".into() } else { format!("{} nodes", self.nodes) }
     }
 
-    /// Whether this is how the program draws when nobody chooses anything.
+    /// Whether the row has the default method and the default quality.
     pub(super) fn is_the_default(&self) -> bool {
         self.method == AUTO && self.quality == DEFAULT
     }

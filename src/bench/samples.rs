@@ -1,8 +1,8 @@
-//! Rows as a measurement could give them, for the tests.
+//! Plausible rows for the tests.
 
 use super::BenchRow;
 
-/// A row with numbers that fit the time and the error.
+/// A row whose other numbers are consistent with the time and the error.
 pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, depth_p99: f64) -> BenchRow {
     BenchRow {
         scene: scene.into(),
@@ -30,7 +30,7 @@ pub fn row(scene: &str, nodes: usize, method: &str, quality: &str, cpu_ms: f64, 
     }
 }
 
-/// Every method at every quality for a scene of so many nodes.
+/// Every method at every quality, for a scene with this many nodes.
 pub fn scene(name: &str, nodes: usize) -> Vec<BenchRow> {
     let n = nodes as f64 / 145.0;
     let methods = [

@@ -1,10 +1,10 @@
-//! Measurements as text: Markdown for people, CSV for programs, and warnings about differences that are none.
+//! Measurements as text: Markdown for people, CSV for programs, and warnings about insignificant differences.
 
 use std::collections::BTreeMap;
 
 use super::row::BenchRow;
 
-/// The heads of the columns of the Markdown tables. The first two hold words, the others numbers.
+/// The column headings of the Markdown tables. The first two columns hold text, the others numbers.
 const HEADS: [&str; 20] = [
     "method",
     "quality",
@@ -29,16 +29,16 @@ const HEADS: [&str; 20] = [
 ];
 const WORDS: usize = 2;
 
-/// One table for each scene and size, in the order in which they first come. "±" is half the spread of the
-/// runs, "× auto" the CPU time over that of `auto` at the default quality in the same table. Depths are in
-/// pixel footprints, normals in degrees. "p99" and "max" are steps, too: of 99 of 100 pixels, and of the worst one.
-/// "evals/px" are evaluations of all passes, "of surfaces" those of them that find normal and material.
+/// One table for each scene and size, in order of first appearance. "±" is half the spread of the runs, "× auto" the
+/// CPU time divided by that of `auto` at the default quality in the same table. Depths are in pixel footprints, normals
+/// in degrees. "p99" and "max" of steps are the 99th percentile and the maximum over pixels. "evals/px" counts the
+/// evaluations of all passes, "of surfaces" the part of them for normal and material.
 pub fn markdown(rows: &[BenchRow]) -> String {
     let tables: Vec<String> = scenes(rows).iter().map(|rows| scene_table(rows)).collect();
     tables.join("\n")
 }
 
-/// The rows of each scene at each size, both in the order in which they come.
+/// The rows grouped by scene and size, in order of appearance.
 fn scenes(rows: &[BenchRow]) -> Vec<Vec<&BenchRow>> {
     let mut scenes: Vec<Vec<&BenchRow>> = Vec::new();
     for row in rows {
@@ -69,7 +69,7 @@ fn scene_table(rows: &[&BenchRow]) -> String {
     text
 }
 
-/// What stands below a head whose numbers are set to the right.
+/// The Markdown separator of a right-aligned column.
 fn rule(width: usize) -> String {
     format!("{}:", "-".repeat(width.saturating_sub(1)))
 }
@@ -108,7 +108,7 @@ fn cells(row: &BenchRow, auto: Option<f64>) -> Vec<String> {
     ]
 }
 
-/// A number with three digits that count, or all those before the point.
+/// A number with three significant digits, or all digits before the decimal point.
 fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
@@ -117,13 +117,13 @@ fn significant(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// As [`significant`], for running text: without zeros that end it.
+/// As [`significant`], without trailing zeros, for running text.
 fn in_text(value: f64) -> String {
     let text = significant(value);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// All rows with all their digits, below a line of names: the same as in JSON, in the same order.
+/// All rows with full precision below a header line: the fields of the JSON, in the same order.
 pub fn csv(rows: &[BenchRow]) -> String {
     let mut text = String::from(
         "scene,nodes,method,size,cpu_ms,wall_ms,steps_per_px,evals_per_px,surface_evals_per_px,wrong_share,grazing_share,\
@@ -168,8 +168,8 @@ fn quoted(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.into() }
 }
 
-/// A sentence for each two methods whose times, for the same scene, size and quality, differ by less than the
-/// runs of one of them do among themselves. Whoever reads the tables must not call one of the two faster.
+/// A warning for each pair of methods whose times, for the same scene, size and quality, differ by less than the spread
+/// of the runs of one of them: neither counts as faster.
 pub fn noise(rows: &[BenchRow]) -> Vec<String> {
     let mut groups: BTreeMap<(&str, u32, &str), Vec<&BenchRow>> = BTreeMap::new();
     for row in rows {

@@ -1,4 +1,4 @@
-//! `isolith adapters`: which graphics adapters there are.
+//! `isolith adapters`: lists the graphics adapters.
 
 use serde_json::json;
 
@@ -14,7 +14,7 @@ pub struct AdaptersArguments {
     json: bool,
 }
 
-/// The option that every command which draws has.
+/// The adapter option of every command that draws.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct AdapterArguments {
     /// Graphics adapter to draw on: part of a name from `isolith adapters`, in any case. Without it that of the
@@ -24,13 +24,13 @@ pub struct AdapterArguments {
 }
 
 impl AdapterArguments {
-    /// The adapter that is meant.
+    /// The chosen adapter.
     pub fn choice(&self) -> AdapterChoice {
         AdapterChoice::new(self.adapter.as_deref())
     }
 }
 
-/// Lists the adapters, one a line.
+/// Lists the adapters, one per line.
 pub fn list(arguments: &AdaptersArguments) -> Result<(), Failure> {
     let found = adapters();
     if arguments.json {

@@ -1,4 +1,4 @@
-//! `isolith bench`: run time against error, for scenes by methods by qualities.
+//! `isolith bench`: run time against error, for every scene, method and quality.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use crate::wgsl::Quality;
 
 /// Smallest and largest side of a measured picture, in pixels.
 const SIDES: std::ops::RangeInclusive<u32> = 16..=4096;
-/// Leaves of the scenes that show how time grows with nodes: eight times as many each time.
+/// Numbers of leaves of the scenes for `--growth`, each eight times the one before.
 const GROWTH_LEAVES: [usize; 5] = [8, 32, 128, 1024, 8192];
 /// Seed of these scenes.
 const GROWTH_SEED: u64 = 5;
@@ -61,8 +61,8 @@ pub struct BenchArguments {
     adapter: AdapterArguments,
 }
 
-/// Measures, prints, and writes what is asked for. What cannot be measured (a scene too large for a method) is said
-/// and left out.
+/// Measures, prints, and writes the requested files. Reports and skips measurements that fail, such as a scene too
+/// large for a method.
 pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     arguments.output.as_deref().map_or(Ok(()), create_folder)?;
     if arguments.stress {
@@ -118,13 +118,13 @@ pub fn bench(arguments: &BenchArguments) -> Result<(), Failure> {
     arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &bench, &rows, arguments.growth))
 }
 
-/// Subjects whose worst case is shown as a picture.
+/// Number of nodes whose worst case appears in the picture.
 const SHOWN: usize = 10;
-/// Cases that are printed.
+/// Number of printed cases.
 const PRINTED: usize = 40;
 
-/// Draws every case of numerical stress and prints the worst; `stress.md` holds them all, `stress.png` the worst of each of
-/// the ten worst nodes.
+/// Draws every case of numerical stress and prints the worst ones. `stress.md` lists all cases, `stress.png` shows the
+/// worst case of each of the ten worst nodes.
 fn stress(arguments: &BenchArguments) -> Result<(), Failure> {
     let gpu = Gpu::open(&arguments.adapter.choice())?;
     loop_iterations(&gpu)?;
@@ -224,7 +224,7 @@ fn write(folder: &Path, bench: &Bench, rows: &[BenchRow], grown: bool) -> Result
     Ok(())
 }
 
-/// Charts are named after scenes: of two of one name one would be lost.
+/// Refuses two scenes of the same name: charts are named after scenes, so one would be lost.
 fn one_chart_each(bench_scenes: &[BenchScene]) -> Result<(), Failure> {
     let repeated = bench_scenes.iter().enumerate().find(|(i, a)| bench_scenes[..*i].iter().any(|b| b.name == a.name));
     repeated.map_or(Ok(()), |(_, bench_scene)| {

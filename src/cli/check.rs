@@ -1,4 +1,4 @@
-//! `isolith check`: what scenes hold, how much of each limit they use, what is wrong with them.
+//! `isolith check`: contents of scenes, their use of each limit, and their faults.
 
 use std::path::{Path, PathBuf};
 
@@ -31,8 +31,8 @@ pub struct CheckArguments {
     params: bool,
 }
 
-/// Prints what each scene holds. With `--json`, a scene that cannot be used is reported on standard output too, as one
-/// object. All scenes are looked at; the first failure decides the exit code.
+/// Prints the contents of each scene. With `--json`, scenes that cannot be used are reported on standard output too, as
+/// one object each. Checks all scenes; the first failure decides the exit code.
 pub fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for path in &arguments.scenes {
@@ -72,16 +72,16 @@ struct Report {
     limits: Vec<LimitUse>,
     cameras: Vec<String>,
     warnings: Vec<CheckWarning>,
-    /// Every parameter, where they are asked for.
+    /// Every parameter, if `--params` is given.
     params: Option<Vec<(ParamPath, &'static Param, ParamValue)>>,
 }
 
-/// How much of a limit the scene uses.
+/// The use of a limit by the scene.
 struct LimitUse {
     name: &'static str,
     used: usize,
     limit: usize,
-    /// The node with the greatest part in it.
+    /// The node that contributes most.
     node: Option<String>,
 }
 
@@ -172,7 +172,7 @@ impl Report {
     }
 }
 
-/// The range of a parameter; nothing for what is no number.
+/// The range of a parameter; empty if its value is not a number.
 fn range(param: &Param, value: &ParamValue) -> Option<[f64; 2]> {
     use ParamValue::{Count, Counts, List, Scalar, Vector};
     matches!(value, Scalar(_) | Vector(_) | Count(_) | Counts(_) | List(_)).then(|| param.limits.signed_range())
@@ -199,7 +199,7 @@ fn param_line(path: &ParamPath, param: &Param, value: &ParamValue) -> String {
     format!("{path} = {} ({range}default {})", one_line(&value), one_line(&default))
 }
 
-/// Text from a file as part of a line.
+/// Text from a file, safe as part of a line.
 fn one_line(text: &str) -> String {
     text.replace('\n', " ")
 }

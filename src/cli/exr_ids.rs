@@ -1,10 +1,10 @@
-//! Ids as OpenEXR keeps whole numbers: 32-bit channels, without rounding.
+//! Ids as whole numbers in OpenEXR: 32-bit channels, without rounding.
 
 use std::io::{Cursor, Error};
 
 use exr::prelude::{AnyChannel, AnyChannels, FlatSamples, Image, SmallVec, WritableImage};
 
-/// An image of the channel `id`, and, where ids are larger than 32 bits hold, `id.high` with the higher ones.
+/// An image with the channel `id`, and, if ids exceed 32 bits, `id.high` with the upper bits.
 pub fn encode(width: u32, height: u32, ids: &[u64]) -> Result<Vec<u8>, Error> {
     let channel = |name: &str, shift: u32| {
         AnyChannel::new(name, FlatSamples::U32(ids.iter().map(|id| (id >> shift) as u32).collect()))
@@ -24,7 +24,7 @@ mod tests {
     use super::*;
     use exr::prelude::read_all_flat_layers_from_file;
 
-    /// Channels of the file with this content.
+    /// The channels of a file with these bytes.
     fn read(bytes: &[u8]) -> Vec<(String, Vec<u32>)> {
         let file = tempfile::NamedTempFile::new().expect("a temporary file");
         std::fs::write(file.path(), bytes).expect("written");

@@ -1,4 +1,4 @@
-//! What can go wrong, as a person reads it and as a script does.
+//! Failures of commands, as messages for people and as JSON for scripts.
 
 use std::path::{Path, PathBuf};
 
@@ -13,40 +13,40 @@ use crate::scene::file::FileError;
 /// Why a command failed.
 #[derive(Debug, Error)]
 pub enum Failure {
-    /// The arguments make no sense for this scene.
+    /// The arguments are invalid for this scene.
     #[error("{0}")]
     Usage(String),
     /// The scene file is missing, broken or beyond a limit.
     #[error("{0}")]
     Scene(FileError),
-    /// Nothing answers that can draw.
+    /// There is no usable graphics adapter, device or window.
     #[error("{0}")]
     Graphics(String),
     /// An output cannot be written.
     #[error("{}: cannot be written: {reason}", path.display())]
     Write {
-        /// Which output.
+        /// The output.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         reason: String,
     },
-    /// The person said stop.
+    /// The user pressed Ctrl-C.
     #[error("canceled")]
     Canceled,
-    /// There are warnings, and they were to be errors.
+    /// There are warnings, and `--strict` makes them errors.
     #[error("{}: {count} warnings, which --strict makes errors", file.display())]
     Strict {
         /// The scene.
         file: PathBuf,
-        /// How many.
+        /// Number of warnings.
         count: usize,
     },
-    /// Several files were looked at, and some cannot be used; each was told of.
+    /// Some of several scenes cannot be used; each was reported before.
     #[error("{bad} of {all} scenes cannot be used")]
     Several {
-        /// How many cannot be used.
+        /// Number of scenes that cannot be used.
         bad: usize,
-        /// Of how many.
+        /// Number of all scenes.
         all: usize,
     },
     /// Anything else.
@@ -55,7 +55,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What a scene that cannot be flattened is reported as: a fault of its file, at a node.
+    /// The failure of a scene that cannot be flattened: a fault of its file, at a node.
     pub fn beyond_limit(scene: &Path, error: &FlattenError) -> Self {
         Self::Scene(FileError {
             file: scene.display().to_string(),
@@ -75,7 +75,7 @@ impl Failure {
         serde_json::json!({ "ok": false, "file": file, "node": node, "field": field, "reason": reason })
     }
 
-    /// What a scene whose reference cannot be found is reported as: a limit that a node of its file is beyond.
+    /// The failure of a scene whose reference does not end: a node of its file is beyond a limit.
     pub fn given_up(path: &Path, scene: &Scene, error: &TraceError) -> Self {
         let name = scene.node(error.node).map_or("", |node| node.name.as_str());
         Self::Scene(FileError {

@@ -7,15 +7,15 @@ use super::failure::Failure;
 use crate::scene::limits::MAX_FILE_BYTES;
 use crate::scene::{Scene, file};
 
-/// Stands for standard input or standard output.
+/// The path that names standard input or standard output.
 const STANDARD: &str = "-";
 
-/// Whether the path stands for standard input or output.
+/// Whether the path names standard input or output.
 pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == STANDARD
 }
 
-/// The name for messages.
+/// The name of the path in messages.
 pub fn shown(path: &Path) -> PathBuf {
     if is_standard(path) { "standard input".into() } else { path.to_path_buf() }
 }
@@ -31,13 +31,13 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     file::parse(&bytes, &shown(path)).map_err(Failure::Scene)
 }
 
-/// Where the models that a scene names are looked for: beside its file; for standard input in the current folder.
+/// The base folder for the models of a scene: that of its file, or the current folder for standard input.
 pub fn folder(path: &Path) -> Option<PathBuf> {
     if is_standard(path) { Some(PathBuf::from(".")) } else { path.parent().map(Path::to_path_buf) }
 }
 
-/// A scene that the program was started with must be a file, or at least look like one: otherwise a mistyped command
-/// would be a scene.
+/// Refuses an argument that is neither a file nor looks like a path: otherwise a mistyped command would count as a
+/// scene.
 pub fn refuse_unknown_word(path: &Path) -> Result<(), Failure> {
     let is_word = path.components().count() == 1 && path.extension().is_none() && !path.exists();
     if is_word || is_standard(path) {

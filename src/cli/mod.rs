@@ -5,16 +5,16 @@
 //! | `render` | `isolith render`: a picture without a window |
 //! | `outputs` | buffers → files |
 //! | `bench` | `isolith bench`: run time against error |
-//! | `check` | `isolith check`: what a scene holds, what is wrong with it |
+//! | `check` | `isolith check`: contents and faults of scenes |
 //! | `shader` | `isolith shader`: the assembled source of a pass |
 //! | `progress` | the bar, and Ctrl-C |
 //! | `adapters` | `isolith adapters`, and the option that chooses one |
 //! | `input` | scene files, standard input |
-//! | `text` | what is printed |
+//! | `text` | printing |
 //! | `exr_ids` | ids as OpenEXR channels |
-//! | `log` | spans and events of the program, where `RUST_LOG` asks for them |
-//! | `runtime_folder` | the folder that drivers ask for |
-//! | `failure` | what can go wrong, with its exit code |
+//! | `log` | spans and events, enabled by `RUST_LOG` |
+//! | `runtime_folder` | the folder `XDG_RUNTIME_DIR` that drivers need |
+//! | `failure` | failures and their exit codes |
 
 mod adapters;
 mod bench;
@@ -43,7 +43,7 @@ use crate::scene::file;
 use failure::Failure;
 use text::{complain, say};
 
-/// What `--help` says about exit codes; `src/cli/README.md` has the same table.
+/// The exit codes in `--help`; `src/cli/README.md` has the same table.
 const EXIT_CODES: &str = "Exit codes:
   0    done
   1    something else went wrong while rendering
@@ -94,7 +94,7 @@ enum CliCommand {
     Probe(adapters::AdapterArguments),
 }
 
-/// Runs the program with the arguments that it was started with.
+/// Runs the program with its command line arguments.
 pub fn main() -> ExitCode {
     log::listen();
     runtime_folder::provide();
@@ -126,7 +126,7 @@ fn run(arguments: Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Opens the editor; where no window can be shown, renders the scene to a file instead.
+/// Opens the editor. Without a display, renders the scene to a file instead.
 fn open(scene: Option<&Path>, adapter: &adapters::AdapterArguments) -> Result<(), Failure> {
     scene.map_or(Ok(()), input::refuse_unknown_word)?;
     let missing =
@@ -149,8 +149,8 @@ fn open(scene: Option<&Path>, adapter: &adapters::AdapterArguments) -> Result<()
     render::render(&render::RenderArguments::still(scene, &output, adapter))
 }
 
-/// Whether a window can be shown. Only X11 and Wayland say it through the environment; elsewhere there is
-/// always a display.
+/// Whether there is a display. Only X11 and Wayland announce it through the environment; other systems always have
+/// one.
 #[cfg(feature = "window")]
 fn has_display(variable: impl Fn(&str) -> Option<OsString>) -> bool {
     let set = |name: &str| variable(name).is_some_and(|value| !value.is_empty());
@@ -165,7 +165,7 @@ fn write_gallery(folder: &Path) -> Result<(), Failure> {
     written.iter().try_for_each(|path| say(&format!("wrote {}", path.display())))
 }
 
-/// Prints the driver's name, and how far its loops go.
+/// Prints the driver's name, and the number of iterations of its loops.
 fn probe(adapter: &adapters::AdapterArguments) -> Result<(), Failure> {
     let gpu = Gpu::open(&adapter.choice())?;
     let iterations = loop_iterations(&gpu)?;

@@ -1,4 +1,4 @@
-//! Buffers → files, by the writer that scenes are saved with: no reader ever sees half of one.
+//! Buffers → files, by the same atomic writer as scenes: a reader never sees a partial file.
 
 use std::io::{Cursor, Write};
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::input::is_standard;
 use crate::field::{FlatScene, GBuffer, HitTarget};
 use crate::scene::file;
 
-/// What a file shows.
+/// The content of an output file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The picture.
@@ -20,12 +20,12 @@ pub enum Quantity {
     Depth,
     /// World normal.
     Normal,
-    /// Id of the node seen.
+    /// Id of the visible node.
     NodeId,
 }
 
 impl Quantity {
-    /// Its name in JSON, as the option that asks for it.
+    /// Its name in JSON, which is that of its option.
     pub fn name(self) -> &'static str {
         match self {
             Self::Color => "output",
@@ -36,8 +36,8 @@ impl Quantity {
     }
 }
 
-/// Writes one quantity of the buffers, as the path's ending asks; `-` is standard output and gets a PNG. Returns what a
-/// person needs to know to read it, to be put behind the file's name.
+/// Writes one quantity of the buffers in the format of the path's extension; `-` is standard output and gets a PNG.
+/// Returns a note for reading the file, to be printed after its name.
 pub fn write(quantity: Quantity, path: &Path, buffers: &GBuffer, flat: &FlatScene) -> Result<String, Failure> {
     let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
     let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat).map_err(failed)?;
@@ -70,19 +70,19 @@ fn encode(quantity: Quantity, as_exr: bool, buffers: &GBuffer, flat: &FlatScene)
     Ok((bytes.into_inner(), note))
 }
 
-/// The path's ending in small letters.
+/// The path's extension in lower case.
 pub fn ending(path: &Path) -> String {
     path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
 }
 
-/// Writes one output, whole or not at all.
+/// Writes one output atomically.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     file::replace(path, bytes, 0)
         .map_err(|error| Failure::Write { path: path.to_path_buf(), reason: error.to_string() })
 }
 
-/// Refuses early what could not be written after minutes of rendering, and what would replace another output or one of
-/// the inputs: through a link, a name that ends in `.png` can lead to the scene.
+/// Refuses outputs that cannot be written, before minutes of rendering, and outputs that would replace another output
+/// or an input: a link whose name ends in `.png` can point to the scene.
 pub fn check_writable(outputs: &[&Path], inputs: &[&Path]) -> Result<(), Failure> {
     let outputs: Vec<&Path> = outputs.iter().copied().filter(|path| !is_standard(path)).collect();
     for (index, path) in outputs.iter().enumerate() {
@@ -118,7 +118,7 @@ fn picture_of(buffers: &GBuffer, pixel: impl Fn(usize) -> [u8; 3]) -> DynamicIma
     DynamicImage::ImageRgb8(image.expect("three bytes for each pixel"))
 }
 
-/// Near is white, far dark gray, background black, with 16 bits so that it can be measured.
+/// Near is white, far is dark gray, background is black; 16 bits make it measurable.
 fn depth_picture(buffers: &GBuffer) -> (DynamicImage, String) {
     const FARTHEST: f64 = 0.1;
     let finite = || buffers.depth.iter().copied().filter(|depth| depth.is_finite()).map(f64::from);
@@ -144,7 +144,7 @@ fn normal_picture(buffers: &GBuffer) -> DynamicImage {
     })
 }
 
-/// The id of the node that a pixel shows, 0 where it shows none.
+/// The id of the visible node of a pixel, 0 for background.
 fn node_id(buffers: &GBuffer, flat: &FlatScene, pixel: usize) -> u64 {
     match buffers.hit_target(pixel) {
         HitTarget::Background => 0,

@@ -10,22 +10,22 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::text::complain;
 use crate::field::Cancel;
 
-/// Where standard error is no terminal, a line is written this often instead of a bar.
+/// Interval of progress lines, which replace the bar if standard error is not a terminal.
 const LINE_EVERY: Duration = Duration::from_secs(10);
 
-/// What Ctrl-C does. A second one always ends the program.
+/// The effect of Ctrl-C. A second one always ends the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interrupts {
-    /// The task hears of it at its next step.
+    /// Cancels the task at its next step.
     StopTheTask,
-    /// The task cannot be stopped, and nothing is lost when it ends in the middle.
+    /// Ends the program: the task cannot be canceled, and ending in the middle loses nothing.
     EndTheProgram,
 }
 
-/// Exit code of a program that was interrupted, by the custom of shells: 128 and the signal's number.
+/// Exit code after an interrupt, by the convention of shells: 128 plus the number of the signal.
 const INTERRUPTED: i32 = 130;
 
-/// Shows how far a long task is, on standard error, and tells it when to stop.
+/// Shows the progress of a long task on standard error, and tells the task when to stop.
 pub struct Progress {
     task: &'static str,
     shown: Option<ProgressBar>,
@@ -34,7 +34,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Nothing done yet.
+    /// Starts at zero progress.
     pub fn start(task: &'static str, quiet: bool, interrupts: Interrupts) -> Self {
         let ends = interrupts == Interrupts::EndTheProgram;
         AT_ONCE.store(ends, Ordering::Relaxed);
@@ -45,7 +45,7 @@ impl Progress {
         Self { task, shown, last_line: Instant::now(), quiet }
     }
 
-    /// `share` of the task, 0 to 1, is done. False: stop.
+    /// Sets the finished fraction of the task, 0 to 1. Returns false if the task must stop.
     pub fn update(&mut self, share: f64) -> bool {
         let share = share.clamp(0.0, 1.0);
         if let Some(bar) = &self.shown {
@@ -57,7 +57,7 @@ impl Progress {
         !is_canceled()
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(self) {
         if let Some(bar) = self.shown {
             bar.finish_and_clear();
@@ -82,7 +82,7 @@ static AT_ONCE: AtomicBool = AtomicBool::new(false);
 
 static CANCEL: LazyLock<Cancel> = LazyLock::new(Cancel::default);
 
-/// What Ctrl-C cancels from now on.
+/// A cancel token that Ctrl-C triggers from now on.
 pub fn cancel_by_interrupts() -> Cancel {
     catch_interrupts();
     CANCEL.clone()
@@ -91,7 +91,7 @@ pub fn cancel_by_interrupts() -> Cancel {
 fn catch_interrupts() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
-        // Without a handler Ctrl-C still ends the program, only less gently.
+        // If this fails, Ctrl-C still ends the program, only less gently.
         #[expect(clippy::disallowed_methods, reason = "asked a second time, the program stops without waiting")]
         let _ = ctrlc::set_handler(|| {
             if is_canceled() || AT_ONCE.load(Ordering::Relaxed) {

@@ -1,4 +1,4 @@
-//! `isolith render`: a picture, and more outputs beside it, without a window.
+//! `isolith render`: a picture and further outputs, without a window.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -26,7 +26,7 @@ use crate::session::PreparedScene;
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
-/// Most pixels in a picture; 24 bytes each are kept while it is made.
+/// Maximum number of pixels in a picture; rendering keeps 24 bytes for each.
 const MAX_PIXELS: u64 = 1 << 27;
 
 /// Arguments of `isolith render`.
@@ -78,7 +78,7 @@ pub struct RenderArguments {
 }
 
 impl RenderArguments {
-    /// One picture of a scene with everything else as by default.
+    /// Arguments for one picture of a scene, with defaults for everything else.
     pub fn still(scene: &Path, output: &Path, adapter: &AdapterArguments) -> Self {
         Self {
             scene: scene.to_path_buf(),
@@ -98,7 +98,7 @@ impl RenderArguments {
         }
     }
 
-    /// Prints what the artist should know; the picture is made all the same, unless warnings are errors.
+    /// Prints the warnings for the artist. Rendering continues unless warnings are errors.
     fn warn(&self, warnings: &[Warning]) -> Result<(), Failure> {
         for Warning { node, name, reason } in warnings.iter().filter(|_| !self.quiet && !self.json) {
             complain(&format!("warning: {}: {name} {node}: {reason}", shown(&self.scene).display()));
@@ -109,7 +109,7 @@ impl RenderArguments {
         }
     }
 
-    /// One line about what was done, where standard output does not hold the picture or an object.
+    /// Prints a line about the result, unless standard output holds the picture or a JSON object.
     fn tell(&self, line: &str) -> Result<(), Failure> {
         match self.quiet || self.json {
             true => Ok(()),
@@ -121,7 +121,7 @@ impl RenderArguments {
         }
     }
 
-    /// Every output with what it holds.
+    /// Every output with its quantity.
     fn outputs(&self) -> Vec<(Quantity, &Path)> {
         let all = [
             (Quantity::Color, Some(&self.output)),
@@ -133,8 +133,8 @@ impl RenderArguments {
     }
 }
 
-/// Renders and writes every output. Nothing is written unless the whole picture is there. With `--json` a failure is one
-/// object on standard output, too.
+/// Renders and writes every output. Writes nothing until the whole picture is complete. With `--json`, prints a failure
+/// as one object on standard output, too.
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let done = make(arguments);
     if arguments.json {
@@ -144,7 +144,7 @@ pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     done.map(|_| ())
 }
 
-/// What was done, as one object.
+/// The result as one JSON object.
 fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     let started = Instant::now();
     if arguments.json && is_standard(&arguments.output) {
@@ -200,7 +200,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     }))
 }
 
-/// The scene's camera of this name, or the view that the scene has by itself.
+/// The camera chosen by name, or the default view of the scene.
 fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<Camera, Failure> {
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
     let Some(name) = &arguments.camera else { return Ok(flat.default_camera(meshes, aspect)) };
@@ -212,10 +212,10 @@ fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments)
     Err(Failure::Usage(format!("there is no camera \"{name}\"; the scene has {has}")))
 }
 
-/// How often the progress of a picture is told.
+/// Interval of progress updates.
 const TELL_EVERY: Duration = Duration::from_millis(50);
 
-/// Makes a picture on a thread of its own while this one shows how far it is. A panic there is a failure like others.
+/// Runs `work` on its own thread while this one shows its progress. A panic in it becomes a failure.
 fn by_job<T: Send + 'static>(
     name: &'static str,
     arguments: &RenderArguments,
@@ -251,8 +251,9 @@ fn gpu_picture(
         loop_iterations(&gpu)?;
         let mut renderer = if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
         if !view_mode.counts() {
-            // One picture is done before pipelines of its own could be built: 4 s against 40 s at 577 nodes on lavapipe. Lists
-            // are made in a fraction of a second, and a large blend is drawn up to a hundred times as fast with them.
+            // One picture is done before straight-line pipelines could be compiled: 4 s against 40 s at 577 nodes on
+            // lavapipe. Tapes take a fraction of a second to build, and draw a large blend up to a hundred times as
+            // fast.
             renderer.set_strategy(EvalStrategy::Tape);
         }
         renderer.set_cancel(task.flag());

@@ -1,7 +1,7 @@
-//! Vulkan drivers complain on standard error where no folder for sockets and the like is named.
+//! Vulkan drivers complain on standard error if `XDG_RUNTIME_DIR`, the folder for sockets and the like, is not set.
 
-/// Starts the program again with `XDG_RUNTIME_DIR` where that is missing: drivers print a line for each instance
-/// otherwise. Returns where it is set, is not needed, or cannot be made.
+/// Restarts the program with `XDG_RUNTIME_DIR` if that is missing: otherwise drivers print a line for each instance.
+/// Returns if the variable is set, is not needed, or the folder cannot be created.
 #[cfg(all(unix, not(target_os = "macos")))]
 pub fn provide() {
     use std::os::unix::fs::{DirBuilderExt, MetadataExt};
@@ -15,18 +15,18 @@ pub fn provide() {
     let own = || std::fs::metadata("/proc/self").map(|process| process.uid());
     let Ok(user) = own() else { return };
     let folder = std::env::temp_dir().join(format!("isolith-runtime-{user}"));
-    // It may be there already; then it must be a folder of this user that nobody else may enter.
+    // The folder may exist already. Then it must belong to this user, and nobody else may enter it.
     let _ = std::fs::DirBuilder::new().mode(0o700).create(&folder);
     let is_private = std::fs::symlink_metadata(&folder)
         .is_ok_and(|found| found.is_dir() && found.uid() == user && found.mode() & 0o077 == 0);
     if is_private {
         let mut arguments = std::env::args_os();
         let name = arguments.next().unwrap_or_else(|| program.clone().into());
-        // Returns only where it fails; then the driver's lines are all that is lost.
+        // Returns only on failure; the only consequence is the lines of the driver.
         let _ = std::process::Command::new(program).arg0(name).args(arguments).env(VARIABLE, folder).exec();
     }
 }
 
-/// No driver asks for it here.
+/// No driver needs the folder on this system.
 #[cfg(not(all(unix, not(target_os = "macos"))))]
 pub fn provide() {}

@@ -1,4 +1,4 @@
-//! `isolith shader`: the WGSL of a pass as a device gets it, all files and generated code in one text.
+//! `isolith shader`: the assembled WGSL of a pass, with all files and generated code in one text.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -44,7 +44,7 @@ const METHODS: [(&str, EvalStrategy); 5] = [
     ("straight-line", EvalStrategy::StraightLine),
     ("baked", EvalStrategy::Baked),
 ];
-/// Names of devices, and how pipelines for them leave out what is out of reach.
+/// Names of kinds of devices, and how their pipelines skip code that is out of reach.
 const DEVICES: [(&str, SkipMode); 2] = [("card", SkipMode::Branches), ("processor", SkipMode::Selects)];
 
 fn parse_method(name: &str) -> Result<EvalStrategy, String> {
@@ -55,7 +55,7 @@ fn parse_device(name: &str) -> Result<SkipMode, String> {
     parse(name, &DEVICES)
 }
 
-/// The value of this name.
+/// The value with this name.
 fn parse<T: Copy>(name: &str, known: &[(&str, T)]) -> Result<T, String> {
     let names = || known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
     known
@@ -65,7 +65,7 @@ fn parse<T: Copy>(name: &str, known: &[(&str, T)]) -> Result<T, String> {
         .ok_or_else(|| format!("it is none of {}", names()))
 }
 
-/// Prints the source of a pass, or lists what there is.
+/// Prints the source of a pass, or lists passes and evaluators.
 pub fn shader(arguments: &ShaderArguments) -> Result<(), Failure> {
     let uses = uses(arguments)?;
     if arguments.list {
@@ -86,7 +86,7 @@ pub fn shader(arguments: &ShaderArguments) -> Result<(), Failure> {
     say(text.map_err(|error| Failure::Other(error.to_string()))?.trim_end())
 }
 
-/// The evaluators of the scene; without a scene the interpreter of everything.
+/// The evaluators of the scene; without a scene, the interpreter with every shape, modifier and operator.
 fn uses(arguments: &ShaderArguments) -> Result<Vec<EvaluatorUse>, Failure> {
     let Some(path) = &arguments.scene else {
         return Ok(vec![EvaluatorUse { evaluator: Evaluator::Interpreter(OpSet::all()), components: Vec::new() }]);
@@ -96,7 +96,7 @@ fn uses(arguments: &ShaderArguments) -> Result<Vec<EvaluatorUse>, Failure> {
     Ok(evaluators_of(&flat, arguments.method))
 }
 
-/// Names of the passes: the files that stand in no folder.
+/// Names of the passes: the shader files at the top level.
 fn passes() -> impl Iterator<Item = &'static str> {
     FILES.iter().filter_map(|(file, _)| file.strip_suffix(".wgsl")).filter(|name| !name.contains('/'))
 }
@@ -111,7 +111,7 @@ fn list(uses: &[EvaluatorUse]) -> Result<(), Failure> {
     Ok(())
 }
 
-/// An evaluator in words, and the shapes that it evaluates.
+/// The description of an evaluator with the shapes that it evaluates.
 fn describe(evaluator: &Evaluator) -> (String, BTreeSet<ShapeKind>) {
     match evaluator {
         Evaluator::Interpreter(ops) => ("interpreter".to_owned(), ops.shapes.clone()),

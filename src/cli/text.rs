@@ -1,4 +1,4 @@
-//! What is printed, and how: file contents never control the terminal, and messages stay short.
+//! Printing: file contents never control the terminal, and messages stay short.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -8,7 +8,7 @@ use super::failure::Failure;
 /// Longest line on standard error, in characters. Names and reasons come from files.
 const MAX_MESSAGE: usize = 2_000;
 
-/// One or more lines on standard output. A reader that went away is no failure.
+/// Prints one or more lines on standard output. A closed pipe is not a failure.
 pub fn say(text: &str) -> Result<(), Failure> {
     match writeln!(std::io::stdout(), "{}", printable(text)) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -18,18 +18,18 @@ pub fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// One line on standard error.
+/// Prints one line on standard error.
 pub fn complain(line: &str) {
     let text = printable(line).replace('\n', " ");
     let clipped = match text.char_indices().nth(MAX_MESSAGE) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text,
     };
-    // Nothing is left to do if even this cannot be written.
+    // If even this fails, there is no place left to report it.
     let _ = writeln!(std::io::stderr(), "{clipped}");
 }
 
-/// The text without characters that a terminal obeys or that turn the direction of what follows.
+/// The text without control characters and without characters that change the writing direction.
 fn printable(text: &str) -> Cow<'_, str> {
     let is_harmful = |c: char| {
         c.is_control() && c != '\n' && c != '\t' || matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

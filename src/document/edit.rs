@@ -1,4 +1,4 @@
-//! Every change that a scene can undergo.
+//! Edits: every possible change of a scene.
 
 use std::sync::Arc;
 
@@ -10,67 +10,66 @@ use isolith_scene::{
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
 ///
-/// Where an edit names several nodes, those that stand below another one of them go along with it, and
-/// all keep the order that they have in the scene.
+/// If an edit names several nodes, those below another one of them move along with it, and all keep their order in the
+/// scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// Puts a node in the place of the one with the same id; its parent stays.
+    /// Replaces the node of the same id; its parent stays.
     Replace(Node),
-    /// Adds a node, which gets a new id, as the `position`-th child of `parent` (at the end where there
-    /// are fewer).
+    /// Adds a node with a new id as the `position`-th child of `parent` (at the end if there are fewer).
     Insert {
-        /// A group, or the top.
+        /// A group, or `None` for the top.
         parent: Option<NodeId>,
         /// Counted from 0.
         position: usize,
         /// Its id and parent are ignored.
         node: Node,
     },
-    /// Takes out nodes and all below them.
+    /// Removes nodes with their subtrees.
     Remove(Vec<NodeId>),
-    /// Makes nodes children of `parent`, the first of them the `position`-th, counted without the moved
-    /// ones. They stay where they are in the world wherever a translation, rotation and scale can express
-    /// it; below a group that would shear them they keep their own transform.
+    /// Makes nodes children of `parent`, with the first of them at `position`, counted without the moved ones. They
+    /// keep their place in the world if a translation, rotation and scale can express it. Below a group that would
+    /// shear them they keep their own transform.
     Move {
-        /// What moves.
+        /// The nodes to move.
         ids: Vec<NodeId>,
-        /// A group, or the top.
+        /// A group, or `None` for the top.
         parent: Option<NodeId>,
         /// Counted from 0.
         position: usize,
     },
-    /// Puts a copy, with new ids and a numbered name, behind each node.
+    /// Adds a copy of each node behind it, with new ids and a numbered name.
     Duplicate(Vec<NodeId>),
-    /// Puts nodes into a new group, at the place of the first of them. They stay where they are in the
-    /// world as with [`Edit::Move`].
+    /// Puts nodes into a new group, at the position of the first of them. They keep their place in the world as with
+    /// [`Edit::Move`].
     Group {
-        /// What goes into the group; not empty.
+        /// The nodes to put into the group; not empty.
         ids: Vec<NodeId>,
-        /// How they are joined.
+        /// The operator and blend of the new group.
         group: Group,
     },
-    /// Puts a material in the place of the one with the same id.
+    /// Replaces the material of the same id.
     ReplaceMaterial(Material),
-    /// Adds a material under the id that it brings, see [`Scene::next_material_id`].
+    /// Adds a material with its own id, see [`Scene::next_material_id`].
     InsertMaterial(Material),
-    /// Takes out a material that nothing uses.
+    /// Removes a material that no node uses.
     RemoveMaterial(MaterialId),
-    /// Changes what surrounds the scene.
+    /// Replaces the environment.
     SetEnvironment(Environment),
     /// Changes one parameter of a node, a material or the environment.
     SetParam {
-        /// Which one.
+        /// The path of the parameter.
         path: ParamPath,
         /// Its new value.
         value: ParamValue,
     },
 }
 
-/// What an edit did.
+/// The effect of an edit.
 pub(super) struct Change {
-    /// Whether the scene is another one now.
+    /// Whether the scene differs from before.
     pub changed: bool,
-    /// Nodes that are new.
+    /// The new nodes.
     pub added: Vec<NodeId>,
 }
 
@@ -80,7 +79,7 @@ impl Change {
 }
 
 impl Edit {
-    /// Does it. On failure the scene is what it was.
+    /// Performs the edit. On failure the scene is unchanged.
     pub(super) fn perform(self, scene: &mut Arc<Scene>) -> Result<Change, SceneError> {
         match self {
             Self::Replace(node) => {
@@ -142,7 +141,7 @@ impl Edit {
         }
     }
 
-    /// The edit that replaces what has the parameter.
+    /// The edit that replaces the owner of the parameter.
     fn of_param(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Self, SceneError> {
         Ok(match path.changed(scene, value)? {
             Changed::Node(node) => Self::Replace(*node),
@@ -151,7 +150,7 @@ impl Edit {
         })
     }
 
-    /// What it does, for a history list.
+    /// The label in a history list.
     pub(super) fn label(&self, scene: &Scene) -> String {
         match self {
             Self::Replace(new) => scene.node(new.id).map_or_else(|| "Change".into(), |old| replace_label(old, new)),

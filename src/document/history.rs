@@ -1,27 +1,26 @@
-//! The steps that can be undone and done again.
+//! The steps of undo and redo.
 
 use std::collections::{HashSet, VecDeque};
 use std::sync::Arc;
 
 use isolith_scene::{NodeId, Scene};
 
-/// Most steps that can be undone; beyond it the oldest is forgotten.
+/// Most steps that can be undone; beyond it the oldest is dropped.
 pub const MAX_STEPS: usize = 1_000;
-/// Most nodes that the kept steps may refer to, all together: a bound on memory, about 8 bytes each.
-/// One step is kept whatever its size.
+/// Most nodes in all kept steps together: a bound on memory, about 8 bytes each. One step is kept whatever its size.
 pub const MAX_HISTORY_NODES: usize = 20_000_000;
 
-/// A scene with the selection that belongs to it.
+/// A scene with its selection.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     pub scene: Arc<Scene>,
     pub selection: Vec<NodeId>,
-    /// The revision at which this scene came into being: equal marks, equal scenes.
+    /// The revision that created this scene: equal marks mean equal scenes.
     pub mark: u64,
 }
 
 impl State {
-    /// Drops ids from the selection that no node has, and repetitions.
+    /// Removes unknown and repeated ids from the selection.
     pub fn drop_unknown(&mut self) {
         let mut seen = HashSet::new();
         self.selection.retain(|id| self.scene.node(*id).is_some() && seen.insert(*id));
@@ -31,27 +30,27 @@ impl State {
 #[derive(Debug)]
 struct Step {
     label: String,
-    /// The state that the step leads to when it is taken.
+    /// The state that undoing or redoing the step restores.
     state: State,
 }
 
-/// Both directions. The last entry of each is the next to be taken.
+/// The steps in both directions. The last entry of each list is the next step.
 #[derive(Debug, Default)]
 pub(super) struct History {
     past: VecDeque<Step>,
     future: Vec<Step>,
-    /// Nodes in all states of `past`.
+    /// Nodes in all states of `past`, summed up.
     weight: usize,
 }
 
 impl History {
-    /// A change from `before` has happened. What had been undone is gone.
+    /// Records a change from `before`. Drops the steps that could be redone.
     pub fn push(&mut self, label: String, before: State) {
         self.future.clear();
         self.push_past(Step { label, state: before });
     }
 
-    /// Swaps `now` for the state before the latest step.
+    /// Swaps `now` with the state before the latest step.
     pub fn undo(&mut self, now: &mut State) -> bool {
         let Some(step) = self.past.pop_back() else { return false };
         self.weight -= step.state.scene.nodes().len();
@@ -59,19 +58,19 @@ impl History {
         true
     }
 
-    /// Swaps `now` for the state after the step undone last.
+    /// Swaps `now` with the state after the step undone last.
     pub fn redo(&mut self, now: &mut State) -> bool {
         let Some(step) = self.future.pop() else { return false };
         self.push_past(Step { label: step.label, state: std::mem::replace(now, step.state) });
         true
     }
 
-    /// Labels of what can be undone, the latest first.
+    /// Labels of the steps to undo, latest first.
     pub fn undo_labels(&self) -> impl Iterator<Item = &str> {
         self.past.iter().rev().map(|s| s.label.as_str())
     }
 
-    /// Labels of what can be done again, the next first.
+    /// Labels of the steps to redo, next first.
     pub fn redo_labels(&self) -> impl Iterator<Item = &str> {
         self.future.iter().rev().map(|s| s.label.as_str())
     }

@@ -1,7 +1,7 @@
 //! The scene over time: edits, undo, saving.
 //!
-//! [`Document::apply`] is the only gate through which a scene changes. Undo is by snapshot: a scene
-//! shares its nodes, so keeping the one from before an edit copies pointers and no contents.
+//! [`Document::apply`] is the only gate through which a scene changes. Undo keeps snapshots: scenes share their nodes,
+//! so the snapshot before an edit copies pointers and no contents.
 //!
 //! # Example
 //!
@@ -43,7 +43,7 @@ use isolith_jobs::Task;
 use isolith_scene::file::{self, FileError, Stamp};
 use isolith_scene::{NodeId, Scene, SceneError};
 
-/// A scene with its selection, its past and its file.
+/// A scene with its selection, its history and its file.
 #[derive(Debug)]
 pub struct Document {
     state: State,
@@ -51,24 +51,24 @@ pub struct Document {
     history: History,
     gesture: Option<Gesture>,
     path: Option<PathBuf>,
-    /// The mark of the state that the file holds; none where it holds another one.
+    /// The mark of the state in the file; `None` if the file holds another state.
     saved: Option<u64>,
-    /// How the file was when it was read or saved.
+    /// The stamp of the file when it was read or saved.
     stamp: Option<Stamp>,
 }
 
-/// What saving a document to a path would replace.
+/// The file that saving a document to a path would overwrite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OverwriteRisk {
-    /// Nothing, or the document's own file as it was read or saved last.
+    /// No file, or the document's own file as it was read or saved last.
     Nothing,
-    /// The document's own file, which somebody else has changed since.
+    /// The document's own file, changed since by somebody else.
     ChangedByOthers,
     /// Another file.
     OtherFile,
 }
 
-/// Edits that become one step.
+/// Edits that form one step of undo.
 #[derive(Debug)]
 struct Gesture {
     start: State,
@@ -83,56 +83,56 @@ impl Document {
         Self { state, revision: 0, history: History::default(), gesture: None, path: None, saved: Some(0), stamp: None }
     }
 
-    /// Reads a file, and clears away the temporaries of this user's savers that were killed.
+    /// Reads a file, and removes the temporaries of this user's killed processes.
     pub fn open(path: &Path) -> Result<Self, FileError> {
         Self::open_by(path, &Task::new("Opening"))
     }
 
-    /// The same as a part of a task: it learns how far the reading is, and can cancel it.
+    /// Like [`Document::open`], as a part of a task: reports progress to it, and stops when the task is canceled.
     pub fn open_by(path: &Path, task: &Task) -> Result<Self, FileError> {
         let (scene, stamp) = file::load_stamped(path, task)?;
         file::remove_leftovers();
         Ok(Self { path: Some(path.to_path_buf()), stamp: Some(stamp), ..Self::new(scene) })
     }
 
-    /// A document that was never saved in this state: it counts as changed. `stamp` tells how its file was when the lost
-    /// document was read from it.
+    /// A document restored after a crash. Its state was never saved, so it counts as changed. `stamp` is that of its
+    /// file when the lost document was read from it.
     pub fn recovered(scene: Scene, path: Option<PathBuf>, stamp: Option<Stamp>) -> Self {
         Self { path, stamp, saved: None, ..Self::new(scene) }
     }
 
-    /// The scene as it is now.
+    /// The current scene.
     pub fn scene(&self) -> &Scene {
         &self.state.scene
     }
 
-    /// The scene as it is now, to keep: for work on another thread. Later edits do not touch it.
+    /// A snapshot of the current scene for work on another thread. Later edits do not affect it.
     pub fn snapshot(&self) -> Arc<Scene> {
         Arc::clone(&self.state.scene)
     }
 
-    /// A number that grows whenever the scene changes, by undo and redo as well.
+    /// A number that grows with every change of the scene, including undo and redo.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// The selected nodes, in the order of selecting.
+    /// The selected nodes, in the order of selection.
     pub fn selection(&self) -> &[NodeId] {
         &self.state.selection
     }
 
-    /// Selects these nodes and no others. Unknown and repeated ids are dropped. Not a step of its own,
-    /// but undo and redo bring the selection back that belonged to the scene.
+    /// Selects exactly these nodes. Drops unknown and repeated ids. Selecting is not a step of undo, but undo and redo
+    /// restore the selection that belonged to the scene.
     pub fn select(&mut self, ids: Vec<NodeId>) {
         self.state.selection = ids;
         self.state.drop_unknown();
     }
 
-    /// Changes the scene, or changes nothing and says why. Returns the ids of the nodes added: for
+    /// Changes the scene, or changes nothing and returns the reason. Returns the ids of the added nodes: for
     /// [`Edit::Duplicate`] the top nodes of the copies, for [`Edit::Group`] the group.
     ///
-    /// One step of undo, unless a gesture is open, which makes one of all its edits. What changes
-    /// nothing makes no step. Nodes that are gone leave the selection; it stays otherwise.
+    /// Makes one step of undo, unless a gesture is open: a gesture makes one step of all its edits. An edit that
+    /// changes nothing makes no step. Removed nodes leave the selection, which otherwise stays.
     pub fn apply(&mut self, edit: Edit) -> Result<Vec<NodeId>, SceneError> {
         let alone = self.gesture.is_none();
         if alone {
@@ -154,8 +154,8 @@ impl Document {
         result.map(|change| change.added)
     }
 
-    /// Starts a gesture, such as a drag: all edits until the matching [`Document::end_gesture`] are one
-    /// step. Gestures nest; the outermost counts.
+    /// Starts a gesture, such as a drag: all edits until the matching [`Document::end_gesture`] form one step. Gestures
+    /// nest; the outermost counts.
     pub fn begin_gesture(&mut self) {
         match &mut self.gesture {
             Some(gesture) => gesture.depth += 1,
@@ -163,8 +163,7 @@ impl Document {
         }
     }
 
-    /// Ends a gesture. One that leaves the scene as it was makes no step. Without a gesture nothing
-    /// happens.
+    /// Ends a gesture. A gesture that leaves the scene unchanged makes no step. Does nothing without a gesture.
     pub fn end_gesture(&mut self) {
         let Some(mut gesture) = self.gesture.take() else { return };
         gesture.depth -= 1;
@@ -180,7 +179,7 @@ impl Document {
         }
     }
 
-    /// Takes back all edits of an open gesture and ends it. Without a gesture nothing happens.
+    /// Reverts all edits of an open gesture and ends it. Does nothing without a gesture.
     pub fn cancel_gesture(&mut self) {
         let Some(gesture) = self.gesture.take() else { return };
         if gesture.label.is_some() {
@@ -191,8 +190,8 @@ impl Document {
         }
     }
 
-    /// Goes one step back, with the selection of then; false where there is none. An open gesture
-    /// ends first and is the step that is undone.
+    /// Undoes one step and restores the selection of that time; false if there is none. An open gesture ends first and
+    /// is the step that is undone.
     pub fn undo(&mut self) -> bool {
         self.close_gesture();
         let gone = self.history.undo(&mut self.state);
@@ -200,7 +199,7 @@ impl Document {
         gone
     }
 
-    /// Goes one step forward again, with the selection of then; false where there is none.
+    /// Redoes one step and restores the selection of that time; false if there is none.
     pub fn redo(&mut self) -> bool {
         self.close_gesture();
         let gone = self.history.redo(&mut self.state);
@@ -208,28 +207,28 @@ impl Document {
         gone
     }
 
-    /// What [`Document::undo`] would undo.
+    /// The label of the step that [`Document::undo`] would undo.
     pub fn undo_label(&self) -> Option<&str> {
         let open = self.gesture.as_ref().and_then(|g| g.label.as_deref());
         open.or_else(|| self.undo_labels().next())
     }
 
-    /// What [`Document::redo`] would do again.
+    /// The label of the step that [`Document::redo`] would redo.
     pub fn redo_label(&self) -> Option<&str> {
         self.redo_labels().next()
     }
 
-    /// Every step that can be undone, the latest first: for a list of the history.
+    /// Labels of the steps to undo, latest first: for a list of the history.
     pub fn undo_labels(&self) -> impl Iterator<Item = &str> {
         self.history.undo_labels()
     }
 
-    /// Every step that can be done again, the next first.
+    /// Labels of the steps to redo, next first.
     pub fn redo_labels(&self) -> impl Iterator<Item = &str> {
         self.history.redo_labels()
     }
 
-    /// Whether the scene differs from the file. Undoing back to what was saved counts as unchanged.
+    /// Whether the scene differs from the file. Undoing back to the saved state counts as unchanged.
     pub fn is_changed(&self) -> bool {
         Some(self.state.mark) != self.saved
     }
@@ -239,14 +238,14 @@ impl Document {
         self.path.as_deref()
     }
 
-    /// The file's name, with a `*` behind it where there are changes to save.
+    /// The file's name, followed by `*` if there are unsaved changes.
     pub fn title(&self) -> String {
         let name = self.path.as_deref().and_then(Path::file_name);
         let name = name.map_or_else(|| "Untitled".into(), |n| n.to_string_lossy());
         if self.is_changed() { format!("{name} *") } else { name.into_owned() }
     }
 
-    /// Saves to the document's file. On failure the file is what it was and the document stays changed.
+    /// Saves to the document's file. On failure the file is unchanged and the document stays changed.
     pub fn save(&mut self) -> Result<(), FileError> {
         match self.path.clone() {
             Some(path) => self.save_as(&path),
@@ -254,24 +253,24 @@ impl Document {
         }
     }
 
-    /// Saves to a file, which is the document's from then on. On failure nothing changes.
+    /// Saves to a file, which becomes the document's file. On failure nothing changes.
     pub fn save_as(&mut self, path: &Path) -> Result<(), FileError> {
         let saved = self.save_order(path).write()?;
         self.take_saved(saved);
         Ok(())
     }
 
-    /// What saving to this path would replace: to be asked before, because saving itself does not.
+    /// The file that saving to this path would overwrite. Saving does not ask, so callers check this first.
     pub fn would_replace(&self, path: &Path) -> OverwriteRisk {
         self.save_order(path).would_replace()
     }
 
-    /// How the file was when it was read or saved last.
+    /// The stamp of the file when it was read or saved last.
     pub fn stamp(&self) -> Option<Stamp> {
         self.stamp
     }
 
-    /// Whether somebody else seems to have changed the file: cheap, for now and then.
+    /// Whether somebody else seems to have changed the file. Cheap enough for periodic checks.
     pub fn seems_outdated(&self) -> bool {
         matches!((&self.path, self.stamp), (Some(path), Some(stamp)) if stamp.seems_outdated(path))
     }

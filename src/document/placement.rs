@@ -1,4 +1,4 @@
-//! Keeping a node where it is in the world when it gets another parent.
+//! Keeps a node in its place in the world when its parent changes.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -6,14 +6,14 @@ use isolith_geometry::Transform;
 use isolith_scene::limits::{POSITION, SCALE};
 use isolith_scene::{NodeId, Scene};
 
-/// Relative error up to which two transforms count as the same.
+/// Relative error up to which two transforms count as equal.
 const TOLERANCE: f64 = 1e-9;
-/// Relative difference below which a component keeps its old digits: rounding, not a change.
+/// Relative difference below which a component keeps its old digits: it is rounding, not a change.
 const ROUNDING: f64 = 1e-13;
 
-/// The transform with which a node stays in place below another parent. Where the change of parents
-/// would shear it, which no translation, rotation and scale can express, or push a value out of its
-/// limits, its own transform is kept and it moves.
+/// The transform that keeps a node in place below another parent. Returns the node's own transform, so that the node
+/// moves, if the new parent would shear the node, which no translation, rotation and scale can express, or would push a
+/// value out of its limits.
 pub(super) fn kept_in_place(scene: &Scene, id: NodeId, parent: Option<NodeId>) -> Transform {
     let Some(node) = scene.node(id) else { return Transform::IDENTITY };
     let world_from = |p: Option<NodeId>| p.map_or(DAffine3::IDENTITY, |p| scene.world_from_local(p));
@@ -25,8 +25,8 @@ pub(super) fn kept_in_place(scene: &Scene, id: NodeId, parent: Option<NodeId>) -
     recomposed(&new_from_old, &node.transform).unwrap_or(node.transform)
 }
 
-/// The transform that equals `map` after `local`, where there is one. A linear map is a scale followed by
-/// a rotation exactly if its columns are at right angles.
+/// The transform that equals `map` after `local`, if one exists. A linear map is a rotation after a scale exactly if
+/// its columns are orthogonal.
 fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
     let wanted = *map * local.to_affine();
     let translation = wanted.translation;
@@ -34,7 +34,7 @@ fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
         (local.rotation, local.scale)
     } else {
         let columns = wanted.matrix3;
-        // The signs that the artist chose stay; a mirrored map turns all three.
+        // The signs that the artist chose stay; a mirroring map flips all three.
         let mut scale = DVec3::new(columns.x_axis.length(), columns.y_axis.length(), columns.z_axis.length());
         scale *= local.scale.signum();
         if map.matrix3.determinant() < 0.0 {
@@ -43,7 +43,7 @@ fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
         let turned = DMat3::from_cols(columns.x_axis / scale.x, columns.y_axis / scale.y, columns.z_axis / scale.z);
         let skew = turned.transpose() * turned - DMat3::IDENTITY;
         let skew = skew.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
-        // The maximum passes over NaN, so it is looked for by itself.
+        // The maximum ignores NaN, so NaN needs its own check.
         if !turned.is_finite() || skew > TOLERANCE {
             return None;
         }
@@ -56,12 +56,12 @@ fn recomposed(map: &DAffine3, local: &Transform) -> Option<Transform> {
     fits.then_some(result)
 }
 
-/// `new`, or `old` where the difference is rounding.
+/// `new`, or `old` if they differ by rounding only.
 fn rounded(new: DVec3, old: DVec3) -> DVec3 {
     if (new - old).abs().max_element() <= ROUNDING * old.abs().max_element() { old } else { new }
 }
 
-/// The same for rotations, of which two, q and −q, are one.
+/// The same for rotations; q and −q are the same rotation.
 fn rounded_rotation(new: DQuat, old: DQuat) -> DQuat {
     let new = if new.dot(old) < 0.0 { -new } else { new };
     if (new - old).length() <= ROUNDING { old } else { new }

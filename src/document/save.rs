@@ -1,5 +1,5 @@
-//! Saving in three steps, so that the middle one can run on another thread: what is to be written, writing it, and the
-//! document's knowledge that it is written. Edits made meanwhile stay changes.
+//! Saving in three steps, so that the middle one can run on another thread: make an order, write it, and tell the
+//! document that it is written. Edits made meanwhile stay unsaved changes.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -8,17 +8,17 @@ use super::{Document, OverwriteRisk};
 use isolith_scene::Scene;
 use isolith_scene::file::{self, FileError, Stamp};
 
-/// A document as it is to be saved to a path.
+/// An order to save a document to a path.
 #[derive(Clone, Debug)]
 pub struct SaveOrder {
     scene: Arc<Scene>,
     mark: u64,
     path: PathBuf,
-    /// The document's file, and how that was when it was read or saved last.
+    /// The document's file, and its stamp when it was read or saved last.
     own: Option<(PathBuf, Option<Stamp>)>,
 }
 
-/// A scene that was written.
+/// The result of writing an order.
 #[derive(Clone, Debug)]
 pub struct Saved {
     path: PathBuf,
@@ -27,12 +27,12 @@ pub struct Saved {
 }
 
 impl SaveOrder {
-    /// Where it is to be written.
+    /// The target path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What writing it would replace.
+    /// The file that writing would overwrite.
     pub fn would_replace(&self) -> OverwriteRisk {
         let path = &self.path;
         let own = self.own.as_ref().filter(|(own, _)| own == path || file::is_same_place(own, path));
@@ -41,13 +41,13 @@ impl SaveOrder {
         };
         match stamp {
             Some(stamp) if !stamp.is_outdated(path) => OverwriteRisk::Nothing,
-            // Recovered, and nobody knows any more what its file was.
+            // A recovered document: the state of its file at that time is unknown.
             None if !path.exists() => OverwriteRisk::Nothing,
             _ => OverwriteRisk::ChangedByOthers,
         }
     }
 
-    /// Writes it. On failure the file is what it was.
+    /// Writes the file. On failure it is unchanged.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -58,13 +58,13 @@ impl SaveOrder {
 }
 
 impl Document {
-    /// The document as it is now, to be saved to a path.
+    /// An order to save the document in its current state to a path.
     pub fn save_order(&self, path: &Path) -> SaveOrder {
         let own = self.path.clone().map(|own| (own, self.stamp));
         SaveOrder { scene: self.snapshot(), mark: self.state.mark, path: path.to_path_buf(), own }
     }
 
-    /// The document's file is the one that was written from then on; what was changed since the order is a change.
+    /// Makes the written file the document's file; edits made since the order stay unsaved changes.
     pub fn take_saved(&mut self, saved: Saved) {
         let Saved { path, stamp, mark } = saved;
         (self.path, self.stamp, self.saved) = (Some(path), Some(stamp), Some(mark));

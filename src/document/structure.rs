@@ -1,4 +1,4 @@
-//! Edits that move, copy or remove many nodes: each builds the table of nodes that it wants in one walk.
+//! Edits that move, copy or remove many nodes: each builds the new table of nodes in one pass.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -8,13 +8,13 @@ use super::placement::kept_in_place;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeId, Scene, SceneError};
 
-/// Takes out nodes and all below them.
+/// Removes nodes with their subtrees.
 pub(super) fn remove(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<(), SceneError> {
     let (rest, _) = split(scene, &tops(scene, ids)?);
     Arc::make_mut(scene).set_nodes(rest)
 }
 
-/// Makes nodes children of `parent`, from `position` on, counted without them.
+/// Makes nodes children of `parent`, from `position` on, counted without the moved nodes.
 pub(super) fn move_to(
     scene: &mut Arc<Scene>,
     ids: &[NodeId],
@@ -41,14 +41,14 @@ pub(super) fn move_to(
     Arc::make_mut(scene).set_nodes(nodes)
 }
 
-/// Puts nodes into `node`, a new group, at the place of the first of them. Returns its id.
+/// Puts nodes into `node`, a new group, at the position of the first of them. Returns the group's id.
 pub(super) fn group(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Result<NodeId, SceneError> {
     let tops = tops(scene, ids)?;
     let first = tops.first().ok_or(SceneError::Nothing)?;
     let first = &scene.nodes()[first.start];
     let (first_id, parent) = (first.id, first.parent);
     let position = scene.children(parent).position(|n| n.id == first_id).unwrap_or(usize::MAX);
-    // Both steps on a copy: the second can fail, at the deepest nesting.
+    // Both steps run on a copy: the second can fail at the limit of nesting.
     let mut next = Scene::clone(scene);
     let id = next.insert(parent, position, node)?;
     let mut next = Arc::new(next);
@@ -57,7 +57,7 @@ pub(super) fn group(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Resul
     Ok(id)
 }
 
-/// Puts a copy behind each node. Returns the ids of the copies' top nodes.
+/// Adds a copy behind each node. Returns the ids of the copies' top nodes.
 pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<NodeId>, SceneError> {
     let tops = tops(scene, ids)?;
     let mut names = FreeNames::new(scene);
@@ -102,7 +102,7 @@ fn tops(scene: &Scene, ids: &[NodeId]) -> Result<Vec<Range<usize>>, SceneError> 
     Ok(ranges)
 }
 
-/// The nodes outside and inside of the ranges.
+/// Separates the nodes outside and inside of the ranges.
 fn split(scene: &Scene, ranges: &[Range<usize>]) -> (Vec<Arc<Node>>, Vec<Arc<Node>>) {
     let (mut rest, mut taken, mut done) = (Vec::with_capacity(scene.nodes().len()), Vec::new(), 0);
     for range in ranges {
@@ -114,7 +114,7 @@ fn split(scene: &Scene, ranges: &[Range<usize>]) -> (Vec<Arc<Node>>, Vec<Arc<Nod
     (rest, taken)
 }
 
-/// Where in a table in pre-order the `position`-th child of `parent` starts, or would start.
+/// The index in a pre-order table of the `position`-th child of `parent`, existing or new.
 fn place_of(nodes: &[Arc<Node>], parent: Option<NodeId>, position: usize) -> usize {
     let Some(parent) = parent else {
         let nth = nodes.iter().enumerate().filter(|(_, n)| n.parent.is_none()).nth(position);
@@ -136,10 +136,10 @@ fn place_of(nodes: &[Arc<Node>], parent: Option<NodeId>, position: usize) -> usi
     nodes.len()
 }
 
-/// Finds names that no sibling has, by the number behind them: `Pawn` → `Pawn 2`, `Pawn 7` → `Pawn 8`.
+/// Finds names that no sibling has, by counting up the number at their end: `Pawn` → `Pawn 2`, `Pawn 7` → `Pawn 8`.
 struct FreeNames {
     taken: HashSet<(Option<NodeId>, String)>,
-    /// The number tried last, per parent and name without number.
+    /// The last number tried, per parent and name without number.
     last: HashMap<(Option<NodeId>, String), u64>,
 }
 
@@ -152,7 +152,7 @@ impl FreeNames {
     fn next(&mut self, parent: Option<NodeId>, name: &str) -> String {
         let numbered = name.rsplit_once(' ').and_then(|(base, n)| Some((base, n.parse::<u32>().ok()?)));
         let (base, number) = numbered.map_or((name, 1), |(base, n)| (base, u64::from(n)));
-        // Room for the longest number.
+        // Leaves room for the longest number.
         let base: String = base.chars().take(MAX_NAME - 12).collect();
         let last = self.last.entry((parent, base.clone())).or_insert(number);
         loop {

@@ -1,4 +1,4 @@
-//! How much room nodes take in the world: for framing, for the selection's outline.
+//! The bounds of nodes in the world, for framing and for the selection's outline.
 
 use glam::{DAffine3, DVec3};
 
@@ -6,10 +6,10 @@ use isolith_geometry::Aabb;
 use isolith_mesh::MeshLibrary;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
 
-/// Half the room given to what has none of its own: lights, cameras, endless planes.
+/// Half the size assumed for nodes without bounds: lights, cameras, endless planes.
 const TOKEN: f64 = 0.5;
 
-/// The box around the nodes and all below them, in the world; `None` where there is nothing.
+/// The world bounds of the nodes and their descendants; `None` if there are none.
 pub fn of_nodes(scene: &Scene, meshes: &MeshLibrary, ids: &[NodeId]) -> Option<Aabb> {
     let mut bounds = Aabb::EMPTY;
     for &id in ids {
@@ -22,8 +22,8 @@ pub fn of_nodes(scene: &Scene, meshes: &MeshLibrary, ids: &[NodeId]) -> Option<A
     (!bounds.is_empty()).then_some(bounds)
 }
 
-/// The box around everything visible that has a surface; cameras and planes count only where there is nothing else,
-/// lights never: the first thing made in a scene that has only a sun is to stand at the origin.
+/// The bounds of all visible surfaces. Cameras and planes count only if there is nothing else, lights never: in a scene
+/// with only a sun, the first new node belongs at the origin.
 pub fn of_scene(scene: &Scene, meshes: &MeshLibrary) -> Option<Aabb> {
     let (mut solid, mut rest) = (Aabb::EMPTY, Aabb::EMPTY);
     for top in scene.children(None) {
@@ -40,8 +40,8 @@ pub fn of_scene(scene: &Scene, meshes: &MeshLibrary) -> Option<Aabb> {
     (!all.is_empty()).then_some(all)
 }
 
-/// Calls `each` with the node at `index` and all below it and their transforms, given the first one's.
-/// What stands below a node for which it answers false is left out.
+/// Calls `each` with the node at `index`, its descendants and their transforms, given the first transform.
+/// Skips the descendants of a node for which it returns false.
 fn visit(scene: &Scene, index: usize, first: DAffine3, mut each: impl FnMut(&Node, DAffine3) -> bool) {
     let (nodes, depths) = (scene.nodes(), scene.depths());
     let mut chain: Vec<DAffine3> = Vec::new();
@@ -69,7 +69,7 @@ fn of_node(meshes: &MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aab
     local(meshes, node).map_or(Aabb::EMPTY, |bounds| bounds.transformed(world_from_node))
 }
 
-/// The box around a node's own surface in its local space; `None` for a group.
+/// The bounds of a node's own surface in its local space; `None` for a group.
 pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     let token = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(TOKEN));
     match &node.kind {
@@ -82,8 +82,8 @@ pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     }
 }
 
-/// The box around a node and all below it in the node's own space, with the way to the world: an
-/// oriented box that turns with the node.
+/// The bounds of a node and its descendants in the node's own space, with the transform to the world: an oriented box
+/// that turns with the node.
 pub fn oriented(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> Option<(DAffine3, Aabb)> {
     let index = scene.index_of(id)?;
     let mut bounds = Aabb::EMPTY;

@@ -1,4 +1,4 @@
-//! Asks for the paths of files, by the system's dialog or in the window, and goes on with what was chosen.
+//! Asks for file paths, by the system's dialog or in the window, and continues with the chosen path.
 
 use std::path::Path;
 use std::sync::mpsc::{TryRecvError, channel};
@@ -13,11 +13,11 @@ use super::root::Editor;
 use super::{insertion, portal};
 use isolith_scene::{MeshNode, Node, NodeKind};
 
-/// Nobody cancels a dialog faster than this: there was none.
+/// An artist cannot cancel a dialog faster than this: a quicker cancel means that no dialog opened.
 const NO_DIALOG: Duration = Duration::from_millis(600);
 
 impl Editor {
-    /// Asks where to save; then goes on with `then`.
+    /// Asks for a path to save to, then continues with `then`.
     pub fn choose_save_path(&mut self, then: Option<Next>, ctx: &Context) {
         self.choose(Purpose::Save(then), ctx);
     }
@@ -32,7 +32,7 @@ impl Editor {
     }
 
     pub(super) fn choose(&mut self, purpose: Purpose, ctx: &Context) {
-        // Who asks again while the system's dialog is open does not see it: its answer is not waited for any more.
+        // The artist asks again, so the open system dialog is out of sight: ignore its answer.
         let is_unanswered = self.dialogs.system.take().is_some();
         if self.dialogs.in_window || is_unanswered {
             self.ask_in_window(purpose);
@@ -47,7 +47,7 @@ impl Editor {
                 true if saving => SystemAnswer::Chosen(dialog.save_file()),
                 true => SystemAnswer::Chosen(dialog.pick_file()),
             };
-            // The receiver is gone when the window is: then nobody waits for the answer.
+            // The receiver is gone if the window is: nothing waits for the answer.
             let _ = sender.send(answer);
             ctx.request_repaint();
         });
@@ -88,7 +88,7 @@ impl Editor {
         self.dialogs.path_field = Some(PathField { purpose, text, focused: false, problem: None });
     }
 
-    /// Takes the answer of the system's dialog, and asks for what panels want. Once a frame.
+    /// Takes the answer of the system's dialog and asks for the files that panels request. Call once a frame.
     pub(super) fn poll_dialogs(&mut self, ctx: &Context) {
         if let Some(wanted) = self.state.session.wanted_file.take() {
             self.state.session.finish();
@@ -115,14 +115,14 @@ impl Editor {
         match purpose.refusal(path) {
             Some(reason) => self.report(Message::error(reason)),
             None => {
-                // The system's dialog has asked whether to replace the file, unless it gets another name here.
+                // The system's dialog has asked whether to replace the file, unless the file gets an extension here.
                 let was_asked = path == with_ending(path);
                 self.chosen(purpose, path, was_asked, ctx);
             }
         }
     }
 
-    /// Goes on with a path that [`Purpose::refusal`] has nothing against.
+    /// Continues with a path that [`Purpose::refusal`] accepts.
     pub(super) fn chosen(&mut self, purpose: Purpose, path: &Path, may_replace: bool, ctx: &Context) {
         match purpose {
             Purpose::Open => self.intend(Intent::Open(path.to_path_buf()), ctx),
@@ -141,7 +141,7 @@ impl Editor {
         }
     }
 
-    /// Whether it is the document's own file, by whatever name.
+    /// Whether the path names the document's own file, under any alias.
     fn is_own(&self, path: &Path) -> bool {
         let own = self.state.session.document.path();
         own.is_some_and(|own| match (own.canonicalize(), path.canonicalize()) {

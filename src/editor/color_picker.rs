@@ -1,5 +1,5 @@
-//! Choosing a color: a square of saturation and brightness, a strip of hues, a field for hex digits.
-//! Colors go in and out linear; what is shown is as the screen shows it.
+//! The color picker: a square of saturation and brightness, a strip of hues, a field for hex digits.
+//! Colors are linear at the interface and shown as sRGB.
 
 use egui::ecolor::HsvaGamma;
 use egui::{Color32, Id, Key, Mesh, Pos2, Rect, Response, Rgba, RichText, Sense, Shape, Stroke, TextEdit, Ui, vec2};
@@ -10,7 +10,7 @@ const SIDE: f32 = 210.0;
 const HEIGHT: f32 = 140.0;
 const STRIP: f32 = 16.0;
 
-/// Shows the picker; true where the color was changed.
+/// Shows the picker; true if the color changed.
 pub fn show(ui: &mut Ui, linear: &mut [f32; 3]) -> bool {
     let id = ui.scope_id().with("picker");
     let mut hsv = remembered(ui, id, *linear);
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, linear: &mut [f32; 3]) -> bool {
         *linear = color;
         hsv = from_linear(color);
     }
-    // Gray has no hue and black has no saturation: they are kept while the color stays.
+    // Gray has no hue and black has no saturation: keep the last ones while the color is unchanged.
     ui.data_mut(|d| d.insert_temp(id, (*linear, hsv.h, hsv.s)));
     changed || typed.is_some()
 }
@@ -54,7 +54,7 @@ fn shade(h: f32, s: f32, v: f32) -> Color32 {
     HsvaGamma { h, s, v, a: 1.0 }.into()
 }
 
-/// Where the pointer is in a rectangle while it holds it, 0 to 1 along both axes.
+/// Position of the pointer in a rectangle during a drag, 0 to 1 along both axes.
 fn held_at(response: &Response, rect: Rect) -> Option<[f32; 2]> {
     let pointer = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())?;
     let at = (pointer - rect.min) / rect.size();
@@ -68,7 +68,7 @@ fn square(ui: &mut Ui, hsv: &mut HsvaGamma) -> bool {
     if let Some([s, down]) = held {
         (hsv.s, hsv.v) = (s, 1.0 - down);
     }
-    // A grid, because the color is a product of both axes and triangles blend only linearly.
+    // A grid: the color is a product of both axes, and triangles interpolate only linearly.
     grid(ui, rect, [14, 14], |x, y| shade(hsv.h, x, 1.0 - y));
     let knob = rect.lerp_inside(vec2(hsv.s, 1.0 - hsv.v));
     paint_knob(ui, knob, shade(hsv.h, hsv.s, hsv.v));
@@ -114,7 +114,7 @@ fn paint_knob(ui: &Ui, at: Pos2, color: Color32) {
     ui.painter().circle_stroke(at, 6.0, Stroke::new(1.5, Color32::WHITE));
 }
 
-/// The color as the screen shows it, in hex digits; answers with the linear color typed.
+/// A field with the sRGB color in hex digits; returns the linear color of the typed digits.
 fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
     let mut typed = None;
     ui.horizontal(|ui| {
@@ -132,7 +132,7 @@ fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
             super::numbers::refuse(ui, response.id, typed.is_none().then(reason));
         }
         let typing = response.has_focus();
-        // What is half typed is kept; otherwise the field shows the color.
+        // Keep text in the middle of typing; otherwise show the color.
         ui.data_mut(|d| {
             d.remove::<String>(text_id);
             if typing {
@@ -144,7 +144,7 @@ fn hex_field(ui: &mut Ui, id: Id, linear: [f32; 3]) -> Option<[f32; 3]> {
     typed
 }
 
-/// `#e5d4b6`, `e5d4b6` or `#fff` as a linear color.
+/// Parses `#e5d4b6`, `e5d4b6` or `#fff` to a linear color.
 fn parse_hex(text: &str) -> Option<[f32; 3]> {
     let digits = text.trim().trim_start_matches('#');
     let color = Color32::from_hex(&format!("#{digits}")).ok().filter(|_| digits.len() == 3 || digits.len() == 6)?;

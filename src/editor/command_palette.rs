@@ -1,4 +1,4 @@
-//! The palette: every command by its name.
+//! The command palette: finds every command by name.
 
 use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, RichText, ScrollArea, TextEdit, vec2};
 
@@ -7,7 +7,7 @@ use super::commands::entries::ICON_ROOM;
 use super::state::EditorState;
 use super::theme;
 
-/// What the palette remembers while it is open.
+/// State of the palette while it is open.
 #[derive(Default)]
 pub struct CommandPalette {
     open: bool,
@@ -17,19 +17,19 @@ pub struct CommandPalette {
 }
 
 impl CommandPalette {
-    /// Opens it, empty.
+    /// Opens the empty palette.
     pub fn open(&mut self) {
         *self = Self { open: true, focus: true, ..Self::default() };
     }
 
-    /// Whether it is open.
+    /// Whether the palette is open.
     pub fn is_open(&self) -> bool {
         self.open
     }
 }
 
 impl CommandPalette {
-    /// Shows the palette where it is open; returns what is chosen.
+    /// Shows the palette if it is open; returns the chosen command.
     pub fn show(&mut self, state: &EditorState, ctx: &Context) -> Option<Command> {
         if !self.open {
             return None;
@@ -43,7 +43,7 @@ impl CommandPalette {
         self.chosen = (self.chosen + usize::from(down)).min(last).saturating_sub(usize::from(up));
         let mut run = found.get(self.chosen).copied().filter(|_| enter);
         let moved = up || down;
-        // A click beside it closes it and reaches nothing else.
+        // A click outside closes the palette and reaches nothing else.
         let id = Id::unique("palette");
         let top = (ctx.content_rect().height() * 0.15).min(120.0);
         let response = Modal::new(id)
@@ -60,7 +60,7 @@ impl CommandPalette {
         self.focus = false;
         if escape || outside || enter || run.is_some() {
             self.open = false;
-            // The key belongs to the palette, not to the widget that had the keyboard before.
+            // The palette consumes the key before the widget that had the focus.
             ctx.memory_mut(|m| m.stop_text_input());
         }
         run
@@ -108,7 +108,7 @@ impl CommandPalette {
     }
 }
 
-/// The commands whose label holds every word typed; those that begin with the text first.
+/// The commands whose label contains every typed word; those that start with the text come first.
 fn matches(text: &str) -> Vec<Command> {
     let wanted = text.to_lowercase();
     let words: Vec<&str> = wanted.split_whitespace().collect();

@@ -1,4 +1,5 @@
-//! Somebody else has changed the document's file: asked before it is written over, told when it is noticed.
+//! Conflicts with another program that changes the document's file: a warning when noticed, a question before
+//! overwriting.
 
 use std::path::{Path, PathBuf};
 
@@ -9,46 +10,46 @@ use super::theme;
 use isolith_jobs::Job;
 use isolith_scene::file::Stamp;
 
-/// A question that waits, and what has been told.
+/// The pending question and the last warning.
 #[derive(Default)]
 pub struct Conflict {
-    /// A question that waits for its answer.
+    /// The pending question.
     pub question: Option<OverwriteQuestion>,
-    /// The window had the keyboard.
+    /// The window had the focus in the last frame.
     pub had_focus: bool,
-    /// What the file was when the artist was told that it is another one.
+    /// The stamp of the changed file in the last warning.
     pub told: Option<Stamp>,
-    /// Looks whether the file is the one of this stamp still.
+    /// The check whether the file still has this stamp.
     pub looking: Option<(Job<bool>, Stamp)>,
 }
 
-/// Whether to write over the file, and how to go on then.
+/// Whether to overwrite the file, and the step after it.
 pub struct OverwriteQuestion {
-    /// Where to.
+    /// The file to write.
     pub path: PathBuf,
-    /// What follows.
+    /// The step after saving.
     pub then: Option<Next>,
 }
 
-/// What is answered to it.
+/// The answer to an [`OverwriteQuestion`].
 pub enum OverwriteAnswer {
-    /// Write over it.
+    /// Overwrite the file.
     Overwrite,
     /// Choose another file.
     SaveAs,
-    /// Read it again, and give the changes up.
+    /// Reload the file and discard the changes.
     Reload,
-    /// Leave everything as it is.
+    /// Do nothing.
     Cancel,
 }
 
 impl Conflict {
-    /// Whether a look at the file is under way.
+    /// Whether a check of the file is running.
     pub fn is_looking(&self) -> bool {
         self.looking.is_some()
     }
 
-    /// Whether the window waits for an answer.
+    /// Whether a question is open.
     pub fn is_open(&self) -> bool {
         self.question.is_some()
     }

@@ -1,4 +1,4 @@
-//! The dialogs in the window: the questions before something is lost, and the field for a path.
+//! Views of the dialogs: the questions before a loss of work, and the path field.
 
 use std::path::{Path, PathBuf};
 
@@ -8,7 +8,7 @@ use super::dialogs::{Next, PathField, Purpose, Question};
 use super::root::Editor;
 use super::{theme, widgets};
 
-/// What is answered to a question.
+/// The answer to a question.
 #[derive(Clone, Copy, PartialEq)]
 enum DialogAnswer {
     /// Do what the accented button says.
@@ -18,11 +18,11 @@ enum DialogAnswer {
 }
 
 const BUTTON: egui::Vec2 = vec2(96.0, 28.0);
-/// Most characters of a name in a heading.
+/// Maximum number of characters of a name in a heading.
 const NAME: usize = 36;
 
 impl Editor {
-    /// Shows what is being asked.
+    /// Shows the open dialog.
     pub(super) fn show_dialogs(&mut self, ctx: &Context) {
         match self.dialogs.question.take() {
             Some(Question::Unsaved(next)) => self.ask_to_save(next, ctx),
@@ -45,7 +45,7 @@ impl Editor {
         }
     }
 
-    /// No key agrees to this by itself: the Enter that ended the path may come twice.
+    /// No default key here: the Enter that ended the path may arrive twice.
     fn ask_to_replace(&mut self, path: PathBuf, then: Option<Next>, ctx: &Context) {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let folder = path.parent().unwrap_or(Path::new("")).display();
@@ -87,7 +87,7 @@ impl Editor {
     }
 }
 
-/// The field and its buttons; whether it is agreed or canceled.
+/// The field and its buttons; returns whether the artist has agreed or canceled.
 fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     let mut done = None;
     let edit = TextEdit::singleline(&mut field.text)
@@ -124,7 +124,7 @@ fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     done
 }
 
-/// A question about something of this name; what was answered to it.
+/// A question about an object of this name; returns the answer.
 fn question(
     ctx: &Context,
     (verb, name, text): (&str, &str, &str),
@@ -161,7 +161,7 @@ fn question(
     answer.or(response.should_close().then_some(DialogAnswer::Cancel))
 }
 
-/// Ctrl S agrees where saving is what is asked about.
+/// Ctrl S agrees if the question is about saving.
 fn wants_save(ctx: &Context) -> bool {
     ctx.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::S))
 }
@@ -171,7 +171,7 @@ fn accented(ui: &mut Ui, text: &str) -> bool {
     ui.add(Button::new(text).fill(theme::ACCENT).min_size(BUTTON)).clicked()
 }
 
-/// Selects the file's name, without folder and ending, so that typing replaces it.
+/// Selects the file's name without folder and extension, so that typing replaces it.
 fn select_name(ctx: &Context, field: Id, path: &str) {
     let end = path.chars().count();
     let start = path.rfind('/').map_or(0, |i| path[..=i].chars().count());

@@ -1,5 +1,5 @@
-//! What is asked before work is lost, and for which files: the questions as data. `dialog_views` shows them, `choosing` and
-//! `documents` go on with the answers.
+//! The dialogs as data: questions before a loss of work, and requests for paths. `dialog_views` shows them; `choosing`
+//! and `documents` act on the answers.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
@@ -9,34 +9,34 @@ use super::edit_session::WantedFile;
 use isolith_scene::Attached;
 use isolith_session::{Opened, folder_of};
 
-/// An intent that can be carried out: its document has been opened.
+/// A step that is ready to run: its document has been read.
 pub enum Next {
-    /// A new scene.
+    /// Start a new scene.
     New,
     /// Ask which file to open.
     Choose,
-    /// Show this document, which was read from this file.
+    /// Show this document, read from this file.
     Show(Box<Opened>, Option<PathBuf>),
-    /// Save to this path, though the file is another one where the flag says so; then go on.
+    /// Save to this path, then continue. The flag allows overwriting a file that another program has changed.
     Save(PathBuf, bool, Option<Box<Next>>),
     /// Close the window.
     Quit,
 }
 
-/// What a path is wanted for.
+/// The purpose of a path.
 pub enum Purpose {
-    /// To open a scene.
+    /// Open a scene.
     Open,
-    /// To save; then goes on with what the saving was asked for.
+    /// Save, then continue with the step that needed the saving.
     Save(Option<Next>),
-    /// To add a mesh.
+    /// Add a mesh.
     Mesh,
-    /// For a file that nodes keep.
+    /// Store a file in the scene.
     Attach(WantedFile),
 }
 
 impl Purpose {
-    /// What the dialog is called.
+    /// The title of the dialog.
     pub fn title(&self) -> &'static str {
         match self {
             Self::Open => "Open a scene",
@@ -47,7 +47,7 @@ impl Purpose {
         }
     }
 
-    /// Why the path cannot serve this purpose, before anything is read or written.
+    /// Why the path cannot serve this purpose, before any reading or writing.
     pub fn refusal(&self, path: &Path) -> Option<String> {
         let name = path.display();
         if path.as_os_str().is_empty() {
@@ -59,7 +59,7 @@ impl Purpose {
         }
         match self {
             Self::Save(_) => {}
-            // Its reader says more.
+            // Its reader reports problems in more detail.
             Self::Attach(_) => return None,
             Self::Open | Self::Mesh => return (!path.exists()).then(|| format!("There is no file {name}.")),
         }
@@ -72,52 +72,52 @@ impl Purpose {
     }
 }
 
-/// The system's dialog, open on a thread of its own.
+/// The system's dialog, open on its own thread.
 pub struct SystemDialog {
-    /// What for.
+    /// The purpose of the path.
     pub purpose: Purpose,
-    /// What is chosen in it.
+    /// Receives the answer.
     pub answer: Receiver<SystemAnswer>,
     /// When it was opened.
     pub since: Instant,
 }
 
-/// What comes of the system's dialog.
+/// The answer of the system's dialog.
 pub enum SystemAnswer {
-    /// What was chosen, if anything.
+    /// The chosen path; `None` if the artist has canceled.
     Chosen(Option<PathBuf>),
-    /// There is no such dialog here.
+    /// The system has no such dialog.
     NoDialog,
 }
 
-/// Our own dialog, for where the system has none.
+/// The built-in path dialog, for systems without one.
 pub struct PathField {
-    /// What for.
+    /// The purpose of the path.
     pub purpose: Purpose,
-    /// What is typed.
+    /// The typed text.
     pub text: String,
-    /// It has been given the keyboard.
+    /// Whether the field has received the focus once.
     pub focused: bool,
-    /// Why what was typed does not do.
+    /// Why the typed path is not suitable.
     pub problem: Option<String>,
 }
 
-/// A question before something is lost.
+/// A question before a loss of work.
 pub enum Question {
-    /// The document has changes that are not saved.
+    /// The document has unsaved changes.
     Unsaved(Next),
-    /// There is a file of this name already.
+    /// A file of this name exists.
     Replace(PathBuf, Option<Next>),
 }
 
-/// What is being asked.
+/// The open dialogs.
 #[derive(Default)]
 pub struct Dialogs {
-    /// A question that waits for its answer.
+    /// The pending question.
     pub question: Option<Question>,
-    /// The system's dialog, where one is open.
+    /// The system's dialog, if open.
     pub system: Option<SystemDialog>,
-    /// The path being typed.
+    /// The built-in path dialog, if open.
     pub path_field: Option<PathField>,
     /// Ask for paths in the window instead of by the system's dialog.
     pub in_window: bool,
@@ -126,13 +126,13 @@ pub struct Dialogs {
 }
 
 impl Dialogs {
-    /// Whether the window waits for an answer.
+    /// Whether a dialog in the window is open.
     pub fn is_open(&self) -> bool {
         self.question.is_some() || self.path_field.is_some()
     }
 }
 
-/// The path that a scene is saved to where this one was chosen.
+/// The path to save to for a chosen path: with the scene file extension.
 pub fn with_ending(path: &Path) -> PathBuf {
     if path.extension().is_none() { path.with_extension("json") } else { path.to_path_buf() }
 }

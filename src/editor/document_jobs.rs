@@ -1,4 +1,4 @@
-//! Documents on their way from and to their files.
+//! Jobs that open and save documents.
 
 use std::path::PathBuf;
 
@@ -8,32 +8,32 @@ use isolith_jobs::Job;
 use isolith_scene::file::FileError;
 use isolith_session::Opened;
 
-/// A document on its way.
+/// A document being opened.
 pub struct Opening {
-    /// See [`isolith_jobs`].
+    /// The job that reads it.
     pub job: Job<Result<Opened, String>>,
-    /// For people.
+    /// Display name.
     pub name: String,
-    /// The file that it is read from; an example has none.
+    /// The file to read; `None` for an example.
     pub path: Option<PathBuf>,
-    /// The artist has agreed already that what is open is given up.
+    /// The artist has already agreed to give up the current document.
     pub is_agreed: bool,
 }
 
-/// The document on its way to its file.
+/// The document being saved.
 pub struct Saving {
-    /// See [`isolith_jobs`].
+    /// The job that writes it.
     pub job: Job<SaveAnswer>,
-    /// Where to.
+    /// The file to write.
     pub path: PathBuf,
-    /// What is done when it is saved.
+    /// The step after saving.
     pub then: Option<Next>,
 }
 
-/// What came of it.
+/// The result of a saving job.
 pub enum SaveAnswer {
-    /// It is written, or not for this reason.
+    /// The file is written, or the reason why not.
     Saved(Result<Saved, FileError>),
-    /// Somebody else has changed the file: nothing is written unasked.
+    /// Another program has changed the file: nothing is written without the artist's consent.
     ChangedByOthers,
 }

@@ -1,5 +1,5 @@
-//! Opening, saving, quitting: jobs beside the frames, and the question before work is lost. What is open stays as it is until
-//! another document is whole, and can be edited meanwhile.
+//! Opening, saving, quitting: jobs beside the frames, and the question before a loss of work. The current document
+//! stays open and editable until the next one is complete.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ use isolith_scene::{Light, Node, NodeKind, Scene};
 use isolith_session::{folder_of, read_file};
 
 impl Editor {
-    /// Does it, after asking where work would be lost. What cannot be read is refused before that.
+    /// Carries out the intent, with a question before a loss of work. A file that cannot be read is refused before the
+    /// question.
     pub fn intend(&mut self, intent: Intent, ctx: &Context) {
         self.state.session.finish();
         match intent {
@@ -32,14 +33,14 @@ impl Editor {
         }
     }
 
-    /// Opens the document in this file, instead of another one that is being opened.
+    /// Opens the document in this file; replaces a pending opening.
     pub(super) fn open_file(&mut self, path: &Path, is_agreed: bool) {
         let name = name_of(path);
         let job = self.state.derived.open(&name, read_file(path));
         self.opening = Some(Opening { job, name, path: Some(path.to_path_buf()), is_agreed });
     }
 
-    /// Goes on, after asking where work would be lost by that. What is being saved is saved first.
+    /// Performs the step, with a question before a loss of work. A running save finishes first.
     fn unless_lost(&mut self, next: Next, ctx: &Context) {
         if let Some(saving) = &mut self.saving {
             saving.then = Some(next);
@@ -69,7 +70,7 @@ impl Editor {
         }
     }
 
-    /// Saves, asking for a path where there is none; then goes on with `then`.
+    /// Saves, asking for a path if the document has none; then continues with `then`.
     pub fn save(&mut self, then: Option<Next>, ctx: &Context) {
         self.state.session.finish();
         match self.state.session.document.path().map(Path::to_path_buf) {
@@ -78,7 +79,7 @@ impl Editor {
         }
     }
 
-    /// Saves beside the frames, then goes on with `then`. `may_replace`: though somebody else has changed the file.
+    /// Saves in a job, then continues with `then`. `may_replace` allows overwriting the changes of another program.
     pub(super) fn start_saving(&mut self, path: &Path, may_replace: bool, then: Option<Next>) {
         if let Some(saving) = &mut self.saving {
             saving.then = Some(Next::Save(path.to_path_buf(), may_replace, then.map(Box::new)));
@@ -95,7 +96,7 @@ impl Editor {
         self.saving = Some(Saving { job, path: path.to_path_buf(), then });
     }
 
-    /// Takes over what was opened and saved. Once a frame, before anything is shown.
+    /// Takes over opened and saved documents. Call once a frame, before the panels.
     pub(super) fn poll_documents(&mut self, ctx: &Context) {
         self.poll_saving(ctx);
         self.poll_opening(ctx);
@@ -113,7 +114,7 @@ impl Editor {
                 self.report(Message::success(format!("Saved {}", path.display())));
                 match then {
                     Some(next @ Next::Save(..)) => self.perform(next, ctx),
-                    // Edits made while it was saved are asked about.
+                    // Ask about edits made during the save.
                     Some(next) => self.unless_lost(next, ctx),
                     None => {}
                 }
@@ -123,13 +124,13 @@ impl Editor {
             JobEnd::Failed(reason) => {
                 self.report(Message::error(format!("{} is not saved: {reason}", path.display())));
             }
-            // It cannot be canceled.
+            // Saving cannot be canceled.
             JobEnd::Canceled => {}
         }
     }
 
     fn poll_opening(&mut self, ctx: &Context) {
-        // What is being dragged or asked about belongs to the document that is open.
+        // A drag or an open question belongs to the current document: wait for its end.
         let is_held = self.saving.is_some() || self.has_dialog() || ctx.input(|i| i.pointer.any_down());
         if is_held {
             return;
@@ -155,7 +156,7 @@ impl Editor {
         }
     }
 
-    /// Refuses to close the window while work would be lost, and asks.
+    /// Keeps the window open and asks if closing would lose work.
     pub(super) fn guard_closing(&mut self, ctx: &Context) {
         let requested = ctx.input(|i| i.viewport().close_requested());
         let would_lose = self.state.session.document.is_changed() || self.saving.is_some();
@@ -168,16 +169,16 @@ impl Editor {
     }
 }
 
-/// The last part of a path, for people.
+/// The last component of a path, for display.
 fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// What "New" gives: a sun and nothing else.
+/// The document of "New": only a sun.
 pub fn new_document() -> Document {
     let mut scene = Scene::new();
     let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
-    // Bright clay is not to be white on its lit side.
+    // Keep bright clay below white on its lit side.
     let light = Light { intensity: 1.2, ..Light::sun() };
     let sun = Node::new("Sun", NodeKind::Light(light)).rotated(direction).at(glam::DVec3::new(2.0, 4.0, 3.0));
     scene.insert(None, 0, sun).expect("an empty scene takes a light");

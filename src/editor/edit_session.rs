@@ -1,4 +1,4 @@
-//! The document with what every panel needs to change it: gestures and messages.
+//! The document and the means to change it from panels: gestures and messages.
 
 use std::sync::Arc;
 
@@ -11,27 +11,27 @@ use isolith_scene::{Attached, Material, Node, NodeId, NodeKind, ParamOwner, Para
 /// The document, the gesture in progress, the messages.
 ///
 /// Every change by a widget names the widget. All changes by one widget, from its first until the
-/// pointer is up and the widget has lost the keyboard, are one gesture and so one undo step.
+/// pointer is up and the widget has lost the focus, are one gesture and so one undo step.
 pub struct EditSession {
     /// The document.
     pub document: Document,
-    /// What the artist is told.
+    /// Messages to the artist.
     pub messages: Messages,
-    /// The file that a panel wants to be asked for.
+    /// The file request of a panel.
     pub wanted_file: Option<WantedFile>,
     gesture: Option<Id>,
 }
 
-/// A file for a parameter of some nodes.
+/// A request for a file as the value of a parameter of some nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WantedFile {
-    /// The parameter, of each node.
+    /// The paths of the parameter, one for each node.
     pub paths: Vec<ParamPath>,
-    /// What it is now.
+    /// Its current value.
     pub instead_of: Attached,
 }
 
-/// The node, its shape or modifier, and the parameter, for messages; nothing for a node that is gone.
+/// Names the node, its shape or modifier and the parameter, for messages; `None` if the node no longer exists.
 pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
     let ParamOwner::Node(id, part) = path.owner else { return None };
     let node = scene.node(id)?;
@@ -49,7 +49,7 @@ impl EditSession {
         Self { document, messages: Messages::default(), wanted_file: None, gesture: None }
     }
 
-    /// One change that is its own undo step; returns the nodes added. A refusal becomes a message.
+    /// Applies one change as its own undo step; returns the added nodes. A refusal becomes a message.
     pub fn apply(&mut self, edit: Edit) -> Vec<NodeId> {
         match self.document.apply(edit) {
             Ok(added) => added,
@@ -60,13 +60,13 @@ impl EditSession {
         }
     }
 
-    /// A change by a widget, part of its gesture.
+    /// Applies a change as part of the widget's gesture.
     pub fn apply_by(&mut self, widget: Id, edit: Edit) -> Vec<NodeId> {
         self.begin(widget);
         self.apply(edit)
     }
 
-    /// Changes each of the nodes, as part of the widget's gesture.
+    /// Changes each node as part of the widget's gesture.
     pub fn change(&mut self, widget: Id, ids: &[NodeId], change: impl Fn(&mut Node)) {
         self.begin(widget);
         for &id in ids {
@@ -78,7 +78,7 @@ impl EditSession {
         }
     }
 
-    /// Changes parameters, as part of the widget's gesture.
+    /// Changes parameters as part of the widget's gesture.
     pub fn set_params(&mut self, widget: Id, changes: Vec<(ParamPath, ParamValue)>) {
         self.begin(widget);
         for (path, value) in changes {
@@ -86,12 +86,12 @@ impl EditSession {
         }
     }
 
-    /// Changes a material, as part of the widget's gesture.
+    /// Changes a material as part of the widget's gesture.
     pub fn change_material(&mut self, widget: Id, material: Material) {
         self.apply_by(widget, Edit::ReplaceMaterial(material));
     }
 
-    /// Several changes as one undo step.
+    /// Combines several changes into one undo step.
     pub fn together<R>(&mut self, changes: impl FnOnce(&mut Self) -> R) -> R {
         self.document.begin_gesture();
         let result = changes(self);
@@ -99,17 +99,17 @@ impl EditSession {
         result
     }
 
-    /// The nodes selected, in order of selection; the last is the active one.
+    /// The selected nodes in order of selection; the last is the active one.
     pub fn selected(&self) -> Vec<Arc<Node>> {
         self.document.selection().iter().filter_map(|id| self.document.scene().node(*id).cloned()).collect()
     }
 
-    /// Whether a value is being changed right now.
+    /// Whether a gesture is in progress.
     pub fn is_changing(&self) -> bool {
         self.gesture.is_some()
     }
 
-    /// Ends the gesture when its widget has been let go. Once a frame, after all panels.
+    /// Ends the gesture once its widget is released. Call once a frame, after all panels.
     pub fn settle(&mut self, ctx: &Context) {
         let Some(widget) = self.gesture else { return };
         let held = ctx.input(|i| i.pointer.any_down()) || ctx.memory(|m| m.has_focus(widget));
@@ -118,14 +118,14 @@ impl EditSession {
         }
     }
 
-    /// Ends the gesture now, whatever the pointer does.
+    /// Ends the gesture now, regardless of the pointer.
     pub fn finish(&mut self) {
         if self.gesture.take().is_some() {
             self.document.end_gesture();
         }
     }
 
-    /// Takes the gesture back, whatever the pointer does.
+    /// Cancels the gesture, regardless of the pointer.
     pub fn cancel(&mut self) {
         if self.gesture.take().is_some() {
             self.document.cancel_gesture();

@@ -1,6 +1,6 @@
-//! What may be typed into a number field: numbers, + − × ÷ ^, brackets, `pi`, `sqrt`, `sin`, `cos`, `tan`.
+//! Expressions for number fields: numbers, + − × ÷ ^, brackets, `pi`, `sqrt`, `sin`, `cos`, `tan`.
 
-/// The value of the text, or `None` where it makes no sense. Angles of functions are in degrees.
+/// The value of the text, or `None` if it is not a valid expression. Angles of functions are in degrees.
 pub fn evaluate(text: &str) -> Option<f64> {
     let cleaned: String = text
         .chars()
@@ -25,7 +25,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    /// Brackets deeper than this are refused rather than risk the stack.
+    /// Deeper nesting of brackets is refused, to protect the stack.
     const MAX_DEPTH: u32 = 64;
 
     fn take(&mut self, token: &str) -> bool {

@@ -1,5 +1,5 @@
-//! Files that are read and written beside what is shown: those that nodes are to keep, because decoding an image may take a
-//! second, and the list of recent files, because a disk may sleep.
+//! Jobs that read and write files: files to store in nodes, because decoding an image may take a second, and the list
+//! of recent files, because a disk may sleep.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,51 +10,51 @@ use isolith_document::{Edit, RecentFiles};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
 use isolith_scene::{Attached, ParamValue, file};
 
-/// See the module.
+/// The file jobs of the editor and the list of recent files.
 #[derive(Default)]
 pub struct FileJobs {
-    /// Files that nodes are to keep, on their way.
+    /// Attachments being read.
     attachments: Vec<Attachment>,
     recent: RecentFiles,
-    /// Writes the list, and gives it back with what other windows have added.
+    /// Writes the list and returns it with the entries that other windows have added.
     noting: Option<Job<RecentFiles>>,
-    /// Files that are to be noted after that.
+    /// Files for the next write of the list.
     to_note: Vec<PathBuf>,
 }
 
-/// A file on its way to a node.
+/// An attachment being read.
 struct Attachment {
     wanted: WantedFile,
-    /// For people.
+    /// Display name.
     name: String,
     job: Job<Result<Attached, String>>,
 }
 
-/// How soon a file that has been read is looked for again while a value is being changed.
+/// Delay until the next look for read files during a gesture.
 const LATER: Duration = Duration::from_millis(100);
 
 impl FileJobs {
-    /// Remembers files between runs in this list.
+    /// Sets the list of recent files, which persists between runs.
     pub fn set_recent(&mut self, recent: RecentFiles) {
         self.recent = recent;
     }
 
-    /// The files opened and saved lately.
+    /// Recently opened and saved files.
     pub fn recent(&self) -> &RecentFiles {
         &self.recent
     }
 
-    /// The names of the files that are being read.
+    /// The names of the files being read.
     pub fn files_being_read(&self) -> impl Iterator<Item = &str> {
         self.attachments.iter().map(|attachment| &*attachment.name)
     }
 
-    /// Whether anything is on its way.
+    /// Whether any job is running.
     pub fn is_busy(&self) -> bool {
         !self.attachments.is_empty() || self.noting.is_some()
     }
 
-    /// Reads a file for those that want it.
+    /// Reads a file for the nodes that request it.
     pub fn read(&mut self, jobs: &Jobs, wanted: WantedFile, path: &Path) {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let (path, instead_of) = (path.to_path_buf(), wanted.instead_of.clone());
@@ -62,7 +62,7 @@ impl FileJobs {
         self.attachments.push(Attachment { wanted, name, job });
     }
 
-    /// The document is another one: nobody waits for its files.
+    /// Drops pending attachments: another document is open.
     pub fn forget_attachments(&mut self) {
         self.attachments.clear();
     }
@@ -84,7 +84,7 @@ impl FileJobs {
         }));
     }
 
-    /// Waits until the list is written: the program ends.
+    /// Waits until the list is written, at the end of the program.
     pub fn finish(&mut self) {
         if let Some(JobEnd::Done(recent)) = self.noting.take().map(Job::wait) {
             self.recent = recent;
@@ -94,8 +94,8 @@ impl FileJobs {
         }
     }
 
-    /// Gives files that have been read to their nodes. Once a frame; returns when it wants to be called again although nothing
-    /// happens.
+    /// Stores read files in their nodes. Call once a frame. Returns the delay until the next call if no event comes
+    /// earlier.
     pub fn poll(&mut self, jobs: &Jobs, session: &mut EditSession) -> Option<Duration> {
         if let Some(end) = self.noting.as_ref().and_then(Job::poll) {
             self.noting = None;
@@ -108,7 +108,7 @@ impl FileJobs {
             return None;
         }
         if session.is_changing() {
-            // An undo step would be cut in two.
+            // Attaching now would split the undo step of the gesture.
             return Some(LATER);
         }
         for attachment in std::mem::take(&mut self.attachments) {
@@ -131,11 +131,11 @@ fn refuse(session: &mut EditSession, wanted: &WantedFile, reason: &str) {
     session.messages.push(Message::error(format!("{subject}{reason}")));
 }
 
-/// Gives the file to the nodes that it is wanted for, as one undo step.
+/// Stores the file in the nodes that request it, as one undo step.
 fn attach(session: &mut EditSession, wanted: &WantedFile, file: &Attached) {
     session.together(|session| {
         for path in &wanted.paths {
-            // The node may be gone since, or another shape.
+            // Meanwhile the node may be gone or have another shape.
             let now = path.get(session.document.scene());
             if matches!(now, Ok(ParamValue::File(now)) if now.without() == file.without()) {
                 session.apply(Edit::SetParam { path: path.clone(), value: ParamValue::File(file.clone()) });

@@ -1,4 +1,4 @@
-//! Looks after the document's file: what another program does to it is told, and asked about before it is written over.
+//! Watches the document's file for changes by other programs: warns about them, and asks before overwriting them.
 
 use std::path::PathBuf;
 
@@ -11,12 +11,12 @@ use super::root::Editor;
 use isolith_jobs::{JobEnd, Task};
 
 impl Editor {
-    /// Asks whether to write over a file that somebody else has changed.
+    /// Asks whether to overwrite a file that another program has changed.
     pub(super) fn ask_about_conflict(&mut self, path: PathBuf, then: Option<Next>) {
         self.conflict.question = Some(OverwriteQuestion { path, then });
     }
 
-    /// Looks whether the file has changed when the artist comes back to the window. Once a frame.
+    /// Checks for changes of the file whenever the window regains the focus. Call once a frame.
     pub(super) fn watch_file(&mut self, ctx: &Context) {
         let has_focus = ctx.input(|i| i.focused);
         let had_focus = std::mem::replace(&mut self.conflict.had_focus, has_focus);
@@ -49,7 +49,7 @@ impl Editor {
         match answer {
             OverwriteAnswer::Overwrite => self.start_saving(&path, true, then),
             OverwriteAnswer::SaveAs => self.choose_save_path(then, ctx),
-            // Changes are given up: that is what was asked.
+            // The artist has just agreed to give up the changes.
             OverwriteAnswer::Reload => self.open_file(&path, true),
             OverwriteAnswer::Cancel => {}
         }

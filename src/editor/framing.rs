@@ -1,4 +1,4 @@
-//! What the view looks at: framing, cameras of the scene, a document's first view.
+//! Moves the view: framing, cameras of the scene, the first view of a document.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use super::state::EditorState;
 use isolith_field::debug_view::DepthRange;
 
 impl EditorState {
-    /// Shows all of the selection.
+    /// Frames the selection.
     pub(super) fn frame_selected(&mut self) {
         let selection = self.session.document.selection().to_vec();
         if let Some(bounds) = bounds::of_nodes(self.session.document.scene(), self.derived.library(), &selection) {
@@ -16,14 +16,14 @@ impl EditorState {
         }
     }
 
-    /// Shows the whole scene.
+    /// Frames the whole scene.
     pub(super) fn frame_all(&mut self) {
         if let Some(bounds) = bounds::of_scene(self.session.document.scene(), self.derived.library()) {
             self.view.navigation.frame(&bounds, self.view.aspect());
         }
     }
 
-    /// Takes over the view of the selected camera, or of the one after the one looked through now.
+    /// Takes over the view of the selected camera, or of the one after the current camera.
     pub(super) fn look_through_camera(&mut self) {
         let cameras = &self.derived.flat().cameras;
         let eye = self.view.navigation.eye();
@@ -38,7 +38,7 @@ impl EditorState {
         }
     }
 
-    /// The first view of a document: through its first camera, or all of it.
+    /// Sets the first view of a document: its first camera, or the whole scene.
     pub(super) fn show_as_saved(&mut self) {
         self.view.navigation = Navigation::default();
         if self.derived.flat().cameras.is_empty() {
@@ -48,13 +48,13 @@ impl EditorState {
         }
     }
 
-    /// The distances at which the scene stands, in front of the eye.
+    /// The range of distances from the eye that the scene occupies.
     pub(super) fn depth_range(&self) -> DepthRange {
         let meshes = self.derived.flat().known_meshes(self.derived.library());
         DepthRange::of(&self.derived.flat().content(&meshes), self.view.navigation.eye())
     }
 
-    /// The middle of the scene.
+    /// The center of the scene.
     fn focus(&self) -> DVec3 {
         bounds::of_scene(self.session.document.scene(), self.derived.library()).map_or(DVec3::ZERO, |b| b.center())
     }

@@ -1,5 +1,5 @@
 //! The handles that move the selection: three arrows along the world's axes and a dot for the plane
-//! that faces the eye. The mathematics is pure; painting goes over the picture.
+//! that faces the eye. The mathematics is pure; the handles are painted over the picture.
 
 use egui::{Painter, Pos2, Shape, Stroke, vec2};
 use glam::{DAffine3, DMat3, DVec3};
@@ -10,7 +10,7 @@ use super::{selection, theme};
 use isolith_geometry::Ray;
 use isolith_scene::NodeId;
 
-/// What can be grabbed.
+/// A handle of the gizmo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
     /// Along a world axis.
@@ -19,13 +19,13 @@ pub enum Handle {
     Plane,
 }
 
-/// Length of the arrows and reach of the pointer, in points.
+/// Length of the arrows and pick radius, in points.
 const LENGTH: f32 = 78.0;
 const GRAB: f32 = 8.0;
-/// An arrow shorter than this on the screen points at the eye and cannot be dragged.
+/// A shorter arrow points at the eye and cannot be dragged.
 const SHORTEST: f32 = 14.0;
 
-/// The middle of the selected nodes' origins in the world; `None` where nothing can be moved.
+/// The mean of the selected nodes' origins in the world; `None` if no node can move.
 pub fn pivot(session: &EditSession) -> Option<DVec3> {
     let scene = session.document.scene();
     let ids: Vec<_> =
@@ -37,14 +37,14 @@ pub fn pivot(session: &EditSession) -> Option<DVec3> {
     Some(sum / ids.len() as f64)
 }
 
-/// Where the arrows are on the screen, in points.
+/// Positions of the handles on the screen, in points.
 pub struct Arrows {
     center: Pos2,
     tips: [Option<Pos2>; 3],
 }
 
 impl Arrows {
-    /// The arrows at a pivot; `None` behind the eye.
+    /// The handles at a pivot; `None` if the pivot is behind the eye.
     pub fn new(pivot: DVec3, projection: &Projection) -> Option<Self> {
         let center = projection.to_screen(pivot)?;
         let length = projection.meters_per_point(pivot) * f64::from(LENGTH);
@@ -55,7 +55,7 @@ impl Arrows {
         Some(Self { center, tips })
     }
 
-    /// What lies under the pointer.
+    /// The handle under the pointer.
     pub fn handle_at(&self, pointer: Pos2) -> Option<Handle> {
         if pointer.distance(self.center) < GRAB {
             return Some(Handle::Plane);
@@ -65,7 +65,7 @@ impl Arrows {
         nearest.filter(|(_, distance)| *distance < GRAB).map(|(axis, _)| Handle::Axis(axis))
     }
 
-    /// Paints them, what is hovered or dragged brighter.
+    /// Paints the handles; the hovered or dragged one is brighter.
     pub fn paint(&self, painter: &Painter, lit: Option<Handle>) {
         for axis in 0..3 {
             let Some(tip) = self.tips[axis] else { continue };
@@ -90,16 +90,16 @@ fn segment_distance(p: Pos2, a: Pos2, b: Pos2) -> f32 {
 
 /// A drag in progress.
 pub struct Drag {
-    /// What was grabbed.
+    /// The dragged handle.
     pub handle: Handle,
-    /// How far it has been dragged, in the world.
+    /// Offset so far, in world space.
     pub offset: DVec3,
     pivot: DVec3,
     grabbed: DVec3,
     nodes: Vec<Start>,
 }
 
-/// Where a node was when the drag began.
+/// A node's placement at the start of the drag.
 struct Start {
     id: NodeId,
     translation: DVec3,
@@ -107,7 +107,7 @@ struct Start {
 }
 
 impl Drag {
-    /// Grabs a handle with the ray of the pointer; `forward` is where the eye looks.
+    /// Starts a drag with the ray of the pointer; `forward` is the view direction.
     pub fn begin(session: &EditSession, handle: Handle, ray: &Ray, forward: DVec3) -> Option<Self> {
         let pivot = pivot(session)?;
         let scene = session.document.scene();
@@ -136,7 +136,7 @@ impl Drag {
         }
     }
 
-    /// Puts the nodes where the drag has brought them.
+    /// Moves the nodes by the offset of the drag.
     pub fn apply(&self, session: &mut EditSession, widget: egui::Id) {
         for start in &self.nodes {
             let moved = start.translation + start.parent_from_world * self.offset;
@@ -147,12 +147,12 @@ impl Drag {
     }
 }
 
-/// Rounded to a hundred-thousandth of a meter, so that the inspector and the file show tidy numbers.
+/// Rounds to a hundred-thousandth of a meter, for tidy numbers in the inspector and the file.
 fn tidy(v: DVec3) -> DVec3 {
     (v * 1e5).round() / 1e5
 }
 
-/// The point on the handle that the ray passes.
+/// The point on the axis or plane of the handle under the ray.
 fn grabbed_point(handle: Handle, pivot: DVec3, ray: &Ray, forward: DVec3) -> Option<DVec3> {
     match handle {
         Handle::Axis(axis) => nearest_on_line(pivot, DVec3::AXES[axis], ray),
@@ -164,7 +164,7 @@ fn grabbed_point(handle: Handle, pivot: DVec3, ray: &Ray, forward: DVec3) -> Opt
 }
 
 /// The point of the line through `origin` along the unit vector `axis` that is nearest to the ray;
-/// `None` where they are parallel.
+/// `None` if they are parallel.
 fn nearest_on_line(origin: DVec3, axis: DVec3, ray: &Ray) -> Option<DVec3> {
     let between = origin - ray.origin;
     let cosine = axis.dot(ray.direction);
@@ -176,7 +176,7 @@ fn nearest_on_line(origin: DVec3, axis: DVec3, ray: &Ray) -> Option<DVec3> {
     Some(origin + axis * along)
 }
 
-/// A round step for snapping: about a fiftieth of what is seen.
+/// A round snapping step: about a fiftieth of the visible extent.
 pub fn snap_step(distance: f64) -> f64 {
     10.0_f64.powf((distance * 0.05).log10().round()).max(1e-6)
 }

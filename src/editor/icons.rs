@@ -1,4 +1,4 @@
-//! The icons of every kind of node. Shapes are drawn in `shape_icons`.
+//! Icons for every kind of node. `shape_icons` draws the shapes.
 
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
@@ -12,7 +12,7 @@ pub use super::shape_icons::paint_shape;
 use super::theme;
 use isolith_scene::{LightKind, Node, NodeKind, Operator};
 
-/// The drawing of a node's kind: a shape's silhouette or an icon, in the kind's color.
+/// Paints the icon of a node: a shape's silhouette or a glyph, in the color of its kind.
 pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
     let color = node_color(node);
     match &node.kind {
@@ -36,7 +36,7 @@ pub fn node_color(node: &Node) -> Color32 {
     }
 }
 
-/// The icon of an operator: which part of two circles stays.
+/// Icon of an operator: the part of two circles that remains.
 pub fn operator_icon(operator: Operator) -> MaterialIcon {
     match operator {
         Operator::Union => ICON_JOIN_FULL,
@@ -52,7 +52,7 @@ pub fn operator_icon(operator: Operator) -> MaterialIcon {
     }
 }
 
-/// The icon of a kind of light.
+/// Icon of a kind of light.
 pub fn light_icon(light: &LightKind) -> MaterialIcon {
     match light {
         LightKind::Sun {} => ICON_WB_SUNNY,
@@ -61,13 +61,13 @@ pub fn light_icon(light: &LightKind) -> MaterialIcon {
     }
 }
 
-/// Paints an icon into the middle of `rect`.
+/// Paints an icon in the center of `rect`.
 pub fn paint_icon(painter: &Painter, rect: Rect, icon: MaterialIcon, color: Color32) {
     let font = FontId::new(rect.height(), icon.font_family());
     painter.text(rect.center(), Align2::CENTER_CENTER, icon.codepoint, font, color);
 }
 
-/// A square of the given side in the middle of `rect`.
+/// A square of the given side in the center of `rect`.
 pub fn centered(rect: Rect, side: f32) -> Rect {
     Rect::from_center_size(pos2(rect.center().x.round(), rect.center().y.round()), vec2(side, side))
 }

@@ -1,32 +1,32 @@
-//! Hands events to egui in the order in which they came, however slow the frames are.
+//! Hands events to egui in the order of their arrival, however slow the frames are.
 //!
-//! egui looks at all events of a frame at once: after "1 Tab 2" in one frame both digits land in the second field, and a
-//! press and a release in two places are one click at the last of them. Here each event that changes what later ones
-//! mean (a button, Tab, Enter, Escape, a shortcut) ends a pass; those behind it wait for the next one.
+//! egui evaluates all events of a frame together: after "1 Tab 2" in one frame both digits land in the second field,
+//! and a press and a release at two positions become one click at the second. Here each event that changes the meaning
+//! of later ones (a button, Tab, Enter, Escape, a shortcut) ends a pass; later events wait for the next pass.
 //!
-//! A press beside an open popup closes it and does nothing else.
+//! A press outside an open popup closes the popup and does nothing else.
 
 use std::collections::{HashSet, VecDeque};
 
 use egui::{Context, Event, Key, Modifiers, Order, Plugin, PointerButton, Popup, Pos2, RawInput, Ui};
 
-/// The events that wait for a pass of their own.
+/// The queue of events that wait for a later pass.
 #[derive(Default)]
 pub struct InputOrder {
     waiting: VecDeque<Event>,
     held: HashSet<Key>,
-    /// The next pass gets no events: what the last one opened or focused is shown first.
+    /// The next pass gets no events: first show whatever the last pass opened or focused.
     settling: bool,
-    /// Buttons whose press has closed a popup: their release means nothing either.
+    /// Buttons whose press closed a popup: ignore their release, too.
     swallowed: Vec<PointerButton>,
-    /// Popups close before the next pass: a field in one of them has been told that it loses the keyboard.
+    /// Close popups before the next pass: a field in one of them has yet to handle the loss of the focus.
     closing: bool,
     /// When the last frame began, in seconds of the program's clock.
     time: Option<f64>,
 }
 
-/// Longest time between press and release of a click, in seconds; and the same in frames, where those are slow: press and
-/// release get a pass each.
+/// Longest time between press and release of a click: in seconds, and in frames if frames are slow. Press and release
+/// take a pass each.
 const LONGEST_CLICK: f64 = 0.8;
 const FRAMES_OF_CLICK: f64 = 8.0;
 
@@ -37,7 +37,7 @@ impl Plugin for InputOrder {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         self.waiting.extend(input.events.drain(..));
-        // A pass that repeats a discarded one is to show the same again.
+        // A pass that repeats a discarded one shows the same state again.
         if ctx.current_pass_index() > 0 {
             return;
         }
@@ -67,7 +67,7 @@ impl InputOrder {
         ctx.options_mut(|options| options.input_options.max_click_duration = longest);
     }
 
-    /// The events up to the next one that changes what later ones mean.
+    /// The events up to the next one that changes the meaning of later ones.
     fn next_events(&mut self, typing: bool) -> Vec<Event> {
         let mut events = Vec::new();
         while let Some(event) = self.waiting.front() {
@@ -81,7 +81,7 @@ impl InputOrder {
             events.push(event);
             if ends {
                 self.take_what_belongs(&mut events, typing);
-                // A field that gets the keyboard by a key selects its text in the pass after that.
+                // A field that gets the focus by a key selects its text in the pass after that.
                 self.settling = is_key || !self.waiting.is_empty();
                 break;
             }
@@ -93,7 +93,7 @@ impl InputOrder {
         match event {
             Event::PointerButton { .. } => true,
             Event::Key { key, pressed: true, modifiers, .. } => {
-                // A key that is held repeats faster than a slow frame could follow.
+                // A held key repeats faster than slow frames can follow.
                 !self.held.contains(key) && (!typing || ends_typing(*key, *modifiers))
             }
             _ => false,
@@ -108,13 +108,13 @@ impl InputOrder {
             Event::Key { key, pressed: false, .. } => {
                 self.held.remove(key);
             }
-            // What is let go elsewhere is not told.
+            // A window without focus receives no release events.
             Event::WindowFocused(_) => self.held.clear(),
             _ => {}
         }
     }
 
-    /// The text of a key that was just taken, and keys let go: they change nothing.
+    /// Appends the text of the key just taken, and key releases: they do not change the meaning of later events.
     fn take_what_belongs(&mut self, events: &mut Vec<Event>, typing: bool) {
         while let Some(event) = self.waiting.front() {
             match event {
@@ -128,7 +128,7 @@ impl InputOrder {
         }
     }
 
-    /// Takes out the button that is pressed beside an open popup, and its release; the popup closes.
+    /// Removes presses outside an open popup and the matching releases; the popup closes.
     fn close_popups_instead(&mut self, ctx: &Context, events: &mut Vec<Event>) {
         let is_open = Popup::is_any_open(ctx);
         let pointer = ctx.pointer_latest_pos();
@@ -145,7 +145,7 @@ impl InputOrder {
                 let place = self.swallowed.iter().position(|swallowed| swallowed == button);
                 place.map(|place| self.swallowed.swap_remove(place)).is_none()
             }
-            // Nor does the wheel move what is behind a popup.
+            // The wheel does not scroll the content behind a popup either.
             Event::MouseWheel { .. } | Event::Zoom(_) => {
                 !(is_open && pointer.is_some_and(|pos| is_beside_popups(ctx, pos)))
             }
@@ -153,7 +153,7 @@ impl InputOrder {
         });
     }
 
-    /// Closes all popups: at once, or after a text field in one of them has taken what was typed.
+    /// Closes all popups: at once, or after a text field in one of them has taken its text.
     fn close_popups(&mut self, ctx: &Context) {
         if ctx.text_edit_focused() {
             ctx.memory_mut(|memory| memory.stop_text_input());
@@ -164,8 +164,8 @@ impl InputOrder {
     }
 }
 
-/// Whether an event needs a pass behind that of those before it: a field that loses the keyboard does not look at what was
-/// typed in the same pass, and what is dragged arrives before it is let go.
+/// Whether an event needs a later pass than the events before it: a field that loses the focus ignores text of the same
+/// pass, and a drag must arrive before the release.
 fn comes_later(before: &[Event], event: &Event) -> bool {
     before.iter().any(|event| match event {
         Event::Text(_) | Event::Paste(_) | Event::Cut | Event::Copy | Event::Ime(_) => true,
@@ -179,7 +179,7 @@ fn is_beside_popups(ctx: &Context, pos: Pos2) -> bool {
     ctx.layer_id_at(pos).is_none_or(|layer| layer.order < Order::Foreground)
 }
 
-/// Whether a key does something else than change the text that is being typed.
+/// Whether a key does more than edit the text.
 fn ends_typing(key: Key, modifiers: Modifiers) -> bool {
     use Key::{
         A, ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, C, Delete, End, Enter, Escape, Home, Tab, V, X, Y, Z,
@@ -207,7 +207,7 @@ mod tests {
         Event::PointerButton { pos: Pos2::ZERO, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE }
     }
 
-    /// The lengths of the groups in which the events are handed over.
+    /// The lengths of the groups of events for successive passes.
     fn groups(typing: bool, events: Vec<Event>) -> Vec<usize> {
         let mut order = InputOrder { waiting: events.into(), ..InputOrder::default() };
         std::iter::from_fn(|| {

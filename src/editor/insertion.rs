@@ -1,4 +1,4 @@
-//! Where new nodes go: into the selected group or behind the selected node, at what the view looks at.
+//! Adds new nodes: into the selected group or after the selected node, at the view's target.
 
 use std::collections::HashSet;
 
@@ -29,7 +29,7 @@ pub fn node_above(state: &mut EditorState, node: Node, up: f64) -> Option<NodeId
     node_in_world(state, node.at(target + DVec3::Y * up))
 }
 
-/// Adds a node whose transform is meant in the world, and selects it.
+/// Adds a node with a transform in world space, and selects it.
 pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> {
     let scene = state.session.document.scene();
     let (parent, position) = place(scene, state.session.document.selection());
@@ -43,7 +43,7 @@ pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> 
     Some(added)
 }
 
-/// At the end of the active group, or behind the active node, or at the end of the scene.
+/// The end of the active group, or the place after the active node, or the end of the scene.
 fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
     match selection.last().and_then(|id| scene.node(*id)) {
         None => (None, scene.children(None).count()),
@@ -60,7 +60,7 @@ fn tidy_target(state: &EditorState) -> DVec3 {
     (state.view.navigation.target * per_meter).round() / per_meter
 }
 
-/// The name itself, or with the first number that is free.
+/// The name itself, or the name with the first free number.
 fn free_name(scene: &Scene, base: &str) -> String {
     let taken: HashSet<&str> = scene.nodes().iter().map(|n| n.name.as_str()).collect();
     let mut names = std::iter::once(base.to_owned()).chain((2..).map(|n| format!("{base} {n}")));

@@ -1,4 +1,4 @@
-//! The panel on the right: everything about the selection, or the world when nothing is selected.
+//! The panel on the right: all parameters of the selection, or of the world if nothing is selected.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeKind};
 
-/// What the inspector remembers between frames.
+/// State of the inspector that persists between frames.
 #[derive(Default)]
 pub struct Inspector {
     transform: inspector_transform::EulerMemory,
@@ -48,7 +48,7 @@ impl Inspector {
             let selected = session.selected();
             match selected.last() {
                 None => inspector_scene::show(ui, session),
-                // What is typed for one node is not for another one.
+                // Text typed for one node must not reach another.
                 Some(active) => {
                     ui.push_id(active.id, |ui| self.show_selection(ui, session, active.clone(), selected.clone()));
                 }
@@ -57,7 +57,7 @@ impl Inspector {
         });
     }
 
-    /// The places of those that are not locked.
+    /// The transforms of the unlocked nodes; disabled if all are locked.
     fn transform(&mut self, ui: &mut Ui, session: &mut EditSession, all: &[Arc<Node>]) {
         let scene = session.document.snapshot();
         let (locked, free): (Vec<_>, Vec<_>) =
@@ -110,7 +110,7 @@ fn same_kind(a: &NodeKind, b: &NodeKind) -> bool {
     std::mem::discriminant(a) == std::mem::discriminant(b)
 }
 
-/// The word for a kind of node.
+/// The name of a node's kind.
 pub fn kind_label(node: &Node) -> &'static str {
     match &node.kind {
         NodeKind::Group(_) => "Group",
@@ -121,7 +121,7 @@ pub fn kind_label(node: &Node) -> &'static str {
     }
 }
 
-/// Icon, name, visibility, lock; the number of nodes where it is several.
+/// Icon, name, visibility and lock; for several nodes their number.
 fn header(ui: &mut Ui, session: &mut EditSession, active: &Node, all: &[Arc<Node>]) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(22.0, theme::ROW_HEIGHT), egui::Sense::hover());

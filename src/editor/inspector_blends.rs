@@ -1,4 +1,4 @@
-//! How nodes join: the role of an operand among its siblings, and the card of a group.
+//! Blends: the role of an operand among its siblings, and the card of a group.
 
 use egui::{RichText, Ui};
 
@@ -7,7 +7,7 @@ use super::numbers::NumberField;
 use super::{inspector_params, theme, widgets};
 use isolith_scene::{Group, Node, NodeKind, Operator, Part, RadiusUnit};
 
-/// Whether the node is joined or cut away, and how it blends; objects and groups.
+/// Whether the node is added or subtracted, and how it blends; for objects and groups.
 pub fn role(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     let describe = |cuts| if cuts { "Cut away from what stands before it" } else { "Joined by its group's operator" };
     edit.choice(
@@ -26,7 +26,7 @@ pub fn role(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     apart(ui, edit);
 }
 
-/// One check box for each sibling: those that are ticked do not blend with the active node.
+/// One check box for each sibling; checked siblings do not blend with the active node.
 fn apart(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     let active = edit.active().clone();
     let siblings: Vec<_> = {
@@ -64,7 +64,7 @@ fn get(n: &Node) -> Option<Group> {
     if let NodeKind::Group(g) = n.kind { Some(g) } else { None }
 }
 
-/// Operator, blend, and what else the operator needs: only what applies is shown.
+/// Operator, blend and the other parameters of the operator; shows only those that apply.
 pub fn group(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     widgets::card(ui, "Group", |ui| {
         row(ui, edit, "operator", |_| {});

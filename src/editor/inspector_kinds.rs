@@ -1,4 +1,4 @@
-//! The cards of each kind of node: shape, mesh, light, camera.
+//! Cards for the kinds of nodes: shape, mesh, light, camera.
 
 use egui::{RichText, Ui};
 
@@ -16,7 +16,7 @@ fn object_mut(n: &mut Node) -> Option<&mut Object> {
     if let NodeKind::Object(o) = &mut n.kind { Some(o) } else { None }
 }
 
-/// The shape's kind and its parameters, made from the table of shapes.
+/// The kind of the shape and its parameters, generated from the table of shapes.
 pub fn shape(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     widgets::card(ui, "Shape", |ui| {
         edit.choice(
@@ -50,7 +50,7 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
         let help = "A .gltf or .glb file, relative to the scene's folder";
         let path = |n: &Node| if let NodeKind::Mesh(m) = &n.kind { Some(m.path.clone()) } else { None };
         let (current, hint) = if edit.common(path).is_some() { (&*mesh.path, "models/thing.glb") } else { ("", MIXED) };
-        // Half a path names no file, so it is not looked for before it is typed to its end.
+        // An incomplete path names no file: look for the file only at the end of typing.
         let (widget, typed) = widgets::row(ui, "File", help, |ui| widgets::line(ui, "File", current, hint));
         if let Some(path) = typed {
             edit.change(widget, |n| {
@@ -62,7 +62,7 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
     });
 }
 
-/// Type, color, strength and reach.
+/// Type, color, strength and range.
 pub fn light(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     widgets::card(ui, "Light", |ui| {
         inspector_params::row(ui, edit, Part::Light, "light.type");
@@ -90,12 +90,12 @@ pub fn light(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     });
 }
 
-/// Whether few artists need this parameter of a light.
+/// Whether a parameter of a light is rarely needed.
 fn is_falloff(name: &str) -> bool {
     ["constant", "linear", "quadratic"].iter().any(|last| name.ends_with(last))
 }
 
-/// One of the angles of a spot light; the other one gives way, so that the inner is never the larger.
+/// One of the angles of a spot light; adjusts the other so that the inner angle is never the larger.
 fn angle(ui: &mut Ui, edit: &mut MultiEdit<'_>, name: String, other: &'static str, give_way: fn(f64, f64) -> f64) {
     let paths = edit.paths(Part::Light, name);
     let Some((widget, ParamChange::Whole(ParamValue::Scalar(new)))) =

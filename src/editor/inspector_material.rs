@@ -1,4 +1,4 @@
-//! The material of the selection: which one, and what it looks like.
+//! The material of the selection: its choice and its parameters.
 
 use egui::{Color32, Rgba, RichText, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
@@ -11,12 +11,12 @@ use isolith_document::Edit;
 use isolith_scene::limits::{INTENSITY, MAX_NAME, SHININESS};
 use isolith_scene::{Limits, Material, MaterialId, Node, NodeKind, ParamPath, Params};
 
-/// The materials of the nodes that are edited.
+/// The materials of the edited nodes.
 #[derive(Clone, Copy, PartialEq)]
 enum CommonMaterial {
-    /// All the same; `None` for meshes that keep their own.
+    /// All nodes have the same material; `None` for meshes that keep their own.
     Same(Option<MaterialId>),
-    /// Not all the same.
+    /// The materials differ.
     Mixed,
 }
 
@@ -32,7 +32,7 @@ pub fn show(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         let material = common.and_then(|id| edit.session().document.scene().material(id).cloned());
         match material {
             Some(material) => {
-                // What is typed for one material is not for another one.
+                // Text typed for one material must not reach another.
                 ui.push_id(material.id, |ui| editor(ui, edit, &material));
             }
             None => {
@@ -106,10 +106,10 @@ fn picker(ui: &mut Ui, edit: &mut MultiEdit<'_>, common: CommonMaterial) {
     }
 }
 
-/// Most letters of a material's name in the list.
+/// Maximum number of characters of a material's name in the list.
 const MOST_LETTERS: usize = 32;
 
-/// An entry of the list with the material's color in front.
+/// A list entry with a color swatch.
 fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Response {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
@@ -122,7 +122,7 @@ fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Respo
     .inner
 }
 
-/// A linear color as the screen shows it.
+/// Converts a linear color for display.
 pub fn display_color(linear: [f64; 3]) -> Color32 {
     let [r, g, b] = linear.map(|v| v.clamp(0.0, 1.0) as f32);
     Rgba::from_rgb(r, g, b).into()
@@ -175,7 +175,7 @@ fn roughness(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     }
 }
 
-/// Emission beyond 1 cannot be picked as a color: its brightest channel is a number of its own.
+/// The picker cannot choose emission above 1: the brightest channel is a separate number.
 fn emission_strength(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material, strength: f64) {
     let (label, help) = ("Emission strength", "Its brightest channel");
     let field = NumberField { label, help, limits: INTENSITY, default: None };

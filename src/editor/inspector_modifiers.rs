@@ -1,4 +1,4 @@
-//! The card of modifiers: a list that can be added to, reordered, switched off and edited, made from the table
+//! The card of modifiers: a list with buttons to add, reorder, switch off and edit, generated from the table
 //! of modifiers.
 
 use egui::{Align, Layout, RichText, Ui};
@@ -59,7 +59,7 @@ fn header(ui: &mut Ui, edit: &mut MultiEdit<'_>, index: usize, kind: ModifierKin
     });
 }
 
-/// The button that offers all kinds.
+/// The button that offers all kinds of modifiers.
 fn add(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     if edit.active().modifiers.len() >= MAX_MODIFIERS {
         let text = format!("{MAX_MODIFIERS} modifiers are the most that a node can have");

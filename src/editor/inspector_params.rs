@@ -1,5 +1,5 @@
-//! A row of the inspector for any parameter, made from its table. What is shown comes from the last of the paths; what is
-//! changed is changed for all of them, and values that differ show a dash.
+//! Inspector rows for any parameter, generated from its table. A row shows the value of the last path, changes all
+//! paths, and shows a dash if values differ.
 
 use std::borrow::Cow;
 
@@ -13,13 +13,13 @@ use super::theme;
 use super::widgets::{self, MIXED};
 use isolith_scene::{Attached, Limits, Param, ParamOwner, ParamPath, ParamValue, Part};
 
-/// What the artist did to a parameter.
+/// The artist's change of a parameter.
 pub enum ParamChange {
-    /// Another value for all of it.
+    /// A new value for the whole parameter.
     Whole(ParamValue),
-    /// Another value for one of its elements.
+    /// A new value for one of its elements.
     Element(usize, ParamValue),
-    /// Points added, removed or changed.
+    /// Added, removed or changed points.
     Points(PointEdit),
 }
 
@@ -28,7 +28,7 @@ pub fn row(ui: &mut Ui, nodes: &mut MultiEdit<'_>, part: Part, name: impl Into<C
     row_with(ui, nodes, part, name, |_| {});
 }
 
-/// The same with another label, help text or unit.
+/// Like [`row`], with another label, help text or unit.
 pub fn row_with(
     ui: &mut Ui,
     nodes: &mut MultiEdit<'_>,
@@ -50,7 +50,7 @@ pub fn single(ui: &mut Ui, session: &mut EditSession, path: ParamPath) {
     }
 }
 
-/// Makes the change for every path, as part of the widget's gesture. What does not have the parameter is left alone.
+/// Applies the change to every path as part of the widget's gesture. Ignores nodes without the parameter.
 pub fn apply(session: &mut EditSession, widget: Id, paths: &[ParamPath], change: &ParamChange) {
     let scene = session.document.snapshot();
     let with = |path: &ParamPath| {
@@ -69,7 +69,7 @@ pub fn apply(session: &mut EditSession, widget: Id, paths: &[ParamPath], change:
     session.set_params(widget, changes.collect());
 }
 
-/// The row; returns what the artist changed, which is still to be made.
+/// Shows the row; returns the artist's change for [`apply`].
 pub fn edit(
     ui: &mut Ui,
     session: &mut EditSession,
@@ -106,12 +106,12 @@ pub fn edit(
             inspector_points::list(ui, &field, &list, mixed).map(|(widget, edit)| (widget, ParamChange::Points(edit)))
         }
         ParamValue::File(file) => attachment(ui, session, &field, paths, (&file, mixed)),
-        // Rotations are shown as angles, see `inspector_transform`.
+        // `inspector_transform` shows rotations as angles.
         ParamValue::Rotation(_) => None,
     }
 }
 
-/// What a reset gives. One value for three fields only where the default is the same along every axis.
+/// The reset value. A vector has one only if its default is the same along every axis.
 fn default(value: &ParamValue) -> Option<f64> {
     match value {
         ParamValue::Scalar(v) => Some(*v),
@@ -121,7 +121,7 @@ fn default(value: &ParamValue) -> Option<f64> {
     }
 }
 
-/// The nearest whole number that is no less than 0.
+/// Rounds to a whole number of at least 0.
 fn whole(v: f64) -> u32 {
     v.round().clamp(0.0, f64::from(u32::MAX)) as u32
 }
@@ -217,7 +217,7 @@ fn most_letters(limits: &Limits) -> usize {
     limits.hard[1] as usize
 }
 
-/// A file that a parameter keeps: its name, which asks for another when clicked, and a cross to do without.
+/// A file parameter: its name, which asks for another file on a click, and a cross to remove the file.
 fn attachment(
     ui: &mut Ui,
     session: &mut EditSession,
@@ -226,7 +226,7 @@ fn attachment(
     (file, mixed): (&Attached, bool),
 ) -> Option<(Id, ParamChange)> {
     let of_modifier = matches!(paths.last().map(|path| path.owner), Some(ParamOwner::Node(_, Part::Modifier(_))));
-    // A modifier does nothing without a file; a shape has something else instead.
+    // Without a file a modifier does nothing, but a shape has a default.
     let label = if of_modifier { file.name().unwrap_or("No file") } else { file.label() };
     let shown = if mixed { MIXED } else { label };
     let (choose, remove) = widgets::row(ui, field.label, field.help, |ui| {

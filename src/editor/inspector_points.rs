@@ -1,4 +1,4 @@
-//! Lists of points: a row of numbers for each, in a list of its own that scrolls.
+//! Lists of points: a row of numbers for each point, in a scroll area of its own.
 
 use egui::{Id, RichText, ScrollArea, Ui, vec2};
 
@@ -6,12 +6,12 @@ use super::numbers::{self, NumberField};
 use super::theme;
 use isolith_scene::{Limits, List};
 
-/// The list grows up to this height, in points of the screen.
+/// Maximum height of the list, in screen points.
 const MOST_HEIGHT: f32 = 220.0;
 /// Width of the button in front of each row.
 const NUMBER_WIDTH: f32 = 30.0;
 
-/// What is done to a row.
+/// An action on a row.
 #[derive(Clone, Copy)]
 enum PointChange {
     Set(usize, f64),
@@ -21,7 +21,7 @@ enum PointChange {
     Down,
 }
 
-/// A change of a row of a list.
+/// A change of one row of a list.
 #[derive(Clone, Copy)]
 pub struct PointEdit {
     index: usize,
@@ -29,7 +29,7 @@ pub struct PointEdit {
 }
 
 impl PointEdit {
-    /// Makes the change where the list has such a row.
+    /// Applies the change if the list has such a row.
     pub fn apply(self, list: &mut List) {
         if self.index < list.rows.len() {
             apply(list, self.index, self.change);
@@ -37,7 +37,7 @@ impl PointEdit {
     }
 }
 
-/// The points that a parameter holds. The button in front of a row adds, removes and moves.
+/// The points of a parameter. The button in front of a row adds, removes and moves.
 pub fn list(ui: &mut Ui, field: &NumberField<'_>, shown: &List, is_mixed: bool) -> Option<(Id, PointEdit)> {
     let label = field.label;
     if is_mixed {
@@ -89,7 +89,7 @@ fn row(ui: &mut Ui, list: &List, index: usize, limits: &Limits) -> Option<(Id, P
         ui.ctx().accesskit_node_builder(response.0.id, |node| node.set_label(name.clone()));
         for (column, title) in list.columns.iter().enumerate() {
             let label = format!("{name} {title}");
-            // The unit would take the room of the number.
+            // No unit: there is room only for the number.
             let limits = Limits { unit: "", ..list.limits(column, limits) };
             let field = NumberField { label: &label, help: title, limits, default: None };
             let answer = numbers::number(ui, &field, &label, list.rows[index][column], false, width);
@@ -108,7 +108,7 @@ fn apply(list: &mut List, index: usize, change: PointChange) {
         PointChange::Up if index > 0 => list.rows.swap(index, index - 1),
         PointChange::Down if index + 1 < list.rows.len() => list.rows.swap(index, index + 1),
         PointChange::Insert if list.rows.len() < list.count[1] => {
-            // Half-way to the next point, or as far beyond the last one as it is from the one before it.
+            // Half-way to the next point, or beyond the last point by its distance to the point before.
             let here = list.rows[index];
             let other = list.rows.get(index + 1).or(list.rows.get(index.wrapping_sub(1))).copied().unwrap_or(here);
             let share = if index + 1 < list.rows.len() { 0.5 } else { -1.0 };

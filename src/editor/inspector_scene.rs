@@ -1,4 +1,4 @@
-//! What is shown when nothing is selected: the world and a word to beginners.
+//! The inspector without a selection: the world and a hint for beginners.
 
 use egui::{RichText, Ui};
 

@@ -16,7 +16,7 @@ const ROTATION_FIELD: NumberField<'_> = NumberField {
     default: Some(0.0),
 };
 
-/// The angles last typed, with the quaternion they gave: while that stands, they are shown as typed.
+/// The last typed angles and their quaternion: until it changes, the fields show the angles as typed.
 #[derive(Default)]
 pub struct EulerMemory {
     rotation: DQuat,
@@ -45,7 +45,7 @@ impl EulerMemory {
         self.turn(edit, widget, axis, value);
     }
 
-    /// Sets one angle in every node, leaving their other angles.
+    /// Sets one angle in every node and keeps their other angles.
     fn turn(&mut self, edit: &mut MultiEdit<'_>, widget: Id, axis: usize, value: f64) {
         let mut degrees = self.degrees(edit.active().transform.rotation);
         degrees[axis] = value;
@@ -70,7 +70,7 @@ impl EulerMemory {
 /// Angles about X, Y and Z in degrees, applied Z first, then X, then Y.
 fn to_degrees(rotation: DQuat) -> DVec3 {
     let (y, x, z) = rotation.to_euler(EulerRot::YXZ);
-    // Rounded to a billionth, so that −0 and 1e-15 do not show; adding 0 turns −0 into 0.
+    // Round to a billionth, to hide −0 and 1e-15; adding 0 turns −0 into 0.
     DVec3::new(x, y, z).map(|a| (a.to_degrees() * 1e9).round() / 1e9 + 0.0)
 }
 

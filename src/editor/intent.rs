@@ -1,17 +1,17 @@
-//! What replaces the document or ends the program, as it is ordered.
+//! Orders that replace the document or end the program.
 
 use std::path::PathBuf;
 
-/// Something that replaces the document or ends the program.
+/// An order that replaces the document or ends the program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Intent {
-    /// A new scene.
+    /// Start a new scene.
     New,
     /// Ask which file to open.
     Choose,
     /// Open this file.
     Open(PathBuf),
-    /// Open the example of this number.
+    /// Open the example of this index.
     Example(usize),
     /// Close the window.
     Quit,

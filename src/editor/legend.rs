@@ -1,4 +1,4 @@
-//! The corner of the viewport that explains the colors of a view mode.
+//! The legend in the corner of the viewport: explains the colors of a view mode.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Mesh, Painter, Pos2, Rect, pos2, vec2};
 use glam::Vec3;
@@ -6,14 +6,14 @@ use glam::Vec3;
 use super::theme;
 use isolith_field::debug_view::{DepthRange, Legend, ViewMode};
 
-/// From the viewport's corner, and from the legend's border to what is in it, in points.
+/// Margin outside and padding inside the legend, in points.
 const MARGIN: f32 = 12.0;
 /// Width of the color bar, in points.
 const BAR_WIDTH: f32 = 250.0;
 const BAR_HEIGHT: f32 = 12.0;
 const LINE: f32 = 18.0;
 
-/// Paints the legend of `view_mode` into the lower left corner of `rect`; nothing for the lit picture.
+/// Paints the legend of `view_mode` into the lower left corner of `rect`; none for the lit picture.
 pub fn paint(painter: &Painter, rect: Rect, view_mode: ViewMode, depth_range: &DepthRange) {
     let legend = view_mode.legend(depth_range);
     if legend.unit.is_empty() {
@@ -37,7 +37,7 @@ pub fn paint(painter: &Painter, rect: Rect, view_mode: ViewMode, depth_range: &D
     paint_swatches(painter, at, &legend);
 }
 
-/// The name as a title.
+/// Capitalizes a name for a title.
 pub fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -61,7 +61,7 @@ fn paint_bar(painter: &Painter, at: Pos2, legend: &Legend) {
     for (share, number) in &legend.ticks {
         let x = rect.left() + rect.width() * share;
         painter.vline(x, rect.bottom()..=rect.bottom() + 4.0, (1.0, theme::WEAK));
-        // Numbers at the ends stay within the card.
+        // Keep the numbers at the ends within the card.
         let (align, x) = match *share {
             share if share < 0.02 => (Align2::LEFT_TOP, x - 1.0),
             share if share > 0.98 => (Align2::RIGHT_TOP, x + 1.0),

@@ -1,4 +1,4 @@
-//! What the artist is told: toasts that fade, and a log of the last ones.
+//! Messages to the artist: toasts that fade, and a log of the latest ones.
 
 use std::collections::VecDeque;
 
@@ -7,16 +7,16 @@ use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON
 
 use super::theme;
 
-/// How much a message matters.
+/// The severity of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Severity {
-    /// Good to know.
+    /// Information.
     Info,
-    /// It worked.
+    /// An action has succeeded.
     Success,
-    /// Worth a look.
+    /// A problem that deserves attention.
     Warning,
-    /// It failed.
+    /// An action has failed.
     Error,
 }
 
@@ -42,7 +42,7 @@ impl Severity {
         icon.rich_text().color(self.color()).size(theme::ICON_SIZE)
     }
 
-    /// How long its toast stays, in seconds.
+    /// Duration of its toast, in seconds.
     fn seconds(self) -> f64 {
         match self {
             Self::Info | Self::Success => 3.0,
@@ -52,32 +52,32 @@ impl Severity {
     }
 }
 
-/// Something to tell the artist.
+/// A message to the artist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Message {
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
     /// One or two plain sentences.
     pub text: String,
 }
 
 impl Message {
-    /// Good to know.
+    /// An information.
     pub fn info(text: impl Into<String>) -> Self {
         Self { severity: Severity::Info, text: text.into() }
     }
 
-    /// It worked.
+    /// A success.
     pub fn success(text: impl Into<String>) -> Self {
         Self { severity: Severity::Success, text: text.into() }
     }
 
-    /// Worth a look.
+    /// A warning.
     pub fn warning(text: impl Into<String>) -> Self {
         Self { severity: Severity::Warning, text: text.into() }
     }
 
-    /// It failed.
+    /// An error.
     pub fn error(text: impl Into<String>) -> Self {
         Self { severity: Severity::Error, text: text.into() }
     }
@@ -86,12 +86,12 @@ impl Message {
 struct LogEntry {
     message: Message,
     count: u32,
-    /// When its toast goes, in seconds of the program's clock; `None` until it is first shown.
+    /// End of its toast, in seconds of the program's clock; `None` until the toast is shown.
     until: Option<f64>,
     dismissed: bool,
 }
 
-/// The last messages, newest last.
+/// The latest messages, newest last.
 #[derive(Default)]
 pub struct Messages {
     entries: VecDeque<LogEntry>,
@@ -103,7 +103,7 @@ impl Messages {
     const KEPT: usize = 200;
     const TOASTS: usize = 4;
 
-    /// Adds a message. The same message again only counts up.
+    /// Adds a message. A repetition of the last message only increases its count.
     pub fn push(&mut self, message: Message) {
         if let Some(last) = self.entries.back_mut().filter(|e| e.message == message) {
             last.count += 1;
@@ -117,12 +117,12 @@ impl Messages {
         }
     }
 
-    /// All messages kept, oldest first.
+    /// All stored messages, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = &Message> {
         self.entries.iter().map(|e| &e.message)
     }
 
-    /// The toasts, in the lower right corner of `area`.
+    /// Shows the toasts in the lower right corner of `area`.
     pub fn show_toasts(&mut self, ctx: &Context, area: egui::Rect) {
         let now = ctx.input(|i| i.time);
         let mut offset = 12.0;
@@ -141,7 +141,7 @@ impl Messages {
         }
     }
 
-    /// The window with all messages.
+    /// Shows the window with all messages.
     pub fn show_log(&mut self, ctx: &Context) {
         let mut open = self.show_log;
         egui::Window::new("Log").open(&mut open).default_size([460.0, 260.0]).show(ctx, |ui| {

@@ -1,26 +1,26 @@
-//! The editor: what the artist sees and does. Names egui only; the picture comes from outside as a
-//! texture, and what it should show goes out as a [`ViewSettings`] and a flat scene.
+//! The editor: the user interface. It names egui only; the picture comes from outside as a texture, and its inputs
+//! go out as a [`ViewSettings`] and a flat scene.
 //!
-//! The state is below, the shell above: a panel is given the state and knows nothing of other panels. Files import each
-//! other by file, and in no circle: types stand below what the editor does with them.
+//! State below, shell above: a panel gets the state and never calls another panel. Files import each other by file,
+//! without circles: types stand below the code that uses them.
 //!
-//! | file | what it does |
+//! | file | purpose |
 //! |---|---|
-//! | `state`, `edit_session`, `view_state` | what panels are given: the document with gestures (one drag, one undo step), messages, the view |
-//! | `panel`, `panels`, `shell` | what a panel is, all of them, and which stands where |
-//! | `root` | the editor: state, shell, and what comes up in front |
-//! | `commands/` | one table of everything that can be ordered: menus, toolbar, shortcuts, command palette |
+//! | `state`, `edit_session`, `view_state` | document with gestures (one drag, one undo step), messages, view |
+//! | `panel`, `panels`, `shell` | the trait, the list and the layout of panels |
+//! | `root` | the editor: state, shell, and the windows in front |
+//! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
 //! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
-//! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and the widgets they are made of |
-//! | `inspector_params` | a row for any parameter, from its table |
+//! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
+//! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
-//! | `legend` | what the colors of a picture mean that is not lit |
-//! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | what comes up in front |
+//! | `legend` | the meaning of the colors of a view mode |
+//! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
-//! | `file_jobs` | files that nodes keep, and the list of recent files |
-//! | `input_order` | events in the order in which they came, however slow the frames are |
-//! | `recovery`, `safekeeping` | unsaved work, kept beside the frames and offered again |
-//! | `conflict`, `file_watch` | a file that another program has changed |
+//! | `file_jobs` | files to store in nodes, and the list of recent files |
+//! | `input_order` | events in the order of their arrival, however slow the frames are |
+//! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
+//! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod bounds;
 mod choosing;

@@ -1,5 +1,5 @@
-//! Fields bound to the selected nodes: what is shown comes from the active node, what is changed
-//! changes every one of them, and values that differ show a dash.
+//! Fields bound to the selected nodes: they show the values of the active node, change every node, and show a dash if
+//! values differ.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -10,19 +10,19 @@ use super::edit_session::EditSession;
 use super::widgets;
 use isolith_scene::{Node, NodeId, ParamPath, Part};
 
-/// Nodes edited together; never empty, the last is the active one.
+/// Nodes edited together: at least one; the last is the active one.
 pub struct MultiEdit<'a> {
     session: &'a mut EditSession,
     nodes: Vec<Arc<Node>>,
 }
 
 impl<'a> MultiEdit<'a> {
-    /// Edits these nodes; `None` for none.
+    /// Edits these nodes; `None` if there are none.
     pub fn new(session: &'a mut EditSession, nodes: Vec<Arc<Node>>) -> Option<Self> {
         if nodes.is_empty() { None } else { Some(Self { session, nodes }) }
     }
 
-    /// A edit for those of the nodes that `keep` accepts; `None` where the active one is not among them.
+    /// Restricts the edit to the nodes that `keep` accepts; `None` if the active node is not among them.
     pub fn only(&mut self, keep: impl Fn(&Node) -> bool) -> Option<MultiEdit<'_>> {
         if !keep(self.active()) {
             return None;
@@ -31,7 +31,7 @@ impl<'a> MultiEdit<'a> {
         MultiEdit::new(self.session, nodes)
     }
 
-    /// The node whose values are shown.
+    /// The node whose values the fields show.
     pub fn active(&self) -> &Arc<Node> {
         self.nodes.last().expect("there is always a node")
     }
@@ -41,12 +41,12 @@ impl<'a> MultiEdit<'a> {
         self.session
     }
 
-    /// The nodes.
+    /// The ids of the nodes.
     pub fn ids(&self) -> Vec<NodeId> {
         self.nodes.iter().map(|n| n.id).collect()
     }
 
-    /// The paths of the nodes' parameter of this name.
+    /// The paths of this parameter, one for each node.
     pub fn paths(&self, part: Part, name: impl Into<Cow<'static, str>>) -> Vec<ParamPath> {
         let name = name.into();
         self.nodes.iter().map(|node| ParamPath::of_node(node.id, part, name.clone())).collect()
@@ -58,7 +58,7 @@ impl<'a> MultiEdit<'a> {
         self.session.change(widget, &ids, change);
     }
 
-    /// What all nodes agree on, or `None`.
+    /// The common value of all nodes, or `None` if they differ.
     pub fn common<T: PartialEq>(&self, get: impl Fn(&Node) -> T) -> Option<T> {
         let first = get(self.active());
         self.nodes.iter().all(|n| get(n) == first).then_some(first)

@@ -1,5 +1,5 @@
-//! The viewport's own camera: orbit, pan, zoom, frame. Pure mathematics in f64; a point under the
-//! pointer stays under it, to the pixel.
+//! The viewport's own camera: orbit, pan, zoom, frame. Pure mathematics in f64; panning and zooming keep the point
+//! under the pointer, to the pixel.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -25,7 +25,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// From the target to the eye.
+    /// The direction from the target to the eye.
     pub fn direction(self) -> DVec3 {
         match self {
             Self::Front => DVec3::Z,
@@ -38,14 +38,14 @@ impl Side {
     }
 }
 
-/// A camera that turns about a target.
+/// A camera that orbits a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Navigation {
-    /// What it turns about.
+    /// The center of the orbit.
     pub target: DVec3,
-    /// From the target to the eye, in meters.
+    /// Distance from the target to the eye, in meters.
     pub distance: f64,
-    /// World from camera.
+    /// Rotation from camera space to world space.
     pub rotation: DQuat,
     /// Full vertical angle of view in radians.
     pub fov_y: f64,
@@ -59,10 +59,10 @@ impl Default for Navigation {
 }
 
 impl Navigation {
-    /// Nearest and farthest distance to the target, in meters.
+    /// Minimum and maximum distance to the target, in meters.
     pub const DISTANCES: [f64; 2] = [1e-4, 1e7];
 
-    /// The camera as the renderer takes it.
+    /// The camera for the renderer.
     pub fn camera(&self) -> Camera {
         Camera {
             position: self.eye(),
@@ -73,12 +73,12 @@ impl Navigation {
         }
     }
 
-    /// Where the eye is.
+    /// The position of the eye.
     pub fn eye(&self) -> DVec3 {
         self.target + self.rotation * DVec3::Z * self.distance
     }
 
-    /// Takes over a camera's place; turns about the point in front of it that is nearest to `focus`.
+    /// Takes over a camera's placement; the new target is the point in front of it nearest to `focus`.
     pub fn look_through(&mut self, camera: &Camera, focus: DVec3) {
         let forward = camera.rotation * DVec3::NEG_Z;
         let distance = (focus - camera.position).dot(forward);
@@ -88,8 +88,8 @@ impl Navigation {
         self.target = camera.position + forward * self.distance;
     }
 
-    /// Turns about the target: a drag over the whole height turns by half a circle. The view keeps
-    /// its horizon; it stops at straight up and straight down.
+    /// Orbits the target: a drag over the whole height turns by half a circle. The horizon stays level;
+    /// the orbit stops at straight up and straight down.
     pub fn orbit(&mut self, drag_px: DVec2, height_px: f64) {
         let angle = drag_px * (PI / height_px.max(1.0));
         let pitch_now = (self.rotation * DVec3::Z).y.clamp(-1.0, 1.0).asin();
@@ -98,13 +98,13 @@ impl Navigation {
         self.rotation = turned.normalize();
     }
 
-    /// Moves sideways so that what is as far away as the target follows the pointer.
+    /// Moves sideways: points at the depth of the target follow the pointer.
     pub fn pan(&mut self, drag_px: DVec2, height_px: f64) {
         let per_px = self.camera().footprint(height_px) * self.distance;
         self.target += self.rotation * DVec3::new(-drag_px.x, drag_px.y, 0.0) * per_px;
     }
 
-    /// Multiplies the distance by `factor`; what lies under `pixel`, as far away as the target, stays there.
+    /// Multiplies the distance by `factor`; the point under `pixel` at the depth of the target stays there.
     pub fn zoom(&mut self, factor: f64, pixel: DVec2, size_px: DVec2) {
         let distance = self.limited(self.distance * factor);
         let factor = distance / self.distance;
@@ -125,7 +125,7 @@ impl Navigation {
         self.camera().ray(pixel, size_px)
     }
 
-    /// Sees all of a finite box, from where it looks now, with a little air around it.
+    /// Shows all of a finite box from the current direction, with a small margin.
     pub fn frame(&mut self, bounds: &Aabb, aspect: f64) {
         if !bounds.is_finite() || bounds.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! Fields for numbers: dragged, typed, reset. What is typed counts when it has been typed to its end, not by Escape.
+//! Number fields: drag, type, reset. Typed text takes effect at the end of typing, except after Escape.
 
 use std::cell::RefCell;
 
@@ -9,40 +9,40 @@ use super::{expression, theme};
 use isolith_scene::Limits;
 use isolith_scene::limits::Rule;
 
-/// What stands around a number.
+/// The description of a number field.
 #[derive(Clone, Copy)]
 pub struct NumberField<'a> {
-    /// On its left.
+    /// The label on its left.
     pub label: &'a str,
     /// One sentence, as a tooltip.
     pub help: &'a str,
-    /// Soft for dragging, hard for typing.
+    /// Soft limits for dragging, hard limits for typing.
     pub limits: Limits,
-    /// What a reset gives; `None` where there is no natural one.
+    /// The reset value; `None` if there is no natural one.
     pub default: Option<f64>,
 }
 
 impl NumberField<'_> {
-    /// What becomes of a number.
+    /// Rounds and clamps a number to the limits.
     fn taken(&self, value: f64) -> f64 {
         let Limits { soft, hard: [least, _], rule, .. } = self.limits;
         let value = if rule == Rule::Whole { value.round() } else { value };
         let [low, high] = self.limits.signed_range();
         let value = value.clamp(low, high);
-        // The nearest magnitude that is offered keeps the sign.
+        // The smallest allowed magnitude keeps the sign.
         if rule == Rule::Magnitude && value.abs() < least { soft[0].copysign(value) } else { value }
     }
 }
 
-/// What a number field returns.
+/// The response of a number field.
 pub struct FieldResponse {
-    /// Names the gesture.
+    /// Identifies the gesture.
     pub widget: Id,
-    /// The new value, where the artist changed it.
+    /// The new value, if the artist has changed it.
     pub value: Option<f64>,
 }
 
-/// A number in a field of the given width. `mixed` shows a dash until it is changed.
+/// A number field of the given width. `mixed` shows a dash until the value changes.
 pub fn number(ui: &mut Ui, field: &NumberField<'_>, name: &str, value: f64, mixed: bool, width: f32) -> FieldResponse {
     prefixed_number(ui, field, name, value, mixed, width, None)
 }
@@ -58,7 +58,7 @@ fn prefixed_number(
 ) -> FieldResponse {
     let (Limits { soft, unit, .. }, hard) = (field.limits, field.limits.signed_range());
     let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
-    // A value beyond the soft range, typed before, is not thrown back by a drag.
+    // A value typed beyond the soft range must not jump when a drag begins.
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
     let mut edited = value;
     let typed = RefCell::new(None);
@@ -69,7 +69,7 @@ fn prefixed_number(
             return None;
         }
         typed.replace(Some(text.to_owned()));
-        // What is left as it was shown keeps the digits that were not shown.
+        // Unchanged text keeps the digits beyond those shown.
         if text == shown { (!mixed).then_some(value) } else { expression::evaluate(text) }
     };
     let mut drag = DragValue::new(&mut edited)
@@ -100,7 +100,7 @@ fn prefixed_number(
         FieldResponse { widget: response.id, value: (response.changed() && edited != value).then_some(edited) };
     if let Some(text) = finished {
         if mixed {
-            // The number may be that of the node that is shown; the others get it all the same.
+            // Even if the number equals the value of the active node, the other nodes must get it.
             answer.value = expression::evaluate(&text);
         }
         refuse(ui, response.id, refusal(name, &text, field));
@@ -117,7 +117,7 @@ fn prefixed_number(
     answer
 }
 
-/// Passes in which egui still takes the text of a field that has lost the keyboard, though it was by Escape.
+/// Number of passes in which egui takes the text of a field after it has lost the focus, even by Escape.
 const PASSES_OF_LOSS: u64 = 2;
 
 fn cancel(ui: &Ui, widget: Id) {
@@ -130,10 +130,10 @@ fn canceled(ui: &Ui, widget: Id) -> bool {
     ui.data(|d| d.get_temp::<u64>(widget.with("canceled"))).is_some_and(|before| pass <= before + PASSES_OF_LOSS)
 }
 
-/// As many digits as say the number: none behind the point for whole ones, four for most, more for small ones.
+/// As many digits as needed: no decimals for whole numbers, at most four in general, more for small numbers.
 pub fn number_text(value: f64) -> String {
     const DECIMALS: i32 = 4;
-    // Beyond these places only a power of ten can be read.
+    // With more decimals than this, only scientific notation is readable.
     const MOST_DECIMALS: i32 = 9;
     let size = value.abs();
     if size == 0.0 || !size.is_finite() {
@@ -141,14 +141,14 @@ pub fn number_text(value: f64) -> String {
     }
     let decimals = if size < 1e-3 { DECIMALS - 1 - size.log10().floor() as i32 } else { DECIMALS };
     if decimals > MOST_DECIMALS {
-        // Angles that come out of a rotation are off by this much.
+        // Angles derived from a rotation have errors of this size.
         return if size < 1e-9 { "0".into() } else { format!("{value:.3e}") };
     }
     let text = format!("{value:.0$}", decimals as usize);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Why a field does not show what was typed into it, if it does not.
+/// Why a field does not take the typed text as it is; `None` if it does.
 fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
     let ([least, most], unit) = (field.limits.signed_range(), field.limits.unit);
     let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
@@ -170,12 +170,12 @@ fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
     }
 }
 
-/// Where a refusal waits for the editor.
+/// Key of the refusal for the editor.
 fn refused() -> Id {
     Id::unique("what was typed and refused")
 }
 
-/// Leaves a reason to be told. A field ends its edit in two passes: it is told once.
+/// Stores a refusal for the editor. A field ends its edit in two passes: store it only once.
 pub fn refuse(ui: &Ui, widget: Id, reason: Option<String>) {
     let pass = ui.ctx().cumulative_pass_nr();
     ui.data_mut(|d| {
@@ -188,12 +188,12 @@ pub fn refuse(ui: &Ui, widget: Id, reason: Option<String>) {
     });
 }
 
-/// Why what was just typed is not taken as it is, to be told.
+/// Takes the latest refusal, to report it.
 pub fn take_refusal(ctx: &Context) -> Option<String> {
     ctx.data_mut(|d| d.remove_temp(refused()))
 }
 
-/// Three numbers side by side, marked in the axes' colors. Answers with the axis changed.
+/// Three numbers side by side, marked in the axes' colors. Returns the index of the changed axis.
 pub fn vector(
     ui: &mut Ui,
     field: &NumberField<'_>,
@@ -215,7 +215,7 @@ pub fn vector(
     changed
 }
 
-/// Points of drag that cross the soft range; a large value moves faster.
+/// Change per point of a drag: 700 points cross the soft range, or 20 units of it; large values change faster.
 fn drag_speed(soft: [f64; 2], value: f64) -> f64 {
     let crossing = 700.0;
     let span = (soft[1] - soft[0]).min(20.0);
@@ -228,7 +228,7 @@ fn paint_axis_mark(ui: &Ui, response: &Response, axis: usize) {
     ui.painter().rect_filled(bar, 1.0, theme::AXES[axis]);
 }
 
-/// Backspace over the field, or the entry of its context menu.
+/// Whether the artist resets the value: by Backspace over the field, or by its context menu.
 fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
     let mut reset = false;
     response.context_menu(|ui| {

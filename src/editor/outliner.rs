@@ -1,4 +1,4 @@
-//! The tree of the scene: selecting, renaming, ordering, hiding, locking.
+//! The outliner: the tree of the scene, to select, rename, reorder, hide and lock nodes.
 
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
@@ -21,17 +21,17 @@ use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
 
-/// A row of the tree; `None` is the scene itself, which holds the top and is not shown.
+/// A row of the tree; `None` is the invisible root, the scene itself.
 type RowId = Option<NodeId>;
 
-/// What the outliner remembers between frames.
+/// State of the outliner that persists between frames.
 pub struct Outliner {
     tree: TreeViewState<RowId>,
     rename: Option<Rename>,
     search: String,
-    /// The selection last seen: a new one is scrolled to and its parents are opened.
+    /// The last selection seen; a new one scrolls into view and opens its parents.
     seen: Vec<NodeId>,
-    /// Below the last row.
+    /// The area below the last row.
     empty_room: Rect,
 }
 
@@ -53,7 +53,7 @@ struct Rename {
     focused: bool,
 }
 
-/// What a row asks for; done after the tree has been shown.
+/// A request of a row, carried out after the tree is shown.
 enum RowRequest {
     Rename(NodeId, String),
     EndRename,
@@ -97,7 +97,7 @@ impl Outliner {
         }
     }
 
-    /// Shows the panel; returns the commands chosen from its context menu.
+    /// Shows the panel; returns the commands chosen in its context menu.
     fn show(&mut self, ui: &mut Ui, session: &mut EditSession) -> Vec<Command> {
         self.search_field(ui);
         let scene = session.document.snapshot();
@@ -163,7 +163,7 @@ impl Outliner {
         ui.add_space(2.0);
     }
 
-    /// Takes over the document's selection; returns the node that must be made visible.
+    /// Takes over the document's selection; returns the node to scroll to.
     fn follow_selection(&mut self, session: &EditSession, scene: &Scene) -> Option<NodeId> {
         let selection = session.document.selection();
         let shown: HashSet<_> = self.tree.selected().iter().copied().flatten().collect();
@@ -184,7 +184,7 @@ impl Outliner {
         selection.last().copied()
     }
 
-    /// The nodes whose name holds the text searched for, with those above them; `None` for all.
+    /// The nodes whose name contains the search text, with their ancestors; `None` for all.
     fn found(&self, scene: &Scene) -> Option<HashSet<NodeId>> {
         let wanted = self.search.trim().to_lowercase();
         if wanted.is_empty() {
@@ -202,7 +202,7 @@ impl Outliner {
 
     fn act(&mut self, ui: &mut Ui, session: &mut EditSession, scene: &Scene, action: Action<RowId>) {
         match action {
-            // The tree answers a Shift click on the row where the range begins with an empty selection.
+            // On a Shift click on the first row of the range, the tree reports an empty selection.
             Action::SetSelected(rows) if rows.is_empty() && ui.input(|i| i.modifiers.shift) => {}
             Action::SetSelected(rows) => {
                 let ids: Vec<_> = rows.into_iter().flatten().collect();
@@ -219,7 +219,7 @@ impl Outliner {
                 let Some((ids, parent, position)) = destination(scene, &drag) else { return };
                 move_rows(session, ids, parent, position);
             }
-            // Beside the rows: to the end of the top level.
+            // Below the rows: drop at the end of the top level.
             Action::DragExternal(drag) if self.empty_room.contains(drag.position) => {
                 let line = self.empty_room.with_max_y(self.empty_room.top() + 2.0);
                 ui.painter().rect_filled(line, 0.0, theme::ACCENT);
@@ -276,9 +276,9 @@ fn empty(ui: &mut Ui) {
     });
 }
 
-/// The width of all rows: that of the panel, or more where groups are nested so deeply that no room for names is left.
+/// Width of the rows: that of the panel, or more if deep nesting leaves no room for names.
 fn tree_width(panel: f32, scene: &Scene) -> f32 {
-    /// What stands in a row besides its name and the indent, and the least room for the name.
+    /// Width of a row's icons and switches, minimum width of a name, width of one level of indent.
     const BESIDE_NAME: f32 = 92.0;
     const NAME: f32 = 72.0;
     const INDENT: f32 = 16.0;
@@ -286,7 +286,7 @@ fn tree_width(panel: f32, scene: &Scene) -> f32 {
     panel.max(deepest as f32 * INDENT + BESIDE_NAME + NAME)
 }
 
-/// Where a drag would put its nodes: `None` where that is not allowed.
+/// The destination of a drag: nodes, parent and position; `None` if it is not allowed.
 fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>, RowId, usize)> {
     let parent = drag.target;
     let ids: Vec<NodeId> = drag.source.iter().copied().flatten().collect();
@@ -294,7 +294,7 @@ fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>,
     if ids.is_empty() || parent.is_some_and(into_itself) {
         return None;
     }
-    // Positions are counted without the nodes that move.
+    // Positions do not count the moved nodes.
     let rest: Vec<NodeId> = scene.children(parent).map(|n| n.id).filter(|id| !ids.contains(id)).collect();
     let index = |row: &RowId| row.and_then(|id| rest.iter().position(|r| *r == id));
     let position = match &drag.position {
@@ -319,21 +319,21 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
     }
 }
 
-/// Everything that the rows are made from.
+/// The input of all rows.
 struct Rows<'a> {
     scene: &'a Scene,
     shown: Option<&'a HashSet<NodeId>>,
     /// The node to scroll to.
     reveal: Option<NodeId>,
     requests: &'a RefCell<Vec<RowRequest>>,
-    /// The row of that node: the tree draws only the rows in view, so that a row itself cannot ask to be seen.
+    /// The index of that row: the tree draws only the rows in view, so a row cannot scroll to itself.
     at: Cell<Option<usize>>,
-    /// How many rows there are.
+    /// The number of rows.
     count: Cell<usize>,
 }
 
 impl Rows<'_> {
-    /// Adds all rows, without recursion: scenes may be nested a thousand deep.
+    /// Adds all rows, without recursion: scenes can be nested a thousand levels deep.
     fn build(&self, builder: &mut egui_ltreeview::TreeViewBuilder<'_, RowId>, rename: &mut Option<Rename>) {
         builder.node(NodeBuilder::dir(None).flatten(true).default_open(true));
         let (nodes, depths) = (self.scene.nodes(), self.scene.depths());
@@ -410,7 +410,7 @@ impl Rows<'_> {
         };
         let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            // The sign stands behind the name, and is not what is cut off.
+            // The sign follows the name and stays visible when the name is truncated.
             let room = if node.negative { 16.0 } else { 0.0 };
             ui.scope(|ui| {
                 ui.set_max_width((ui.available_width() - room).max(8.0));
@@ -441,7 +441,7 @@ impl Rows<'_> {
         }
     }
 
-    /// The eye and the lock at the right end of the row; the lock appears when it is of use.
+    /// The eye and the lock at the right end of the row; an open lock appears only under the pointer.
     fn switches(&self, ui: &mut Ui, node: &Node) {
         let row = ui.clip_rect().with_min_y(ui.max_rect().top()).with_max_y(ui.max_rect().bottom());
         let hovered = ui.rect_contains_pointer(row);

@@ -1,4 +1,4 @@
-//! What is painted over the picture: the selection's boxes, lights and cameras, the compass.
+//! The overlay of the picture: boxes of the selection, lights and cameras, the compass.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Stroke, vec2};
 use glam::DVec3;
@@ -9,10 +9,10 @@ use super::state::EditorState;
 use super::{bounds, icons, theme};
 use isolith_scene::{Node, NodeId, NodeKind};
 
-/// Boxes are painted for so many selected nodes at most.
+/// Maximum number of selection boxes.
 const MOST_BOXES: usize = 64;
 
-/// Whether the renderer's outline says too little: the room of a group, and what is cut away or hidden.
+/// Whether the renderer's outline is not enough: for the bounds of groups, and for subtracted or hidden nodes.
 fn needs_box(node: &Node) -> bool {
     match node.kind {
         NodeKind::Group(_) => true,
@@ -21,7 +21,7 @@ fn needs_box(node: &Node) -> bool {
     }
 }
 
-/// The oriented boxes of the selected nodes that need them.
+/// Paints the oriented boxes of the selected nodes that need them.
 pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Projection) {
     let selection = state.session.document.selection().to_vec();
     let active = selection.last().copied();
@@ -37,7 +37,7 @@ pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Proj
     }
 }
 
-/// The corners of a box, each as three short strokes: it marks the room and hides little.
+/// Paints each corner of a box as three short strokes, which hide little of the picture.
 fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
     const SHARE: f32 = 0.22;
     for (index, corner) in corners.iter().enumerate() {
@@ -52,16 +52,16 @@ fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
 pub struct Marker {
     /// Its node.
     pub id: NodeId,
-    /// Where, in points.
+    /// Its position, in points.
     pub at: Pos2,
 }
 
 impl Marker {
-    /// Reach of the pointer, in points.
+    /// Pick radius, in points.
     pub const GRAB: f32 = 13.0;
 }
 
-/// The visible lights and cameras; none for the camera that is looked through.
+/// The visible lights and cameras, without the camera at the eye.
 pub fn markers(state: &EditorState, projection: &Projection) -> Vec<Marker> {
     let flat = state.flat();
     let lights = flat.lights.iter().map(|l| (l.id, l.position));
@@ -75,7 +75,7 @@ pub fn markers(state: &EditorState, projection: &Projection) -> Vec<Marker> {
         .collect()
 }
 
-/// Paints the markers, with the direction in which the selected ones shine or look.
+/// Paints the markers, with a direction arrow for selected ones.
 pub fn paint_markers(state: &EditorState, painter: &Painter, projection: &Projection, markers: &[Marker]) {
     for marker in markers {
         let scene = state.session.document.scene();
@@ -96,7 +96,7 @@ pub fn paint_markers(state: &EditorState, painter: &Painter, projection: &Projec
     }
 }
 
-/// The compass: the world's axes as the eye sees them; a click looks along one.
+/// The compass: the world's axes in the current view; a click looks along one.
 pub struct Compass {
     balls: [(Side, Pos2, f32); 6],
     center: Pos2,
@@ -119,12 +119,12 @@ impl Compass {
         Self { balls, center }
     }
 
-    /// The side under the pointer, the nearest first.
+    /// The side under the pointer; the nearest one wins.
     pub fn side_at(&self, pointer: Pos2) -> Option<Side> {
         self.balls.iter().rev().find(|(_, at, _)| at.distance(pointer) <= Self::BALL + 1.0).map(|ball| ball.0)
     }
 
-    /// Paints it, far balls first.
+    /// Paints the compass, far balls first.
     pub fn paint(&self, painter: &Painter, hovered: Option<Side>) {
         if hovered.is_some() {
             painter.circle_filled(self.center, Self::ARM + 14.0, Color32::from_white_alpha(10));
@@ -150,7 +150,7 @@ impl Compass {
     }
 }
 
-/// A word to beginners in the middle of an empty viewport.
+/// A hint for beginners in the center of an empty viewport.
 pub fn empty_hint(painter: &Painter, rect: Rect) {
     let at = rect.center() + vec2(0.0, -10.0);
     painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::TEXT);

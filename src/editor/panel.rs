@@ -1,38 +1,38 @@
-//! What a panel is: a part of the window that shows the editor's state and changes it, wherever the shell puts it.
+//! The trait of panels: a part of the window that shows and changes the editor's state, independent of the layout.
 
 use egui::Ui;
 
 use super::state::EditorState;
 
-/// Where a panel stands.
+/// The place of a panel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PanelPlace {
     /// A bar at the top.
     Top,
     /// A bar at the bottom.
     Bottom,
-    /// At the left, so wide at first and at least, in points.
+    /// At the left, with default and minimum width in points.
     Left(f32, f32),
-    /// At the right, so wide at first and at least, in points.
+    /// At the right, with default and minimum width in points.
     Right(f32, f32),
-    /// What the others leave. Only one can stand there.
+    /// The area that the other panels leave. Only one panel can take it.
     Center,
 }
 
-/// See the module.
+/// A part of the window that shows and changes the editor's state.
 pub trait Panel {
-    /// Tells it from the others, also in what the window remembers.
+    /// Unique id, which the window's saved layout uses, too.
     fn id(&self) -> &'static str;
 
-    /// What it is called.
+    /// Its title.
     fn title(&self) -> &'static str;
 
-    /// Where it stands unless the shell says otherwise.
+    /// Its default place.
     fn place(&self) -> PanelPlace;
 
-    /// Shows it.
+    /// Shows the panel.
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui);
 
-    /// Another document is shown from now on.
+    /// Drops all state of the previous document.
     fn forget(&mut self) {}
 }

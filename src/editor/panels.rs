@@ -1,4 +1,4 @@
-//! The registry of panels: a new one is a file of its own and a line here.
+//! The registry of panels: a new panel is a file and a line here.
 
 use super::inspector::Inspector;
 use super::outliner::Outliner;

@@ -1,11 +1,11 @@
-//! What lies under the pointer.
+//! Picks the node under the pointer.
 
 use super::state::EditorState;
 use isolith_field::pick;
 use isolith_geometry::Ray;
 use isolith_scene::NodeId;
 
-/// The node that the ray meets first: the very surface that is drawn, not a box around it.
+/// The node at the first hit of the ray: it traces the exact surface, not its bounds.
 pub fn pick_node(state: &EditorState, ray: &Ray) -> Option<NodeId> {
     let flat = state.flat();
     let meshes = flat.known_meshes(state.derived.library());

@@ -1,7 +1,7 @@
-//! Whether the system has dialogs for files: without a desktop, over ssh and in containers it often has none, and then the
-//! call for one ends only after a long time, or at once without a word.
+//! Detects whether the system has file dialogs. Without a desktop, over ssh and in containers it often has none; a call
+//! for a dialog then ends only after a long time, or at once without an error.
 
-/// Whether there is somebody who would show a dialog. Asks the session bus, and may take [`LONGEST`].
+/// Whether the system can show file dialogs. Asks the session bus, which may take [`LONGEST`].
 #[cfg(any(target_os = "windows", target_os = "macos"))]
 pub fn has_dialogs() -> bool {
     true
@@ -15,14 +15,14 @@ mod desktop {
     use std::sync::mpsc::channel;
     use std::time::Duration;
 
-    /// A portal that does not answer within this time is none.
+    /// A portal that does not answer within this time counts as missing.
     const LONGEST: Duration = Duration::from_millis(1_500);
 
-    /// Whether there is somebody who would show a dialog. Asks the session bus, and may take [`LONGEST`].
+    /// Whether the system can show file dialogs. Asks the session bus, which may take [`LONGEST`].
     pub fn has_dialogs() -> bool {
         let (sender, answer) = channel();
         let spawned = std::thread::Builder::new().name("portal".into()).spawn(move || {
-            // Nobody waits for an answer that comes too late.
+            // Ignore an answer after the timeout.
             let _ = sender.send(portal_version().is_ok());
         });
         let has_portal = spawned.is_ok() && answer.recv_timeout(LONGEST) == Ok(true);
@@ -35,7 +35,7 @@ mod desktop {
         zbus::blocking::Proxy::new(&bus, name, path, "org.freedesktop.portal.FileChooser")?.get_property("version")
     }
 
-    /// What `rfd` calls where there is no portal.
+    /// The fallback of `rfd` without a portal.
     fn is_in_path(program: &str) -> bool {
         let path = std::env::var_os("PATH").unwrap_or_default();
         std::env::split_paths(&path).any(|folder| folder.join(program).is_file())

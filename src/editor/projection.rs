@@ -1,4 +1,4 @@
-//! From the world to the screen and back, for one frame.
+//! Projection from the world to the screen and back, for one frame.
 
 use egui::{Pos2, Rect, vec2};
 use glam::{DVec2, DVec3};
@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::view_state::ViewState;
 use isolith_geometry::{Camera, Ray};
 
-/// See the module.
+/// The camera and the viewport of one frame.
 pub struct Projection {
     camera: Camera,
     rect: Rect,
@@ -15,22 +15,22 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// That of the viewport.
+    /// The projection of the viewport.
     pub fn new(view: &ViewState, pixels_per_point: f32) -> Self {
         let [width, height] = view.size_px.map(f64::from);
         let camera = view.navigation.camera();
         Self { camera, rect: view.rect, pixels_per_point, size_px: DVec2::new(width, height) }
     }
 
-    /// Where a point of the world appears, in points; `None` behind the eye or far outside.
+    /// The position of a world point on the screen, in points; `None` behind the eye or far outside.
     pub fn to_screen(&self, p: DVec3) -> Option<Pos2> {
         let (pixel, _) = self.camera.project(p, self.size_px)?;
         let point = pixel / f64::from(self.pixels_per_point);
-        // Far outside, single precision would wrap lines around the screen.
+        // Far outside, f32 would wrap lines around the screen.
         (point.abs().max_element() < 1e5).then(|| self.rect.min + vec2(point.x as f32, point.y as f32))
     }
 
-    /// How many meters a point of the screen is wide at the depth of a point of the world.
+    /// Meters per screen point at the depth of a world point.
     pub fn meters_per_point(&self, p: DVec3) -> f64 {
         let depth = (p - self.camera.position).dot(self.camera.rotation * DVec3::NEG_Z).max(0.0);
         self.camera.footprint(self.size_px.y) * depth * f64::from(self.pixels_per_point)

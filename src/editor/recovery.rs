@@ -1,4 +1,4 @@
-//! Work that is not saved is kept beside the frames, and offered again after it was lost.
+//! Keeps unsaved work in jobs beside the frames and offers it again after a loss.
 
 use std::time::Duration;
 
@@ -10,19 +10,19 @@ use super::safekeeping::{RecoveryChoice, Safekeeping, take_picture};
 use isolith_document::recovery::{Lost, Note, ReadSnapshot, Recovered, Recovery, Rescued, Unreadable};
 use isolith_jobs::{Job, JobEnd, Task};
 
-/// How long after a change a picture is kept, in seconds: by then the change is drawn.
+/// Delay from a change to its thumbnail, in seconds: by then the viewport shows the change.
 const PICTURE_AFTER: f64 = 0.5;
-/// Least time between two pictures, in seconds.
+/// Minimum time between two thumbnails, in seconds.
 const BETWEEN_PICTURES: f64 = 10.0;
 
 impl Editor {
-    /// From now on unsaved work is kept there; what lies there is offered.
+    /// Starts to keep unsaved work by `recovery` and offers the lost work there.
     pub fn set_recovery(&mut self, recovery: Recovery) {
         self.safekeeping = Some(Safekeeping::new(recovery));
         self.state.can_recover = true;
     }
 
-    /// The window is closed by the artist's wish: what has been given up is not kept. Otherwise it is.
+    /// Ends recovery when the artist closes the window: drops the copy of saved or discarded work, keeps any other.
     pub fn end_recovery(&mut self) {
         let is_settled = self.wants_close() || !self.state.session.document.is_changed();
         if let Some(mut safekeeping) = self.safekeeping.take().filter(|_| is_settled) {
@@ -30,7 +30,7 @@ impl Editor {
         }
     }
 
-    /// The document is saved or given up: nothing of it need be kept.
+    /// Drops the copy of the document, which is saved or discarded.
     pub(super) fn forget_kept(&mut self) {
         if let Some(safekeeping) = &mut self.safekeeping {
             safekeeping.recovery.forget();
@@ -43,12 +43,12 @@ impl Editor {
         self.safekeeping.as_ref().is_some_and(|safekeeping| safekeeping.reading.is_some())
     }
 
-    /// Whether the list of lost work is shown.
+    /// Whether the list of lost work is open.
     pub(super) fn is_offering(&self) -> bool {
         self.safekeeping.as_ref().is_some_and(|safekeeping| safekeeping.is_open)
     }
 
-    /// Shows the list of lost work, with what has been lost since.
+    /// Shows the list of lost work, including recent losses.
     pub(super) fn offer_lost_work(&mut self) {
         let Some(safekeeping) = &mut self.safekeeping else { return };
         let news = safekeeping.recovery.lost();
@@ -59,7 +59,7 @@ impl Editor {
         }
     }
 
-    /// Keeps what has changed, and passes on what other threads have to say. Once a frame, at its end.
+    /// Keeps the latest changes and reports the notes of other threads. Call once a frame, at its end.
     pub(super) fn follow_recovery(&mut self, ctx: &Context) {
         let is_changing = self.state.session.is_changing();
         let is_covered = self.has_dialog();
@@ -71,7 +71,7 @@ impl Editor {
         let revision = self.state.session.document.revision();
         if safekeeping.seen != Some(revision) {
             safekeeping.seen = Some(revision);
-            // Counted from the first change: an artist who never rests gets a picture, too.
+            // Count from the first change: continuous editing gets a thumbnail, too.
             if std::mem::replace(&mut safekeeping.is_pictured, false) {
                 safekeeping.changed_at = now;
             }
@@ -93,14 +93,14 @@ impl Editor {
         }
     }
 
-    /// Drops what threads had to say: it was expected.
+    /// Drops the notes of other threads: they were expected.
     pub fn drop_notes(&mut self) {
         if let Some(safekeeping) = &mut self.safekeeping {
             safekeeping.recovery.take_notes();
         }
     }
 
-    /// Shows what can be got back.
+    /// Shows the list of recoverable work.
     pub(super) fn show_recovery(&mut self, ctx: &Context) {
         let may_open = !self.state.session.document.is_changed();
         let Some(safekeeping) = self.safekeeping.as_mut().filter(|safekeeping| safekeeping.is_open) else { return };
@@ -116,7 +116,7 @@ impl Editor {
         }
     }
 
-    /// Has a lost document read. What is open is not changed, and stays until then.
+    /// Starts to read a lost document. The current document stays unchanged until then.
     fn recover(&mut self, index: usize) {
         let jobs = self.state.derived.jobs().clone();
         let Some(safekeeping) = &mut self.safekeeping else { return };
@@ -129,21 +129,21 @@ impl Editor {
         }));
     }
 
-    /// Shows a lost document that has been read. Once a frame.
+    /// Shows a lost document after reading. Call once a frame.
     pub(super) fn poll_recovery(&mut self) {
         let Some(safekeeping) = &mut self.safekeeping else { return };
         let Some(end) = safekeeping.reading.as_ref().and_then(Job::poll) else { return };
         safekeeping.reading = None;
         match end {
             JobEnd::Done((lost, read)) => self.show_recovered(lost, read),
-            // Whoever looks for lost work finds it again: nobody holds it any more.
+            // The lost work has no owner now, so the next search finds it again.
             JobEnd::Failed(reason) => self.report(Message::error(format!("It cannot be recovered: {reason}"))),
             JobEnd::Canceled => {}
         }
     }
 
     fn show_recovered(&mut self, lost: Lost, read: ReadSnapshot) {
-        // What is open may have been changed meanwhile, or undone so that something of it is kept all the same.
+        // Meanwhile the current document may have changes, or undone changes of which a copy exists.
         let is_changed = self.state.session.document.is_changed();
         if !is_changed {
             self.forget_kept();
@@ -164,7 +164,7 @@ impl Editor {
             }
             Ok(Recovered { document, problem }) => {
                 let rest = safekeeping.lost.len();
-                // Taken out, so that nothing of the recovered document is forgotten.
+                // Taken out, so that `replace_document` drops nothing of the recovered document.
                 let safekeeping = self.safekeeping.take();
                 self.replace_document(document);
                 self.safekeeping = safekeeping;

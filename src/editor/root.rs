@@ -1,5 +1,5 @@
-//! The editor: the state below, the shell with its panels above, and what comes up in front of both. What it does with
-//! documents and questions is in files of their own, each an `impl` of it.
+//! The editor: the state below, the shell with its panels above, and the windows in front. Its work with documents and
+//! dialogs is in separate files, each an `impl` of [`Editor`].
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,10 +24,10 @@ use isolith_jobs::Jobs;
 use isolith_mesh::MeshLibrary;
 use isolith_session::{Opened, folder_of};
 
-/// Most characters of a file's name in the window's title.
+/// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
 
-/// How often the progress of jobs is looked at.
+/// Interval between updates of the progress of jobs.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
 /// The editor.
@@ -36,24 +36,24 @@ pub struct Editor {
     shell: Shell,
     pub(super) command_palette: CommandPalette,
     pub(super) dialogs: Dialogs,
-    /// A document on its way to the window.
+    /// The document being opened.
     pub(super) opening: Option<Opening>,
-    /// The document on its way to its file.
+    /// The document being saved.
     pub(super) saving: Option<Saving>,
-    /// Keeps what is not saved; none where nothing is to be kept.
+    /// Keeps unsaved work; `None` if recovery is off.
     pub(super) safekeeping: Option<Safekeeping>,
     pub(super) conflict: Conflict,
-    /// The document is a new one, whose first view has to wait for its arrays and models.
+    /// The first view of a new document waits for its arrays and models.
     wants_view: bool,
     shown_title: String,
-    /// Text was being typed at the end of the last frame: its keys, Escape too, are not shortcuts.
+    /// A text field had the focus at the end of the last frame: its keys, including Escape, are not shortcuts.
     pub(super) typing: bool,
-    /// A command that waits until fields have taken what was typed into them.
+    /// A command that waits until fields have taken the typed text.
     pub(super) pending: Option<Command>,
 }
 
 impl Editor {
-    /// An editor for the document.
+    /// Creates an editor for the document.
     pub fn new(document: Document) -> Self {
         let mut editor = Self {
             state: EditorState::default(),
@@ -74,20 +74,20 @@ impl Editor {
         editor
     }
 
-    /// Installs fonts and the look. Once, before the first frame.
+    /// Installs fonts and style. Call once, before the first frame.
     pub fn setup(ctx: &Context) {
         theme::install(ctx);
         ctx.add_plugin(input_order::InputOrder::default());
-        // A field takes what was typed when the pointer is pressed elsewhere: the click may already select another node.
+        // A field takes its text on a press elsewhere, because the click that follows may select another node.
         ctx.options_mut(|options| options.input_options.surrender_focus_on = SurrenderFocusOn::Presses);
     }
 
-    /// Remembers files between runs in this list.
+    /// Sets the list of recent files, which persists between runs.
     pub fn set_recent(&mut self, recent: RecentFiles) {
         self.state.files.set_recent(recent);
     }
 
-    /// Offers examples in the File menu.
+    /// Sets the examples of the File menu.
     pub fn set_examples(&mut self, examples: Vec<Example>) {
         self.state.examples = examples;
     }
@@ -97,8 +97,8 @@ impl Editor {
         self.dialogs.in_window = true;
     }
 
-    /// Shows everything and takes the input of one frame. Afterward [`Editor::flat`] and
-    /// [`Editor::view`] are those of this frame: a dragged value is in them already.
+    /// Shows everything and handles the input of one frame. Afterward [`Editor::flat`] and
+    /// [`Editor::view`] belong to this frame: they include a dragged value.
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
@@ -153,7 +153,7 @@ impl Editor {
         }
     }
 
-    /// Does what the panel shown last has ordered.
+    /// Carries out the requests of the panel shown last.
     fn answer_requests(&mut self, ctx: &Context) {
         for request in std::mem::take(&mut self.state.requests) {
             match request {
@@ -167,7 +167,7 @@ impl Editor {
         }
     }
 
-    /// What the renderer should show.
+    /// The view for the renderer.
     pub fn view(&self) -> ViewSettings {
         self.state.wanted_view()
     }
@@ -177,32 +177,32 @@ impl Editor {
         &self.state.session.document
     }
 
-    /// The document, for changes from outside the panels.
+    /// The document, for changes by code outside the panels.
     pub fn document_mut(&mut self) -> &mut Document {
         &mut self.state.session.document
     }
 
-    /// The document as arrays; the last good ones where the document is beyond a limit.
+    /// The flat scene; the last valid one if the document exceeds a limit.
     pub fn flat(&self) -> &Arc<FlatScene> {
         self.state.flat()
     }
 
-    /// The meshes that the scene names, as far as they are read.
+    /// The meshes of the scene that are ready.
     pub fn meshes(&self) -> &MeshLibrary {
         self.state.derived.library()
     }
 
-    /// The names of the files for nodes that are being read.
+    /// The names of the files being read for nodes.
     pub fn files_being_read(&self) -> impl Iterator<Item = &str> {
         self.state.files.files_being_read()
     }
 
-    /// What runs beside the frames.
+    /// The jobs beside the frames.
     pub fn jobs(&self) -> &Jobs {
         self.state.derived.jobs()
     }
 
-    /// Whether anything runs beside the frames, or waits to be taken over by the next one.
+    /// Whether any job is running or its result waits for the next frame.
     pub fn is_busy(&self) -> bool {
         !self.jobs().is_idle()
             || self.state.derived.is_preparing()
@@ -213,12 +213,12 @@ impl Editor {
             || self.is_recovering()
     }
 
-    /// Whether the artist wants the picture to stay as it is until something changes; answers yes once.
+    /// Whether the artist has stopped drawing until the next change; resets the flag.
     pub fn take_stop_drawing(&mut self) -> bool {
         std::mem::take(&mut self.state.view.stops_drawing)
     }
 
-    /// Tells the artist something.
+    /// Reports a message to the artist.
     pub fn report(&mut self, message: Message) {
         self.state.session.messages.push(message);
     }
@@ -233,17 +233,17 @@ impl Editor {
         format!("{} – Isolith", widgets::elided(&self.state.session.document.title(), MOST_TITLE))
     }
 
-    /// Whether the artist has agreed to close the window: nothing is left to save.
+    /// Whether the artist has agreed to close the window: there is nothing left to save.
     pub fn wants_close(&self) -> bool {
         self.dialogs.closing
     }
 
-    /// Whether a question waits for its answer.
+    /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.is_open() || self.command_palette.is_open() || self.conflict.is_open() || self.is_offering()
     }
 
-    /// Shows a document instead of the one that is open.
+    /// Replaces the current document.
     pub(super) fn replace_document(&mut self, document: Document) {
         self.leave_document();
         self.state.derived.reset(document.path().and_then(folder_of));
@@ -251,7 +251,7 @@ impl Editor {
         self.follow_document();
     }
 
-    /// Shows a document that is ready.
+    /// Shows a document prepared by a job.
     pub(super) fn show_opened(&mut self, opened: Opened) {
         self.leave_document();
         self.state.session.document = self.state.derived.adopt(opened);
@@ -267,7 +267,7 @@ impl Editor {
         self.wants_view = true;
     }
 
-    /// Brings what is made of the document up to date; also once for another document, before its first frame.
+    /// Updates the data derived from the document; called once for a new document, too, before its first frame.
     fn follow_document(&mut self) {
         self.state.follow_document();
         if self.wants_view && !self.state.derived.is_preparing() {

@@ -1,4 +1,4 @@
-//! What is known about unsaved work while it is kept, and the list of what was lost.
+//! State of the recovery of unsaved work, and the list of lost work.
 
 use std::collections::HashMap;
 use std::time::SystemTime;
@@ -12,44 +12,44 @@ use super::theme;
 use isolith_document::recovery::{Lost, ReadSnapshot, Recovery, Thumbnail};
 use isolith_jobs::Job;
 
-/// Room for a picture in the list.
+/// Size of a thumbnail in the list.
 const PICTURE_SIZE: egui::Vec2 = vec2(144.0, 90.0);
 
-/// See the module.
+/// The recovery store with the state of its list.
 pub struct Safekeeping {
-    /// Keeps and finds it.
+    /// Keeps and finds unsaved work.
     pub recovery: Recovery,
-    /// What others lost. It is ours to offer until it is let go.
+    /// Lost work of other processes. This process owns it and may offer it until it lets it go.
     pub lost: Vec<Lost>,
-    /// One of them that is being read.
+    /// The lost document being read.
     pub reading: Option<Job<(Lost, ReadSnapshot)>>,
     textures: HashMap<String, TextureHandle>,
-    /// Whether the list is shown.
+    /// Whether the list is open.
     pub is_open: bool,
-    /// The one whose button has been pressed that throws it away.
+    /// The id of the entry whose Discard button waits for a second click.
     pub confirming: Option<String>,
-    /// The revision seen last.
+    /// The last revision seen.
     pub seen: Option<u64>,
-    /// When the document changed first after it was pictured, and when that was, in seconds of the program's clock.
+    /// Time of the first change after the last thumbnail, in seconds of the program's clock.
     pub changed_at: f64,
-    /// See there.
+    /// Time of the last thumbnail, in seconds of the program's clock.
     pub pictured_at: f64,
-    /// Nothing has changed since.
+    /// The last thumbnail shows the current revision.
     pub is_pictured: bool,
 }
 
-/// What is decided about lost work.
+/// The artist's decision about lost work.
 pub enum RecoveryChoice {
-    /// Open the one of this index.
+    /// Open the entry of this index.
     Recover(usize),
-    /// Throw it away.
+    /// Discard the entry of this index.
     Discard(usize),
-    /// Ask again another time.
+    /// Decide later.
     Later,
 }
 
 impl Safekeeping {
-    /// Keeps unsaved work by this; what lies there is offered.
+    /// Keeps unsaved work by `recovery` and offers the lost work there.
     pub fn new(recovery: Recovery) -> Self {
         let lost = recovery.lost();
         Self {
@@ -66,7 +66,7 @@ impl Safekeeping {
         }
     }
 
-    /// Shows the list; returns what is decided.
+    /// Shows the list; returns the decision.
     pub fn show(&mut self, ctx: &Context, may_open: bool) -> Option<RecoveryChoice> {
         for lost in &self.lost {
             if let Some(picture) = lost.picture().filter(|_| !self.textures.contains_key(&lost.id())) {
@@ -154,7 +154,7 @@ impl Safekeeping {
     }
 }
 
-/// Has the painted window sent to `give`, as far as it lies in `area`, in pixels.
+/// Captures the part of the window in `area`, in pixels, and passes it to `give`.
 pub fn take_picture(ctx: &Context, area: Rect, give: impl Fn(Thumbnail) + Send + 'static) {
     let callback = ScreenshotCallback::new(move |image| {
         let window = Rect::from_min_size(egui::Pos2::ZERO, vec2(image.width() as f32, image.height() as f32));
@@ -175,7 +175,7 @@ pub fn take_picture(ctx: &Context, area: Rect, give: impl Fn(Thumbnail) + Send +
     ctx.send_viewport_cmd(ViewportCommand::Screenshot(callback));
 }
 
-/// How long ago, in words.
+/// The age in words.
 fn age(then: SystemTime, now: SystemTime) -> String {
     let minutes = now.duration_since(then).unwrap_or_default().as_secs() / 60;
     let (count, unit) = match minutes {
@@ -187,11 +187,11 @@ fn age(then: SystemTime, now: SystemTime) -> String {
     format!("{count} {unit}{} ago", if count == 1 { "" } else { "s" })
 }
 
-/// Date and time of day. In Greenwich, because the place is not known.
+/// Date and time of day, in UTC because the time zone is unknown.
 fn date(then: SystemTime) -> String {
     let seconds = then.duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default().as_secs();
     let (days, rest) = (seconds / 86_400, seconds % 86_400);
-    // Days from 1 March of the year 0 on, in eras of 400 years, so that the leap day comes last.
+    // Count days from 1 March of the year 0, in eras of 400 years, so that the leap day comes last.
     let days = days + 719_468;
     let (era, of_era) = (days / 146_097, days % 146_097);
     let year = (of_era - of_era / 1_460 + of_era / 36_524 - of_era / 146_096) / 365;

@@ -1,4 +1,4 @@
-//! What can be done with the selection: each function is one undo step.
+//! Actions on the selection; each function is one undo step.
 
 use std::collections::HashSet;
 
@@ -7,7 +7,7 @@ use super::messages::Message;
 use isolith_document::Edit;
 use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
 
-/// The selected nodes that do not stand below another selected one, in the scene's order.
+/// The selected nodes without a selected ancestor, in scene order.
 pub fn roots(session: &EditSession) -> Vec<NodeId> {
     let scene = session.document.scene();
     let mut ids = session.document.selection().to_vec();
@@ -21,7 +21,7 @@ pub fn roots(session: &EditSession) -> Vec<NodeId> {
     roots
 }
 
-/// What keeps the node where it is: itself or a node above it, where that is locked.
+/// The node whose lock holds this node: itself or a locked ancestor.
 pub fn holder_of_lock(scene: &Scene, id: NodeId) -> Option<&Node> {
     let mut at = scene.node(id);
     while let Some(node) = at {
@@ -33,13 +33,13 @@ pub fn holder_of_lock(scene: &Scene, id: NodeId) -> Option<&Node> {
     None
 }
 
-/// What would be lost with the node though it is locked: as [`holder_of_lock`], or a node below it.
+/// The node whose lock prevents a deletion: as [`holder_of_lock`], or a locked descendant.
 fn lock_in_the_way(scene: &Scene, id: NodeId) -> Option<&Node> {
     let below = scene.index_of(id).map_or(0..0, |index| scene.subtree(index));
     holder_of_lock(scene, id).or_else(|| scene.nodes()[below].iter().map(|node| &**node).find(|node| node.locked))
 }
 
-/// Says that a locked node is in the way of what was wanted of some nodes; false, and nothing said, where none is.
+/// Warns if a lock prevents an action on the nodes, and returns whether one does.
 pub fn refuse_locked(session: &mut EditSession, ids: &[NodeId], wanted: &str) -> bool {
     let scene = session.document.scene();
     let Some(locked) = ids.iter().find_map(|id| holder_of_lock(scene, *id)) else { return false };
@@ -48,7 +48,7 @@ pub fn refuse_locked(session: &mut EditSession, ids: &[NodeId], wanted: &str) ->
     true
 }
 
-/// Copies the selection and selects the copies.
+/// Duplicates the selection and selects the copies.
 pub fn duplicate(session: &mut EditSession) {
     let added = session.apply(Edit::Duplicate(roots(session)));
     if !added.is_empty() {
@@ -56,7 +56,7 @@ pub fn duplicate(session: &mut EditSession) {
     }
 }
 
-/// Removes the selection, but for what is locked or holds something that is; nothing is selected afterward.
+/// Deletes the selection except nodes that are locked or contain locked nodes; clears the selection.
 pub fn delete(session: &mut EditSession) {
     let scene = session.document.snapshot();
     let (locked, free): (Vec<_>, Vec<_>) =
@@ -72,8 +72,8 @@ pub fn delete(session: &mut EditSession) {
     }
 }
 
-/// Makes the selection the operands of `operator`. One selected group only changes its operator,
-/// unless a `new` group is wanted.
+/// Makes the selection the operands of `operator`. A single selected group only changes its operator,
+/// unless `new` asks for another group.
 pub fn join(session: &mut EditSession, operator: Operator, new: bool) {
     let ids = roots(session);
     if refuse_locked(session, &ids, "joined with others") {
@@ -95,7 +95,7 @@ pub fn join(session: &mut EditSession, operator: Operator, new: bool) {
     }
 }
 
-/// Takes the children out of the selected groups and removes the groups.
+/// Moves the children out of the selected groups and removes the groups.
 pub fn ungroup(session: &mut EditSession) {
     let scene = session.document.snapshot();
     let groups: Vec<_> = roots(session)
@@ -123,7 +123,7 @@ pub fn ungroup(session: &mut EditSession) {
     session.document.select(freed);
 }
 
-/// Moves each of the selection one place up (−1) or down (+1) among its siblings.
+/// Moves each selected node one place up (−1) or down (+1) among its siblings.
 pub fn shift(session: &mut EditSession, by: isize) {
     let mut ids = roots(session);
     if refuse_locked(session, &ids, "moved") {
@@ -140,7 +140,7 @@ pub fn shift(session: &mut EditSession, by: isize) {
             let siblings: Vec<NodeId> = scene.children(parent).map(|n| n.id).collect();
             let at = place(scene, id);
             let target = at.checked_add_signed(by).filter(|t| *t < siblings.len());
-            // A block at the border stays together.
+            // A block of selected nodes at the border keeps its order.
             if let Some(position) = target.filter(|t| !done.contains(&siblings[*t])) {
                 session.apply(Edit::Move { ids: vec![id], parent, position });
             }
@@ -149,13 +149,13 @@ pub fn shift(session: &mut EditSession, by: isize) {
     });
 }
 
-/// The place of a node among its siblings.
+/// The position of a node among its siblings.
 pub fn place(scene: &Scene, id: NodeId) -> usize {
     let parent = scene.node(id).and_then(|n| n.parent);
     scene.children(parent).position(|n| n.id == id).unwrap_or(0)
 }
 
-/// Cuts the selection away, or joins it again: all as the active node.
+/// Toggles between subtracted and joined; all nodes get the new state of the active one.
 pub fn toggle_negative(session: &mut EditSession) {
     let ids: Vec<NodeId> = session.document.selection().into();
     if refuse_locked(session, &ids, "cut away or joined again") {
@@ -165,13 +165,13 @@ pub fn toggle_negative(session: &mut EditSession) {
     change_each(session, |n| n.negative = on && n.has_field());
 }
 
-/// Hides or shows the selection: all as the active node.
+/// Hides or shows the selection; all nodes get the new state of the active one.
 pub fn toggle_visible(session: &mut EditSession) {
     let on = session.selected().last().is_some_and(|n| !n.visible);
     change_each(session, |n| n.visible = on);
 }
 
-/// Locks or unlocks the selection: all as the active node.
+/// Locks or unlocks the selection; all nodes get the new state of the active one.
 pub fn toggle_locked(session: &mut EditSession) {
     let on = session.selected().last().is_some_and(|n| !n.locked);
     change_each(session, |n| n.locked = on);
@@ -188,7 +188,7 @@ fn change_each(session: &mut EditSession, change: impl Fn(&mut Node)) {
     });
 }
 
-/// Shows everything that is hidden.
+/// Shows all hidden nodes.
 pub fn show_all(session: &mut EditSession) {
     let hidden: Vec<_> = session.document.scene().nodes().iter().filter(|n| !n.visible).cloned().collect();
     session.together(|session| {
@@ -198,13 +198,13 @@ pub fn show_all(session: &mut EditSession) {
     });
 }
 
-/// Selects every node at the top that is not locked.
+/// Selects all unlocked nodes at the top level.
 pub fn select_all(session: &mut EditSession) {
     let ids = session.document.scene().children(None).filter(|n| !n.locked).map(|n| n.id).collect();
     session.document.select(ids);
 }
 
-/// Materials that nothing uses; the first is kept for new objects where nothing else would be left.
+/// Unused materials; keeps the first for new objects if all are unused.
 pub fn unused_materials(scene: &Scene) -> Vec<MaterialId> {
     let used: HashSet<MaterialId> = scene
         .nodes()

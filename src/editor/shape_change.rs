@@ -1,12 +1,12 @@
-//! Changing a shape in place: the new shape fills the room of the old one.
+//! Changes the kind of a shape in place: the new shape fills the bounds of the old one.
 
 use glam::DVec3;
 
 use isolith_geometry::Aabb;
 use isolith_scene::{Degrees, ParamValue, Shape, ShapeKind, Sides};
 
-/// A shape of the given kind that takes about the room of `from`. A shape without end gives no size:
-/// then the kind's defaults.
+/// A shape of the given kind with about the bounds of `from`. An unbounded shape gives no size:
+/// the result has the kind's defaults.
 pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     let bounds = from.bounds();
     let half = bounds.half().max(DVec3::splat(1e-3));
@@ -18,15 +18,15 @@ pub fn changed(from: &Shape, kind: ShapeKind) -> Shape {
     rounded(room.simple(kind).or_else(|| room.cut(kind)).unwrap_or_else(other))
 }
 
-/// The room that a shape takes, and sizes of others that fit into it.
+/// The bounds of a shape and derived sizes of other shapes.
 struct Room {
     center: DVec3,
     half: DVec3,
-    /// Half the size, in the mean.
+    /// Mean half size.
     mean: f64,
-    /// Half the size across the Y axis.
+    /// Half size across the Y axis.
     side: f64,
-    /// Half the size of what stands along Y; something flat keeps more of its width than of its height.
+    /// Half size of shapes that stand along Y; for flat bounds closer to their width than to their height.
     upright: f64,
 }
 
@@ -109,7 +109,7 @@ impl Room {
         })
     }
 
-    /// What is drawn point by point, and landscapes: the defaults, larger or smaller.
+    /// Shapes with points and heightfields: the defaults, scaled.
     fn drawn(&self, kind: ShapeKind) -> Shape {
         let shape = kind.default_shape();
         let factor = self.half.length() / shape.bounds().half().length();
@@ -117,7 +117,7 @@ impl Room {
     }
 }
 
-/// The shape with every number rounded to a micrometer, so that the inspector shows tidy values.
+/// Rounds every number to a micrometer, for tidy values in the inspector.
 fn rounded(mut shape: Shape) -> Shape {
     use ParamValue::{List, Scalar, Vector};
     let tidy = |v: f64| (v * 1e6).round() / 1e6;

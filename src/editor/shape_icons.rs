@@ -22,7 +22,7 @@ struct Pen<'a> {
 }
 
 impl Pen<'_> {
-    /// Balls and what is left of them. Each of these says whether the shape is one of its own.
+    /// Balls and parts of them. Like the following methods, returns whether it has drawn the shape.
     fn balls(&self, kind: ShapeKind) -> bool {
         match kind {
             ShapeKind::Sphere => {
@@ -177,7 +177,7 @@ impl Pen<'_> {
         true
     }
 
-    /// What narrows to a tip.
+    /// Shapes with a tip.
     fn tips(&self, kind: ShapeKind) -> bool {
         match kind {
             ShapeKind::CappedCone => self.tapered(0.75, 0.35),
@@ -205,7 +205,7 @@ impl Pen<'_> {
         true
     }
 
-    /// What is drawn point by point, and landscapes.
+    /// Shapes with points, and heightfields.
     fn drawn(&self, kind: ShapeKind) -> bool {
         match kind {
             ShapeKind::Tube => {
@@ -260,7 +260,7 @@ impl Pen<'_> {
         self.painter.add(Shape::line(points.iter().map(|p| self.at(*p)).collect(), self.stroke));
     }
 
-    /// Part of an ellipse; `start` and `share` in turns, clockwise from +X.
+    /// Part of an ellipse; `start` and `share` are in turns, clockwise from +X.
     fn ellipse(&self, center: [f32; 2], radii: [f32; 2], start: f32, share: f32) {
         let points = (0..=32).map(|i| {
             let angle = TAU * (start + share * i as f32 / 32.0);
@@ -269,7 +269,7 @@ impl Pen<'_> {
         self.painter.add(Shape::line(points.collect(), self.stroke));
     }
 
-    /// Two crests from left to right, `height` high, between two heights.
+    /// A wave of one and a half periods from left to right, `height` high, between two heights.
     fn wave(&self, height: f32, [from, to]: [f32; 2]) {
         let points = (0..=32).map(|i| {
             let t = i as f32 / 32.0;

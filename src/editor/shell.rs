@@ -1,4 +1,4 @@
-//! Which panels stand where.
+//! The layout of panels.
 
 use egui::{CentralPanel, Frame, Margin, Ui};
 
@@ -6,10 +6,10 @@ use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry};
 use super::theme;
 
-/// Most width of a panel at a side, in points.
+/// Maximum width of a side panel, in points.
 const WIDEST: f32 = 520.0;
 
-/// See the module.
+/// The panels with their places.
 pub struct Shell {
     panels: Vec<Placed>,
 }
@@ -21,18 +21,18 @@ struct Placed {
 }
 
 impl Placed {
-    /// Bars belong to the window; what stands at a side can be hidden.
+    /// Bars always stay; side panels can be hidden.
     fn can_close(&self) -> bool {
         matches!(self.place, PanelPlace::Left(..) | PanelPlace::Right(..))
     }
 }
 
 impl Shell {
-    /// These panels, each in its own place.
+    /// Creates a shell with each panel in its default place.
     pub fn new(panels: Vec<Box<dyn Panel>>) -> Self {
         let placed = |panel: Box<dyn Panel>| Placed { place: panel.place(), panel, is_open: true };
         let mut panels: Vec<_> = panels.into_iter().map(placed).collect();
-        // Bars reach over the whole width; the center is what the others leave.
+        // Bars take the whole width; the center takes the remaining area.
         panels.sort_by_key(|placed| match placed.place {
             PanelPlace::Top => 0,
             PanelPlace::Bottom => 1,
@@ -43,13 +43,13 @@ impl Shell {
         Self { panels }
     }
 
-    /// How many panels there are.
+    /// The number of panels.
     pub fn len(&self) -> usize {
         self.panels.len()
     }
 
-    /// Shows the panel of this index. To be called for all in their order, so that what one orders can be done before the
-    /// next one is shown.
+    /// Shows the panel of this index. Call it for all panels in order; the caller carries out the requests of each
+    /// before the next.
     pub fn show(&mut self, index: usize, state: &mut EditorState, ui: &mut Ui) {
         let Some(Placed { panel, place, is_open: true }) = self.panels.get_mut(index) else { return };
         let frame = |fill, margin| Frame::new().fill(fill).inner_margin(margin);
@@ -77,14 +77,14 @@ impl Shell {
         }
     }
 
-    /// Shows the panel of this id, or hides it.
+    /// Toggles the panel of this id.
     pub fn toggle(&mut self, id: &str) {
         for placed in self.panels.iter_mut().filter(|placed| placed.panel.id() == id && placed.can_close()) {
             placed.is_open ^= true;
         }
     }
 
-    /// The panels that can be shown and hidden.
+    /// The panels that can be hidden.
     pub fn entries(&self) -> Vec<PanelEntry> {
         let entry = |placed: &Placed| PanelEntry {
             id: placed.panel.id(),
@@ -94,7 +94,7 @@ impl Shell {
         self.panels.iter().filter(|placed| placed.can_close()).map(entry).collect()
     }
 
-    /// Another document is shown from now on.
+    /// Tells all panels that another document is open.
     pub fn forget(&mut self) {
         self.panels.iter_mut().for_each(|placed| placed.panel.forget());
     }
@@ -133,7 +133,7 @@ mod tests {
         let (sender, shown) = channel();
         let probe = |id, place| Box::new(Probe(id, place, sender.clone())) as Box<dyn Panel>;
         let (left, right) = (PanelPlace::Left(100.0, 50.0), PanelPlace::Right(120.0, 50.0));
-        // In any order: the center gets what the others leave.
+        // Any order: the center takes the remaining area.
         let shell = Shell::new(vec![probe("c", PanelPlace::Center), probe("r", right), probe("l", left)]);
         let names: Vec<_> = shell.entries().iter().map(|entry| entry.id).collect();
         assert_eq!(names, ["l", "r"], "the center is always there");

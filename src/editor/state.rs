@@ -1,5 +1,5 @@
-//! What panels are given: the document with its selection and messages, how it is looked at, and what is made of it. What a
-//! panel orders that reaches beyond this is a [`Request`].
+//! The state of panels: the document with its selection and messages, the view, and derived data. A panel that needs
+//! more sends a [`Request`].
 
 use std::sync::Arc;
 
@@ -14,59 +14,59 @@ use isolith_field::FlatScene;
 use isolith_scene::{NodeId, Scene};
 use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
 
-/// An example that the File menu offers.
+/// An example of the File menu.
 pub struct Example {
-    /// Its entry in the menu.
+    /// Its menu entry.
     pub name: String,
-    /// It stands in the submenu of test scenes: made to check the program, not to show what it can do.
+    /// Whether it belongs to the submenu of test scenes, which check the program rather than show its features.
     pub is_test: bool,
-    /// Makes its document, or says why it cannot.
+    /// Creates its document, or returns an error.
     pub open: ReadDocument,
 }
 
-/// What a panel orders. It is done when the panel has been shown, in the same frame.
+/// A request of a panel. The editor carries it out after that panel, in the same frame.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// Run this command.
     Run(Command),
     /// Replace the document, or end the program.
     Intend(Intent),
-    /// Show the panel of this id, or hide it.
+    /// Toggle the panel of this id.
     TogglePanel(&'static str),
 }
 
-/// A panel, for those that list all.
+/// A list entry for a panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PanelEntry {
-    /// Tells it from the others.
+    /// Its unique id.
     pub id: &'static str,
-    /// What it is called.
+    /// Its title.
     pub title: &'static str,
-    /// Whether it is shown.
+    /// Whether it is open.
     pub is_open: bool,
 }
 
-/// See the module.
+/// The state that panels share.
 pub struct EditorState {
     /// The document with gestures, and the messages.
     pub session: EditSession,
-    /// How it is looked at.
+    /// The view of the document.
     pub view: ViewState,
-    /// What is made of it, and where everything runs that takes longer than a frame.
+    /// Data derived from the document, and the jobs that take longer than a frame.
     pub derived: SceneSession,
-    /// Files that are read and written for it.
+    /// Jobs that read and write files for it.
     pub files: FileJobs,
     /// The picture of this frame.
     pub picture: Picture,
-    /// What the File menu offers.
+    /// The examples of the File menu.
     pub examples: Vec<Example>,
-    /// Whether there may be lost work to offer.
+    /// Whether recovery is on.
     pub can_recover: bool,
-    /// A node that is to be renamed in place.
+    /// The node to rename in place.
     pub renaming: Option<NodeId>,
-    /// The panels that can be shown and hidden.
+    /// The panels that can be hidden.
     pub panels: Vec<PanelEntry>,
-    /// What panels have ordered, the oldest first.
+    /// Pending requests of panels, oldest first.
     pub requests: Vec<Request>,
 }
 
@@ -88,7 +88,7 @@ impl Default for EditorState {
 }
 
 impl EditorState {
-    /// What the renderer should show.
+    /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
         let ViewState { navigation, view_mode, show_grid, show_outline, size_px, is_navigating, .. } = &self.view;
         ViewSettings {
@@ -101,12 +101,12 @@ impl EditorState {
         }
     }
 
-    /// The document as arrays; the last good ones where the document is beyond a limit.
+    /// The flat scene; the last valid one if the document exceeds a limit.
     pub fn flat(&self) -> &Arc<FlatScene> {
         self.derived.flat()
     }
 
-    /// Brings what is made of the document up to date, and passes on what is to be said about it.
+    /// Updates the derived data and forwards its notices as messages.
     pub fn follow_document(&mut self) {
         self.derived.follow(&self.session.document);
         for Notice { level, text } in self.derived.take_notices() {

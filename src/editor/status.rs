@@ -1,4 +1,4 @@
-//! The bar at the bottom: what the mouse does, what is going on, how much there is.
+//! The bar at the bottom: mouse actions, progress, counts.
 
 use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
 
@@ -12,7 +12,7 @@ use super::view_state::{Picture, PointerActivity};
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
 
-/// See the module.
+/// The panel of the status bar.
 pub struct StatusBar;
 
 impl Panel for StatusBar {
@@ -45,7 +45,7 @@ impl Panel for StatusBar {
     }
 }
 
-/// How far the picture is, and a button that leaves it as it is.
+/// Progress of the picture, and a button that stops drawing.
 fn drawing(state: &mut EditorState, ui: &mut Ui) {
     let Picture { progress, is_waiting, .. } = state.picture;
     if progress.is_none() && !is_waiting {
@@ -68,7 +68,7 @@ fn counts(state: &EditorState, ui: &mut Ui) {
     ui.label(RichText::new(text).color(theme::WEAK));
 }
 
-/// What is under way, a problem of the scene, or what the mouse does.
+/// The running job, a problem of the scene, or a hint on the mouse.
 fn left(state: &mut EditorState, ui: &mut Ui) {
     if let Some(task) = state.derived.jobs().foremost() {
         job(ui, &task, state.derived.jobs().listed().len());
@@ -97,7 +97,7 @@ fn left(state: &mut EditorState, ui: &mut Ui) {
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
 }
 
-/// What the mouse does now, in one line.
+/// The current mouse actions, in one line.
 fn hint_of(state: &EditorState) -> String {
     match state.view.pointer {
         PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
@@ -117,7 +117,7 @@ fn hint_of(state: &EditorState) -> String {
     }
 }
 
-/// A task that runs: its name, how far it is, and a button that cancels it.
+/// A running task: name, progress, and a cancel button.
 fn job(ui: &mut Ui, task: &Task, count: usize) {
     if task.can_cancel() {
         let button = ui.add(Button::new("Cancel").small()).on_hover_text("Stops it (Escape)");
@@ -138,7 +138,7 @@ fn job(ui: &mut Ui, task: &Task, count: usize) {
     }
 }
 
-/// The first thing that the artist should look at, with its node.
+/// The most important warning for the artist, with its node.
 fn warning(state: &EditorState) -> Option<(NodeId, String)> {
     if let Some(problem) = state.derived.model_problem() {
         return Some(problem.clone());

@@ -1,19 +1,19 @@
-//! How the editor looks: one palette, one accent, one rhythm of spacing.
+//! The style of the editor: one palette, one accent, one set of spacings.
 
 use egui::style::{Selection, WidgetVisuals};
 use egui::{Color32, Context, CornerRadius, FontId, Margin, Shadow, Stroke, TextStyle, Visuals, vec2};
 
-/// The one accent: selection, focus, the primary button.
+/// The accent color: selection, focus, the primary button.
 pub const ACCENT: Color32 = Color32::from_rgb(110, 168, 254);
-/// Behind selected rows.
+/// Background of selected rows.
 pub const SELECTED: Color32 = Color32::from_rgb(42, 66, 104);
-/// Panels.
+/// Background of panels.
 pub const PANEL: Color32 = Color32::from_rgb(27, 29, 34);
-/// Cards in panels.
+/// Background of cards in panels.
 pub const CARD: Color32 = Color32::from_rgb(34, 37, 43);
-/// Bars at the top and the bottom.
+/// Background of the bars at the top and the bottom.
 pub const BAR: Color32 = Color32::from_rgb(22, 24, 28);
-/// Fields for text and numbers.
+/// Background of fields for text and numbers.
 pub const FIELD: Color32 = Color32::from_rgb(46, 50, 58);
 /// Thin lines between areas.
 pub const LINE: Color32 = Color32::from_rgb(14, 15, 18);
@@ -21,21 +21,21 @@ pub const LINE: Color32 = Color32::from_rgb(14, 15, 18);
 pub const TEXT: Color32 = Color32::from_rgb(212, 216, 223);
 /// Labels and hints.
 pub const WEAK: Color32 = Color32::from_rgb(146, 152, 164);
-/// Barely there: controls at rest.
+/// Controls at rest, barely visible.
 pub const FAINT: Color32 = Color32::from_rgb(86, 92, 103);
-/// Switches of rows that the pointer is not over.
+/// Switches of rows without the pointer.
 pub const RESTING: Color32 = Color32::from_rgb(64, 68, 78);
-/// Something failed.
+/// Errors.
 pub const ERROR: Color32 = Color32::from_rgb(240, 112, 104);
-/// Something needs a look.
+/// Warnings.
 pub const WARNING: Color32 = Color32::from_rgb(232, 178, 92);
-/// Something worked.
+/// Success.
 pub const SUCCESS: Color32 = Color32::from_rgb(126, 200, 136);
 /// Groups.
 pub const GROUP: Color32 = Color32::from_rgb(226, 184, 110);
 /// Objects.
 pub const OBJECT: Color32 = Color32::from_rgb(126, 182, 224);
-/// What is cut away.
+/// Subtracted nodes.
 pub const NEGATIVE: Color32 = Color32::from_rgb(232, 128, 118);
 /// Lights.
 pub const LIGHT: Color32 = Color32::from_rgb(244, 214, 120);
@@ -47,7 +47,7 @@ pub const MESH: Color32 = Color32::from_rgb(126, 200, 160);
 pub const AXES: [Color32; 3] =
     [Color32::from_rgb(226, 94, 94), Color32::from_rgb(124, 190, 84), Color32::from_rgb(86, 142, 236)];
 
-/// What a field shows where the selected nodes differ.
+/// Text of a field whose value differs among the selected nodes.
 pub const MIXED: &str = "–";
 /// Height of fields and buttons in points.
 pub const ROW_HEIGHT: f32 = 24.0;
@@ -56,7 +56,7 @@ pub const ICON_SIZE: f32 = 16.0;
 /// Corner radius of fields and buttons.
 pub const RADIUS: u8 = 5;
 
-/// Installs fonts and the look. Once, before the first frame.
+/// Installs fonts and style. Call once, before the first frame.
 pub fn install(ctx: &Context) {
     egui_material_icons::initialize(ctx);
     ctx.set_theme(egui::Theme::Dark);

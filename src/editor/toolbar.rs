@@ -1,4 +1,4 @@
-//! The bar at the top: menus, then the buttons used most.
+//! The bar at the top: menus and the most common buttons.
 
 use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
 use egui_material_icons::icons::ICON_VISIBILITY;
@@ -13,7 +13,7 @@ use super::{icons, legend, theme, widgets};
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{Operator, ShapeKind};
 
-/// See the module.
+/// The panel of the toolbar.
 pub struct Toolbar;
 
 impl Panel for Toolbar {
@@ -35,7 +35,7 @@ impl Panel for Toolbar {
     }
 }
 
-/// Shows the bar; returns the command chosen.
+/// Shows the bar; returns the chosen command.
 fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
     let mut chosen = None;
     MenuBar::new().ui(ui, |ui| {
@@ -105,7 +105,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
 }
 
-/// Which panels are shown.
+/// Toggles for the panels.
 fn panels(state: &mut EditorState, ui: &mut Ui) {
     for &PanelEntry { id, title, is_open } in &state.panels {
         if ui.add(Button::new(title).selected(is_open)).clicked() {
@@ -114,7 +114,7 @@ fn panels(state: &mut EditorState, ui: &mut Ui) {
     }
 }
 
-/// The choice of what the picture shows.
+/// The choice of the view mode.
 fn view_modes(state: &EditorState, ui: &mut Ui, chosen: &mut Option<Command>) {
     ui.set_min_width(190.0);
     let room = widgets::room_below(ui);
@@ -160,7 +160,7 @@ fn buttons(state: &EditorState, ui: &mut Ui, color: Color32, commands: &[Command
     }
 }
 
-/// The tooltip with the step that it is about.
+/// Adds the step to the tooltip.
 fn with_step(tooltip: String, step: Option<&str>) -> String {
     step.map_or(tooltip.clone(), |step| format!("{tooltip}: {step}"))
 }
@@ -172,10 +172,10 @@ fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
     response.on_hover_text(format!("Add: {}\n{}", kind.label(), kind.help()))
 }
 
-/// Most characters of a file's name in a menu.
+/// Maximum number of characters of a file's name in a menu.
 const MOST_NAME: usize = 40;
 
-/// The examples that are test scenes, or those that are not; returns the one chosen.
+/// Entries for the test scenes or for the other examples; returns the chosen one.
 fn example_entries(state: &EditorState, ui: &mut Ui, are_tests: bool) -> Option<Intent> {
     let mut chosen = None;
     for (index, example) in state.examples.iter().enumerate().filter(|(_, example)| example.is_test == are_tests) {

@@ -1,4 +1,4 @@
-//! What the viewport shows and from where, and what goes out to the renderer.
+//! The view of the viewport, and the data exchanged with the renderer.
 
 use egui::{Pos2, Rect, TextureId, vec2};
 use glam::DVec3;
@@ -7,75 +7,75 @@ use super::navigation::Navigation;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
 
-/// What the renderer has made.
+/// The output of the renderer.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
-    /// The picture, once there is one.
+    /// The picture; `None` before the first.
     pub texture: Option<TextureId>,
     /// Its size in pixels.
     pub size_px: [u32; 2],
-    /// How much of it is done, 0 to 1; `None` when nothing is being drawn.
+    /// Fraction of it that is done, 0 to 1; `None` while the renderer is idle.
     pub progress: Option<f32>,
-    /// Whether the full picture waits for what is being prepared for it.
+    /// Whether the full picture waits for pipelines or tapes.
     pub is_waiting: bool,
-    /// A few words for the status bar: adapter, milliseconds.
+    /// Text for the status bar: adapter, milliseconds.
     pub status: String,
 }
 
-/// What the renderer should make.
+/// The input of the renderer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewSettings {
-    /// From where.
+    /// The camera.
     pub camera: Camera,
     /// Size of the viewport in pixels; at least 1 × 1.
     pub size_px: [u32; 2],
-    /// The camera or a value is being dragged: a fast picture is worth more than a fine one.
+    /// The artist drags the camera or a value: speed is more important than quality.
     pub navigating: bool,
-    /// Whether the ground grid is wanted.
+    /// Whether to show the ground grid.
     pub show_grid: bool,
-    /// Whether the selection is to be marked.
+    /// Whether to outline the selection.
     pub show_outline: bool,
-    /// What the picture is to show.
+    /// The view mode.
     pub view_mode: ViewMode,
 }
 
-/// What the pointer does in the picture.
+/// The action of the pointer in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum PointerActivity {
-    /// It is elsewhere.
+    /// Outside the picture.
     #[default]
     Away,
-    /// It rests over the picture.
+    /// Over the picture, without a drag.
     Hovering,
-    /// It turns the camera.
+    /// Turns the camera.
     Orbiting,
-    /// It moves the camera sideways.
+    /// Moves the camera sideways.
     Panning,
-    /// It moves the camera to and fro.
+    /// Moves the camera forward and backward.
     Zooming,
-    /// It moves the selection, so far by this.
+    /// Moves the selection; the offset so far.
     Moving(DVec3),
 }
 
-/// How the document is looked at.
+/// The view of the document.
 pub struct ViewState {
     /// The camera.
     pub navigation: Navigation,
-    /// What the picture shows.
+    /// The view mode.
     pub view_mode: ViewMode,
-    /// Whether the ground grid is shown.
+    /// Whether to show the ground grid.
     pub show_grid: bool,
-    /// Whether the selection is marked.
+    /// Whether to outline the selection.
     pub show_outline: bool,
-    /// Where the picture is, in points.
+    /// The picture's rectangle, in points.
     pub rect: Rect,
     /// Its size in pixels, at least 1 × 1.
     pub size_px: [u32; 2],
-    /// Whether the camera is being moved, or something in the picture is.
+    /// Whether the camera or an object in the picture is moving.
     pub is_navigating: bool,
-    /// What the pointer does in it.
+    /// The action of the pointer in the picture.
     pub pointer: PointerActivity,
-    /// The picture is to stay as it is until something changes.
+    /// Keep the current picture until the next change.
     pub stops_drawing: bool,
 }
 
@@ -96,7 +96,7 @@ impl Default for ViewState {
 }
 
 impl ViewState {
-    /// Width by height.
+    /// Width divided by height.
     pub fn aspect(&self) -> f64 {
         let [width, height] = self.size_px.map(f64::from);
         width / height

@@ -1,4 +1,4 @@
-//! The picture and what the pointer does in it: looking around, picking, moving.
+//! The viewport: the picture and the pointer actions in it, which are navigating, picking and moving.
 
 use egui::{Color32, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
@@ -13,7 +13,7 @@ use super::view_state::PointerActivity;
 use super::{legend, selection, theme};
 use isolith_field::debug_view::ViewMode;
 
-/// What the pointer is dragging.
+/// The current drag.
 enum Dragging {
     Orbit,
     Pan,
@@ -21,11 +21,11 @@ enum Dragging {
     Move(Drag),
 }
 
-/// See the module.
+/// The panel of the viewport.
 #[derive(Default)]
 pub struct Viewport {
     dragging: Option<Dragging>,
-    /// Until when the wheel counts as turning, in seconds of the program's clock.
+    /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
 }
 
@@ -226,7 +226,7 @@ fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: &Pro
     state.session.document.select(selection);
 }
 
-/// Before the first picture: the sky's color and a word.
+/// Before the first picture: the color of the sky and a text.
 fn background(state: &EditorState, painter: &egui::Painter, rect: Rect) {
     let horizon = state.session.document.scene().environment.horizon;
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));

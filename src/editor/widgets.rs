@@ -1,4 +1,5 @@
-//! The widgets of the inspector: a label on the left, a field on the right, all on one grid. Numbers are in `numbers`.
+//! Widgets of the inspector: a label on the left, a field on the right, all on one grid. Number fields are in
+//! `numbers`.
 
 use egui::{Align, Color32, Context, Id, Key, Layout, Response, RichText, ScrollArea, TextEdit, Ui, UiBuilder, vec2};
 
@@ -8,9 +9,9 @@ use super::{color_picker, theme};
 /// Width of the labels in points.
 const LABEL_WIDTH: f32 = 92.0;
 
-/// A row: label, then whatever `add` adds in the width that is left.
+/// A row: a label, and the content of `add` in the remaining width.
 ///
-/// Its widgets are known by the label and not by their place: rows that come and go above it do not hand the keyboard on.
+/// The label identifies its widgets, not the position: rows that appear or disappear above do not move the focus.
 pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(("row", label));
     let horizontal = |ui: &mut Ui| {
@@ -43,16 +44,16 @@ pub fn card<R>(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui) -> R) -> Opti
     frame.show(ui, content).inner.body_returned
 }
 
-/// A button that holds a color; values are linear. Answers with the new linear color. `mixed` shows a dash.
+/// A color button; values are linear. Returns the new linear color. `mixed` shows a dash.
 pub fn color(ui: &mut Ui, name: &str, linear: [f64; 3], mixed: bool) -> (Id, Option<[f64; 3]>) {
-    // The picker works on brightness-limited colors; what is brighter keeps its brightness as a factor.
+    // The picker handles channels up to 1: a brighter color keeps its peak as a factor.
     let peak = linear.iter().copied().fold(1.0, f64::max);
     let mut shown = linear.map(|v| (v / peak) as f32);
     let before = shown;
     let (response, picked) = color_picker::button(ui, name, &mut shown, mixed);
     let id = response.id;
     let changed = picked && shown != before;
-    // Channels that the picker left alone keep their full precision.
+    // Channels unchanged by the picker keep their full precision.
     let mut value = linear;
     for c in 0..3 {
         if shown[c] != before[c] {
@@ -62,7 +63,7 @@ pub fn color(ui: &mut Ui, name: &str, linear: [f64; 3], mixed: bool) -> (Id, Opt
     (id, changed.then_some(value))
 }
 
-/// A drop-down list. Answers with the entry chosen, where it differs.
+/// A drop-down list. Returns the chosen entry if it differs.
 pub fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     name: &str,
@@ -99,7 +100,7 @@ pub fn icon_button(ui: &mut Ui, icon: egui_material_icons::MaterialIcon, name: &
     response.on_hover_text(name)
 }
 
-/// A line of text that counts when it has been typed to its end: by Enter, Tab or a click elsewhere, not by Escape.
+/// A line of text that takes effect at the end of typing: on Enter, Tab or a click elsewhere, not on Escape.
 pub fn line(ui: &mut Ui, name: &str, current: &str, hint: &str) -> (Id, Option<String>) {
     let id = ui.next_auto_id();
     let mut text = ui.data(|d| d.get_temp::<String>(id)).unwrap_or_else(|| current.to_owned());
@@ -117,8 +118,8 @@ pub fn line(ui: &mut Ui, name: &str, current: &str, hint: &str) -> (Id, Option<S
     (id, typed.then_some(text))
 }
 
-/// The text, with dots instead of its middle where it has more characters than that: both ends tell names apart, and the
-/// last one holds the kind of a file.
+/// Replaces the middle of a text longer than `most` characters by an ellipsis: both ends distinguish names, and the end
+/// holds a file's extension.
 pub fn elided(text: &str, most: usize) -> String {
     let count = text.chars().count();
     if count <= most {
@@ -129,30 +130,30 @@ pub fn elided(text: &str, most: usize) -> String {
     text.chars().take(head).chain(['…']).chain(text.chars().skip(count - tail)).collect()
 }
 
-/// How high a list may be that opens above or below a widget: there is as much room on one of the sides at least.
+/// Maximum height of a list that opens above or below a widget: at least one of the sides has that much room.
 pub fn list_room(ctx: &Context) -> f32 {
     (ctx.content_rect().height() * 0.5 - 24.0).clamp(80.0, 420.0)
 }
 
-/// The entries of a menu, which scroll where they take more than `room`.
+/// Menu entries that scroll if they are higher than `room`.
 pub fn scrolling<R>(ui: &mut Ui, room: f32, add: impl FnOnce(&mut Ui) -> R) -> R {
-    // That there is more below must be seen before the pointer is there.
+    // Show the scroll bar before the pointer is near, as a sign of more entries.
     let scroll = &mut ui.spacing_mut().scroll;
     (scroll.floating_width, scroll.dormant_handle_opacity) = (4.0, 0.7);
     ScrollArea::vertical().max_height(room).show(ui, add).inner
 }
 
-/// The room for the entries of a menu that hangs down from a bar at the top of the window.
+/// Maximum height of a menu below a bar at the top of the window.
 pub fn room_below(ui: &Ui) -> f32 {
     (ui.ctx().content_rect().bottom() - ui.cursor().top() - 14.0).max(80.0)
 }
 
-/// The room for those of a menu that stands beside another one, or at the pointer.
+/// Maximum height of a menu beside another one or at the pointer.
 pub fn room_beside(ctx: &Context) -> f32 {
     (ctx.content_rect().height() - 32.0).max(80.0)
 }
 
-/// Shows something in all of the room that is left, without ever asking for more of it.
+/// Fills exactly the remaining area and never asks for more.
 pub fn fixed<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     let rect = ui.available_rect_before_wrap();
     let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));

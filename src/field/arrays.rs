@@ -1,5 +1,5 @@
-//! The arrays. `#[repr(C)]` types are read by the GPU as they stand; `shaders/common/scene.wgsl` is
-//! their counterpart, and a test compares the layouts.
+//! The arrays of a flattened scene. The GPU reads the `#[repr(C)]` types as they are; `shaders/common/scene.wgsl`
+//! declares their counterparts, and a test compares the layouts.
 
 use std::sync::OnceLock;
 
@@ -12,19 +12,20 @@ use isolith_scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operat
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
-/// A run stands before operands of the same group that follow each other and join in the same way. It
-/// has no value; it says where none of them can matter, so that all are skipped at once.
+/// A run precedes consecutive operands of one group that join in the same way. It has no value. Its bounds say where
+/// none of these operands can matter, so that an evaluator skips all of them at once.
 ///
-/// Pre-order: a group is followed by its operands, and `index + extent` is the next sibling. The entry
-/// also says how its value joins what precedes it in its group, so that an evaluator needs no look back.
+/// Pre-order: a group is followed by its operands, and `index + extent` is the next sibling. The entry also holds how
+/// its value joins the result so far of its group, so an evaluator never looks back.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct FlatNode {
-    /// Bits 0–15: shape code, [`FlatNode::MODIFIER`] and a modifier's code, [`FlatNode::GROUP`] or [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
+    /// Bits 0–15: shape code, [`FlatNode::MODIFIER`] plus a modifier's code, [`FlatNode::GROUP`] or
+    /// [`FlatNode::RUN`]. Bits 16–23: a [`Join`]. Bits 24–31: blend kernel.
     pub code: u32,
     /// Entries of this node and everything below it; 1 for a leaf.
     pub extent: u32,
-    /// Where its numbers start in [`FlatScene::params`].
+    /// Index of its first row in [`FlatScene::params`].
     pub params: u32,
     /// Index into [`FlatScene::materials`]; leaves only.
     pub material: u32,
@@ -35,7 +36,7 @@ impl FlatNode {
     pub const GROUP: u32 = 0xffff;
     /// The shape code that marks a run.
     pub const RUN: u32 = 0xfffe;
-    /// The first of the shape codes that mark modifiers.
+    /// The first of the shape codes of modifiers.
     pub const MODIFIER: u32 = 0xff00;
 
     /// Whether it is a group.
@@ -59,35 +60,35 @@ impl FlatNode {
         ModifierKind::ALL.get(code as usize).copied()
     }
 
-    /// Where the three rows of local-from-component stand among its rows; `None` for groups and runs.
+    /// Index of the first of its three local-from-component rows among its rows; `None` for groups and runs.
     pub fn placing_row(&self) -> Option<usize> {
         if self.is_leaf() { Some(1) } else { self.modifier().map(|_| GROUP_ROWS) }
     }
 
-    /// How it joins what precedes it.
+    /// How it joins the result so far of its group.
     pub fn join(&self) -> u32 {
         (self.code >> 16) & 0xff
     }
 
-    /// The kernel of its blend, as a number of [`isolith_scene::BlendKernel::ALL`].
+    /// The kernel of its blend, as an index into [`isolith_scene::BlendKernel::ALL`].
     pub fn kernel(&self) -> u32 {
         self.code >> 24
     }
 }
 
-/// How an operand joins what precedes it in its group; the number stands in [`FlatNode::code`].
+/// How an operand joins the result so far of its group; [`FlatNode::code`] holds the number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u32)]
 pub enum Join {
-    /// The first operand: it is the start.
+    /// The first operand: the fold starts with it.
     First,
     /// Union.
     Union,
     /// Intersection.
     Intersection,
-    /// Cut away.
+    /// Difference: the operand is cut away.
     Difference,
-    /// What is in one but not in both.
+    /// Exclusive or: space inside exactly one of the two.
     Xor,
     /// A tube where both surfaces meet.
     Pipe,
@@ -99,9 +100,9 @@ pub enum Join {
     Engrave,
     /// Between both.
     Morph,
-    /// Only its material.
+    /// The material of the operand; the surface stays.
     Paint,
-    /// What is in the operand and not in what stands so far: a difference whose operands are exchanged, see `stack`.
+    /// The operand minus the result so far: a difference with exchanged operands, see `stack`.
     ReverseDifference,
 }
 
@@ -122,7 +123,7 @@ impl Join {
         Self::ReverseDifference,
     ];
 
-    /// How the later children of a group join.
+    /// The join of the later children of a group.
     pub fn of(operator: Operator) -> Self {
         match operator {
             Operator::Union => Self::Union,
@@ -138,17 +139,17 @@ impl Join {
         }
     }
 
-    /// Whether it needs more than a sum of shares: derivatives of any sign, or a material of its own.
+    /// Whether it needs more than a sum of weights: derivatives of any sign, or a material of its own.
     pub fn is_extended(self) -> bool {
         self > Self::Difference
     }
 
-    /// Whether it only takes from what stands so far, or leaves it as it is.
+    /// Whether it only removes from the result so far, or leaves it unchanged.
     pub fn only_cuts(self) -> bool {
         matches!(self, Self::Intersection | Self::Difference | Self::Groove | Self::Engrave | Self::Paint)
     }
 
-    /// Whether an operand that is far off changes nothing, so that it can be skipped by its bounds.
+    /// Whether a distant operand changes nothing, so that evaluators can skip it by its bounds.
     pub fn is_skipped_far_off(self) -> bool {
         matches!(self, Self::Union | Self::Difference)
     }
@@ -157,20 +158,21 @@ impl Join {
 /// Kernels from this one on are the extended ones: bevels, steps and columns.
 pub const FIRST_EXTENDED_KERNEL: u32 = 3;
 
-/// Parameters of an entry, four at a time. Both kinds begin with the blend, see [`super::eval::BlendParams`].
+/// Parameters of an entry, four per row. The rows of leaves and groups both begin with the blend, see
+/// [`super::eval::BlendParams`].
 ///
 /// Leaf: `[support, distance_scale, size, depth]`, three rows of local-from-component (a point `p` maps to
-/// `dot(row.xyz, p) + row.w`), then the shape's parameters, 4 to a row (0 to 2 rows). A shape with data has one more row
-/// behind them, `[count, offset, 0, 0]`: its data are `count` rows, the first `offset` rows behind this one. They stand
-/// behind all other rows of the component, so that they are no part of what a specialized kernel reads as uniform.
-/// A modifier with data has such a row behind its own.
+/// `dot(row.xyz, p) + row.w`), then the parameters of the shape, 4 per row (0 to 2 rows). A shape with a payload has
+/// one more row behind them, `[count, offset, 0, 0]`: its payload has `count` rows, the first of them `offset` rows
+/// behind this one. Payload rows stand behind all other rows of the component, so that a specialized kernel does not
+/// read them as uniform. Such a row is also the last of the own rows of a modifier with a payload.
 ///
 /// Group: `[support, bound_slope, size, depth]`, center of its bounds, half extent of its bounds. The field of the
-/// group at `p` is at least `bound_slope` times the distance from `p` to these bounds; unbounded groups have
-/// slope 0 and finite dummies. A modifier has the same three, with its distance_scale behind the center,
-/// then three rows of local-from-component and those of `shaders/mod/`; what is below it is relative to its local
-/// space. A run has the same rows: the largest support of its operands, and bounds
-/// and slope that hold for the field of each of them.
+/// group at `p` is at least `bound_slope` times the distance from `p` to these bounds; unbounded groups have slope 0
+/// and finite dummies. A modifier begins with the same three rows, with its distance_scale behind the center. Three
+/// rows of local-from-component and its own rows (see `shaders/mod/`) follow; its content is relative to its local
+/// space. A run has the three rows of a group: the largest support of its operands, and bounds and a slope that hold
+/// for the field of each of them.
 pub type ParamRow = [f32; 4];
 
 /// A component's rows begin at a multiple of this, so that they can be bound as a uniform buffer (256 bytes).
@@ -180,17 +182,17 @@ pub const LEAF_ROWS: usize = 4;
 /// Rows of a group or a run.
 pub const GROUP_ROWS: usize = 3;
 
-/// Where the row that says where a leaf's data are stands among its rows; `None` for a shape without data.
+/// Index of the row that locates the payload of a leaf, among its rows; `None` for a shape without a payload.
 pub fn payload_row(kind: ShapeKind) -> Option<usize> {
     kind.has_data().then(|| LEAF_ROWS + kind.parameter_rows())
 }
 
-/// The data of the leaf whose rows `params` begins with; empty for most.
+/// The payload of the leaf whose rows are the first of `params`; empty for most.
 pub fn leaf_payload(kind: ShapeKind, params: &[ParamRow]) -> &[ParamRow] {
     payload_row(kind).map_or(&[], |row| payload_at(params, row))
 }
 
-/// The data that the row at `row` says where to find.
+/// The payload that the row at `row` locates.
 pub(super) fn payload_at(params: &[ParamRow], row: usize) -> &[ParamRow] {
     let [count, offset, ..] = params[row].map(|v| v as usize);
     &params[row + offset..][..count]
@@ -216,7 +218,7 @@ pub struct FlatMaterial {
 /// A light with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatLight {
-    /// Which node.
+    /// Its node.
     pub id: NodeId,
     /// World position.
     pub position: DVec3,
@@ -229,7 +231,7 @@ pub struct FlatLight {
 /// A mesh with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatMesh {
-    /// Which node.
+    /// Its node.
     pub id: NodeId,
     /// The file, as the scene names it.
     pub path: String,
@@ -247,7 +249,7 @@ pub const FILE_SHININESS: f64 = 32.0;
 /// A camera with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatCamera {
-    /// Which node.
+    /// Its node.
     pub id: NodeId,
     /// Its name.
     pub name: String,
@@ -255,44 +257,45 @@ pub struct FlatCamera {
     pub camera: Camera,
 }
 
-/// A subtree that meets the others only through hard union, and is therefore traced alone; or several small ones together.
+/// A subtree that meets the others only through hard union, and is therefore traced alone; or a batch of small ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Component {
-    /// Its entries in [`FlatScene::nodes`].
+    /// Its first entry in [`FlatScene::nodes`].
     pub first: u32,
-    /// How many.
+    /// Number of entries.
     pub count: u32,
     /// Its first row in [`FlatScene::params`], a multiple of [`ROW_ALIGNMENT`].
     pub params: u32,
-    /// How many rows, data included.
+    /// Number of rows, payload included.
     pub param_rows: u32,
-    /// How many of the last of them are data of its leaves and modifiers.
+    /// Number of payload rows of its leaves and modifiers; they are its last rows.
     pub payload_rows: u32,
     /// World position of its own origin; all its numbers are relative to this.
     pub origin: DVec3,
-    /// Around its surface, relative to `origin`; may be unbounded.
+    /// Bounds of its surface, relative to `origin`; may be unbounded.
     pub bounds: Aabb,
-    /// A half space that holds all of it, relative to `origin`: the points p with n·p + d ≤ 0 for
-    /// `[n.x, n.y, n.z, d]`, n of unit length. Known where a plane is cut into shape: a floor is then
-    /// met at once instead of being approached in ever shorter steps.
+    /// A half space that contains the component, relative to `origin`: the points p with n·p + d ≤ 0 for
+    /// `[n.x, n.y, n.z, d]`, n of unit length. Known for a plane that later operands only cut: a ray then reaches a
+    /// floor at once instead of in ever shorter steps.
     pub half_space: Option<[f64; 4]>,
-    /// The largest coordinate, relative to `origin`, of the leaves as far as they end; 0 where no two of their faces can
-    /// cancel each other. Where a cut ends flush with a face, what the two leave is the rounding of numbers of this size.
+    /// The largest coordinate of its leaves, relative to `origin`; for an unbounded leaf its distance from there. 0
+    /// where no two of their faces can cancel each other. Where a cut ends flush with a face, the remainder is the
+    /// rounding of numbers of this size.
     pub flush_extent: f64,
-    /// Accumulators that an evaluator must be able to put aside.
+    /// Stack depth: the accumulators that an evaluator must be able to put aside.
     pub stack: u32,
-    /// What its modifiers hold, in the order of their entries.
+    /// Domains of its modifiers, in the order of their entries.
     pub modifier_domains: Vec<ModifierDomain>,
-    /// How often an entry may be evaluated for one point: 1 without repetition.
+    /// Most evaluations of one entry for one point: 1 without repetition.
     pub copies: u32,
-    /// What rounding to f32 took from local-from-component of each entry, zero for groups and runs; nothing for a component
+    /// Residue of rounding local-from-component of each entry to f32, zero for groups and runs; empty for a component
     /// that is not [`LARGE`].
     pub rest: Vec<[ParamRow; 3]>,
 }
 
 impl Component {
-    /// Local-from-component of the leaf or modifier at `index` of [`FlatScene::nodes`], three rows: where the component is
-    /// large, as it was before rounding. `None` for groups and runs.
+    /// Local-from-component of the leaf or modifier at `index` of [`FlatScene::nodes`], three rows; for a large
+    /// component with the residue of rounding. `None` for groups and runs.
     pub fn placing(&self, flat: &FlatScene, index: usize) -> Option<[[f64; 4]; 3]> {
         let node = &flat.nodes[index];
         let rounded = flat.params[node.params as usize + node.placing_row()?..][..3].iter();
@@ -308,58 +311,58 @@ impl Component {
         Some(rows)
     }
 
-    /// Its bounds, relative to `origin`, grown a little: the arrays are rounded to f32, their bounds are not.
+    /// Its bounds relative to `origin`, slightly grown: the arrays are rounded to f32, the bounds are not.
     pub fn grown_bounds(&self) -> Aabb {
         let reach = [self.bounds.min, self.bounds.max].map(|v| v.abs().to_array()).concat();
         self.bounds.expanded(1e-6 * reach.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max))
     }
 
-    /// Whether it holds modifiers.
+    /// Whether it has modifiers.
     pub fn is_modified(&self) -> bool {
         !self.modifier_domains.is_empty()
     }
 }
 
-/// What a modifier holds, in its own space.
+/// The content of a modifier, in the modifier's local space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModifierDomain {
-    /// The modifier's entry, counted from the component's first.
+    /// Index of the modifier's entry, counted from the component's first entry.
     pub entry: u32,
-    /// Around the content's surface; may be unbounded.
+    /// Bounds of the content's surface; may be unbounded.
     pub bounds: Aabb,
-    /// Its field is at least `bound_slope` times the distance to this.
+    /// The field of the content is at least `bound_slope` times the distance to this box.
     pub cull_box: Aabb,
-    /// See `cull_box`; 0 where nothing is known.
+    /// See `cull_box`; 0 where unknown.
     pub bound_slope: f64,
-    /// How often it may be evaluated for one point of the component.
+    /// Most evaluations of the content for one point of the component.
     pub copies: u32,
 }
 
-/// Something that the artist should know; the scene is still rendered.
+/// A warning for the artist; the scene still renders.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Warning {
     /// The node concerned.
     pub node: NodeId,
     /// Its name.
     pub name: String,
-    /// What is the matter.
+    /// The problem.
     pub reason: String,
 }
 
 /// The scene at one moment, as arrays.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlatScene {
-    /// The subtree-extent arrays of all components, one after the other.
+    /// The entries of all components, one component after the other.
     pub nodes: Vec<FlatNode>,
     /// Parameters of the nodes.
     pub params: Vec<ParamRow>,
-    /// Which node each entry of `nodes` came from; stays on the CPU.
+    /// The node of each entry of `nodes`; stays on the CPU.
     pub ids: Vec<NodeId>,
-    /// Materials in use, then those of the scene that nothing uses are left out.
+    /// Materials in use, in the order of first use.
     pub materials: Vec<FlatMaterial>,
-    /// Where each of `materials` came from.
+    /// The id in the scene of each of `materials`.
     pub material_ids: Vec<MaterialId>,
-    /// What is traced.
+    /// The components.
     pub components: Vec<Component>,
     /// Visible lights.
     pub lights: Vec<FlatLight>,
@@ -369,15 +372,14 @@ pub struct FlatScene {
     pub cameras: Vec<FlatCamera>,
     /// Surroundings.
     pub environment: Environment,
-    /// What the artist should know.
+    /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].
     pub(super) lazy_hierarchy: LazyHierarchy,
 }
 
 impl FlatScene {
-    /// The hierarchy over the bounds of the components, in the world. Built when first asked for; a scene that nobody asks
-    /// has none.
+    /// The hierarchy over the world bounds of the components, built on first use.
     pub fn hierarchy(&self) -> &Hierarchy {
         self.lazy_hierarchy.0.get_or_init(|| {
             let boxes: Vec<Aabb> = self.components.iter().map(world_bounds).collect();
@@ -385,12 +387,12 @@ impl FlatScene {
         })
     }
 
-    /// Whether somebody has asked for the hierarchy.
+    /// Whether the hierarchy has been built.
     pub fn has_hierarchy(&self) -> bool {
         self.lazy_hierarchy.0.get().is_some()
     }
 
-    /// Fits the hierarchy, where there is one, to the component at `index`, which has changed.
+    /// Refits the hierarchy, if it has been built, to the changed component at `index`.
     pub(super) fn refit_hierarchy(&mut self, index: usize) {
         let bounds = world_bounds(&self.components[index]);
         if let Some(hierarchy) = self.lazy_hierarchy.0.get_mut()
@@ -401,12 +403,12 @@ impl FlatScene {
     }
 }
 
-/// The grown bounds of a component in the world.
+/// The grown world bounds of a component.
 fn world_bounds(component: &Component) -> Aabb {
     component.grown_bounds().translated(component.origin)
 }
 
-/// The hierarchy of a scene once somebody needs it. It follows from the components, so it takes no part in comparisons.
+/// The hierarchy of a scene, built on first use. It follows from the components, so comparisons ignore it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LazyHierarchy(OnceLock<Hierarchy>);
 
@@ -416,28 +418,29 @@ impl PartialEq for LazyHierarchy {
     }
 }
 
-/// A component whose numbers reach beyond this, in meters, is large: rounding to f32 moves what is in it by more than 2 µm.
+/// A component with coordinates beyond this, in meters, is large: rounding to f32 moves its content by over 2 µm.
 pub const LARGE: f64 = 64.0;
-/// Largest stack for which an evaluator exists, see [`Component::stack`].
+/// Largest stack that evaluators support, see [`Component::stack`].
 pub const MAX_STACK: u32 = 128;
-/// Most entries in one component: an invocation visits them seven times, twice each, for a normal and a
-/// material, and lavapipe ends every loop after 65 535 iterations.
+/// Most entries of one component: for a normal and a material an invocation visits them seven times, twice each, and
+/// lavapipe ends every loop after 65 535 iterations.
 pub const MAX_COMPONENT_NODES: usize = 4_200;
-/// Most entries in all components together: with so many of them flattening takes a second and half a gigabyte at most.
+/// Most entries of all components together: with this many, flattening takes at most a second and half a gigabyte.
 pub const MAX_FLAT_NODES: usize = 1 << 18;
-/// Most rows of numbers in a scene, and of data while it is flattened: 128 MiB, and fewer than a 32-bit float can count.
+/// Most rows in a scene, and most payload rows during flattening: 128 MiB, and fewer than a 32-bit float can count.
 pub const MAX_FLAT_ROWS: usize = 1 << 23;
-/// Most components: each is drawn by itself, and that many take lavapipe half a gigabyte and several seconds.
+/// Most components: the renderer draws each on its own, and lavapipe needs half a gigabyte and several seconds for
+/// this many.
 pub const MAX_COMPONENTS: usize = 1 << 16;
 /// Most bytes of the arrays.
 pub const MAX_FLAT_BYTES: usize = 160 << 20;
-/// Most steps of flattening: visits of nodes, and operands that are moved, copies included. They stand for time, and are
-/// the same on every machine.
+/// Most steps of flattening: visits of nodes and moved operands, copies included. Steps stand for time, but are the
+/// same on every machine.
 pub const MAX_FLAT_STEPS: usize = 1 << 23;
-/// Deepest nesting of groups and of their modifiers together, each axis of a mirror counted.
+/// Deepest nesting of groups and their modifiers together; each axis of a mirror counts.
 pub const MAX_FLAT_LEVELS: usize = 2_048;
-/// Most copies of one entry that are evaluated for one point, where repetitions stand within each other.
+/// Most evaluations of one entry for one point under nested repetitions.
 pub const MAX_COPIES: usize = 1 << 14;
-/// Most entries of components that have tapes at once, the largest first: tapes of small components take 12 KB and
-/// a tenth of a millisecond for each entry.
+/// Most entries of components that have tapes at one time, the largest first: tapes of small components take 12 KB
+/// and a tenth of a millisecond per entry.
 pub const MAX_CACHED_ENTRIES: usize = 1 << 15;

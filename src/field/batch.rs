@@ -1,8 +1,8 @@
-//! Joins small components that are alike and near each other into larger ones.
+//! Joins small components of one kind that are near each other into batches.
 //!
-//! A component that is seen takes three dispatches however small it is. So where a scene has hundreds of them, neighbors
-//! become one by hard union, whose field is the same. Only those of one kind are joined: then few kernels do for all, and
-//! none computes what only some of them hold.
+//! A visible component takes three dispatches, however small it is. In a scene with hundreds of components, neighbors
+//! therefore become one component by hard union, which leaves the field unchanged. A batch holds components of one
+//! kind only: then few kernels suffice, and none computes features that only some members use.
 
 use std::collections::HashMap;
 
@@ -15,17 +15,17 @@ use super::operand::{Operand, Value};
 use isolith_geometry::Aabb;
 use isolith_scene::Blend;
 
-/// A scene of this many components is not joined to fewer, since what is joined is evaluated together: measured for 32
-/// to 2 000 shapes on lavapipe.
+/// Batching leaves at least this many components, since the members of a batch are evaluated together: measured for
+/// 32 to 2 000 shapes on lavapipe.
 const FEWEST_COMPONENTS: usize = 32;
-/// Most shapes of components that are joined. Sixteen take longer than eight, measured as above.
+/// Most shapes in a batch. Sixteen take longer than eight, measured as above.
 const MOST_SHAPES: usize = 8;
-/// Most shapes of one component that is joined with others: with more it takes longer.
+/// Most shapes in one member of a batch: with more it takes longer.
 const MOST_SHAPES_EACH: u32 = 4;
-/// What is joined is at most this many times as large as the smallest of it: numbers are relative to the middle of all.
+/// A batch is at most this many times as large as its smallest member: its numbers are relative to its center.
 const MOST_SPREAD: f64 = 32.0;
 
-/// The components of a scene, those that are small, alike and near each other joined.
+/// The components of a scene, with small neighbors of one kind joined.
 pub(super) fn batched(components: Vec<Vec<Operand<'_>>>) -> Vec<Vec<Operand<'_>>> {
     let shapes = (components.len() / FEWEST_COMPONENTS).min(MOST_SHAPES);
     if shapes < 2 {
@@ -37,7 +37,7 @@ pub(super) fn batched(components: Vec<Vec<Operand<'_>>>) -> Vec<Vec<Operand<'_>>
             kinds.entry(kind).or_default().push(Member { at, bounds });
         }
     }
-    // Those that each component is joined with, where it is the first of them.
+    // The other members of each batch, by its first member.
     let mut others: HashMap<usize, Vec<usize>> = HashMap::new();
     for (kind, mut members) in kinds {
         let most = (shapes / kind.shapes as usize).max(1);
@@ -59,7 +59,7 @@ pub(super) fn batched(components: Vec<Vec<Operand<'_>>>) -> Vec<Vec<Operand<'_>>
     joined
 }
 
-/// Whether these may be one component.
+/// Whether these folds may form one component.
 pub(super) fn may_be_joined(folds: &[Vec<Operand<'_>>]) -> bool {
     let Some(kind) = Kind::of(&folds[0]) else { return false };
     let bounds: Option<Vec<Aabb>> = folds.iter().map(|fold| joinable_bounds(fold)).collect();
@@ -76,7 +76,7 @@ pub(super) fn united(folds: Vec<Vec<Operand<'_>>>) -> Vec<Operand<'_>> {
     folds.into_iter().enumerate().map(joined).collect()
 }
 
-/// What components that are joined have in common: shapes, nesting and blends, and what else decides about a kernel.
+/// The common properties of the members of a batch: shapes, nesting, blends, and all else that selects a kernel.
 #[derive(PartialEq, Eq, Hash)]
 struct Kind {
     shapes: u32,
@@ -84,7 +84,7 @@ struct Kind {
 }
 
 impl Kind {
-    /// `None` where it is too large or too slow to be evaluated together with others.
+    /// `None` if the fold is too large or too slow to be evaluated in a batch.
     fn of(fold: &[Operand<'_>]) -> Option<Self> {
         let mut kind = Self { shapes: 0, words: Vec::new() };
         kind.add(fold).then_some(kind)
@@ -113,7 +113,7 @@ impl Kind {
     }
 }
 
-/// The bounds of what is somewhere, and has an end.
+/// The bounds of a fold that is neither empty nor unbounded.
 fn joinable_bounds(fold: &[Operand<'_>]) -> Option<Aabb> {
     let bounds = fold_bounds(fold).bounds;
     (bounds.is_finite() && !bounds.is_empty()).then_some(bounds)
@@ -130,8 +130,8 @@ struct Member {
     bounds: Aabb,
 }
 
-/// Halves the members by place until they are compact and at most `most`, a power of two. Their numbers are powers of
-/// two as well, so that a member more seldom needs another kernel.
+/// Halves the members by position until each part is compact and has at most `most` members, a power of two. The
+/// sizes of the parts are powers of two as well, so that a member needs another kernel less often.
 fn split(members: &mut [Member], most: usize, out: &mut impl FnMut(&[Member])) {
     let count = members.len();
     let bounds: Vec<Aabb> = members.iter().map(|member| member.bounds).collect();
@@ -147,7 +147,7 @@ fn split(members: &mut [Member], most: usize, out: &mut impl FnMut(&[Member])) {
     let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b])).unwrap_or_default();
     members.sort_by(|a, b| center(a)[axis].total_cmp(&center(b)[axis]).then(a.at.cmp(&b.at)));
     let first = if count > most {
-        // All of the first half are full.
+        // All batches of the first half are full.
         (count / 2).next_multiple_of(most).min((count - 1) / most * most)
     } else if count.is_power_of_two() {
         count / 2
@@ -187,7 +187,7 @@ mod tests {
         counts
     }
 
-    /// The field of the scene: the least of all components.
+    /// The field of the scene: the minimum over all components.
     fn least(flat: &FlatScene, p: DVec3) -> f64 {
         flat.components.iter().map(|c| field(flat, c, p - c.origin)).fold(f64::INFINITY, f64::min)
     }
@@ -211,7 +211,8 @@ mod tests {
             assert!(nodes.iter().all(|node| node.code & 0xffff == nodes[0].code & 0xffff), "another shape");
             assert!(nodes.len().is_power_of_two() && nodes.len() <= super::MOST_SHAPES);
         }
-        // Those of each of the three shapes fill the crowd about once; eight of a shape from anywhere, each time.
+        // The batches of each of the three shapes fill the crowd about once; batches of shapes from anywhere would
+        // fill it once each.
         let volume = |bounds: Aabb| 8.0 * bounds.half().element_product();
         let whole = flat.components.iter().fold(Aabb::EMPTY, |all, c| all.union(&c.bounds.translated(c.origin)));
         let filled = flat.components.iter().map(|c| volume(c.bounds)).sum::<f64>() / volume(whole);
@@ -221,7 +222,7 @@ mod tests {
     #[test]
     fn what_is_far_off_large_slow_or_deformed_stays_alone() {
         let alone = |scene: &Scene| flatten(scene, 0.0).unwrap().components.iter().filter(|c| c.count == 1).count();
-        // A sphere of 1 m: 31 m from the middle of its neighbor, and too far.
+        // Spheres of 1 m are joined up to 31 m from center to center.
         assert_eq!(alone(&row(64, 30.0, |_| object(ShapeKind::Sphere))), 0);
         assert_eq!(alone(&row(64, 32.0, |_| object(ShapeKind::Sphere))), 64);
         assert_eq!(alone(&row(64, 3.0, |_| object(ShapeKind::Mandelbulb))), 64);
@@ -262,7 +263,7 @@ mod tests {
             }
             flat
         };
-        // All the way through the crowd.
+        // To the opposite side of the crowd.
         let near = edit(&|node| node.transform.translation = -node.transform.translation);
         assert_eq!(near.ids, before.ids, "it stays with its neighbors");
         assert_ne!(near.params, before.params);

@@ -1,4 +1,4 @@
-//! How the children of a group join: operator, kernel, radius in meters, and who does not blend with whom.
+//! How the children of a group join: operator, kernel, radius in meters, and siblings that do not blend.
 
 use std::collections::{HashMap, HashSet};
 
@@ -9,10 +9,10 @@ use super::operand::Operand;
 use isolith_geometry::Aabb;
 use isolith_scene::{Blend, BlendKernel, BlendOverride, Group, Node, NodeId};
 
-/// Radii below this have no effect that f32 could hold, and are taken for 0.
+/// Smaller radii have no effect in f32 and count as 0.
 const LEAST_RADIUS: f64 = 1e-30;
 
-/// Whether the node blends with a radius of its own, whatever its group says.
+/// Whether the node overrides the blend of its group with a radius of its own.
 pub(super) fn has_own_radius(node: &std::sync::Arc<Node>) -> bool {
     matches!(node.blend_override, BlendOverride::Radius(radius) if radius > 0.0)
 }
@@ -20,12 +20,12 @@ pub(super) fn has_own_radius(node: &std::sync::Arc<Node>) -> bool {
 /// Joins the children of one group.
 pub(super) struct Joiner<'g, 'a> {
     group: &'g Group,
-    /// The largest half extent of what stands so far; `None` without end.
+    /// The largest half extent of the result so far; `None` if unbounded.
     size: Option<f64>,
     bounds: Aabb,
-    /// The operands so far, each with its node, where one of the children has siblings to keep apart from.
+    /// The operands so far with their nodes; filled only if one of the children keeps apart from siblings.
     so_far: Vec<(&'a Node, Operand<'a>)>,
-    /// From which siblings each child keeps apart, whichever of the two says so.
+    /// The siblings that each child keeps apart from, whichever of the two declares it.
     apart: HashMap<NodeId, HashSet<NodeId>>,
 }
 
@@ -45,7 +45,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
         Self { group, size: None, bounds: Aabb::EMPTY, so_far: Vec::new(), apart }
     }
 
-    /// The first operand.
+    /// Starts with the first operand.
     pub fn begin(&mut self, node: &'a Node, operand: &Operand<'a>) {
         (self.bounds, self.size) = (Aabb::EMPTY, None);
         self.so_far.clear();
@@ -60,7 +60,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
         self.size = size(&self.bounds);
     }
 
-    /// Says how the operand joins, by its group and by its own wish.
+    /// Sets the join and the blend of the operand from its group and its own override.
     pub fn set_blend(&mut self, node: &Node, operand: &mut Operand<'a>) {
         let group = self.group;
         operand.join = if node.negative { Join::Difference } else { Join::of(group.operator) };
@@ -92,9 +92,9 @@ impl<'g, 'a> Joiner<'g, 'a> {
         }
     }
 
-    /// Appends the operand. Where it must not blend with some before it, it blends with a fold of all others before
-    /// it alone, and the result joins what stands so far without a blend: so nothing that stands is lost, and where
-    /// none of the others is near, the blend is hard. What cuts cuts hard where there is any such sibling.
+    /// Appends the operand. If it must not blend with some operands before it, it blends with a fold of all the
+    /// others alone, and the result joins the result so far without a blend: nothing of that is lost, and where none
+    /// of the others is near, the blend is hard. A cut is hard if there is any such sibling.
     pub fn join(&mut self, node: &'a Node, mut operand: Operand<'a>, fold: &mut Vec<Operand<'a>>, budget: &mut Budget) {
         if self.apart.is_empty() {
             join(fold, operand);
@@ -110,7 +110,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
             let hard = Blend { radius: 0.0, ..operand.blend };
             let allowed = if is_symmetric { self.allowed(&is_apart) } else { Vec::new() };
             let how = operand.join;
-            // Those that stand before are written once more.
+            // The arrays then hold the operands before it a second time.
             if !budget.take_entries(node, size_of_fold(&allowed).0) || !budget.take_steps(node, self.so_far.len()) {
                 return;
             }
@@ -126,14 +126,14 @@ impl<'g, 'a> Joiner<'g, 'a> {
         self.so_far.push((node, own));
     }
 
-    /// The fold of those so far that may blend with the next.
+    /// The fold of those operands so far that may blend with the next one.
     fn allowed(&self, is_apart: &dyn Fn(&Node) -> bool) -> Vec<Operand<'a>> {
         let mut fold: Vec<Operand<'a>> = Vec::new();
         for (other, operand) in &self.so_far {
             match () {
                 () if is_apart(other) => {}
                 () if !fold.is_empty() => join(&mut fold, operand.clone()),
-                // What is cut from nothing is nothing.
+                // Cutting from nothing leaves nothing.
                 () if other.negative => {}
                 () => fold = begin_with(operand.clone()),
             }
@@ -142,7 +142,7 @@ impl<'g, 'a> Joiner<'g, 'a> {
     }
 }
 
-/// The largest half extent; `None` without end, 0 where there is nothing.
+/// The largest half extent; `None` if unbounded, 0 if empty.
 fn size(bounds: &Aabb) -> Option<f64> {
     match () {
         () if bounds.is_empty() => Some(0.0),
@@ -151,7 +151,7 @@ fn size(bounds: &Aabb) -> Option<f64> {
     }
 }
 
-/// Grooves and tongues have no place for a number of steps: their edges are plain bevels then.
+/// Grooves and tongues have no parameter for a number of steps: their edges become plain bevels.
 fn without_steps(blend: Blend) -> Blend {
     if blend.kernel.has_steps() { Blend { kernel: BlendKernel::Chamfer, ..blend } } else { blend }
 }

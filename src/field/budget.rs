@@ -1,5 +1,5 @@
-//! What flattening may take. Everything is counted before it is made, so that no scene takes more than this, however it
-//! is built.
+//! Limits of flattening. The budget counts everything before flattening makes it, so no scene exceeds a limit,
+//! however it is built.
 
 use super::arrays::{MAX_FLAT_NODES, MAX_FLAT_ROWS, MAX_FLAT_STEPS};
 use super::error::FlattenError;
@@ -22,17 +22,17 @@ pub(super) const STACK: &str = "the nesting of groups that cannot be simplified"
 /// How much of a limit a scene uses.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Usage {
-    /// What is limited.
+    /// The limited quantity.
     pub name: &'static str,
-    /// How much there is.
+    /// The amount used.
     pub used: usize,
-    /// The most that is accepted.
+    /// The largest accepted amount.
     pub limit: usize,
-    /// The node that has the greatest part in it, where there is one.
+    /// The node that contributes most, if there is one.
     pub node: Option<NodeId>,
 }
 
-/// Most of each kind.
+/// The limit of each kind.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FlattenLimits {
     pub entries: usize,
@@ -46,7 +46,7 @@ impl Default for FlattenLimits {
     }
 }
 
-/// What has been taken so far, and the first limit that was hit.
+/// The amounts taken so far, and the first limit that was hit.
 pub(super) struct Budget {
     pub limits: FlattenLimits,
     used: FlattenLimits,
@@ -60,7 +60,7 @@ impl Budget {
         Self { limits, used: FlattenLimits { entries: 0, rows: 0, steps: 0 }, cancel: cancel.clone(), problem: None }
     }
 
-    /// Whether to go on: no limit was hit, and nobody said stop.
+    /// Whether to go on: no limit was hit, and flattening is not canceled.
     pub fn is_open(&self) -> bool {
         self.problem.is_none() && !self.cancel.is_canceled()
     }
@@ -70,25 +70,25 @@ impl Budget {
         self.used.steps
     }
 
-    /// Takes so many entries for the node; false where they are too many.
+    /// Takes `count` entries for the node; false if flattening must stop.
     pub fn take_entries(&mut self, node: &Node, count: usize) -> bool {
         self.used.entries = self.used.entries.saturating_add(count);
         self.hold(node, ENTRIES, self.used.entries, self.limits.entries)
     }
 
-    /// The same for rows of data.
+    /// The same for payload rows.
     pub fn take_rows(&mut self, node: &Node, count: usize) -> bool {
         self.used.rows = self.used.rows.saturating_add(count);
         self.hold(node, ROWS, self.used.rows, self.limits.rows)
     }
 
-    /// The same for steps of work, which stand for time: none takes longer than a microsecond or two.
+    /// The same for steps, which stand for time: none takes longer than a microsecond or two.
     pub fn take_steps(&mut self, node: &Node, count: usize) -> bool {
         self.used.steps = self.used.steps.saturating_add(count);
         self.hold(node, STEPS, self.used.steps, self.limits.steps)
     }
 
-    /// Whether the value is within its limit, and nothing was wrong before.
+    /// Checks the value against its limit; false if flattening must stop.
     pub fn hold(&mut self, node: &Node, what: &'static str, value: usize, limit: usize) -> bool {
         if value > limit {
             self.hit(node, what, value, limit);
@@ -96,7 +96,7 @@ impl Budget {
         self.is_open()
     }
 
-    /// Remembers a limit that was hit, if it is the first.
+    /// Records a limit that was hit, if it is the first.
     pub fn hit(&mut self, node: &Node, what: &'static str, value: usize, limit: usize) {
         self.problem.get_or_insert_with(|| FlattenError::new(node, what, value, limit));
     }

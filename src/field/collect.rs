@@ -19,30 +19,30 @@ use super::survey::{Survey, active};
 use isolith_geometry::singular_values;
 use isolith_scene::{Modifier, Node, NodeId, NodeKind, Object, Operator, Scene};
 
-/// The folds of all components, and what was noticed on the way.
+/// The folds of all components, and the warnings met on the way.
 pub(super) struct Components<'a> {
     pub operands: Vec<Vec<Operand<'a>>>,
     pub warnings: Vec<Warning>,
-    /// Whether something at the top is cut away from what precedes it.
+    /// Whether a negative node at the top cuts the components before it.
     pub has_cuts: bool,
-    /// What it took, and the first limit that was hit.
+    /// The amounts taken, and the first limit that was hit.
     pub budget: Budget,
 }
 
-/// Whether a node is opened at the top: its children are components of their own.
+/// Whether a node at the top is opened: its children are components of their own.
 pub(super) fn is_opened(scene: &Scene, node: &Node) -> bool {
     is_plain_group(node) && !scene.children(Some(node.id)).any(has_own_radius)
 }
 
-/// The same as far as the node itself says.
+/// The same, as far as the node itself decides it.
 fn is_plain_group(node: &Node) -> bool {
     let Node { negative, kind: NodeKind::Group(group), .. } = node else { return false };
     let is_hard = group.operator == Operator::Union && group.blend.radius == 0.0;
     !negative && active(node).next().is_none() && is_hard
 }
 
-/// The fold of the one component whose outermost node stands at `index`; nothing where it is not one, or where
-/// there is something to warn of.
+/// The fold of the component whose outermost node is at `index`; `None` if that node is not exactly one component, or
+/// if there are warnings.
 pub(super) fn component_of(scene: &Scene, index: usize) -> Option<Vec<Operand<'_>>> {
     let limits = FlattenLimits::default();
     let survey = Survey::new(scene, scene.subtree(index), &limits).ok().filter(|survey| !survey.is_deep())?;
@@ -74,14 +74,14 @@ pub(super) fn collect<'a>(
     Components { operands, warnings, has_cuts, budget }
 }
 
-/// What a node is to the group that it stands in.
+/// What a node contributes to its group.
 #[allow(clippy::large_enum_variant, reason = "none is kept, and nearly all are operands")]
 pub(super) enum Found<'a> {
     /// No operand: hidden, or without a field.
     LeftOut,
     /// The empty set.
     Nothing,
-    /// An operand, its join still to be set.
+    /// An operand whose join is not set yet.
     Operand(Operand<'a>),
 }
 
@@ -91,14 +91,14 @@ pub(super) struct Collector<'a, 'b> {
     pub budget: Budget,
     non_field: &'b mut dyn FnMut(&'a Node, &DAffine3),
     warnings: Vec<Warning>,
-    /// The same, to tell each only once.
+    /// The warnings again, so that each is given only once.
     warned: HashSet<(NodeId, String)>,
-    /// Within a modifier, whose lights, cameras and meshes are known already.
+    /// Whether the collector is inside a modifier, whose lights, cameras and meshes are already collected.
     is_muted: bool,
-    /// What shapes with data are evaluated with, by the node's index: it does not depend on where a copy stands.
+    /// Prepared shapes with a payload, by the node's index: copies share them, wherever they stand.
     drawn: HashMap<usize, Rc<PreparedShape>>,
     splines: Splines,
-    /// Modifiers that can do nothing with their content, by the node's index and how many precede them.
+    /// Modifiers that cannot act on their content, by the node's index and the number of modifiers before them.
     refused: HashSet<(usize, usize)>,
 }
 
@@ -128,8 +128,8 @@ impl<'a, 'b> Collector<'a, 'b> {
         is_plain_group(&nodes[index]) && !self.survey.children(index).any(|child| has_own_radius(&nodes[child]))
     }
 
-    /// The children in `range` are joined by hard union: each becomes a component, hard unions among
-    /// them are opened. A negative child is cut from those before it.
+    /// Splits the children in `range` of a hard union: each becomes a component, and hard unions among them are
+    /// opened. A negative child is cut from those before it.
     fn split(
         &mut self,
         range: std::ops::Range<usize>,
@@ -162,7 +162,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
     }
 
-    /// What the node at `index` is in its group.
+    /// What the node at `index` contributes to its group.
     pub fn operand(&mut self, index: usize, parent: &DAffine3, outermost: &'a Node) -> Found<'a> {
         let node: &'a Node = &self.scene.nodes()[index];
         if !node.visible || !self.budget.take_steps(node, 1) {
@@ -178,7 +178,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         let operand = if modifiers.is_empty() {
             self.content(index, &world, outermost)
         } else {
-            // What is no field is not modified, and is there once.
+            // Lights, cameras and meshes ignore modifiers; collect them once, not once per copy.
             self.non_fields(index, &world);
             let was_muted = std::mem::replace(&mut self.is_muted, true);
             let operand = self.modified(index, &modifiers, &world, outermost);
@@ -188,7 +188,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         operand.map_or(Found::Nothing, Found::Operand)
     }
 
-    /// The node at `index`, an object or a group, without its modifiers; `None` where it is empty.
+    /// The node at `index`, an object or a group, without its modifiers; `None` if it is empty.
     fn content(&mut self, index: usize, world: &DAffine3, outermost: &'a Node) -> Option<Operand<'a>> {
         let node: &'a Node = &self.scene.nodes()[index];
         match &node.kind {
@@ -205,8 +205,8 @@ impl<'a, 'b> Collector<'a, 'b> {
         }
     }
 
-    /// Whether the operand is not nested deeper than any evaluator can go. Where it is opened into components, up to two
-    /// levels are gone.
+    /// Whether the operand is nested no deeper than evaluators support. Opening it into components removes up to two
+    /// levels.
     fn is_nested(&mut self, operand: &Operand<'a>) -> bool {
         self.budget.hold(operand.outermost, STACK, operand.depth.saturating_sub(2) as usize, MAX_STACK as usize)
     }
@@ -233,7 +233,7 @@ impl<'a, 'b> Collector<'a, 'b> {
         self.budget.take_rows(node, prepared.payload.len()).then_some(operand)
     }
 
-    /// The lights, meshes and cameras of the subtree at `index`, whose own world transform is given.
+    /// Collects the lights, meshes and cameras of the subtree at `index`, whose own world transform is `world`.
     fn non_fields(&mut self, index: usize, world: &DAffine3) {
         if self.is_muted {
             return;
@@ -272,13 +272,13 @@ impl<'a, 'b> Collector<'a, 'b> {
         };
         let mut operands = Vec::new();
         for copy in &copies {
-            // Where one is empty, all are.
+            // If one copy is empty, all are.
             operands.push(self.modified(index, rest, &(*world * *copy), outermost)?);
         }
         self.union_of(node, outermost, operands, 0.0)
     }
 
-    /// The node and its mirror images across the planes at right angles to `axes`.
+    /// The node and its mirror images across the planes perpendicular to `axes`.
     fn mirrored(
         &mut self,
         index: usize,
@@ -331,7 +331,8 @@ impl<'a, 'b> Collector<'a, 'b> {
             Ok(modified) => modified,
             Err(ModifierRefusal::Cannot(reason)) => {
                 self.warn(node, reason);
-                // Whether it can does not depend on where a copy stands: the content is not collected twice for each.
+                // Whether it can act does not depend on where a copy stands: later copies do not collect the content
+                // twice.
                 self.refused.insert((index, rest.len()));
                 return self.modified(index, rest, world, outermost);
             }
@@ -363,7 +364,7 @@ impl<'a, 'b> Collector<'a, 'b> {
     }
 
     pub fn warn(&mut self, node: &Node, reason: String) {
-        // Copies would say the same again.
+        // Copies would repeat the warning.
         if self.warned.insert((node.id, reason.clone())) {
             self.warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
         }

@@ -1,4 +1,4 @@
-//! How operands are put together to folds.
+//! Composition of operands into folds.
 
 use std::rc::Rc;
 
@@ -10,7 +10,7 @@ use super::operand::{Operand, Value};
 use isolith_scene::{Blend, Node};
 
 impl<'a> Operand<'a> {
-    /// The first operand of a fold, which joins nothing. Where it belongs stands in `node` and `outermost`.
+    /// The first operand of a fold, which joins nothing. `node` and `outermost` say where it belongs.
     pub fn first(node: &'a Node, outermost: &'a Node, lower_bound: LowerBound, value: Value<'a>) -> Self {
         let LowerBound { bounds, cull_box, bound_slope, .. } = lower_bound;
         let (entries, depth) = match &value {
@@ -25,19 +25,19 @@ impl<'a> Operand<'a> {
     }
 }
 
-/// A fold as one operand, named after its first one.
+/// A fold as one operand, with the node of its first operand.
 pub(super) fn group_of(fold: Vec<Operand<'_>>) -> Operand<'_> {
     let Operand { node, outermost, .. } = fold[0];
     Operand::first(node, outermost, fold_bounds(&fold), Value::Fold(Rc::new(fold)))
 }
 
-/// The entries of all operands, and how deep the deepest is.
+/// The number of entries of all operands, and the depth of the deepest.
 pub(super) fn size_of_fold(fold: &[Operand<'_>]) -> (usize, u32) {
     let sum = |(entries, depth): (usize, u32), o: &Operand<'_>| (entries.saturating_add(o.entries), depth.max(o.depth));
     fold.iter().fold((0, 0), sum)
 }
 
-/// A fold that starts with `operand`: a group's fold simply goes on.
+/// A fold that starts with `operand`; the fold of a group simply continues.
 pub(super) fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
     operand.join = Join::First;
     match operand.value {
@@ -61,12 +61,12 @@ pub(super) fn begin_with(mut operand: Operand<'_>) -> Vec<Operand<'_>> {
     }
 }
 
-/// Whether a fold is a hard union: its operands can be traced alone.
+/// Whether a fold is a hard union, so that its operands can be traced alone.
 pub(super) fn is_plain(fold: &[Operand<'_>]) -> bool {
     fold[1..].iter().all(|o| o.join == Join::Union && o.blend.radius == 0.0)
 }
 
-/// What can be traced alone: the operands of a hard union.
+/// The operands that can be traced alone: those of a hard union, else the operand itself.
 pub(super) fn apart(operand: Operand<'_>) -> Vec<Operand<'_>> {
     match operand.value {
         Value::Fold(fold) if is_plain(&fold) => Rc::unwrap_or_clone(fold),
@@ -74,7 +74,7 @@ pub(super) fn apart(operand: Operand<'_>) -> Vec<Operand<'_>> {
     }
 }
 
-/// Operands joined by union; nothing where there are none.
+/// The union of operands; `None` if there are none.
 pub(super) fn united<'a>(
     node: &'a Node,
     outermost: &'a Node,
@@ -91,7 +91,7 @@ pub(super) fn united<'a>(
     if fold.len() == 1 { fold.pop() } else { Some(Operand { node, outermost, ..group_of(fold) }) }
 }
 
-/// Where the copies around Y stand: the first one out along X.
+/// Transforms of the copies around Y; the first copy stands out along X.
 pub(super) fn polar_copies(count: u32, radius: f64, mirrored: bool) -> Vec<DAffine3> {
     let out = DAffine3::from_translation(DVec3::X * radius);
     let copy = |i: u32| {

@@ -1,4 +1,4 @@
-//! What is negative at the top of a scene is cut from those components before it that it can reach, since
+//! Cuts by the negative nodes at the top of a scene: each is cut from the components before it that it reaches, since
 //! (a ∪ b) − d = (a − d) ∪ (b − d) exactly.
 
 use std::ops::Range;
@@ -10,14 +10,14 @@ use super::operand::Operand;
 use isolith_geometry::Aabb;
 use isolith_scene::Blend;
 
-/// A negative operand, and the components that it is cut from where it reaches them.
+/// A negative operand, and the components that it is cut from if it reaches them.
 pub(super) struct Cut<'a> {
     pub from: Range<usize>,
     pub negative: Operand<'a>,
 }
 
-/// Cuts, in the order in which the negatives stand in the scene. A cut leaves the bounds of a component as they are, so
-/// all that it reaches can be looked up at once, however many components and cuts there are.
+/// Applies the cuts in the order of the negatives in the scene. A cut leaves the bounds of a component unchanged, so
+/// one tree serves all cuts, however many components and cuts there are.
 pub(super) fn apply<'a>(components: &mut [Vec<Operand<'a>>], cuts: Vec<Cut<'a>>, budget: &mut Budget) {
     if cuts.is_empty() {
         return;
@@ -37,22 +37,22 @@ pub(super) fn apply<'a>(components: &mut [Vec<Operand<'a>>], cuts: Vec<Cut<'a>>,
     }
 }
 
-/// So many boxes are looked at one by one.
+/// Most boxes in a leaf of the tree; a query compares them one by one.
 const LEAF: usize = 8;
 
 /// A binary tree over boxes.
 struct BoxTree {
     boxes: Vec<Aabb>,
-    /// Those that have an end, in the order of the leaves.
+    /// Bounded boxes, in the order of the leaves.
     order: Vec<usize>,
-    /// Those that have none.
+    /// Unbounded boxes.
     endless: Vec<usize>,
     nodes: Vec<TreeNode>,
 }
 
 struct TreeNode {
     bounds: Aabb,
-    /// In [`BoxTree::order`].
+    /// Range of [`BoxTree::order`].
     range: Range<usize>,
     /// Index of the second child; the first one follows its parent. `None` in a leaf.
     second: Option<usize>,

@@ -1,5 +1,5 @@
-//! What a picture can show instead of light: what was counted, where surfaces are, what the field is like there.
-//! The color maps are the counterparts of those in `shaders/debug_view.wgsl`; colors are sRGB from 0 to 1.
+//! View modes of a picture besides shading: counts, distances, normals, slopes of the field, ids. The color maps are
+//! the counterparts of those in `shaders/debug_view.wgsl`; colors are sRGB from 0 to 1.
 
 use std::str::FromStr;
 
@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use isolith_geometry::Aabb;
 
-/// What a picture shows. The numbers are those of the shader.
+/// What a picture shows. The shader uses the same numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ViewMode {
@@ -16,15 +16,15 @@ pub enum ViewMode {
     Shaded = 0,
     /// Evaluations of fields by each pixel's rays.
     Steps = 1,
-    /// The same with the pixel's share of its tile's cones.
+    /// The same plus the pixel's share of the evaluations by its tile's cones.
     Evaluations = 2,
-    /// Cells of tapes that were looked up for the pixel.
+    /// Tape cells looked up for the pixel.
     Cells = 3,
-    /// Entries of tapes that were read for the pixel.
+    /// Tape entries read for the pixel.
     Entries = 4,
     /// Distance along the ray, with lines.
     Distance = 5,
-    /// Normals in the world.
+    /// World normals.
     Normals = 6,
     /// Length of the field's gradient at the surface.
     Slope = 7,
@@ -34,41 +34,41 @@ pub enum ViewMode {
     Components = 9,
 }
 
-/// Distances that have colors of their own, in meters.
+/// The range of distances that colors tell apart, in meters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthRange {
-    /// Where the first color ends.
+    /// End of the first color.
     pub bottom: f64,
-    /// Where the last color begins.
+    /// Start of the last color.
     pub top: f64,
-    /// Between two lines.
+    /// Distance between two lines.
     pub spacing: f64,
 }
 
-/// What explains the colors of a view mode.
+/// The legend of a view mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Legend {
-    /// What the numbers are.
+    /// Meaning of the numbers.
     pub unit: String,
-    /// Colors from the left end of the bar to the right; none where there is no bar.
+    /// Colors of the bar from left to right; empty if there is no bar.
     pub bar: Vec<Vec3>,
-    /// Numbers below the bar, each with its place from 0 to 1.
+    /// Numbers below the bar, each with its position from 0 to 1.
     pub ticks: Vec<(f32, String)>,
-    /// Colors that stand for one thing.
+    /// Single colors with their meaning.
     pub swatches: Vec<(Vec3, &'static str)>,
 }
 
 /// Colors in the bar of a legend.
 const BAR: u16 = 96;
-/// Where there is nothing to look at.
+/// Color of pixels without a surface.
 pub const DEBUG_VIEW_NOTHING: Vec3 = Vec3::new(0.1, 0.11, 0.13);
-/// Meshes, where only fields can be looked at.
+/// Color of meshes in modes that show fields only.
 const DEBUG_VIEW_MESH: Vec3 = Vec3::new(0.3, 0.31, 0.34);
-/// A gradient this much longer than 1 is rounding.
+/// Deviations of a gradient's length from 1 up to this are rounding.
 const DEBUG_VIEW_ROUNDING: f32 = 1e-3;
 
 impl ViewMode {
-    /// All of them, in the order of the menu.
+    /// All view modes, in the order of the menu.
     pub const ALL: [Self; 10] = [
         Self::Shaded,
         Self::Steps,
@@ -114,12 +114,12 @@ impl ViewMode {
         }
     }
 
-    /// Whether only kernels that count can show it.
+    /// Whether it needs kernels that count.
     pub fn counts(self) -> bool {
         matches!(self, Self::Steps | Self::Evaluations | Self::Cells | Self::Entries)
     }
 
-    /// The count with the last color of the bar; larger ones are white. Always the same, so that pictures can be
+    /// The count of the last color of the bar; larger counts are white. It is constant, so that pictures can be
     /// compared.
     pub fn top(self) -> f32 {
         match self {
@@ -129,7 +129,7 @@ impl ViewMode {
         }
     }
 
-    /// What explains its colors; `depth_range` for distances.
+    /// The legend of its colors; distances use `depth_range`.
     pub fn legend(self, depth_range: &DepthRange) -> Legend {
         let bar = |color: &dyn Fn(f32) -> Vec3| (0..BAR).map(|i| color(f32::from(i) / f32::from(BAR - 1))).collect();
         let with_unit = |unit: &str| Legend { unit: unit.to_owned(), ..Legend::default() };
@@ -172,7 +172,7 @@ impl ViewMode {
         }
     }
 
-    /// What a person needs to know to read a picture of it, in one line; empty for [`ViewMode::Shaded`].
+    /// Its legend in one line, for readers of a picture; empty for [`ViewMode::Shaded`].
     pub fn note(self, depth_range: &DepthRange) -> String {
         let Legend { unit, ticks, swatches, .. } = self.legend(depth_range);
         let ticks: Vec<_> = ticks.into_iter().map(|(_, number)| number).collect();
@@ -198,7 +198,7 @@ impl FromStr for ViewMode {
 }
 
 impl DepthRange {
-    /// Of what is in the box `content` of the world, seen from `eye`; on both ends whole steps.
+    /// The range of the world box `content` as seen from `eye`; both ends are multiples of the spacing.
     pub fn of(content: &Aabb, eye: DVec3) -> Self {
         let far = content.corners().iter().map(|corner| corner.distance(eye)).fold(1e-6, f64::max);
         let near = content.distance(eye).min(far);
@@ -207,7 +207,7 @@ impl DepthRange {
         Self { bottom, top: ((far / spacing).ceil() * spacing).max(bottom + spacing), spacing }
     }
 
-    /// Some four numbers, all of them lines.
+    /// About four ticks, all of them at lines.
     fn ticks(&self) -> Vec<(f32, String)> {
         let lines = ((self.top - self.bottom) / self.spacing).round();
         let every = (lines / 4.0).ceil().max(1.0);
@@ -218,20 +218,20 @@ impl DepthRange {
     }
 }
 
-/// The least of 1, 2, 5, 10, 20 … that is not below `least`.
+/// The smallest of 1, 2, 5, 10, 20 … that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10.0_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0].map(|digit| digit * power).into_iter().find(|step| *step >= least).unwrap_or(10.0 * power)
 }
 
-/// With at most six digits that count.
+/// Formats a number with at most six significant digits.
 fn trimmed(value: f64) -> String {
     let decimals = (5.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{value:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }
 
-/// Powers of 4 up to `top`, of 16 where these would be too many.
+/// Powers of 4 up to `top`, or of 16 if those are too many.
 fn count_ticks(top: f32) -> Vec<(f32, String)> {
     let base: u32 = if top > 1024.0 { 16 } else { 4 };
     let powers = (0..).map(|i| base.pow(i)).take_while(|power| *power as f32 <= top);
@@ -242,13 +242,13 @@ fn count_share(count: f32, top: f32) -> f32 {
     (1.0 + count).log2() / (1.0 + top).log2()
 }
 
-/// A color for an id: neighbors differ much, and the same id always has the same.
+/// The color of an id: the same for the same id, and very different for neighbors.
 pub fn id_color(id: u64) -> [u8; 3] {
     // Multiples of the golden ratio spread over the circle of hues; saturation and value tell near hues apart.
     let hue = (id as f64 * 0.618_033_988_749_895).fract() * 6.0;
     let saturation = 0.5 + 0.12 * (id % 3) as f64;
     let value = 0.95 - 0.09 * (id / 3 % 3) as f64;
-    // From hue, saturation and value: each channel falls from its own hue to both sides.
+    // From hue, saturation and value: each channel falls off from its own hue to both sides.
     [0.0, 2.0, 4.0].map(|own: f64| {
         let away = (hue - own).rem_euclid(6.0);
         let strength = (2.0 - away.min(6.0 - away)).clamp(0.0, 1.0);
@@ -256,7 +256,7 @@ pub fn id_color(id: u64) -> [u8; 3] {
     })
 }
 
-/// From dark blue by green and yellow to red.
+/// From dark blue through green and yellow to red.
 pub fn debug_view_ramp(share: f32) -> Vec3 {
     let at = share.clamp(0.0, 1.0) * 5.0;
     let mut color = Vec3::new(0.06, 0.07, 0.14);
@@ -267,24 +267,24 @@ pub fn debug_view_ramp(share: f32) -> Vec3 {
     color
 }
 
-/// Counts by their logarithm; white beyond the top.
+/// The color of a count, on a logarithmic scale; white beyond the top.
 pub fn debug_view_count(count: f32, top: f32) -> Vec3 {
     if count > top { Vec3::ONE } else { debug_view_ramp(count_share(count, top)) }
 }
 
-/// Near is light, far is dark.
+/// The color of a distance: near is light, far is dark.
 pub fn debug_view_distance(share: f32) -> Vec3 {
     let at = share.clamp(0.0, 1.0) * 2.0;
     let nearer = Vec3::new(0.98, 0.93, 0.78).lerp(Vec3::new(0.27, 0.58, 0.64), at.min(1.0));
     nearer.lerp(Vec3::new(0.1, 0.13, 0.27), (at - 1.0).max(0.0))
 }
 
-/// X, Y and Z as red, green and blue.
+/// The color of a normal: X, Y and Z as red, green and blue.
 pub fn debug_view_normal(normal: Vec3) -> Vec3 {
     normal * 0.5 + 0.5
 }
 
-/// The length of a gradient: blue below 1, gray at 1, orange to red above, magenta where it is no number.
+/// The color of a gradient's length: blue below 1, gray at 1, orange to red above, magenta if not finite.
 pub fn debug_view_slope(slope: f32) -> Vec3 {
     if !slope.is_finite() {
         Vec3::new(1.0, 0.0, 1.0)
@@ -297,7 +297,7 @@ pub fn debug_view_slope(slope: f32) -> Vec3 {
     }
 }
 
-/// A little darker where the surface turns away from the eye, so that its form can be seen.
+/// Darkens a color slightly where the surface turns away from the eye, which shows its form.
 pub fn debug_view_lit(color: Vec3, facing: f32) -> Vec3 {
     color * (0.6 + 0.4 * facing)
 }

@@ -51,8 +51,8 @@ pub(super) fn emit(
     }
 }
 
-/// How large the numbers of the component are whose entries begin at `first`: its bounds, and how far its origin is from
-/// where its shapes and modifiers stand.
+/// The size of the numbers of the component whose entries begin at `first`: that of its bounds, or the largest
+/// distance from its origin to where its shapes and modifiers stand.
 fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
     let size = if bounds.is_finite() { bounds.half().max_element() } else { 0.0 };
     let farthest = |node: &FlatNode| {
@@ -62,7 +62,7 @@ fn reach(flat: &FlatScene, first: usize, bounds: &Aabb) -> f64 {
     flat.nodes[first..].iter().filter_map(farthest).fold(size, f64::max)
 }
 
-/// How often a leaf of the operand may be evaluated for one point.
+/// Most evaluations of a leaf of the operand for one point.
 fn copies(operand: &Operand<'_>) -> u32 {
     match &operand.value {
         Value::Leaf { .. } => 1,
@@ -73,8 +73,8 @@ fn copies(operand: &Operand<'_>) -> u32 {
     }
 }
 
-/// The middle of the bounds; for what has no end, the middle of the first operand that has one, or
-/// where the first operand stands. f32 is finest there.
+/// The center of the bounds, where f32 is finest. Without bounds, the center of the first bounded operand, or else
+/// the position of the first operand.
 fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
     if bounds.is_finite() {
         return bounds.center();
@@ -89,7 +89,7 @@ fn origin_of(bounds: &Aabb, operands: &[Operand<'_>]) -> DVec3 {
     }
 }
 
-/// See [`Component::half_space`]: what begins with a plane and is only cut afterward stays below it.
+/// See [`Component::half_space`]: a plane that later operands only cut stays in its half space.
 fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     let Value::Leaf { local_from_world, prepared, .. } = &operands[0].value else { return None };
     if prepared.kind != ShapeKind::Plane || !operands[1..].iter().all(|o| o.join.only_cuts()) {
@@ -102,7 +102,7 @@ fn half_space(operands: &[Operand<'_>], origin: DVec3) -> Option<[f64; 4]> {
     Some([normal.x, normal.y, normal.z, local_from_world.transform_point3(origin).y / length])
 }
 
-/// Whether the field of one operand can end where that of another begins: everywhere but in unions.
+/// Whether the field of one operand can end where that of another begins: in all joins but unions.
 fn can_cancel(operands: &[Operand<'_>]) -> bool {
     operands.iter().any(|operand| {
         let below = match &operand.value {
@@ -113,8 +113,8 @@ fn can_cancel(operands: &[Operand<'_>]) -> bool {
     })
 }
 
-/// The largest coordinate of the leaves' bounds, relative to `origin` or to the local space that they are in; of what has no
-/// end, how far off it stands.
+/// The largest coordinate of the leaves' bounds, relative to `origin` or to the local space of the enclosing
+/// modifier; for an unbounded leaf its distance from there.
 fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
     let of = |operand: &Operand<'_>| match &operand.value {
         Value::Leaf { .. } if operand.bounds.is_finite() => {
@@ -123,7 +123,7 @@ fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
         }
         Value::Leaf { local_from_world, distance_scale, prepared, .. } => {
             let local = local_from_world.transform_point3(origin);
-            // Where along a plane it is does not count.
+            // The position along a plane does not count.
             let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
             far * distance_scale
         }
@@ -133,7 +133,7 @@ fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
     operands.iter().map(of).fold(0.0, f64::max)
 }
 
-/// Appends the data of all leaves and modifiers; `entries` are those from here on, in the order in which they were written.
+/// Appends the payloads of all leaves and modifiers; `entries` are the entries from here on, in the order of writing.
 fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn Iterator<Item = usize>) {
     for operand in operands {
         let mut entry = || entries.next().expect("all were written");
@@ -161,8 +161,8 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
     }
 }
 
-/// Appends what modifiers hold; `entries` are those from here on, in the order in which they were written, and whether
-/// each is a run. What is there is evaluated up to `copies` times for one point.
+/// Appends the domains of modifiers; `entries` are the entries from here on, in the order of writing, and whether
+/// each is a run. The operands are evaluated up to `copies` times for one point.
 fn collect_domains(
     operands: &[Operand<'_>],
     copies: u32,
@@ -184,13 +184,13 @@ fn collect_domains(
     }
 }
 
-/// Operands that follow each other and join alike get a run where there are this many.
+/// Consecutive operands that join alike get runs from this number on.
 const LEAST_IN_ROW: usize = 10;
 /// A run holds at most about this many operands or runs.
 const RUN_LENGTH: usize = 6;
 
-/// Writes a fold, with runs before long rows of operands that join alike and have bounds. Returns how
-/// many accumulators have to be put aside within it.
+/// Writes a fold, with runs before long rows of bounded operands that join alike. Returns how many accumulators an
+/// evaluator has to put aside within it.
 fn emit_fold(
     flat: &mut FlatScene,
     operands: &[Operand<'_>],
@@ -212,7 +212,7 @@ fn emit_fold(
     stack
 }
 
-/// Writes operands that join alike as runs, of runs where there are many.
+/// Writes operands that join alike as runs, with runs of runs if there are many.
 fn emit_runs(
     flat: &mut FlatScene,
     row: &[Operand<'_>],
@@ -240,7 +240,7 @@ fn emit_runs(
     stack
 }
 
-/// The rows of a group or run. Rounding to f32 must never make the bounds smaller or the slope greater.
+/// The rows of a group or run. Rounding to f32 must never shrink the bounds or raise the slope.
 fn bounding_rows([support, size, depth]: [f32; 3], bound_slope: f64, bounds: &Aabb) -> [ParamRow; GROUP_ROWS] {
     if bound_slope <= 0.0 {
         return [[support, 0.0, size, depth], [0.0; 4], [0.0; 4]];
@@ -252,19 +252,19 @@ fn bounding_rows([support, size, depth]: [f32; 3], bound_slope: f64, bounds: &Aa
     [[support, bound_slope, size, depth], [center.x, center.y, center.z, 0.0], [half.x, half.y, half.z, 0.0]]
 }
 
-/// Local from component, before rounding.
+/// Local-from-component, before rounding.
 fn exact_placing(local_from_world: &DAffine3, origin: DVec3) -> [[f64; 4]; 3] {
     let shift = local_from_world.transform_point3(origin);
     [0, 1, 2].map(|row| local_from_world.matrix3.row(row).extend(shift[row]).to_array())
 }
 
-/// Local from component.
+/// Local-from-component, rounded to f32.
 fn placing_rows(local_from_world: &DAffine3, origin: DVec3) -> [ParamRow; 3] {
     exact_placing(local_from_world, origin).map(|row| row.map(|v| v as f32))
 }
 
-/// See [`Component::rest`]; `entries` are those from here on, in the order in which they were written, and whether each is a
-/// run.
+/// Collects [`Component::rest`]; `entries` are the entries from here on, in the order of writing, and whether each is
+/// a run.
 fn collect_rest(
     operands: &[Operand<'_>],
     origin: DVec3,
@@ -288,7 +288,7 @@ fn collect_rest(
     }
 }
 
-/// Returns how many accumulators have to be put aside within the operand.
+/// Writes an operand. Returns how many accumulators an evaluator has to put aside within it.
 fn emit_operand(
     flat: &mut FlatScene,
     operand: &Operand<'_>,
@@ -310,7 +310,7 @@ fn emit_operand(
             let packed = prepared.parameters.map(|v| v as f32);
             let rows = prepared.kind.parameter_rows();
             flat.params.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
-            // Where its data are, once they are written.
+            // A placeholder: `emit_data` writes the location of the payload here.
             flat.params.extend(payload_row(prepared.kind).map(|_| [0.0; 4]));
             0
         }

@@ -1,10 +1,10 @@
-//! Why a scene has no arrays.
+//! Errors of flattening.
 
 use thiserror::Error;
 
 use isolith_scene::{Node, NodeId};
 
-/// Why a scene has no arrays.
+/// A limit that a scene exceeds, so that it has no arrays.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{name} ({node}): {what} is {value}, more than the limit of {limit}")]
 pub struct FlattenError {
@@ -12,7 +12,7 @@ pub struct FlattenError {
     pub node: NodeId,
     /// Its name.
     pub name: String,
-    /// What is limited.
+    /// The limited quantity.
     pub what: &'static str,
     /// The value reached.
     pub value: usize,

@@ -1,11 +1,11 @@
-//! Scene → arrays.
+//! Flattening: scene → arrays.
 //!
-//! Three steps: what it will take is counted (`survey`); the visible nodes become folds of operands in world space
-//! (`collect`), split into components at hard unions, small ones joined again by place (`batch`); then each component is
-//! written out relative to its own origin (`emit`).
+//! Three steps. `survey` counts what flattening will take. `collect` turns the visible nodes into folds of operands
+//! in world space, split into components at hard unions, and `batch` joins small neighbors again. `emit` writes each
+//! component relative to its own origin.
 //!
-//! What never reaches the arrays: hidden nodes, the empty set, groups of one operand, and groups that
-//! come first in their parent (their fold simply is the beginning of the parent's fold).
+//! Hidden nodes, the empty set, groups of one operand, and groups that come first in their parent never reach the
+//! arrays. The fold of a group that comes first is the beginning of the parent's fold.
 
 use std::collections::HashMap;
 
@@ -34,15 +34,15 @@ const APART: &str = "the number of parts that meet others by hard union only, co
 /// See [`MAX_COPIES`].
 const COPIES: &str = "the number of copies of copies that are evaluated for one point";
 
-/// The arrays of `scene` at `time` seconds. Costs about 0.1 µs a node, four times as much where thousands of separate shapes
-/// are joined by place. What it takes is counted before it is done, see [`MAX_FLAT_NODES`] and the limits beside it.
+/// The arrays of `scene` at `time` seconds. Takes about 0.1 µs per node, and four times as long if thousands of
+/// separate shapes are batched. The costs are counted in advance, see [`MAX_FLAT_NODES`] and the limits beside it.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     let made = flatten_with_cuts(scene, time, &Cancel::default())?;
     let (flat, _) = made.expect("nobody else holds the flag, so nobody cancels");
     Ok(flat)
 }
 
-/// The same with how much of each limit is used; nothing where it was canceled.
+/// The same with the usage of each limit; `None` if canceled.
 pub fn flatten_until(
     scene: &Scene,
     time: f64,
@@ -55,8 +55,7 @@ pub fn flatten_until(
     }))
 }
 
-/// The arrays with all components joined into one, as a renderer has them that knows of no components: what
-/// the benches compare with.
+/// The arrays with all components joined into one, as for a renderer without components: the baseline of the benches.
 pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
     let mut flat = flatten(scene, time)?;
     flat.nodes.clear();
@@ -77,7 +76,7 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     })
 }
 
-/// The same, and whether something is cut away from several components; nothing where it was canceled.
+/// The same, and whether negative nodes at the top cut components; `None` if canceled.
 pub(super) fn flatten_with_cuts(
     scene: &Scene,
     time: f64,
@@ -87,7 +86,7 @@ pub(super) fn flatten_with_cuts(
     Ok(made.map(|Made { flat, has_cuts, .. }| (flat, has_cuts)))
 }
 
-/// The arrays, and what else is known of how they were made.
+/// The arrays, and facts about their making.
 struct Made {
     flat: FlatScene,
     has_cuts: bool,
@@ -106,7 +105,7 @@ fn flatten_within(
     on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
 }
 
-/// Does the work where the stack is deep enough for it.
+/// Runs `work` on a stack that is deep enough for it.
 fn on_a_stack<T: Send>(
     scene: &Scene,
     survey: &Survey,
@@ -119,7 +118,7 @@ fn on_a_stack<T: Send>(
         let thread = std::thread::Builder::new().name("flatten".into()).stack_size(survey.stack_bytes());
         match thread.spawn_scoped(scope, work) {
             Ok(thread) => thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
-            // The system has no room for the stack.
+            // The system has no memory for the stack.
             Err(_) => Err(FlattenError::new(&scene.nodes()[0], LEVELS, survey.levels, 0)),
         }
     })
@@ -164,7 +163,7 @@ fn flatten_surveyed(
     Ok(Some(Made { flat, has_cuts, steps }))
 }
 
-/// Index of materials in use, in the order of first use.
+/// Indices of the materials in use, in the order of first use.
 struct Materials<'a> {
     scene: &'a Scene,
     index: HashMap<MaterialId, u32>,
@@ -213,7 +212,7 @@ fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Nod
     }
 }
 
-/// A camera's scale has no meaning: only where it stands and where it looks are inherited.
+/// A camera ignores scale: it inherits only its position and its orientation.
 fn place_camera(camera: &CameraNode, world_from_local: &DAffine3) -> Camera {
     let back = (world_from_local.matrix3 * DVec3::Z).try_normalize().unwrap_or(DVec3::Z);
     let up = world_from_local.matrix3 * DVec3::Y;
@@ -235,13 +234,13 @@ fn add_component(
     most_rows: usize,
 ) -> Result<(), FlattenError> {
     let first = operands.first().expect("a component has an operand");
-    // An intersection of what does not meet: nothing is there to trace.
+    // An intersection of disjoint operands: there is nothing to trace.
     if fold_bounds(operands).bounds.is_empty() {
         return Ok(());
     }
     let (entries, depth) = size_of_fold(operands);
     let refuse = |what, value, limit| Err(FlattenError::new(first.outermost, what, value, limit));
-    // Before it is written: groups that share their content in memory have none of it in common in the arrays.
+    // Checked before writing: groups that share their content in memory do not share it in the arrays.
     if entries > MAX_COMPONENT_NODES {
         return refuse(TOGETHER, entries, MAX_COMPONENT_NODES);
     }
@@ -274,7 +273,7 @@ mod tests {
         flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())
     }
 
-    /// Sixty-four copies of a plate that is displaced by an image of 900 pixels; the name of the plate's node.
+    /// Sixty-four copies of a plate that an image of 900 pixels displaces, and the id of the plate's node.
     fn copies() -> (Scene, NodeId) {
         let image = Attachment::drawn("x.png", [30, 30], |x, y| (x * y % 256) as u8);
         let displaced = Modifier::Displacement { image, height: 0.1, tile: 1.0, axis: Axis::Y };
@@ -296,7 +295,7 @@ mod tests {
         // The last component is one row too long.
         let error = refused(rows - 1);
         assert_eq!((error.node, error.value, error.limit), (id, rows, rows - 1));
-        // Data alone are too many: no more copies are made than it takes to know.
+        // Payload rows alone exceed the limit: `collect` makes only as many copies as it takes to know.
         let error = refused(5_000);
         assert_eq!((error.node, error.value, error.limit), (id, 5_400, 5_000));
         let told = format!("Plate ({id}): the number of rows of points, letters and images, copies included is 5400");
@@ -310,7 +309,7 @@ mod tests {
         let object = Object { shape: ShapeKind::Heightmap.default_shape(), material: scene.materials()[0].id };
         let id = scene.insert(None, 0, Node::new("Alps", NodeKind::Object(object))).unwrap();
         let error = flatten_in_rows(&scene, 500).err().expect("too many rows");
-        // 24 times 24 heights, and the ball around them.
+        // 24 times 24 heights, and their bounding sphere.
         assert_eq!((error.node, error.value, error.limit), (id, 577, 500));
     }
 }

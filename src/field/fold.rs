@@ -1,4 +1,4 @@
-//! The children of a group, joined one after the other; see [`isolith_scene::EmptyOperandResult`] for those that are empty.
+//! Joins the children of a group in order; see [`isolith_scene::EmptyOperandResult`] for empty ones.
 
 use glam::DAffine3;
 
@@ -8,9 +8,9 @@ use super::composition::begin_with;
 use super::operand::Operand;
 use isolith_scene::{EmptyOperandResult, Group, Node, Operator};
 
-/// What stands so far.
+/// The result so far.
 enum Stand<'a> {
-    /// No operand has been met.
+    /// No operand yet.
     None,
     /// The empty set.
     Nothing,
@@ -22,14 +22,14 @@ struct Folding<'g, 'a> {
     group: &'g Group,
     joiner: Joiner<'g, 'a>,
     stand: Stand<'a>,
-    /// The first child that is empty and leaves nothing of what stands.
+    /// The first empty child that leaves nothing of the result.
     empty: Option<&'a Node>,
-    /// Whether a sibling is gone with it.
+    /// Whether a sibling vanished with it.
     is_lost: bool,
 }
 
 impl<'a> Collector<'a, '_> {
-    /// The fold of the children of the group at `index`; no operand where it is empty.
+    /// The fold of the children of the group at `index`; without operands if the group is empty.
     pub fn fold(&mut self, index: usize, group: &Group, world: &DAffine3, outermost: &'a Node) -> Vec<Operand<'a>> {
         let (survey, scene) = (self.survey, self.scene);
         let child = |at: usize| -> &'a Node { scene.nodes()[at].as_ref() };
@@ -44,7 +44,7 @@ impl<'a> Collector<'a, '_> {
             match found {
                 Found::Operand(operand) => folding.step(self, node, Some(operand)),
                 Found::Nothing => folding.step(self, node, None),
-                // Hidden, but the others work on it.
+                // Hidden, but the other children operate on it.
                 Found::LeftOut if folding.needs(node) && !survey.is_folder(at) => folding.stand = Stand::Nothing,
                 Found::LeftOut => {}
             }
@@ -63,13 +63,13 @@ impl<'a> Collector<'a, '_> {
 }
 
 impl<'a> Folding<'_, 'a> {
-    /// Whether a hidden child is what all others would work on.
+    /// Whether a hidden child is the one that all others would operate on.
     fn needs(&self, node: &Node) -> bool {
         let is_first = matches!(self.stand, Stand::None) && node.has_field() && !node.negative;
         is_first && self.group.operator.needs_first() && !node.visible
     }
 
-    /// Joins a child; without an operand it is empty.
+    /// Joins a child; `operand` is `None` if the child is empty.
     fn step(&mut self, collector: &mut Collector<'a, '_>, node: &'a Node, operand: Option<Operand<'a>>) {
         let operator = if node.negative { Operator::Difference } else { self.group.operator };
         let share = self.group.share;
@@ -111,7 +111,7 @@ impl<'a> Folding<'_, 'a> {
         };
     }
 
-    /// The fold begins with this operand.
+    /// Starts the fold with this operand.
     fn begin(&mut self, node: &'a Node, operand: Operand<'a>) -> Stand<'a> {
         self.joiner.begin(node, &operand);
         Stand::Operands(begin_with(operand))

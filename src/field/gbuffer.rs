@@ -1,6 +1,6 @@
-//! The picture as arrays: what the reference tracer and the renderer's read-back both deliver.
+//! The picture as arrays, as the reference renderer and the renderer's read-back deliver it.
 
-/// What the pixels show, row by row from the upper left corner.
+/// The pixels of a picture, row by row from the upper left corner.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GBuffer {
     /// Pixels per row.
@@ -9,7 +9,7 @@ pub struct GBuffer {
     pub height: u32,
     /// Distance along the ray, in meters; [`BACKGROUND_DEPTH`] where nothing is hit.
     pub depth: Vec<f32>,
-    /// What is hit: an index into [`super::FlatScene::nodes`], or [`MESH_BIT`] with an index into
+    /// The hit: an index into [`super::FlatScene::nodes`], or [`MESH_BIT`] with an index into
     /// [`super::FlatScene::meshes`], or [`NO_LEAF`]. See [`HitTarget`].
     pub leaf: Vec<u32>,
     /// Unit world normal; zero where nothing is hit.
@@ -18,14 +18,14 @@ pub struct GBuffer {
     pub color: Vec<[u8; 4]>,
 }
 
-/// Nothing is hit.
+/// No hit.
 pub const NO_LEAF: u32 = u32::MAX;
-/// Set where a mesh is hit.
+/// The flag of mesh hits.
 pub const MESH_BIT: u32 = 1 << 31;
-/// The depth where nothing is hit.
+/// The depth of pixels without a hit.
 pub const BACKGROUND_DEPTH: f32 = f32::INFINITY;
 
-/// What a pixel shows, read from [`GBuffer::leaf`].
+/// The hit of a pixel, decoded from [`GBuffer::leaf`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HitTarget {
     /// Nothing.
@@ -37,7 +37,7 @@ pub enum HitTarget {
 }
 
 impl HitTarget {
-    /// From the number in [`GBuffer::leaf`].
+    /// Decodes a number of [`GBuffer::leaf`].
     pub fn from_code(code: u32) -> Self {
         match code {
             NO_LEAF => Self::Background,
@@ -48,7 +48,7 @@ impl HitTarget {
 }
 
 impl GBuffer {
-    /// A picture of nothing, in black.
+    /// A black picture without hits.
     pub fn empty(width: u32, height: u32) -> Self {
         let pixels = width as usize * height as usize;
         Self {
@@ -61,12 +61,12 @@ impl GBuffer {
         }
     }
 
-    /// Where the pixel stands in the arrays.
+    /// Index of the pixel in the arrays.
     pub fn index(&self, x: u32, y: u32) -> usize {
         y as usize * self.width as usize + x as usize
     }
 
-    /// What the pixel at `index` shows.
+    /// The hit of the pixel at `index`.
     pub fn hit_target(&self, index: usize) -> HitTarget {
         HitTarget::from_code(self.leaf[index])
     }

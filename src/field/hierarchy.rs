@@ -1,14 +1,14 @@
-//! A tree of boxes over items that have bounds (components today): which of them a point or a ray comes near.
+//! A tree of boxes over bounded items (components today), for queries by points and rays.
 //!
-//! Nodes stand in pre-order, the left child behind its parent. An item whose box changes is refitted: its box and
-//! those of its ancestors, nothing else. Items without bounds stand in a list of their own.
+//! Nodes are in pre-order, the left child directly behind its parent. A refit updates the box of one item and those
+//! of its ancestors, nothing else. Unbounded items are in a separate list.
 
 use isolith_geometry::Aabb;
 
-/// A node of the tree: a leaf is one item.
+/// A node of the tree; a leaf holds one item.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HierarchyNode {
-    /// Around everything below.
+    /// Bounds of everything below.
     pub bounds: Aabb,
     /// Leaf: the item. Inner node: index of the right child.
     pub link: u32,
@@ -20,43 +20,43 @@ impl HierarchyNode {
     /// The axis of a leaf.
     pub const LEAF: u32 = 3;
 
-    /// Whether it is one item.
+    /// Whether it holds one item.
     pub fn is_leaf(&self) -> bool {
         self.axis == Self::LEAF
     }
 }
 
-/// The tree, and what has no place in it.
+/// The tree, and the items that have no place in it.
 #[derive(Clone, Debug, Default)]
 pub struct Hierarchy {
-    /// Pre-order, the root first; empty where no item has bounds.
+    /// Pre-order, the root first; empty if no item is bounded.
     pub nodes: Vec<HierarchyNode>,
-    /// Items whose bounds have no end.
+    /// Unbounded items.
     pub unbounded: Vec<u32>,
     /// The parent of each node; the root is its own.
     parents: Vec<u32>,
     /// The leaf of each item; [`Hierarchy::NONE`] for those without one.
     leaves: Vec<u32>,
-    /// The areas of all boxes together: as built, and now.
+    /// Total area of all boxes: as built, and now.
     areas: [f64; 2],
 }
 
-/// A leaf stands no deeper than this: shaders hold a stack of [`MAX_HIERARCHY_DEPTH`] + 2 nodes.
+/// Greatest depth of a leaf: shaders hold a stack of [`MAX_HIERARCHY_DEPTH`] + 2 nodes.
 pub const MAX_HIERARCHY_DEPTH: u32 = 30;
-/// Refitting lets boxes grow; from this factor of their areas on the tree is built anew.
+/// Refits let boxes grow; beyond this factor of the total area the scene rebuilds the tree.
 const MAX_GROWTH: f64 = 2.0;
 
 impl Hierarchy {
     const NONE: u32 = u32::MAX;
 
-    /// The tree over `boxes`. Empty boxes belong to nothing and are left out.
+    /// Builds the tree over `boxes`. Empty boxes belong to nothing and are left out.
     pub fn build(boxes: &[Aabb]) -> Self {
         let all = || 0..boxes.len() as u32;
         let mut items: Vec<u32> = all().filter(|i| boxes[*i as usize].is_finite()).collect();
         let unbounded = all().filter(|i| !boxes[*i as usize].is_finite() && !boxes[*i as usize].is_empty()).collect();
         let mut tree = Self { unbounded, leaves: vec![Self::NONE; boxes.len()], ..Self::default() };
         tree.nodes.reserve(2 * items.len());
-        // Ranges that are still to be built, their parent, whether they are its right child, their depth.
+        // Ranges to build, each with its parent, whether it is the right child, and its depth.
         let mut open = vec![(0..items.len(), 0_u32, false, 0)];
         while let Some((range, parent, is_right, depth)) = open.pop() {
             if range.is_empty() {
@@ -85,8 +85,8 @@ impl Hierarchy {
         tree
     }
 
-    /// Gives an item another box. False where the tree has to be built anew: the item has gained or lost its end, or
-    /// the boxes have grown too much to be of use.
+    /// Gives an item another box. False if the tree has to be rebuilt: the item has become bounded or unbounded, or
+    /// the boxes have grown too much to be useful.
     #[must_use]
     pub fn refit(&mut self, item: u32, bounds: Aabb) -> bool {
         let Some(leaf) = self.leaves.get(item as usize).copied() else { return false };
@@ -114,15 +114,15 @@ impl Hierarchy {
     }
 }
 
-/// Half the surface: how probable it is that a ray meets the box (Goldsmith and Salmon, "Automatic creation of object
-/// hierarchies for ray tracing", 1987).
+/// Half the surface area, a measure of the probability that a ray meets the box (Goldsmith and Salmon, "Automatic
+/// creation of object hierarchies for ray tracing", 1987).
 fn area(bounds: &Aabb) -> f64 {
     let size = bounds.max - bounds.min;
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-/// Orders the items so that the first `n` go left, and returns `n` and the axis; neither side is empty. Where the depth
-/// allows it the cheapest place to split, else the middle.
+/// Orders the items so that the first `n` go left, and returns `n` and the axis; neither side is empty. Splits at the
+/// cheapest place if the depth allows it, else in the middle.
 fn split(items: &mut [u32], boxes: &[Aabb], depth: u32) -> (usize, u32) {
     let center = |i: u32| boxes[i as usize].center();
     let centers = Aabb::from_points(items.iter().map(|i| center(*i)));
@@ -130,13 +130,13 @@ fn split(items: &mut [u32], boxes: &[Aabb], depth: u32) -> (usize, u32) {
     let axis = (0..3).max_by(|a, b| extent[*a].total_cmp(&extent[*b])).unwrap_or(0);
     items.sort_unstable_by(|a, b| center(*a)[axis].total_cmp(&center(*b)[axis]).then(a.cmp(b)));
     let count = items.len();
-    // One more level, and halves below.
+    // One more level, then halves.
     let fits = depth + 1 + usize::BITS - count.leading_zeros() < MAX_HIERARCHY_DEPTH;
     let n = if fits { cheapest(items, boxes) } else { count / 2 };
     (n, axis as u32)
 }
 
-/// How many items go left so that areas times items are least.
+/// The number of items on the left that minimizes the sum of areas times items.
 fn cheapest(items: &[u32], boxes: &[Aabb]) -> usize {
     let grow = |all: &mut Aabb, i: &u32| {
         *all = all.union(&boxes[*i as usize]);
@@ -146,7 +146,7 @@ fn cheapest(items: &[u32], boxes: &[Aabb]) -> usize {
     let right: Vec<f64> = items.iter().rev().scan(Aabb::EMPTY, grow).collect();
     let count = items.len();
     let cost = |n: usize| left[n - 1] * n as f64 + right[count - n - 1] * (count - n) as f64;
-    // Of equal ones the most balanced.
+    // The most balanced of equal costs.
     let rank = |n: usize| (cost(n), n.abs_diff(count / 2));
     let is_less = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
     (1..count).min_by(|a, b| is_less(&rank(*a), &rank(*b))).unwrap_or(1)
@@ -166,7 +166,7 @@ mod tests {
         boxes(count, |i| DVec3::new(1.3, 2.9, 4.7).map(|v| 10.0 * (v * i).sin()))
     }
 
-    /// Every node holds its children, every item is a leaf once, nothing stands too deep.
+    /// Checks that every node contains its children, every item is a leaf once, and no leaf is too deep.
     fn is_right(tree: &Hierarchy, boxes: &[Aabb]) -> Result<(), String> {
         let mut seen = vec![0; boxes.len()];
         let mut open = if tree.nodes.is_empty() { vec![] } else { vec![(0, 0)] };
@@ -199,7 +199,7 @@ mod tests {
             let boxes = scattered(count);
             assert_eq!(is_right(&Hierarchy::build(&boxes), &boxes), Ok(()), "{count}");
         }
-        // All at one place, and ever farther apart: no order of splits may make it deep.
+        // All at one place, and ever farther apart: no order of splits may make the tree too deep.
         for boxes in [boxes(500, |_| DVec3::ONE), boxes(300, |i| DVec3::X * 2_f64.powf(i))] {
             assert_eq!(is_right(&Hierarchy::build(&boxes), &boxes), Ok(()));
         }

@@ -1,4 +1,4 @@
-//! A shape in its place, as an operand.
+//! A placed shape as an operand.
 
 use std::rc::Rc;
 
@@ -10,8 +10,8 @@ use super::prepare::PreparedShape;
 use isolith_geometry::singular_values;
 use isolith_scene::{Node, Object, Shape};
 
-/// The shape of a node as an operand, still to be joined. `drawn` is what its shape is evaluated with where that has data
-/// and was made before.
+/// The shape of a node as an operand, still to be joined. `drawn` is the prepared shape if it has a payload and an
+/// earlier copy made it.
 pub(super) fn leaf<'a>(
     node: &'a Node,
     outermost: &'a Node,
@@ -22,7 +22,7 @@ pub(super) fn leaf<'a>(
     let Object { shape, material } = object;
     let (shape, mut world_from_local, least, greatest) = normalize(shape, world_from_local);
     if least == 1.0 && matches!(shape, Shape::Sphere { .. }) {
-        // A ball looks the same from every side: without a rotation its kernel is shorter.
+        // A sphere looks the same from every side: without a rotation its kernel is shorter.
         world_from_local.matrix3 = DMat3::IDENTITY;
     }
     let prepared = drawn.unwrap_or_else(|| Rc::new(PreparedShape::new(&shape)));
@@ -33,8 +33,8 @@ pub(super) fn leaf<'a>(
     Operand::first(node, outermost, LowerBound::new(bounds, bounds, bound_slope), value)
 }
 
-/// Takes the scale out of the transform and into the shape where the shape can hold it. Returns the
-/// least and greatest stretch of what remains: 1 and 1 in that case.
+/// Moves the scale of the transform into the shape if the shape can absorb it. Returns the least and greatest stretch
+/// of the remaining transform: 1 and 1 in that case.
 fn normalize(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f64, f64) {
     let m = &world_from_local.matrix3;
     let scale = DVec3::new(m.x_axis.length(), m.y_axis.length(), m.z_axis.length());
@@ -42,7 +42,7 @@ fn normalize(shape: &Shape, world_from_local: &DAffine3) -> (Shape, DAffine3, f6
         .max(m.x_axis.dot(m.z_axis).abs() / (scale.x * scale.z))
         .max(m.y_axis.dot(m.z_axis).abs() / (scale.y * scale.z));
     if skew < 1e-12 {
-        // Factors that differ only by rounding in the chain of rotations are one factor.
+        // Factors that differ only by the rounding of chained rotations count as one factor.
         let mean = (scale.x + scale.y + scale.z) / 3.0;
         let scale = if (scale - mean).abs().max_element() < 1e-12 * mean { DVec3::splat(mean) } else { scale };
         if let Some(absorbed) = shape.absorb_scale(scale) {

@@ -11,23 +11,23 @@ use isolith_scene::{Attenuation, LightKind};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuLight {
-    /// Where it is, relative to the eye.
+    /// Position relative to the eye.
     pub position: [f32; 3],
     /// One of [`GpuLight::DIRECTIONAL`], [`GpuLight::POINT`], [`GpuLight::SPOT`].
     pub kind: u32,
-    /// Unit vector in which the light travels.
+    /// Unit direction in which the light travels.
     pub direction: [f32; 3],
-    /// Nothing is lit beyond this distance.
+    /// Distance beyond which it lights nothing.
     pub range: f32,
     /// Color times intensity, linear.
     pub color: [f32; 3],
     /// Constant term of the attenuation.
     pub constant: f32,
-    /// Per meter.
+    /// Linear term of the attenuation, per meter.
     pub linear: f32,
-    /// Per square meter.
+    /// Quadratic term of the attenuation, per square meter.
     pub quadratic: f32,
-    /// Cosine of the half angle within which a spot is full; always above `cos_outer`.
+    /// Cosine of the half angle of full intensity of a spot; always above `cos_outer`.
     pub cos_inner: f32,
     /// Cosine of the half angle at which a spot has faded out.
     pub cos_outer: f32,
@@ -36,12 +36,12 @@ pub struct GpuLight {
 impl GpuLight {
     /// Parallel light.
     pub const DIRECTIONAL: u32 = 0;
-    /// Light from a point into every direction.
+    /// Light from a point in all directions.
     pub const POINT: u32 = 1;
     /// Light from a point into a cone.
     pub const SPOT: u32 = 2;
 
-    /// As seen by an eye at `eye`.
+    /// The light as seen from `eye`.
     pub fn new(light: &FlatLight, eye: DVec3) -> Self {
         let (kind, attenuation, [inner, outer]) = match light.light.light {
             LightKind::Sun {} => (Self::DIRECTIONAL, Attenuation::default(), [0.0, 0.0]),
@@ -76,8 +76,8 @@ impl GpuLight {
     }
 }
 
-/// The lights of the scene as seen from the camera. A scene without any is lit like a studio, fixed to
-/// the viewer: a key light from over the left shoulder and a weak one from the right.
+/// The lights of the scene as seen from the camera. A scene without lights gets a studio setup that is fixed to the
+/// viewer: a key light from over the left shoulder and a weak one from the right.
 pub fn gpu_lights(flat: &FlatScene, camera: &Camera) -> Vec<GpuLight> {
     if flat.lights.is_empty() {
         let world = |direction: DVec3| camera.rotation * direction;

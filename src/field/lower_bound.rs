@@ -1,4 +1,4 @@
-//! Below what the field of a fold of operands never falls.
+//! Lower bounds of the field of a fold.
 
 use glam::DAffine3;
 
@@ -7,24 +7,24 @@ use super::operand::{Operand, Value};
 use isolith_geometry::Aabb;
 use isolith_scene::ModifierKind;
 
-/// Where the surface of a fold is, and below what its field never falls.
+/// Bounds of the surface of a fold, and a lower bound of its field.
 pub(super) struct LowerBound {
-    /// Around its surface.
+    /// Bounds of the surface.
     pub bounds: Aabb,
-    /// Its field is at least `bound_slope` times the distance to `cull_box`.
+    /// The field is at least `bound_slope` times the distance to `cull_box`.
     pub cull_box: Aabb,
-    /// See `cull_box`; 0 where nothing is known.
+    /// See `cull_box`; 0 where unknown.
     pub bound_slope: f64,
-    /// What is said of `cull_box` holds for a cylinder of this radius around Y as well; infinite where no such is known. Less than
-    /// what the corners of the box reach.
+    /// The bound of `cull_box` also holds for a cylinder of this radius around Y, which is less than what the corners
+    /// of the box reach; infinite if no such cylinder is known.
     pub radius: f64,
 }
 
-/// Bounds of a fold, and the box and slope below which its field never falls.
+/// Bounds of a fold, and a lower bound of its field as a box and a slope.
 ///
-/// A blended union falls below the least operand by at most its thickening, and a row of them by at
-/// most their support; a morph lies between its operands; an exclusive or is at least the union. Intersection,
-/// difference, groove, engraving and paint never fall below what they join. A tongue falls below it by its height, a
+/// A blended union falls below its least operand by at most its thickening, and a row of them by at most their
+/// support; a morph lies between its operands; an exclusive or is at least the union. Intersection, difference,
+/// groove, engraving and paint never fall below the result that they join. A tongue falls below it by its height, a
 /// pipe below both of its operands by its radius.
 pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> LowerBound {
     let first = &fold[0];
@@ -75,7 +75,7 @@ pub(super) fn fold_bounds(fold: &[Operand<'_>]) -> LowerBound {
     }
 }
 
-/// See [`LowerBound::radius`]: what is twisted, and nothing else, fills a cylinder.
+/// See [`LowerBound::radius`]: only a single twist fills a cylinder.
 fn radius_of(fold: &[Operand<'_>]) -> f64 {
     match fold {
         [Operand { value: Value::Modified { kind: ModifierKind::Twist, local_from_world, modified, .. }, .. }]
@@ -88,12 +88,12 @@ fn radius_of(fold: &[Operand<'_>]) -> f64 {
 }
 
 impl LowerBound {
-    /// Of two boxes.
+    /// A lower bound without a known cylinder.
     pub fn new(bounds: Aabb, cull_box: Aabb, bound_slope: f64) -> Self {
         Self { bounds, cull_box, bound_slope, radius: f64::INFINITY }
     }
 
-    /// The field is at least what both boxes say; the smaller one says more.
+    /// Both bounds hold; keeps the smaller box, which is the tighter one.
     fn keep_smaller(&mut self, cull_box: Aabb, bound_slope: f64) {
         if bound_slope > 0.0 && (self.bound_slope == 0.0 || cull_box.half().length() < self.cull_box.half().length()) {
             (self.cull_box, self.bound_slope) = (cull_box, bound_slope);
@@ -101,7 +101,7 @@ impl LowerBound {
     }
 }
 
-/// The box below which a field never falls, where it is lowered by `by`.
+/// The box of a lower bound after the field is lowered by `by`.
 fn lowered(cull_box: &Aabb, bound_slope: f64, by: f64) -> Aabb {
     cull_box.expanded(if bound_slope > 0.0 { by / bound_slope } else { 0.0 })
 }

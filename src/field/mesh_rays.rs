@@ -1,4 +1,4 @@
-//! Rays against the meshes of a scene.
+//! Intersections of rays with the meshes of a scene.
 
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use isolith_mesh::{MeshHit, TriangleMesh};
 /// The meshes of a scene, parallel to [`FlatScene::meshes`]; `None` where a file could not be read.
 pub type Meshes = [Option<Arc<TriangleMesh>>];
 
-/// The first triangle on the ray between `near` and `far`: the mesh's index, and the hit with `t`
-/// along the ray in meters and everything else in the mesh's own space.
+/// The first triangle on the ray between `near` and `far`: the index of its mesh, and the hit with `t` along the ray
+/// in meters and everything else in the mesh's own space.
 pub fn trace_meshes(flat: &FlatScene, meshes: &Meshes, ray: &Ray, near: f64, far: f64) -> Option<(usize, MeshHit)> {
     let mut nearest: Option<(usize, MeshHit)> = None;
     for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {

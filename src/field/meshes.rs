@@ -1,4 +1,4 @@
-//! The meshes that a scene names, loaded.
+//! Loads the meshes that a scene names.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -7,9 +7,9 @@ use super::{FlatScene, Warning};
 use isolith_mesh::{MeshLibrary, TriangleMesh};
 
 impl FlatScene {
-    /// The meshes beside [`FlatScene::meshes`], as rays and renderer want them, with warnings: about each that cannot be
-    /// had (the scene is drawn without it), and about what files contain that is not drawn, at the first node that
-    /// shows it.
+    /// The loaded meshes, parallel to [`FlatScene::meshes`], for rays and the renderer, with warnings: about each
+    /// mesh that cannot be loaded (the scene is drawn without it), and about undrawn contents of files, at the first
+    /// node that shows the file.
     pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
         let mut warnings = Vec::new();
         let mut told = HashSet::new();
@@ -32,7 +32,7 @@ impl FlatScene {
         (meshes, warnings)
     }
 
-    /// The same of a library as it is: nothing is read, and what is not there yet is not drawn.
+    /// The same for a library as it is: reads no file and leaves out meshes that are not loaded yet.
     pub fn known_meshes(&self, library: &MeshLibrary) -> Vec<Option<Arc<TriangleMesh>>> {
         let known = |mesh: &super::FlatMesh| library.known(&mesh.path).and_then(|mesh| mesh.as_ref().ok()).cloned();
         self.meshes.iter().map(known).collect()

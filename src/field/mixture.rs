@@ -1,38 +1,38 @@
-//! What a surface is made of: up to four materials, each with its weight. Counterpart of `shaders/common/mixture.wgsl`, which says
-//! what becomes of more.
+//! The materials of a surface point: up to four, each with its weight. Counterpart of `shaders/common/mixture.wgsl`,
+//! which says what happens to further materials.
 
 use glam::DVec3;
 
 use crate::FlatMaterial;
 use isolith_scene::limits::MAX_MATERIALS;
 
-/// Materials in one mixture.
+/// Most materials of one mixture.
 pub const MIXED: usize = 4;
 
-/// Stands beside a weight of 0.
+/// The id beside a weight of 0.
 const NO_MATERIAL: u32 = 0xffff;
 const _: () = assert!(MAX_MATERIALS <= NO_MATERIAL as usize);
 
-/// Weights are stored as 16 bits.
+/// The weight 1 as stored in 16 bits.
 const WHOLE: f64 = 65_535.0;
 
-/// See the module.
+/// Up to four materials with their weights, see the module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mixture {
     /// Indices into the materials.
     pub ids: [u32; MIXED],
-    /// 0 where there is none. Together they are 1, or less where something was left out.
+    /// 0 for an unused place. The sum is 1, or less if a material was left out.
     pub weights: [f64; MIXED],
 }
 
-/// All of one material.
+/// A mixture of one material.
 pub fn mixture_of(id: u32) -> Mixture {
     let mut mixture = Mixture { ids: [NO_MATERIAL; MIXED], weights: [0.0; MIXED] };
     (mixture.ids[0], mixture.weights[0]) = (id, 1.0);
     mixture
 }
 
-/// `weight` more of a material, in the place of the lightest one if it is new.
+/// Adds `weight` of a material. A new one takes the place of the lightest, if it weighs more.
 pub fn mixture_add(mut mixture: Mixture, id: u32, weight: f64) -> Mixture {
     if let Some(same) = mixture.ids.iter().position(|held| *held == id) {
         mixture.weights[same] += weight;
@@ -46,14 +46,14 @@ pub fn mixture_add(mut mixture: Mixture, id: u32, weight: f64) -> Mixture {
     mixture
 }
 
-/// What joins has this weight.
+/// Mixes `joins` into `before` with this weight.
 pub fn mixture_joined(before: Mixture, joins: Mixture, weight: f64) -> Mixture {
     let left = Mixture { weights: before.weights.map(|held| held * (1.0 - weight)), ..before };
     let added = joins.ids.into_iter().zip(joins.weights);
     added.fold(left, |mixed, (id, held)| mixture_add(mixed, id, held * weight))
 }
 
-/// The material that a mixture is.
+/// The material that a mixture results in.
 pub fn mixture_material(mixture: &Mixture, materials: &[FlatMaterial]) -> SurfaceMaterial {
     let sum: f64 = mixture.weights.iter().sum();
     let mut mixed = SurfaceMaterial { albedo: DVec3::ZERO, specular: 0.0, emission: DVec3::ZERO, shininess: 0.0 };
@@ -101,7 +101,7 @@ impl From<&FlatMaterial> for SurfaceMaterial {
 mod tests {
     use super::*;
 
-    /// Materials whose reflectance is 0 or 1, by their index.
+    /// Materials with reflectances of 0 or 1, by the bits of their index.
     fn materials() -> Vec<FlatMaterial> {
         let of = |i: u32| FlatMaterial {
             albedo: [0, 1, 2].map(|bit| (i >> bit & 1) as f32),
@@ -148,7 +148,7 @@ mod tests {
             let other = (1.0 - lightest) / 4.0;
             for place in 0..5 {
                 let exact: Vec<f64> = (0..5).map(|i| if i == place { lightest } else { other }).collect();
-                // Each joins with what gives it its weight at the end.
+                // Each joins with the weight that gives its exact weight at the end.
                 let mut mixed = mixture_of(1);
                 for id in 1..5 {
                     let before: f64 = exact[..=id].iter().sum();

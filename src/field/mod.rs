@@ -1,31 +1,31 @@
-//! The scene at one moment as arrays, exactly as the GPU reads them, and the CPU evaluator that evaluates
-//! the same arrays in f64.
+//! The scene at one moment as arrays, exactly as the GPU reads them, and the CPU evaluator, which evaluates the same
+//! arrays in f64.
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `batch` | small components joined by place |
-//! | `prepare` | shape → the parameters that it is evaluated with |
-//! | `budget`, `survey`, `usage` | what flattening may take, counted before it is done |
-//! | `operand`, `composition` | what folds are made of, and how it is put together |
+//! | `batch` | batches of small neighboring components |
+//! | `prepare` | shape → the parameters that evaluators read |
+//! | `budget`, `survey`, `usage` | limits of flattening, counted in advance |
+//! | `operand`, `composition` | operands of folds, and their composition |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
-//! | `modifier_table` | all that is known about a kind of modifier, in one row |
-//! | `modify` | what modifiers do to bounds and steps |
-//! | `moved` | the numbers of a component relative to a point near the eye |
-//! | `reflatten` | the same after a small change |
-//! | `standpoint` | which point near the eye that is |
+//! | `modifier_table` | all facts about a kind of modifier, in one row |
+//! | `modify` | effects of modifiers on bounds and steps |
+//! | `moved` | the parameters of a component relative to a point near the eye |
+//! | `reflatten` | flattening after a small change |
+//! | `standpoint` | the choice of the point near the eye |
 //! | `lights` | lights relative to the eye |
 //! | `eval` | the field over the arrays, in f64, with exact derivatives: the reference |
 //! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
-//! | `reference` | the reference renderer: a whole picture in f64, and how wrong another one is |
+//! | `reference` | the reference renderer: whole pictures in f64, and the error of other pictures |
 //! | `hierarchy`, `scene_eval` | distances and rays to all components at once |
 //! | `pick` | which node a ray hits |
-//! | `tape` | which entries of a large component matter where |
+//! | `tape` | simplified tapes: the entries of a large component that matter in a cell |
 //! | `mixture` | materials of a pixel with their weights; counterpart of `shaders/common/mixture.wgsl` |
-//! | `meshes` | the meshes that a scene names, loaded |
-//! | `mesh_rays` | rays against them |
-//! | `view` | the view of a scene when nobody chose one |
-//! | `debug_view` | what a picture can show instead of light, and its colors |
+//! | `meshes` | the loaded meshes of a scene |
+//! | `mesh_rays` | intersections of rays with meshes |
+//! | `view` | the default view of a scene |
+//! | `debug_view` | view modes besides shading, and their colors |
 //!
 //! # Example
 //!

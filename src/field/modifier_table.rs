@@ -1,17 +1,20 @@
-//! The modifiers, one row for each: all that other places know about a kind. Its parameters stand in `scene/modifier.rs`,
-//! what they do to bounds and steps in `modify`; the functions that a row names in `counterpart/modifier.rs`, those of the same
-//! names for the GPU in `shaders/mod/`.
+//! The modifiers, one table row per kind: all that other modules know about it. The parameters of a kind stand in
+//! `scene/modifier.rs`, its effects on bounds and steps in `modify`. The functions that a row names stand in
+//! `eval/modifier.rs`, their counterparts of the same names for the GPU in `shaders/mod/`.
 //!
 //! | entry | what it says |
 //! |---|---|
-//! | `rows` | how many rows its numbers take; `with data`: the last one says where its data are |
-//! | `count`, `start`, `exists`, `scale` | of one that evaluates its content several times: how often, what bounds the field besides, whether a copy is there, its size |
-//! | `point` | where a point stands in the k-th copy of the content |
+//! | `rows` | number of its own rows; `with data`: the last one locates its payload |
+//! | `count` | number of evaluations of the content for one point |
+//! | `start` | bound of the field besides the copies |
+//! | `exists` | whether the k-th copy exists |
+//! | `scale` | size of the k-th copy |
+//! | `point` | position of a point in the k-th copy of the content |
 //! | `value` | the field, from that of the content |
 //! | `rough` | its field may be far below the distance: only a change of sign is a hit |
-//! | `exact` | how exact the content must be for the field to be exact up to `local`, `own` being its numbers |
+//! | `exact` | exactness of the content for a field exact up to `local`; `own` are the modifier's parameters |
 //!
-//! What has no rows is written as copies and has no entry of its own.
+//! Kinds without rows are written as copies and have no entry of their own.
 
 use super::arrays::{ParamRow, payload_at};
 use super::eval::{
@@ -21,7 +24,7 @@ use super::eval::{
 };
 use isolith_scene::ModifierKind;
 
-/// Whether something is given.
+/// Whether an argument is given.
 macro_rules! is_given {
     () => {
         false
@@ -31,7 +34,7 @@ macro_rules! is_given {
     };
 }
 
-/// What is given, or what else holds.
+/// The given argument, or else the default.
 macro_rules! given_or {
     ($otherwise:expr;) => {
         $otherwise
@@ -53,13 +56,13 @@ macro_rules! modifier_table {
         $(rough: $rough:literal,)?
         $(exact: |$local:ident, $own:ident| $exact:expr,)?
     } )+) => {
-        /// How many rows a modifier's own numbers take, and behind them where its data are.
+        /// Number of own rows of a modifier, including the one that locates its payload.
         pub const fn modifier_rows(kind: ModifierKind) -> usize {
             match kind { $( ModifierKind::$name => given_or!(0; $($rows)?), )+ }
         }
 
-        /// Where the row that says where a modifier's data are stands among its own rows, the last of them; `None` for one
-        /// without data.
+        /// Index of the row that locates the payload of a modifier, the last of its own rows; `None` for a kind
+        /// without a payload.
         pub const fn modifier_payload_row(kind: ModifierKind) -> Option<usize> {
             let has_data = match kind { $( ModifierKind::$name => is_given!($($($data)?)?), )+ };
             if has_data { Some(modifier_rows(kind) - 1) } else { None }
@@ -80,13 +83,13 @@ macro_rules! modifier_table {
             match kind { $( ModifierKind::$name => is_given!($($value)?), )+ }
         }
 
-        /// Whether its field may be far below the distance, so that rays come near to 0 and touch nothing.
+        /// Whether its field may be far below the distance, so that rays come near to 0 without touching a surface.
         pub const fn is_rough(kind: ModifierKind) -> bool {
             match kind { $( ModifierKind::$name => given_or!(false; $($rough)?), )+ }
         }
 
-        /// How exact the content must be for a modifier's field to be exact up to `local` in its own space; `own` are its
-        /// numbers, by row and column.
+        /// The exactness that the content needs for the modifier's field to be exact up to `local` in its own space;
+        /// `own` reads its parameters by row and column.
         #[allow(unused_variables, reason = "some need no numbers of their own")]
         pub(super) fn content_exactness(kind: ModifierKind, local: f64, own: &dyn Fn(usize, usize) -> f64) -> f64 {
             match kind { $( ModifierKind::$name => given_or!(
@@ -94,19 +97,19 @@ macro_rules! modifier_table {
             ), )+ }
         }
 
-        /// How often the content is evaluated for one point.
+        /// Number of evaluations of the content for one point.
         pub(super) fn modifier_count(kind: ModifierKind, rows: &[ParamRow]) -> u32 {
             match kind { $( ModifierKind::$name => given_or!(1; $( { let $count_rows = rows; $count } )?), )+ }
         }
 
-        /// What bounds the field besides the copies.
+        /// The bound of the field besides the copies.
         pub(super) fn modifier_start<T: Real>(kind: ModifierKind, p: [T; 3], rows: &[ParamRow]) -> T {
             match kind { $( ModifierKind::$name => given_or!(
                 T::constant(f64::INFINITY); $( { let ($start_p, $start_rows) = (p, rows); $start } )?
             ), )+ }
         }
 
-        /// Whether the k-th copy is there.
+        /// Whether the k-th copy exists.
         pub(super) fn modifier_exists<T: Real>(kind: ModifierKind, p: [T; 3], k: u32, rows: &[ParamRow]) -> bool {
             match kind { $( ModifierKind::$name => given_or!(
                 true; $( { let ($exists_p, $exists_k, $exists_rows) = (p, k, rows); $exists } )?
@@ -120,7 +123,7 @@ macro_rules! modifier_table {
             ), )+ }
         }
 
-        /// Where the point stands in the k-th copy of the content.
+        /// The position of the point in the k-th copy of the content.
         #[allow(unused_variables, reason = "most have one copy")]
         pub(super) fn modifier_point<T: Real>(kind: ModifierKind, p: [T; 3], k: u32, rows: &[ParamRow]) -> [T; 3] {
             match kind { $( ModifierKind::$name => given_or!(
@@ -212,7 +215,7 @@ modifier_table! {
     }
 }
 
-/// The data of the modifier whose own rows `rows` begins with; empty for most.
+/// The payload of the modifier whose own rows are the first of `rows`; empty for most.
 pub fn modifier_payload(kind: ModifierKind, rows: &[ParamRow]) -> &[ParamRow] {
     modifier_payload_row(kind).map_or(&[], |row| payload_at(rows, row))
 }
@@ -225,13 +228,13 @@ mod tests {
     fn every_row_says_what_a_modifier_of_its_kind_needs() {
         for &kind in ModifierKind::ALL {
             let has_rows = modifier_rows(kind) > 0;
-            // What has numbers does something with them, and what is written as copies does nothing here.
+            // Kinds with rows use them; kinds that are written as copies do nothing here.
             assert_eq!(has_rows, moves_point(kind) || changes_value(kind), "{kind:?}");
             assert!(has_rows || !(is_copying(kind) || is_rough(kind)), "{kind:?}");
             assert!(!is_copying(kind) || moves_point(kind), "{kind:?}: its copies stand somewhere");
             assert!(modifier_payload_row(kind).is_none_or(|row| row < modifier_rows(kind)), "{kind:?}");
             if has_rows {
-                // The one in this place is a number of copies.
+                // The element in this place is a number of copies.
                 let own = |row: usize, column: usize| if (row, column) == (1, 3) { 2.0 } else { 0.5 };
                 assert!(content_exactness(kind, 1.0, &own) >= 1.0, "{kind:?}: never less exact than the field");
             }
@@ -243,7 +246,7 @@ mod tests {
         let mut rows = [[0.5; 4]; 10];
         let p = [0.3, 0.2, 0.1];
         for &kind in ModifierKind::ALL.iter().filter(|kind| modifier_rows(**kind) > 0 && !is_copying(**kind)) {
-            // An onion has one wall at least.
+            // An onion has at least one wall.
             rows[0][1] = if kind == ModifierKind::Onion { 1.0 } else { 0.5 };
             if modifier_payload_row(kind).is_none() {
                 assert_eq!(modifier_value(kind, 0.25, p, &rows) == 0.25, !changes_value(kind), "{kind:?}");

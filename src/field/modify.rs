@@ -1,9 +1,9 @@
-//! What modifiers do to bounds and steps, and their numbers as the evaluators read them.
+//! Effects of modifiers on bounds and steps, and their rows for the evaluators.
 //!
-//! A deformation stretches space: its field is divided by the largest stretch (its Lipschitz constant), which is
-//! known only near the content. So every deformation has a bound with a margin m: at a distance d from it
-//! the field is max(d, min(g, 2m − d)), g being the divided field. That never grows faster than 1 per meter,
-//! has the sign of g within, and far away is simply d.
+//! A deformation stretches space. Its field is divided by the largest stretch (its Lipschitz constant), which is
+//! known only near the content. So every deformation has a bound with a margin m: at a distance d from the bound the
+//! field is max(d, min(g, 2m − d)), where g is the divided field. This never grows faster than 1 per meter, has the
+//! sign of g within, and is simply d far away.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -17,38 +17,39 @@ use super::prepare::spline;
 use isolith_geometry::Aabb;
 use isolith_scene::{Axis, Heights, Modifier};
 
-/// Why a modifier does nothing.
+/// Why a modifier cannot act.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum ModifierRefusal {
-    /// It makes no sense here; the artist is told why.
+    /// It makes no sense here; the artist gets the reason.
     Cannot(String),
-    /// So many copies would have to be evaluated for one point, more than [`MAX_NEIGHBORS`].
+    /// One point would need this many copies, more than [`MAX_NEIGHBORS`].
     TooMany(usize),
 }
 
-/// The rows of images that displace, with their steepest slopes, by the modifier: all copies share them.
+/// Rows of displacing images with their steepest slopes, by the modifier: all copies share them.
 pub(super) type Splines = HashMap<*const Modifier, (Rc<[[f64; 4]]>, f64)>;
 
-/// Copies without end reach so many cells in each direction: what f32 can still count and place.
+/// Cells of an endless repetition in each direction: as many as f32 can count and place.
 pub const REPEAT_REACH: f64 = 1e6;
-/// Most copies that are evaluated for one point.
+/// Most copies evaluated for one point.
 pub const MAX_NEIGHBORS: u32 = 64;
-/// More cells to one side are not counted, so that those of three axes can be multiplied; far more than [`MAX_NEIGHBORS`].
+/// Most cells counted to one side, so that the counts of three axes can be multiplied; far more than
+/// [`MAX_NEIGHBORS`].
 const MOST_SIDEWAYS: u32 = 1 << 16;
 /// Margin around a bound relative to its size.
 const MARGIN: f64 = 0.1;
 /// The least margin, in meters.
 const LEAST_MARGIN: f64 = 1e-6;
-/// Stands for no end: far beyond any camera, its square still fits f32.
+/// Stands for infinity: far beyond any camera, and its square still fits f32.
 const ENDLESS: f64 = 1e18;
-/// A bend uses at most this share of a full turn on each side.
+/// A bend turns by at most this angle on each side, in radians.
 const MOST_BENT: f64 = 0.95 * std::f64::consts::PI;
-/// What lies toward the center of a bend fills at most this share of its radius.
+/// Content on the inner side of a bend fills at most this fraction of its radius.
 const MOST_INWARD: f64 = 0.9;
-/// A taper narrows at most to this share.
+/// A taper narrows at most to this fraction.
 const NARROWEST: f64 = 0.05;
 
-/// What a modifier makes of its content; an error says why it can do nothing.
+/// Applies a modifier to its content; an error says why it cannot act.
 pub(super) fn modify(
     modifier: &Modifier,
     content: &LowerBound,
@@ -94,7 +95,7 @@ pub(super) fn modify(
         }
         Modifier::Noise { amplitude, size, octaves, seed } => {
             let total = 2.0 - 0.5_f64.powi(octaves as i32 - 1);
-            // Each layer has half the height and half the size of the one before: the same steepness.
+            // Each octave has half the height and half the size of the one before, so the same steepness.
             let steepness = amplitude / total * f64::from(octaves) * NOISE_SLOPE / size;
             let params = [amplitude / total, 1.0 / size, f64::from(octaves), f64::from(seed)];
             grown(same, amplitude, vec![params, [1.0 / (1.0 + steepness), amplitude, 0.0, 0.0]])
@@ -116,7 +117,7 @@ pub(super) fn modify(
     Ok(modified)
 }
 
-/// Whether a modifier changes nothing, so that it needs no entry.
+/// Whether a modifier changes nothing and needs no entry.
 pub(super) fn is_idle(modifier: &Modifier) -> bool {
     match *modifier {
         Modifier::Mirror { axes, .. } => axes == [false; 3],
@@ -138,7 +139,7 @@ pub(super) fn is_idle(modifier: &Modifier) -> bool {
 /// (Parseval's identity for multilinear functions).
 const NOISE_SLOPE: f64 = 3.464_101_615_137_755;
 
-/// The bounds of content that must have an end to be `deformed`.
+/// The bounds of content that must be bounded to be `deformed`.
 fn bounded(content: &LowerBound, deformed: &str) -> Result<Aabb, ModifierRefusal> {
     if content.bounds.is_finite() {
         return Ok(content.bounds);
@@ -151,7 +152,7 @@ fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
     Modified { rows, bounds: same.bounds.expanded(by), cull_box: same.cull_box.expanded(reach), ..same }
 }
 
-/// Where the surface is moved outward by h, the field is f − h; its slope is at most 1 and that of the heights.
+/// The surface moves outward by h, so the field is f − h; its slope is at most 1 plus that of the heights.
 fn displacement(
     image: &Heights,
     (data, steepest): (Rc<[[f64; 4]]>, f64),
@@ -171,18 +172,18 @@ fn displacement(
     Modified { data, ..grown(same, greatest.max(0.0), rows) }
 }
 
-/// A deformation whose field is at least the distance to its bound along some axis: of three numbers at right
-/// angles the largest is at least 1/√3 of their length.
+/// A deformation whose field is at least the distance to its bound along some axis: the largest of three
+/// perpendicular components is at least 1/√3 of their length.
 fn enclosed(same: Modified, bounds: Aabb, rows: Vec<[f64; 4]>) -> Modified {
     Modified { rows, bounds, cull_box: bounds, bound_slope: 1.0 / 3.0_f64.sqrt(), ..same }
 }
 
-/// Farthest distance of a box from the Y axis.
+/// Greatest distance of a box from the Y axis.
 fn radius_of(b: &Aabb) -> f64 {
     b.min.x.abs().max(b.max.x.abs()).hypot(b.min.z.abs().max(b.max.z.abs()))
 }
 
-/// Largest stretch of a twist by `bound_slope` radians at right angles to the axis for each meter along it (the larger
+/// Largest stretch of a twist that moves a point by `slope` meters across the axis per meter along it (the larger
 /// singular value of a shear).
 fn shear(slope: f64) -> f64 {
     0.5 * (slope + (slope * slope + 4.0).sqrt())
@@ -229,7 +230,7 @@ fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
     Modified { warning, ..enclosed(same, bounds, rows) }
 }
 
-/// The box around an arc: its ends, and where it passes an axis.
+/// The box around an arc: it contains the ends, and the points where the arc passes an axis.
 fn bent_bounds(curvature: f64, sign: f64, reach: f64, [low, high]: [f64; 2], content: &Aabb) -> Aabb {
     let radius = 1.0 / curvature;
     let end = reach * curvature;
@@ -265,7 +266,7 @@ fn taper(change: f64, content: Aabb, same: Modified) -> Modified {
     let (a, b) = (1.0 / narrowest, radius * used.abs() / narrowest);
     let sum = a * a + b * b + 1.0;
     let stretch = (0.5 * (sum + (sum * sum - 4.0 * a * a).max(0.0).sqrt())).sqrt().max(1.0);
-    // What lies on one side of the axis is nearest to it where it is narrow.
+    // Content on one side of the axis is nearest to it where it is narrow.
     let far = |v: f64, outward: bool| if (v >= 0.0) == outward { v * widest } else { v * narrowest };
     let corner = |v: DVec3, outward| DVec3::new(far(v.x, outward), v.y, far(v.z, outward));
     let bounds = Aabb::new(corner(content.min, false), corner(content.max, true));
@@ -292,7 +293,7 @@ fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [
         }
         all
     };
-    // Space is folded to the side on which the next copy stands.
+    // Folds space to the side of the next copy.
     let child = if same.bounds.is_finite() { parent_from_child.transform_point3(same.bounds.center()) } else { offset };
     let flag = |i: usize| (1 << i) + if child[i] < 0.0 { 8 << i } else { 0 };
     let flags = f64::from((0..3).filter(|i| mirrored[*i]).map(flag).sum::<i32>());
@@ -309,15 +310,15 @@ fn recursion(count: u32, offset: DVec3, rotation: DMat3, scale: f64, mirrored: [
     Modified { rows, bounds: all_levels(same.bounds), cull_box: all_levels(same.cull_box), copies: count, ..same }
 }
 
-/// Center and half extent with numbers in the place of no end.
+/// Center and half extent, with finite numbers in place of infinity.
 fn finite_box(bounds: &Aabb) -> (DVec3, DVec3) {
     let limit = DVec3::splat(ENDLESS);
     let b = Aabb::new(bounds.min.clamp(-limit, limit), bounds.max.clamp(-limit, limit));
     (b.center(), b.half())
 }
 
-/// Along one axis: first and last cell, middle and half extent of the content in its cell, how many neighbors
-/// are evaluated.
+/// The cells along one axis: first and last cell, center and half extent of the content in its cell, number of
+/// neighbors to evaluate.
 struct Cells {
     first: f64,
     last: f64,
@@ -326,9 +327,9 @@ struct Cells {
     candidates: u32,
 }
 
-/// How many cells around a point are evaluated where content reaches `half` from the middle of cells `spacing`
-/// apart: one where it keeps clear of the walls, two (the cell and its nearer neighbor) up to 7/8 of a cell, and so
-/// on. What is left out is farther away than an eighth of a cell.
+/// The number of cells to evaluate around a point, for content that reaches `half` from the middle of cells `spacing`
+/// apart: one if it keeps clear of the walls, two (the cell and its nearer neighbor) up to 7/8 of a cell, and so on.
+/// Omitted content is farther away than an eighth of a cell.
 fn candidates(half: f64, spacing: f64) -> u32 {
     let reach = half / spacing;
     if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).clamp(1, MOST_SIDEWAYS) }
@@ -339,7 +340,7 @@ fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<M
         unreachable!("called for repeats only")
     };
     let turn = turn.to_radians();
-    // The box that the field is known to grow away from holds the surface too.
+    // The box of the lower bound, extended by the bounds of the surface.
     let held = if content.bound_slope > 0.0 { content.cull_box.union(&content.bounds) } else { content.bounds };
     let (mut center, mut half) = finite_box(&held);
     if turn != 0.0 {
@@ -366,7 +367,7 @@ fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<M
         }
         axes.push(Cells { first, last, middle: center[i], half: half[i], candidates });
     }
-    // An offset along an axis with cells of its own would leave them; bricks need both X and Y.
+    // An offset along an axis with cells of its own would leave these cells; bricks need both X and Y.
     for i in [1, 2] {
         offset[i] = if counts[i] == 1 && counts[0] != 1 { offset[i] } else { 0.0 };
     }
@@ -406,7 +407,7 @@ fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64;
             continue;
         }
         out.max[i] += axes[i].last * spacing[i];
-        // How far offsets carry the last copies: of X the rows along Y do, of Y and Z the copies along X.
+        // Offset of the last copies: rows along Y shift X, copies along X shift Y and Z.
         let steps = if i == 0 { last[1] } else { last[0] };
         let endless = counts[usize::from(i == 0)] == 0;
         let shift = if offset[i] == 0.0 { 0.0 } else { offset[i] * steps };

@@ -1,16 +1,16 @@
-//! The numbers of a component relative to another point than its origin.
+//! The parameters of a component relative to another point than its origin.
 //!
-//! Flattening rounds them relative to the origin, which suits what is looked at from as far off as it is large. Beside a part
-//! of something a thousand times larger f32 is too coarse for that: then the renderer is given the same numbers relative to
-//! a point near the eye, made in f64 from what rounding has left.
+//! Flattening rounds them relative to the origin, which suits a view from as far off as the component is large. Next
+//! to a detail of a component that is a thousand times larger, f32 is too coarse for that: the renderer then gets the
+//! same parameters relative to a point near the eye, computed in f64 with the residue of rounding.
 
 use glam::DVec3;
 
 use super::arrays::{Component, FlatNode, FlatScene, MODIFIER_ROWS, ParamRow};
 use isolith_scene::ModifierKind;
 
-/// Writes the rows of `component` among `params`, which are those of `flat`, anew: relative to the point that is `shift`
-/// from its origin.
+/// Rewrites the rows of `component` in `params`, which are those of `flat`, relative to the point at `shift` from its
+/// origin.
 pub fn move_params(flat: &FlatScene, component: &Component, shift: DVec3, params: &mut [ParamRow]) {
     let mut at = component.first as usize;
     let end = at + component.count as usize;
@@ -26,38 +26,39 @@ pub fn move_params(flat: &FlatScene, component: &Component, shift: DVec3, params
                 row[3] = moved as f32;
             }
         }
-        // Groups, runs and modifiers have bounds, if they have a slope. They were made larger than rounding moves them.
+        // Groups, runs and modifiers have bounds if they have a slope. These bounds have more margin than rounding
+        // moves.
         if !node.is_leaf() && rows[0][1] > 0.0 {
             for (center, moved) in rows[1].iter_mut().zip(shift.to_array()) {
                 *center = (f64::from(*center) - moved) as f32;
             }
         }
-        // What a modifier holds stands in a space of its own.
+        // The content of a modifier has a space of its own.
         at += step(node);
     }
 }
 
-/// To the next entry in the same space.
+/// Steps to the next entry in the same space.
 fn step(node: &FlatNode) -> usize {
     if node.modifier().is_some() { node.extent as usize } else { 1 }
 }
 
 /// Counts the cells of a repetition from one near `local`, a point in its space; `rows` are its own, see
-/// `shaders/mod/repeat.wgsl`. Returns where that cell stands.
+/// `shaders/mod/repeat.wgsl`. Returns the position of that cell.
 fn move_repeat(local: DVec3, rows: &mut [ParamRow]) -> DVec3 {
     let of = |row: usize| DVec3::from_slice(&rows[row].map(f64::from));
     let (spacing, turn, flags) = (of(0), rows[0][3], rows[1][3] as u32);
     let (first, last, middle, offset) = (of(1), of(2), of(3), of(5));
-    // How far a cell is turned follows from its number.
+    // The turn of a cell follows from its number, so the cells keep their numbers.
     if turn != 0.0 {
         return DVec3::ZERO;
     }
     let mut cell = DVec3::ZERO;
-    // Rows along X are moved by their cell along Y.
+    // The cell along Y shifts rows along X.
     for axis in [1, 2, 0] {
         let beside = if axis == 0 { offset.x * cell.y } else { 0.0 };
         let count = ((local[axis] - beside - middle[axis]) / spacing[axis]).clamp(first[axis], last[axis]);
-        // Where every other cell is a mirror image, an even one stands for the first.
+        // If every other cell is mirrored, only an even cell can replace the first.
         cell[axis] = if flags >> axis & 1 == 1 { (0.5 * count).round() * 2.0 } else { count.round() };
     }
     let place = cell * spacing + DVec3::new(offset.x * cell.y, offset.y * cell.x, offset.z * cell.x);

@@ -1,4 +1,4 @@
-//! Operands: what folds are made of, in world space.
+//! Operands of folds, in world space.
 
 use std::rc::Rc;
 
@@ -9,39 +9,39 @@ use super::prepare::PreparedShape;
 use isolith_geometry::Aabb;
 use isolith_scene::{Blend, MaterialId, ModifierKind, Node};
 
-/// One operand of a fold. What is below it is shared by its clones.
+/// One operand of a fold. Clones share its content.
 #[derive(Clone)]
 pub(super) struct Operand<'a> {
     /// The node it came from.
     pub node: &'a Node,
-    /// The outermost node that it belongs to: what a message about its component names.
+    /// Its outermost node, which messages about the component name.
     pub outermost: &'a Node,
-    /// How it joins what precedes it.
+    /// How it joins the result so far.
     pub join: Join,
-    /// How round the blend is, in meters.
+    /// Its blend, with the radius in meters.
     pub blend: Blend,
-    /// What else the join needs, see [`super::eval::BlendParams`]: size and depth.
+    /// Size and depth of joins that need them, see [`super::eval::BlendParams`].
     pub detail: [f64; 2],
-    /// Around its surface, in the world.
+    /// World bounds of its surface.
     pub bounds: Aabb,
     /// Its field is at least `bound_slope` times the distance to `cull_box`.
     pub cull_box: Aabb,
     /// See `cull_box`.
     pub bound_slope: f64,
-    /// Shapes, modifiers and groups in it.
+    /// Number of shapes, modifiers and groups in it.
     pub entries: usize,
-    /// How deep groups and modifiers are nested in it, itself counted; 0 for a shape.
+    /// Nesting depth of groups and modifiers, itself counted; 0 for a shape.
     pub depth: u32,
-    /// What it is.
+    /// Its kind and content.
     pub value: Value<'a>,
 }
 
-/// What an operand is.
+/// Kind and content of an operand.
 #[derive(Clone)]
 pub(super) enum Value<'a> {
-    /// A shape: local-from-world, factor on its local distance, what it is evaluated with.
+    /// A shape: local-from-world, factor on its local distance, prepared shape, material.
     Leaf { local_from_world: DAffine3, distance_scale: f64, prepared: Rc<PreparedShape>, material: MaterialId },
-    /// A fold of its own; never of one operand.
+    /// A nested fold; never of one operand.
     Fold(Rc<Vec<Operand<'a>>>),
     /// A fold in the local space of a modifier: local-from-world, factor on its local distance, the modifier.
     Modified {
@@ -53,21 +53,21 @@ pub(super) enum Value<'a> {
     },
 }
 
-/// A modifier that stays in the arrays, with what it makes of its content.
+/// A modifier that stays in the arrays, with the bounds of its result.
 #[derive(Clone, Debug)]
 pub(super) struct Modified {
     /// Its rows, see `shaders/mod/`.
     pub rows: Vec<[f64; 4]>,
-    /// Its data; nothing for most.
+    /// Its payload; empty for most.
     pub data: Rc<[[f64; 4]]>,
-    /// Around the result, in the node's own space.
+    /// Bounds of the result, in the node's own space.
     pub bounds: Aabb,
-    /// The field is at least `bound_slope` times the distance to this.
+    /// The field is at least `bound_slope` times the distance to this box.
     pub cull_box: Aabb,
     /// See `cull_box`.
     pub bound_slope: f64,
-    /// How often the content may be evaluated for one point.
+    /// Most evaluations of the content for one point.
     pub copies: u32,
-    /// What the artist should know.
+    /// A warning for the artist.
     pub warning: Option<String>,
 }

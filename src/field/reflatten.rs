@@ -1,4 +1,4 @@
-//! Flattening after a small change: only the component that the change is in is made anew.
+//! Flattening after a small change: rebuilds only the component that contains the change.
 
 use std::sync::Arc;
 
@@ -13,8 +13,8 @@ use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use isolith_scene::{Material, Node, NodeKind, Scene};
 
-/// Keeps the arrays of the last scene, and makes those of the next one from them where little has
-/// changed. Gives what [`super::flatten`] gives, but that small components stay joined as they were.
+/// Keeps the arrays of the last scene, and patches them if little has changed. The result is that of
+/// [`super::flatten`], except that batches stay as they were.
 #[derive(Debug, Default)]
 pub struct Flattener {
     last: Option<Last>,
@@ -29,20 +29,20 @@ struct Last {
     flat: Arc<FlatScene>,
 }
 
-/// More changed objects than this are not worth looking at one by one.
+/// With more changed objects than this, looking at each one does not pay.
 const MOST_CHANGED: usize = 8;
 
 impl Flattener {
     /// The arrays of `scene` at `time` seconds.
     ///
     /// # Errors
-    /// A limit is hit, see [`super::flatten`]; the next call starts from nothing.
+    /// A limit is hit, see [`super::flatten`]; the next call starts from scratch.
     pub fn flatten(&mut self, scene: &Scene, time: f64) -> Result<Arc<FlatScene>, FlattenError> {
         let flat = self.flatten_until(scene, time, &Cancel::default())?;
         Ok(flat.expect("nobody else holds the flag, so nobody cancels"))
     }
 
-    /// The arrays if little has changed since the last time, so that they are there at once.
+    /// The arrays if little has changed since the last call, and so without a wait.
     pub fn update(&mut self, scene: &Scene, time: f64) -> Option<Arc<FlatScene>> {
         let mut last = self.last.take()?;
         if !last.update(scene, time) {
@@ -53,7 +53,7 @@ impl Flattener {
         Some(flat)
     }
 
-    /// The same as [`Flattener::flatten`]; nothing where it was canceled.
+    /// The same as [`Flattener::flatten`]; `None` if canceled.
     ///
     /// # Errors
     /// As there.
@@ -80,9 +80,9 @@ impl Flattener {
 }
 
 impl Last {
-    /// Brings the arrays up to date; false where they have to be made anew.
+    /// Updates the arrays; false if they have to be rebuilt.
     fn update(&mut self, scene: &Scene, time: f64) -> bool {
-        // A cut reaches into other components.
+        // A cut affects other components.
         if self.has_cuts || self.time != time || self.flat.environment != scene.environment {
             return false;
         }
@@ -108,7 +108,7 @@ impl Last {
         true
     }
 
-    /// Makes the component of the node at `index` anew, in its place.
+    /// Rebuilds the component of the node at `index` in its place.
     fn patch(&mut self, scene: &Scene, index: usize) -> bool {
         let id = scene.nodes()[index].id;
         let Some(entry) = self.flat.ids.iter().position(|i| *i == id) else { return false };
@@ -150,7 +150,7 @@ impl Last {
 }
 
 impl Last {
-    /// The fold of a component, from the same nodes as before; nothing where they do not make one component any more.
+    /// The fold of a component, from the same nodes as before; `None` if they no longer form one component.
     fn operands<'a>(&self, scene: &'a Scene, component: &Component) -> Option<Vec<Operand<'a>>> {
         let top = |entry: usize| outermost(scene, scene.index_of(self.flat.ids[entry])?);
         let (first, end) = (component.first as usize, (component.first + component.count) as usize);
@@ -174,20 +174,21 @@ impl Last {
     }
 }
 
-/// Whether only the values of an object or of a group within a component differ, so that the arrays keep their form.
+/// Whether only the values of an object, or of a group within a component, differ, so that the arrays keep their
+/// structure.
 fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
     let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.blend_override, n.apart.clone());
     let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
     let kinds = match (&old.kind, &new.kind) {
         (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
-        // An opened group holds more than one component.
+        // An opened group holds several components.
         (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(scene, old) && !is_opened(scene, new),
         _ => false,
     };
     kinds && form(old) == form(new) && modifiers(old) == modifiers(new)
 }
 
-/// The node at the top of the component that the node at `index` is part of.
+/// The outermost node of the component that contains the node at `index`.
 fn outermost(scene: &Scene, index: usize) -> Option<usize> {
     let mut path = vec![index];
     let mut at = scene.nodes()[index].parent;
@@ -208,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_changed_object_gives_the_same_arrays_as_a_fresh_start() {
-        // The pedestals of all shapes are joined by place, see `batch`.
+        // The pedestals of all shapes are batched, see `batch`.
         for (name, mut scene) in gallery::all().into_iter().filter(|(name, _)| *name != "shapes") {
             let mut flattener = Flattener::default();
             flattener.flatten(&scene, 0.0).unwrap();

@@ -1,9 +1,9 @@
-//! The scene evaluator: distances and rays to all components at once, in f64. `eval` knows one component; this knows
-//! which of them matter, by the hierarchy over their bounds. Counterpart of `shaders/scene/`.
+//! The scene evaluator: distances and rays to all components at once, in f64. `eval` evaluates one component; the
+//! hierarchy over the bounds selects the components that matter. Counterpart of `shaders/scene/`.
 //!
-//! The value of a component at a point is its field, or the distance to its bounds where that is more: both are lower
+//! The value of a component at a point is its field, or the distance to its bounds if that is more: both are lower
 //! bounds of the distance to its surface. The value of the scene is the least of all, so a component whose bounds are
-//! farther than a value that is known cannot change it.
+//! farther away than a known value cannot change it.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -16,11 +16,11 @@ use super::reference::trace::{Hit, TraceError, leaf_at, trace_component};
 use super::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
 
-/// How far a ray that leaves a surface begins above it, in footprints of a pixel there: more than what a picture's depth may
-/// be off. `shaders/scene/march.wgsl` has the same number.
+/// Offset of a ray that leaves a surface, in footprints of a pixel there: more than the tolerance of a picture's
+/// depth. `shaders/scene/march.wgsl` has the same number.
 pub const SURFACE_BIAS: f64 = 0.25;
 
-/// What a half space is taken for lower, relative to the coordinates: the arrays are rounded to f32, it is not.
+/// Slack of the half space, relative to the coordinates: the arrays are rounded to f32, it is not.
 const HALF_SPACE_SLACK: f64 = 1e-6;
 
 /// The value of the scene at a point.
@@ -28,50 +28,50 @@ const HALF_SPACE_SLACK: f64 = 1e-6;
 pub struct SceneDistance {
     /// Never more than the distance to the nearest surface; negative inside.
     pub value: f64,
-    /// The component that it belongs to: index into [`FlatScene::components`]; `None` for a scene without any.
+    /// Its component: index into [`FlatScene::components`]; `None` for a scene without components.
     pub component: Option<u32>,
 }
 
-/// Where on a ray a hit counts, as distances from its origin.
+/// The range of hits on a ray, as distances from its origin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayLimits {
-    /// Not before; what is solid here is hit here.
+    /// Start of the range; a solid here is hit here.
     pub near: f64,
-    /// Not beyond.
+    /// End of the range.
     pub far: f64,
 }
 
-/// What was done so far.
+/// Counters of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneCounts {
     /// Evaluations of the field of one component.
     pub evaluations: u64,
-    /// Boxes that a point or a ray was compared with.
+    /// Comparisons of a box with a point or a ray.
     pub boxes: u64,
 }
 
-/// Asks a scene.
+/// Evaluates a scene at points and along rays.
 #[derive(Clone, Debug)]
 pub struct SceneEvaluator<'a> {
     flat: &'a FlatScene,
     hierarchy: &'a Hierarchy,
-    /// What was done since it was made.
+    /// Work since its creation.
     pub counts: SceneCounts,
 }
 
 impl<'a> SceneEvaluator<'a> {
-    /// By the scene's own hierarchy, which is built here if nobody needed it before.
+    /// Uses the scene's own hierarchy, which is built here if it does not exist yet.
     pub fn new(flat: &'a FlatScene) -> Self {
         Self::with_hierarchy(flat, flat.hierarchy())
     }
 
-    /// By another hierarchy over the scene's components.
+    /// Uses another hierarchy over the scene's components.
     pub fn with_hierarchy(flat: &'a FlatScene, hierarchy: &'a Hierarchy) -> Self {
         Self { flat, hierarchy, counts: SceneCounts::default() }
     }
 
-    /// The value of the scene at a point of the world. Where it is not less than `within`, any lower bound of the distance
-    /// that is not less than `within` either may stand for it: then fields of what is farther are not evaluated.
+    /// The value of the scene at a point of the world. Any lower bound of the distance that is at least `within` may
+    /// stand for a value of at least `within`: the evaluator then skips the fields of farther components.
     pub fn distance(&mut self, point: DVec3, within: f64) -> SceneDistance {
         let mut nearest = SceneDistance { value: f64::INFINITY, component: None };
         let nodes = &self.hierarchy.nodes;
@@ -98,7 +98,7 @@ impl<'a> SceneEvaluator<'a> {
         nearest
     }
 
-    /// Lowers `nearest` to the value of a component whose bounds are `bound` away.
+    /// Lowers `nearest` to the value of a component whose bounds are at the distance `bound`.
     fn consider(&mut self, index: u32, point: DVec3, bound: f64, within: f64, nearest: &mut SceneDistance) {
         let component = &self.flat.components[index as usize];
         let local = point - component.origin;
@@ -149,7 +149,7 @@ impl<'a> SceneEvaluator<'a> {
         Ok(nearest.map(hit))
     }
 
-    /// Puts a node that the ray meets among those that are open.
+    /// Adds a node to the open ones if the ray meets it.
     fn open(&mut self, index: usize, ray: &Ray, limits: RayLimits, open: &mut BinaryHeap<Open>) {
         let Some(node) = self.hierarchy.nodes.get(index) else { return };
         self.counts.boxes += 1;
@@ -175,27 +175,27 @@ impl<'a> SceneEvaluator<'a> {
     }
 }
 
-/// The ray that leaves a surface at `point` along `direction`: it begins [`SURFACE_BIAS`] footprints off the surface, on the
-/// side to which it goes. `normal` has unit length.
+/// The ray that leaves a surface at `point` along `direction`: it starts [`SURFACE_BIAS`] footprints off the surface,
+/// on the side of its direction. `normal` has unit length.
 pub fn surface_ray(point: DVec3, normal: DVec3, direction: DVec3, footprint: f64) -> Ray {
     let side = if normal.dot(direction) < 0.0 { -normal } else { normal };
     Ray { origin: point + side * (SURFACE_BIAS * footprint), direction }
 }
 
-/// How far a point, relative to the component's origin, is from the half space that holds the component; 0 where nothing is
-/// known.
+/// Distance of a point, relative to the component's origin, from the half space that contains the component; 0 if
+/// none is known.
 fn half_space_bound(component: &Component, p: DVec3) -> f64 {
     let Some([x, y, z, d]) = component.half_space else { return 0.0 };
     (DVec3::new(x, y, z).dot(p) + d - HALF_SPACE_SLACK * (p.length() + d.abs())).max(0.0)
 }
 
-/// The box grown by some steps of f64, so that rounding never loses what lies in a side of it.
+/// The box grown by some rounding steps of f64, so that no surface in one of its sides is lost.
 fn widened(bounds: &Aabb, ray: &Ray) -> Aabb {
     let reach = bounds.min.abs().max(bounds.max.abs()).max_element() + ray.origin.abs().max_element();
     bounds.expanded(reach * 1e-14)
 }
 
-/// A node that the ray meets, the nearest first.
+/// A node that the ray meets, ordered nearest first.
 #[derive(Clone, Copy, Debug)]
 struct Open {
     entry: f64,

@@ -1,11 +1,11 @@
-//! The order of operands that needs few accumulators.
+//! Reorders operands so that evaluation needs few accumulators.
 //!
-//! A fold keeps one accumulator, and each group after the first operand needs another while it is evaluated. So a hundred
-//! groups, each the second child of the one before, would need a hundred, and a walk's stack is compiled into the kernel:
-//! lavapipe took 43 s for 128 places. Evaluated from the inside out they need one: the deepest group comes first, and what
-//! preceded it joins it by the mirrored join, which gives the same value to the last bit (Sethi and Ullman, "The generation
-//! of optimal code for arithmetic expressions", 1970). What a modifier holds is a fold of its own: it is ordered in itself, and
-//! the modifier needs one place more.
+//! A fold keeps one accumulator, and each group after the first operand needs another during its evaluation. So a
+//! hundred groups, each the second child of the one before, would need a hundred, and the stack of an evaluator is
+//! compiled into the kernel: lavapipe took 43 s for 128 places. Evaluated from the inside out they need one: the
+//! deepest group comes first, and the operands before it join it by the mirrored join, which gives the same value to
+//! the last bit (Sethi and Ullman, "The generation of optimal code for arithmetic expressions", 1970). The content of
+//! a modifier is a fold of its own: it is ordered separately, and the modifier needs one place more.
 
 use std::rc::Rc;
 
@@ -13,11 +13,10 @@ use super::arrays::Join;
 use super::composition::{group_of, size_of_fold};
 use super::operand::{Operand, Value};
 
-/// Folds that need no more are left as they are: their kernels stay alike.
+/// Folds that need no more than this stay as they are, so that their kernels stay alike.
 const SHALLOW: u32 = 8;
 
-/// The fold with its deepest operands first, as far as its joins can be mirrored, where it needs more than a few
-/// accumulators.
+/// The fold with its deepest operands first, as far as its joins can be mirrored; `None` if few accumulators suffice.
 pub(super) fn shallow<'a>(fold: &[Operand<'a>]) -> Option<Vec<Operand<'a>>> {
     (need(fold) > SHALLOW).then(|| deepest_first(fold.to_vec()))
 }
@@ -37,7 +36,7 @@ fn deepest_first(mut fold: Vec<Operand<'_>>) -> Vec<Operand<'_>> {
     fold
 }
 
-/// Orders what the modifiers in an operand hold.
+/// Orders the contents of the modifiers in an operand.
 fn order_contents(operand: &mut Operand<'_>) {
     if operand.depth <= SHALLOW {
         return;
@@ -57,12 +56,12 @@ fn order_contents(operand: &mut Operand<'_>) {
     (operand.entries, operand.depth) = (entries.saturating_add(1), depth + 1);
 }
 
-/// Accumulators that have to be put aside within a fold.
+/// Accumulators to put aside within a fold.
 fn need(fold: &[Operand<'_>]) -> u32 {
     fold.iter().map(|operand| operand.depth).max().unwrap_or(0)
 }
 
-/// The operand that needs most, if it can come first.
+/// The deepest operand, if it can come first.
 fn deepest(fold: &[Operand<'_>]) -> Option<usize> {
     let at = (0..fold.len()).max_by_key(|i| fold[*i].depth)?;
     let is_movable = at > 0 && matches!(fold[at].value, Value::Fold(_)) && mirrored(fold[at].join).is_some();
@@ -85,11 +84,11 @@ mod tests {
     use crate::{FlatScene, flatten};
     use isolith_scene::{Blend, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene, Shape};
 
-    /// What rounding a group adds to it.
+    /// The offset by which a group is rounded.
     const ROUNDED: f64 = 0.01;
 
-    /// `depth` groups, each the last child of the one before, of a ball, where `wide` another, and the next group; those in
-    /// `rounded` are rounded.
+    /// `depth` nested groups, each the last child of the one before. Each holds a ball, a second one if `wide`, and
+    /// the next group; those in `rounded` are rounded.
     fn nest(depth: usize, operators: &[Operator], wide: bool, rounded: &[usize]) -> Scene {
         let mut scene = Scene::new();
         let mut parent: Option<NodeId> = None;
@@ -124,7 +123,7 @@ mod tests {
         use Operator::{Difference, Intersection, Union, Xor};
         for operators in [&[Union, Difference][..], &[Difference], &[Intersection, Difference, Union], &[Xor, Union]] {
             for wide in [false, true] {
-                // Each modifier needs a place for itself and for what it holds.
+                // Each modifier needs a place for itself and for its content.
                 for rounded in [&[][..], &[0], &[50], &[0, 30, 60]] {
                     let flat = flat(&nest(100, operators, wide, rounded));
                     let stack = flat.components.iter().map(|c| c.stack).max();
@@ -133,7 +132,7 @@ mod tests {
                 }
             }
         }
-        // What cannot be exchanged stays.
+        // Joins that cannot be mirrored keep their order.
         for rounded in [&[][..], &[0]] {
             assert!(flat(&nest(20, &[Operator::Groove], false, rounded)).components[0].stack > super::SHALLOW + 1);
         }

@@ -1,5 +1,5 @@
-//! The points that the GPU gets the numbers of components relative to, so that f32 is fine enough for what is seen. The
-//! renderer gets them with the arrays: it evaluates no field itself.
+//! The points that the GPU gets the parameters of components relative to, so that f32 is fine enough for the view.
+//! The renderer gets them with the arrays, since it evaluates no field itself.
 
 use std::borrow::Cow;
 
@@ -10,31 +10,31 @@ use super::eval::field;
 use super::moved::move_params;
 use isolith_geometry::{Aabb, Camera};
 
-/// How a component stands to the eye.
+/// The placement of a component relative to the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Standpoint {
     /// See `shaders/common/ray.wgsl`.
     pub ray_origin_depth: f64,
-    /// Where the point is that the component's numbers are relative to, from its origin: 0, or near the eye.
+    /// The point that the component's parameters are relative to, from its origin: 0, or near the eye.
     pub shift: DVec3,
-    /// The point that `ray_origin_depth` puts before the eye, from there.
+    /// The point `ray_origin_depth` in front of the eye, relative to that point.
     pub eye: DVec3,
-    /// What rounding may move where `shift` is not 0, in meters; 0 elsewhere.
+    /// Most that rounding may move if `shift` is not 0, in meters; 0 otherwise.
     pub most_moved: f64,
 }
 
-/// By no more than this share of itself f32 rounds a number.
+/// f32 rounds a number by at most this fraction of itself.
 const ROUNDING: f64 = 0.5 * f32::EPSILON as f64;
-/// What rounding may move, in footprints of a pixel.
+/// Most that rounding may move, in footprints of a pixel.
 const MOST_MOVED: f64 = 1.0 / 64.0;
-/// A component whose field takes more than so many leaves, about a millisecond, is taken for as near as the near limit allows
-/// where the eye is within its bounds.
+/// If the eye is within the bounds of a component whose field takes more leaves than this, about a millisecond, the
+/// component counts as being as near as the near limit allows.
 const MOST_EVALUATED: u64 = 1 << 14;
-/// Narrower pixels, in radians, are no more than 64 roundings of a direction apart.
+/// Narrower pixels, in radians, are at most 64 roundings of a direction apart.
 pub const NARROW: f64 = 64.0 * ROUNDING;
 
 impl Standpoint {
-    /// For what `camera` sees of the component in a picture of `size` pixels.
+    /// The standpoint for what `camera` sees of the component in a picture of `size` pixels.
     pub fn new(flat: &FlatScene, component: &Component, camera: &Camera, size: [u32; 2]) -> Self {
         let from = camera.position - component.origin;
         let footprint = camera.footprint(size[1].into());
@@ -52,27 +52,27 @@ impl Standpoint {
             return unmoved;
         }
         let way = component.bounds.distance(from);
-        // Within the bounds the field says how far the surface is at least.
+        // Within the bounds, the field is a lower bound of the distance to the surface.
         let is_cheap = u64::from(component.count) * u64::from(component.copies) <= MOST_EVALUATED;
         let way = if way > 0.0 || !is_cheap { way } else { field(flat, component, from) };
         let allowed = allowed(way.max(least));
         if rounding <= allowed {
             return unmoved;
         }
-        // Only so near that nothing has to be uploaded as long as the eye moves little.
+        // On a grid, so that small movements of the eye upload nothing.
         let grid = (allowed / ROUNDING).log2().floor().exp2();
         let shift = (eye / grid).round() * grid;
         Self { ray_origin_depth, shift, eye: eye - shift, most_moved: allowed }
     }
 
-    /// For an eye at the component's origin.
+    /// The standpoint of an eye at the component's origin.
     pub fn at_origin() -> Self {
         Self::default()
     }
 }
 
-/// How far before the eye the plane is that positions on rays through `bounds` count from; `bounds` are relative to the eye.
-/// 0 in pictures that are not narrow.
+/// Depth of the plane in front of the eye that positions on rays through `bounds` count from; `bounds` are relative
+/// to the eye. 0 in pictures that are not narrow.
 pub fn ray_origin_depth(bounds: &Aabb, camera: &Camera, size: [u32; 2]) -> f64 {
     if camera.footprint(size[1].into()) >= NARROW {
         return 0.0;
@@ -81,7 +81,7 @@ pub fn ray_origin_depth(bounds: &Aabb, camera: &Camera, size: [u32; 2]) -> f64 {
     settled(bounds.corners().into_iter().map(|corner| corner.dot(forward)).fold(f64::INFINITY, f64::min))
 }
 
-/// The same for what stands below a plane, see [`Component::half_space`], with an eye at `from`.
+/// The same for a component below a plane, see [`Component::half_space`], with the eye at `from`.
 fn ray_origin_depth_of_plane([x, y, z, d]: [f64; 4], from: DVec3, camera: &Camera, size: [u32; 2]) -> f64 {
     if camera.footprint(size[1].into()) >= NARROW {
         return 0.0;
@@ -99,22 +99,22 @@ fn ray_origin_depth_of_plane([x, y, z, d]: [f64; 4], from: DVec3, camera: &Camer
     settled(corners.into_iter().map(depth).fold(f64::INFINITY, f64::min))
 }
 
-/// A little less than the least depth: no surface is before the plane. 0 where there is none.
+/// Slightly less than the least depth, so that no surface is in front of the plane. 0 if there is none.
 fn settled(depth: f64) -> f64 {
     if depth > 0.0 && depth.is_finite() { f64::from((depth * (1.0 - 1e-6)) as f32) } else { 0.0 }
 }
 
-/// How all components stand to the eye, and their numbers from there.
+/// The standpoints of all components, and the parameters relative to them.
 #[derive(Debug)]
 pub struct Standpoints<'a> {
-    /// Beside the components.
+    /// Parallel to the components.
     pub all: Vec<Standpoint>,
-    /// As in the scene, but for components that are seen from near their eye.
+    /// The parameters of the scene, rewritten for components with a standpoint near the eye.
     pub params: Cow<'a, [ParamRow]>,
 }
 
 impl<'a> Standpoints<'a> {
-    /// For a picture of `size` pixels by `camera`.
+    /// The standpoints for a picture of `size` pixels by `camera`.
     pub fn new(flat: &'a FlatScene, camera: &Camera, size: [u32; 2]) -> Self {
         let all: Vec<_> = flat.components.iter().map(|c| Standpoint::new(flat, c, camera, size)).collect();
         let mut params = Cow::Borrowed(&flat.params[..]);

@@ -1,4 +1,4 @@
-//! Counts what flattening a scene takes before any of it is done: one pass over the nodes, whatever they multiply to.
+//! Counts what flattening a scene takes before it starts: one pass over the nodes, however many copies they make.
 //!
 //! What is counted is no less than what is made, but for copies of what turns out to be the empty set only when it is
 //! evaluated, such as an intersection of what does not meet.
@@ -11,19 +11,19 @@ use super::error::FlattenError;
 use super::modify::is_idle;
 use isolith_scene::{Modifier, Node, NodeKind, Object, Scene, Shape};
 
-/// So many levels fit into the stack of any thread, 2 MiB for most.
+/// This many levels fit into the stack of any thread, 2 MiB for most.
 const MOST_ON_ANY_STACK: usize = 100;
-/// What a level takes of a stack: measured 5 KiB at most in a build for tests, so this has room.
+/// Bytes of stack per level: measured 5 KiB at most in a build for tests, so this has room.
 const STACK_PER_LEVEL: usize = 16 << 10;
-/// What evaluating a shape and writing the arrays take besides.
+/// Further bytes of stack for evaluating a shape and writing the arrays.
 const LEAST_STACK: usize = 2 << 20;
 
-/// Scenes of fewer entries are flattened within a tenth of a second or so; rows of data count as well.
+/// Scenes with fewer entries flatten within about a tenth of a second; payload rows count as well.
 const QUICK: usize = 20_000;
-/// As long as a shape drawn from rows of data takes so many others.
+/// A shape drawn from payload rows takes as long as this many others.
 const DRAWN: usize = 100;
 
-/// Whether flattening the scene is so quick that nobody minds waiting for it; also where it hits a limit at once.
+/// Whether flattening the scene is quick enough to wait for; also if it hits a limit at once.
 pub fn is_quick(scene: &Scene) -> bool {
     let is_drawn = |node: &Node| match &node.kind {
         NodeKind::Object(object) => object.shape.kind().has_data(),
@@ -35,37 +35,37 @@ pub fn is_quick(scene: &Scene) -> bool {
     survey.map_or(true, |survey| survey.entries.max(scene.nodes().len() / 4) + DRAWN * drawn <= QUICK)
 }
 
-/// The modifiers that do something, in their order.
+/// The modifiers that change something, in their order.
 pub(super) fn active(node: &Node) -> impl DoubleEndedIterator<Item = &Modifier> {
     node.modifiers.iter().filter(|slot| slot.enabled && !is_idle(&slot.modifier)).map(|slot| &slot.modifier)
 }
 
-/// What is known of the nodes in a range, which holds whole subtrees.
+/// Counts of the nodes in a range, which holds whole subtrees.
 pub(super) struct Survey {
     start: usize,
     nodes: Vec<Counts>,
-    /// How deep the recursion goes.
+    /// Depth of the recursion.
     pub levels: usize,
-    /// Shapes and modifiers of all, copies included.
+    /// Shapes and modifiers of all nodes, copies included.
     entries: usize,
 }
 
 #[derive(Clone, Copy, Default)]
 struct Counts {
-    /// Behind the last node of the subtree.
+    /// End of the subtree, exclusive.
     end: usize,
-    /// Whether a modifier of its own or above it thickens.
+    /// Whether a modifier of the node or of an ancestor thickens.
     is_thickened: bool,
-    /// Whether objects stand in the subtree, hidden or not; and whether lights, cameras or meshes do.
+    /// Whether the subtree contains objects, hidden or not; and whether it contains lights, cameras or meshes.
     has_object: bool,
     has_non_field: bool,
     /// Shapes and modifiers after copying; 0 where the subtree is hidden or certainly empty.
     entries: usize,
     /// Visits of nodes, copies included.
     steps: usize,
-    /// Nested calls of the node and what is below it.
+    /// Nested calls for the node and its descendants.
     levels: usize,
-    /// Modifiers around each other that stay in the arrays.
+    /// Nested modifiers that stay in the arrays.
     deformed: usize,
 }
 
@@ -73,7 +73,7 @@ impl Survey {
     /// Counts the nodes in `range`.
     ///
     /// # Errors
-    /// They take more than is allowed; the error names the innermost node for which that is so.
+    /// They exceed a limit; the error names the innermost node for which that is so.
     pub fn new(scene: &Scene, range: Range<usize>, limits: &FlattenLimits) -> Result<Self, FlattenError> {
         let mut survey =
             Self { start: range.start, nodes: vec![Counts::default(); range.len()], levels: 0, entries: 0 };
@@ -101,7 +101,7 @@ impl Survey {
         &self.nodes[index - self.start]
     }
 
-    /// Behind the last node of the subtree at `index`.
+    /// End of the subtree at `index`, exclusive.
     pub fn end(&self, index: usize) -> usize {
         self.at(index).end
     }
@@ -113,12 +113,12 @@ impl Survey {
         std::iter::successors(Some(index + 1).filter(|at| *at < end), next)
     }
 
-    /// Whether the recursion may go deeper than the stack of a thread of usual size holds.
+    /// Whether the recursion may be too deep for the stack of a thread of usual size.
     pub fn is_deep(&self) -> bool {
         self.levels > MOST_ON_ANY_STACK
     }
 
-    /// A stack in which the recursion has room, in bytes.
+    /// A sufficient stack for the recursion, in bytes.
     pub fn stack_bytes(&self) -> usize {
         LEAST_STACK + self.levels * STACK_PER_LEVEL
     }
@@ -128,12 +128,12 @@ impl Survey {
         self.at(index).entries == 0
     }
 
-    /// Whether the group at `index` only keeps lights, cameras and meshes together: it is no operand.
+    /// Whether the group at `index` only holds lights, cameras and meshes, and so is not an operand.
     pub fn is_folder(&self, index: usize) -> bool {
         !self.at(index).has_object && self.at(index).has_non_field
     }
 
-    /// Where each subtree ends, and what is thickened from above.
+    /// Sets the end of each subtree, and which nodes are thickened from above.
     fn nest(&mut self, scene: &Scene, range: &Range<usize>) {
         let depths = scene.depths();
         for index in range.clone().rev() {
@@ -157,7 +157,7 @@ impl Survey {
         }
     }
 
-    /// Counts the node at `index`; those below it are counted already.
+    /// Counts the node at `index`; its descendants are counted already.
     fn count(&mut self, scene: &Scene, index: usize) {
         let node = &scene.nodes()[index];
         let mut counts = Counts { steps: 1, levels: 1, ..*self.at(index) };
@@ -183,7 +183,7 @@ impl Survey {
             counts.entries = 0;
         }
         if counts.entries == 0 {
-            // It is passed by.
+            // Flattening passes it by.
             (counts.steps, counts.levels, counts.deformed) = (1, 1, 0);
         } else {
             active(node).for_each(|modifier| counts.modify(modifier));
@@ -201,7 +201,7 @@ impl Survey {
 }
 
 impl Counts {
-    /// What a modifier adds to what is below it.
+    /// Adds what a modifier takes to the counts of its content.
     fn modify(&mut self, modifier: &Modifier) {
         let copies = match modifier {
             Modifier::Mirror { axes, .. } => {

@@ -13,7 +13,7 @@ impl FlatScene {
     }
 }
 
-/// How much of each limit the arrays use, which took so many steps to make.
+/// Usage of each limit by the arrays; flattening took `steps`.
 pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
     let most = |of: &dyn Fn(&Component) -> usize| {
         let largest = flat.components.iter().max_by_key(|component| of(component));

@@ -1,4 +1,4 @@
-//! The view of a scene when nobody chose one.
+//! The default view of a scene.
 
 use glam::DVec3;
 
@@ -6,11 +6,11 @@ use super::FlatScene;
 use super::mesh_rays::Meshes;
 use isolith_geometry::{Aabb, Camera};
 
-/// From the scene to the eye, for scenes without cameras: a three-quarter view from above.
+/// Direction from the scene to the eye, for scenes without cameras: a three-quarter view from above.
 pub const THREE_QUARTER: DVec3 = DVec3::new(0.62, 0.46, 1.0);
 
 impl FlatScene {
-    /// The scene's first camera; without cameras one that sees all that has an end. `meshes` stands beside
+    /// The scene's first camera; without cameras, one that frames all bounded content. `meshes` is parallel to
     /// [`FlatScene::meshes`].
     pub fn default_camera(&self, meshes: &Meshes, aspect: f64) -> Camera {
         match self.cameras.first() {
@@ -19,7 +19,7 @@ impl FlatScene {
         }
     }
 
-    /// A box in the world around everything that has an end; around the origin where nothing has.
+    /// A world box around all bounded content; a box around the origin if there is none.
     pub fn content(&self, meshes: &Meshes) -> Aabb {
         let mut all = Aabb::EMPTY;
         for component in self.components.iter().filter(|component| component.bounds.is_finite()) {

@@ -1,4 +1,4 @@
-//! Curves of fonts as arcs.
+//! Conversion of font curves to arcs.
 
 use glam::DVec3;
 use skrifa::outline::OutlinePen;
@@ -6,12 +6,12 @@ use skrifa::outline::OutlinePen;
 use super::limits::MAX_TEXT_ARCS;
 use isolith_geometry::{ArcPiece, biarc};
 
-/// How far arcs may leave the curves of the font, in heights of the font (em).
+/// The tolerance of arcs against the curves of the font, in em.
 pub const TOLERANCE: f64 = 5e-4;
-/// A curve is halved no more often than this; what is left then is off by far less than the tolerance.
+/// The limit on halvings of a curve; the remaining error is far below the tolerance.
 const MOST_HALVINGS: u32 = 6;
 
-/// Takes the outline of a glyph and makes arcs of it, in heights of the font.
+/// Converts the outline of a glyph to arcs, in em.
 pub struct ArcPen {
     em: f64,
     start: DVec3,
@@ -20,18 +20,18 @@ pub struct ArcPen {
 }
 
 impl ArcPen {
-    /// For a font whose height is so many of its units.
+    /// A pen for a font with `em` units per em.
     pub fn new(em: f64) -> Self {
         Self { em, start: DVec3::ZERO, at: DVec3::ZERO, arcs: Vec::new() }
     }
 
-    /// The arcs; `None` where there are too many of them.
+    /// The arcs; `None` if there are too many.
     pub fn finish(mut self) -> Option<Vec<ArcPiece>> {
         self.close();
         (!self.is_full()).then_some(self.arcs)
     }
 
-    /// Nothing more is taken then.
+    /// A full pen ignores further segments.
     fn is_full(&self) -> bool {
         self.arcs.len() > MAX_TEXT_ARCS
     }
@@ -83,7 +83,7 @@ impl OutlinePen for ArcPen {
     }
 }
 
-/// A cubic Bézier curve as pairs of arcs, halved where they would leave it by more than [`TOLERANCE`].
+/// Converts a cubic Bézier curve to pairs of arcs, halving it where they would leave it by more than [`TOLERANCE`].
 fn bent(curve: [DVec3; 4], halvings: u32, out: &mut Vec<ArcPiece>) {
     let [a, b, c, d] = curve;
     let toward = |from: DVec3, first: DVec3, second: DVec3| {
@@ -106,7 +106,7 @@ fn bent(curve: [DVec3; 4], halvings: u32, out: &mut Vec<ArcPiece>) {
     bent([middle, bcd, cd, d], halvings - 1, out);
 }
 
-/// How far a point is from the circle or line of an arc.
+/// The distance of a point from the circle or line of an arc.
 fn aside(arc: &ArcPiece, p: DVec3) -> f64 {
     let square = arc.bend.length_squared();
     if square < 1e-18 {

@@ -1,4 +1,4 @@
-//! A font: which glyphs it has, and their outlines.
+//! A font: its glyphs and their outlines.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -16,18 +16,18 @@ use super::limits::MAX_TEXT_ARCS;
 use super::work;
 use isolith_geometry::ArcPiece;
 
-/// Texts whose outlines are kept for each font; when there are more all are made again as they are needed.
+/// The number of texts whose outlines each font caches; the cache is cleared when it is full.
 const KEPT_TEXTS: usize = 256;
-/// How many units the height of a font may have, as its format says.
+/// The units per em that the format allows.
 const EM: std::ops::RangeInclusive<i32> = 16..=16_384;
 
-/// Outlines of a text; or why it is not drawn.
+/// Outlines of a text, or the reason why there are none.
 pub type Outlines = Result<Arc<[ArcPiece]>, String>;
 
-/// A glyph as it was made, or why it is not drawn.
+/// Outlines of a glyph, or the reason why it is not drawn.
 type Made = Result<Arc<[ArcPiece]>, String>;
 
-/// A font. Glyphs and texts are made once.
+/// A font with caches of its glyphs and texts.
 pub struct Face {
     bytes: Cow<'static, [u8]>,
     shaping: ShaperData,
@@ -38,12 +38,12 @@ pub struct Face {
 }
 
 impl Face {
-    /// The font of a TrueType or OpenType file, of a collection the first one; or why it cannot be read.
+    /// Loads the font of a TrueType or OpenType file, or the first font of a collection; the error is the reason.
     pub fn new(file: Vec<u8>) -> Result<Self, String> {
         Self::of(Cow::Owned(file))
     }
 
-    /// A font that comes with the program.
+    /// Loads a built-in font.
     pub(super) fn built_in(file: &'static [u8]) -> Result<Self, String> {
         Self::of(Cow::Borrowed(file))
     }
@@ -73,23 +73,23 @@ impl Face {
         FontRef::from_index(&self.bytes, 0).expect("it was read before")
     }
 
-    /// Calls `shape` with what turns letters into glyphs.
+    /// Calls `shape` with the shaper of the font.
     pub(super) fn with_shaper<T>(&self, shape: impl FnOnce(&Shaper<'_>) -> T) -> T {
         shape(&self.shaping.shaper(&self.font()).build())
     }
 
-    /// Units of the font in its height.
+    /// Units per em.
     pub(super) fn em(&self) -> f64 {
         self.em
     }
 
-    /// How far what follows a glyph stands from it, in heights of the font.
+    /// The advance width of a glyph, in em.
     pub(super) fn advance(&self, glyph: GlyphId) -> f64 {
         let width = self.font().hmtx().ok().and_then(|widths| widths.advance(glyph));
         f64::from(width.unwrap_or(0)) / self.em
     }
 
-    /// The outlines of a glyph, in heights of the font; or why it is not drawn.
+    /// The outlines of a glyph, in em; or the reason why it is not drawn.
     pub(super) fn glyph(&self, glyph: GlyphId) -> Made {
         let known = self.glyphs.lock().unwrap_or_else(PoisonError::into_inner).get(&glyph).cloned();
         if let Some(known) = known {
@@ -121,14 +121,14 @@ impl Face {
             },
         );
         if !drawn && glyph != GlyphId::NOTDEF {
-            // A damaged glyph shows as one that the font does not have.
+            // A damaged glyph appears as a missing glyph.
             return self.glyph(GlyphId::NOTDEF).map(|arcs| arcs.to_vec());
         }
         let id = glyph.to_u32();
         pen.finish().ok_or_else(|| format!("the outlines of its glyph {id} take more than {} arcs", MAX_TEXT_ARCS))
     }
 
-    /// The outlines of a text, made by `make` if they are not known.
+    /// The outlines of a text; `make` computes them if they are not cached.
     pub(super) fn remember(&self, text: &str, make: impl FnOnce() -> Outlines) -> Outlines {
         let known = self.texts.lock().unwrap_or_else(PoisonError::into_inner).get(text).cloned();
         if let Some(known) = known {

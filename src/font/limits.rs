@@ -1,6 +1,6 @@
-//! How much a text may become. What one glyph costs is limited in `work`.
+//! Limits on the size of a text. `work` limits the cost of one glyph.
 
-/// Most glyphs that a text may become: fonts can make many of one letter.
+/// The limit on glyphs of a text: a font can turn one letter into many.
 pub const MAX_GLYPHS: usize = 1_024;
-/// Most arcs that the outlines of a text may take.
+/// The limit on arcs of a text's outlines.
 pub const MAX_TEXT_ARCS: usize = 32_768;

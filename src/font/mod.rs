@@ -1,12 +1,12 @@
-//! Letters as outlines made of arcs, from the fonts that come with the program (those of the editor) or from a file.
+//! Letters as outlines made of arcs, from the built-in fonts (those of the editor) or from a file.
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
-//! | `face` | a font: which glyphs it has, and their outlines |
-//! | `work` | counts what a glyph costs before it is drawn |
-//! | `shaping` | from letters to glyphs at places: direction, joining, kerning, other fonts for what one lacks |
-//! | `bend` | curves of fonts as arcs |
-//! | `limits` | how much a text may become |
+//! | `face` | a font: its glyphs and their outlines |
+//! | `work` | counts the cost of a glyph before drawing |
+//! | `shaping` | from letters to placed glyphs: direction, joining, kerning, fallback fonts |
+//! | `bend` | conversion of font curves to arcs |
+//! | `limits` | limits on the size of a text |
 
 mod bend;
 mod face;
@@ -25,26 +25,26 @@ pub use bend::TOLERANCE;
 pub use face::{Face, Outlines};
 pub use limits::{MAX_GLYPHS, MAX_TEXT_ARCS};
 
-/// From line to line, in heights of the font.
+/// The distance between lines, in em.
 const LINE: f64 = 1.2;
-/// Half the height of a capital letter: what lies half-way between base line and top, in heights of the font.
+/// Half the height of a capital letter, in em: the vertical middle of a line.
 const MIDDLE: f64 = 0.347;
-/// Ends of outlines that are nearer to each other than this are one, in heights of the font: less than a hundredth of
-/// the finest grid that fonts are drawn on.
+/// Ends of outlines that are nearer to each other than this are unified, in em: less than a hundredth of the finest
+/// grid of fonts.
 const SNAP: f64 = 1e-6;
 
-/// The fonts that come with the program. The second one knows more letters.
+/// The built-in fonts. The second one has more letters.
 static FONTS: LazyLock<[Face; 2]> = LazyLock::new(|| {
     [epaint_default_fonts::UBUNTU_LIGHT, epaint_default_fonts::HACK_REGULAR]
         .map(|bytes| Face::built_in(bytes).expect("a font that comes with a library is whole"))
 });
 
-/// The outlines of a text in the XY plane, for a font of height 1, its middle at the origin; lines are centered. Closed
-/// curves around what is solid that do not cross each other; empty for a text without ink. Letters that the font does not
-/// have are those of the fonts that come with the program. Made once for each text.
+/// The outlines of a text in the XY plane, for a font of height 1, with its middle at the origin; lines are centered.
+/// Closed curves around the solid that do not cross each other; empty for a text without ink. The built-in fonts
+/// supply letters that the font lacks. Each text is computed once.
 pub fn text_curve(text: &str, face: Option<&Face>) -> Outlines {
     let make = || {
-        // Readers of foreign files have bugs; one in them is a broken font to us.
+        // Parsers of foreign files have bugs: a panic counts as a broken font.
         let made = catch_unwind(AssertUnwindSafe(|| outlines(text, face)));
         made.unwrap_or_else(|_| Err("drawing it failed".to_owned()))
     };
@@ -53,7 +53,7 @@ pub fn text_curve(text: &str, face: Option<&Face>) -> Outlines {
 
 fn outlines(text: &str, face: Option<&Face>) -> Outlines {
     let faces: Vec<&Face> = face.into_iter().chain(&*FONTS).collect();
-    // The separators of lines and paragraphs are no control characters and may stand in a text.
+    // Line and paragraph separators are not control characters and may occur in a text.
     let lines: Vec<&str> = text.split(['\n', '\u{2028}', '\u{2029}']).collect();
     let top = 0.5 * LINE * (lines.len() - 1) as f64 - MIDDLE;
     let mut count = 0;
@@ -104,7 +104,7 @@ mod tests {
             assert!(arc.middle.x.abs() < 2.0 && arc.middle.y.abs() < 1.5 && arc.middle.z == 0.0);
         }
         assert!(curve(" \n", None).is_empty() && curve("", None).is_empty());
-        // Once made they are kept.
+        // The cache keeps the outlines.
         assert!(Arc::ptr_eq(&arcs, &curve("Isolith\n&ä", None)));
     }
 
@@ -112,13 +112,13 @@ mod tests {
     fn a_font_of_ones_own_draws_its_letters_and_leaves_others_to_the_programs_fonts() {
         let face = Face::new(epaint_default_fonts::HACK_REGULAR.to_vec()).unwrap();
         assert!(Face::new(vec![0; 100]).is_err());
-        // Hack's letters are all as wide, those of the first font are not.
+        // Hack's letters all have the same width, those of the first font do not.
         let width = |text: &str, face: Option<&Face>| {
             let arcs = curve(text, face);
             arcs.iter().map(|arc| arc.middle.x).fold(f64::MIN, f64::max)
         };
         assert!((width("lil", Some(&face)) - width("lil", None)).abs() > 0.1);
-        // No font has this letter, so all draw the same box for it.
+        // No font has this letter, so all draw the same box.
         assert!(width("\u{e000}", None) > 0.1);
         assert_eq!(width("\u{e000}", Some(&face)), width("\u{e000}", None));
     }
@@ -128,7 +128,7 @@ mod tests {
         for unseen in ['\u{200d}', '\u{fe0f}', '\u{200b}', '\u{200e}', '\u{ad}', '\u{2060}', '\u{feff}', '\u{e0041}'] {
             assert_eq!(curve(&format!("A{unseen}B"), None), curve("AB", None), "U+{:04X}", u32::from(unseen));
         }
-        // A line separator is one.
+        // U+2028 separates lines.
         assert_eq!(curve("A\u{2028}B", None), curve("A\nB", None));
     }
 }

@@ -1,5 +1,5 @@
-//! From letters to glyphs at places. Runs of one direction and script are shaped by HarfBuzz's algorithm, which composes,
-//! joins, replaces, reorders and kerns letters as the font says; what a font does not have is shaped with the next one.
+//! From letters to placed glyphs. HarfBuzz's algorithm shapes runs of one direction and script: it composes, joins,
+//! replaces, reorders and kerns letters as the font defines. The next font shapes the letters that a font lacks.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -10,30 +10,30 @@ use unicode_bidi::BidiInfo;
 
 use super::face::Face;
 
-/// A glyph at its place.
+/// A placed glyph.
 #[derive(Clone, Copy, Debug)]
 pub struct Placed {
-    /// Which font it is of.
+    /// The index of its font.
     pub face: usize,
-    /// Its number in the font.
+    /// Its index in the font.
     pub glyph: GlyphId,
-    /// Where its origin is, in heights of the font from the start of the line on the base line.
+    /// The position of its origin, in em from the start of the line on the base line.
     pub at: [f64; 2],
-    /// Where in the line the letters begin that it stands for.
+    /// The position in the line of the first letter that it represents.
     pub letter: usize,
 }
 
 /// A line of glyphs.
 #[derive(Debug, Default)]
 pub struct Line {
-    /// From left to right, as far as they do not overlap.
+    /// From left to right, unless they overlap.
     pub glyphs: Vec<Placed>,
-    /// How wide it is, in heights of the font.
+    /// The width, in em.
     pub width: f64,
 }
 
-/// The glyphs of a line of text. `faces` are tried in this order; a letter that none of them has is the last but one's box
-/// for unknown letters.
+/// The glyphs of a line of text. `faces` are tried in order; a letter that none of them has appears as the box for
+/// unknown letters of the last font but one.
 pub fn line(text: &str, faces: &[&Face]) -> Line {
     let bidi = BidiInfo::new(text, None);
     let mut shaping = Shaping { text, faces, line: Line::default() };
@@ -53,7 +53,7 @@ pub fn line(text: &str, faces: &[&Face]) -> Line {
     shaping.line
 }
 
-/// The script of a letter; `None` for what is used with any.
+/// The script of a letter; `None` for letters common to all scripts.
 fn script_of(letter: char) -> Option<Script> {
     let mut buffer = UnicodeBuffer::new();
     buffer.add(letter, 0);
@@ -61,7 +61,8 @@ fn script_of(letter: char) -> Option<Script> {
     Some(buffer.script()).filter(|found| *found != script::UNKNOWN)
 }
 
-/// The parts of a run, each of one script. What is used with any belongs to what precedes it, at the start to what follows.
+/// The parts of a run, each of one script. Common letters belong to the part before them, at the start of the run to
+/// the part after them.
 fn scripts(text: &str, run: Range<usize>) -> Vec<(Range<usize>, Option<Script>)> {
     let mut parts: Vec<(Range<usize>, Option<Script>)> = Vec::new();
     for (i, letter) in text[run.clone()].char_indices() {
@@ -85,7 +86,8 @@ struct Shaping<'a> {
 }
 
 impl Shaping<'_> {
-    /// Adds the glyphs of a part of one direction and script. Letters that the font `first` lacks come from those behind it.
+    /// Adds the glyphs of a part of one direction and script. Letters that the font `first` lacks come from the fonts
+    /// after it.
     fn shape(&mut self, range: Range<usize>, is_rtl: bool, script: Option<Script>, first: usize) {
         let face = self.faces[first];
         let shaped = face.with_shaper(|shaper| {
@@ -94,7 +96,8 @@ impl Shaping<'_> {
         });
         let (infos, places) = (shaped.glyph_infos(), shaped.glyph_positions());
         let is_last = first + 1 == self.faces.len();
-        // Letters belong together that the font draws with the same glyphs: where one is missing, all come from the next.
+        // Letters that the font draws with the same glyphs belong together: if one is missing, all come from the next
+        // font.
         let mut starts: Vec<usize> = infos.iter().map(|info| info.cluster as usize).collect();
         starts.sort_unstable();
         starts.dedup();
@@ -131,7 +134,7 @@ impl Shaping<'_> {
         for (i, letter) in self.text[range.clone()].char_indices() {
             buffer.add(letter, (range.start + i) as u32);
         }
-        // Letters join with those around the part, too.
+        // The letters around the part affect joining, too.
         buffer.set_pre_context(&self.text[..range.start]);
         buffer.set_post_context(&self.text[range.end..]);
         buffer.set_direction(if is_rtl { Direction::RightToLeft } else { Direction::LeftToRight });
@@ -145,7 +148,7 @@ impl Shaping<'_> {
         buffer
     }
 
-    /// A box for a letter that no font has; the same one whatever font is asked first.
+    /// A box for a letter that no font has; the same box whatever the first font is.
     fn unknown(&mut self, letter: usize) {
         let face = self.faces.len().saturating_sub(2);
         self.line.glyphs.push(Placed { face, glyph: GlyphId::NOTDEF, at: [self.line.width, 0.0], letter });

@@ -1,5 +1,5 @@
-//! What fonts cost, counted before they are drawn. A file of a few hundred bytes can describe a letter of a billion points:
-//! parts are made of parts, programs call programs, and tables share what they refer to.
+//! Counts the cost of fonts before drawing. A file of a few hundred bytes can describe a letter of a billion points:
+//! glyphs consist of other glyphs, programs call programs, and tables share what they refer to.
 
 use std::cell::Cell;
 use std::collections::HashMap;
@@ -14,24 +14,24 @@ use skrifa::raw::types::Fixed;
 use skrifa::raw::{FontRef, TableProvider};
 use skrifa::{GlyphId, Tag};
 
-/// Most points and parts of a TrueType glyph, each part counted with all that it is made of.
+/// The limit on points and parts of a TrueType glyph, each part counted with all of its own parts.
 pub const MAX_GLYPH_POINTS: usize = 32_768;
-/// Deepest nesting of parts in a TrueType glyph.
+/// The limit on the nesting of parts in a TrueType glyph.
 const MAX_PARTS_DEPTH: usize = 16;
-/// Most bytes of the programs that draw a PostScript glyph, each call counted.
+/// The limit on bytes of the programs that draw a PostScript glyph, each call counted.
 pub const MAX_GLYPH_PROGRAM: usize = 1 << 18;
-/// Most entries of the tables that say how letters are joined and kerned, those that are shared counted each time. Of 570
-/// fonts of Debian the largest has 150 620.
+/// The limit on entries of the tables that define joining and kerning of letters, with shared entries counted each
+/// time. Of 570 fonts of Debian the largest has 150 620.
 pub const MAX_LAYOUT_ENTRIES: usize = 1_000_000;
 
-/// Whether a TrueType glyph is small enough to be drawn; or why not.
+/// Checks that a TrueType glyph is small enough to be drawn; the error is the reason.
 pub fn of_parts(font: &FontRef<'_>, glyph: GlyphId) -> Result<(), String> {
     Parts { font, known: HashMap::new(), steps: 0 }.points(glyph, 0).map(drop)
 }
 
 struct Parts<'a, 'f> {
     font: &'a FontRef<'f>,
-    /// The points of glyphs that were counted; nothing while one is being counted.
+    /// The point counts of known glyphs; `None` while the count is in progress.
     known: HashMap<GlyphId, Option<usize>>,
     steps: usize,
 }
@@ -75,8 +75,8 @@ impl Parts<'_, '_> {
     }
 }
 
-/// Whether the programs of a PostScript glyph are short enough to be run; or why not. What is damaged is for those who
-/// draw it.
+/// Checks that the programs of a PostScript glyph are short enough to be run; the error is the reason. Damaged
+/// programs are left to the code that draws them.
 pub fn of_programs(cff: &CffFontRef<'_>, glyph: GlyphId) -> Result<(), String> {
     let counted = || -> Result<usize, Error> {
         let subfont = cff.subfont(cff.subfont_index(glyph).unwrap_or(0), &[])?;
@@ -91,7 +91,7 @@ pub fn of_programs(cff: &CffFontRef<'_>, glyph: GlyphId) -> Result<(), String> {
         let font = (cff.data(), cff.charstrings(), cff.global_subrs(), &subrs);
         let programs = Programs { font, spent: &spent };
         if program.len() <= MAX_GLYPH_PROGRAM {
-            // An error is the end of the budget, or of the program.
+            // An error means the end of the budget, or of the program.
             let _ = evaluate(&programs, blend, program, &mut Nothing);
         }
         Ok(spent.get())
@@ -105,7 +105,7 @@ pub fn of_programs(cff: &CffFontRef<'_>, glyph: GlyphId) -> Result<(), String> {
     }
 }
 
-/// Hands out programs as long as there is something left to spend.
+/// Hands out programs until the budget is spent.
 struct Programs<'a> {
     /// The file, its glyphs, its global and its local subroutines.
     font: (&'a [u8], &'a Index<'a>, &'a Index<'a>, &'a Index<'a>),
@@ -114,7 +114,7 @@ struct Programs<'a> {
 
 impl Programs<'_> {
     fn paid<'p>(&self, program: &'p [u8]) -> Result<&'p [u8], Error> {
-        // A call costs something however short it is.
+        // Every call costs at least one, however short it is.
         self.spent.set(self.spent.get() + program.len() + 1);
         if self.spent.get() > MAX_GLYPH_PROGRAM { Err(Error::CharstringNestingDepthLimitExceeded) } else { Ok(program) }
     }
@@ -148,7 +148,7 @@ impl CommandSink for Nothing {
     fn close(&mut self) {}
 }
 
-/// The numbers of the kinds of lookups that hold sets of rules, and of the one that leads to another.
+/// The type numbers of lookups that hold sets of rules, and of the extension lookup.
 struct Kinds {
     ligature: Option<usize>,
     context: usize,
@@ -159,8 +159,9 @@ struct Kinds {
 const SUBSTITUTIONS: Kinds = Kinds { ligature: Some(4), context: 5, chain: 6, extension: 7 };
 const POSITIONS: Kinds = Kinds { ligature: None, context: 7, chain: 8, extension: 9 };
 
-/// Whether the tables that say how letters are joined, replaced and kerned are small enough to be walked; or why not.
-/// Lookups, their parts and the lists of these are found by offsets, which may all lead to the same place.
+/// Checks that the tables that define joining, replacement and kerning of letters are small enough to traverse; the
+/// error is the reason. Offsets lead to lookups, their parts and the lists of these, and all may lead to the same
+/// place.
 pub fn of_layout(font: &FontRef<'_>) -> Result<(), String> {
     for (tag, kinds) in [(b"GSUB", &SUBSTITUTIONS), (b"GPOS", &POSITIONS)] {
         let Some(data) = font.data_for_tag(Tag::new(tag)) else { continue };
@@ -175,7 +176,7 @@ pub fn of_layout(font: &FontRef<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// A table of layout; numbers beyond its end are 0.
+/// A layout table; values beyond its end are 0.
 struct Table<'a>(&'a [u8]);
 
 impl Table<'_> {
@@ -183,7 +184,7 @@ impl Table<'_> {
         self.0.get(at..at + 2).map_or(0, |bytes| usize::from(u16::from_be_bytes([bytes[0], bytes[1]])))
     }
 
-    /// How many entries there are; `None` as soon as they are too many.
+    /// The number of entries; `None` as soon as they are too many.
     fn entries(&self, kinds: &Kinds) -> Option<usize> {
         let mut sum = 0;
         let list = self.number(8);
@@ -206,16 +207,16 @@ impl Table<'_> {
         Some(sum)
     }
 
-    /// The entries of a part of a lookup: those of its coverage, and of its sets of rules where it has any.
+    /// The entries of a part of a lookup: those of its coverage, and of its sets of rules if it has any.
     fn part(&self, at: usize, kind: usize, kinds: &Kinds) -> usize {
         let format = self.number(at);
         let (is_context, is_chain) = (kind == kinds.context, kind == kinds.chain);
         if format == 3 && (is_context || is_chain) {
-            // A coverage for each letter of the one rule.
+            // The only rule has a coverage for each letter.
             return self.number(at + 2);
         }
         let mut sum = self.number(at + self.number(at + 2) + 2);
-        // Sets of rules stand behind the coverage, and behind the classes of letters where rules are written with these.
+        // Sets of rules follow the coverage, and the classes of letters if the rules use these.
         let sets = match format {
             1 if is_context || is_chain || Some(kind) == kinds.ligature => at + 4,
             2 if is_context => at + 6,
@@ -236,8 +237,8 @@ mod tests {
 
     #[test]
     fn layout_tables_are_counted_as_often_as_they_are_used() {
-        // A list of `lookups` lookups that are all the same one, with `parts` parts that are all the same one, which covers
-        // `covered` glyphs.
+        // A list of `lookups` references to the same lookup, which has `parts` references to the same part, which
+        // covers `covered` glyphs.
         let table = |lookups: u16, parts: u16, covered: u16| {
             let mut words: Vec<u16> = vec![1, 0, 0, 0, 10, lookups];
             words.extend(vec![2 + 2 * lookups; usize::from(lookups)]);
@@ -252,7 +253,7 @@ mod tests {
         assert_eq!(entries(table(10_000, 10_000, 1)), None);
         assert_eq!(entries(table(100, 1_000, 60_000)), None);
         assert_eq!(entries(Vec::new()), Some(0));
-        // A chain of classes: what stands before its sets of rules are places of tables, however large they are.
+        // A chain of classes: the values before its sets of rules are offsets of tables, however large they are.
         let chain: Vec<u16> = vec![1, 0, 0, 0, 10, 1, 4, 6, 0, 1, 8, 2, 16, 60_000, 60_000, 60_000, 2, 0, 20, 1, 1, 7];
         let mut bytes: Vec<u8> = chain.iter().flat_map(|word| word.to_be_bytes()).collect();
         bytes.extend([0, 9]);

@@ -1,4 +1,4 @@
-//! A chess pawn, turned on a lathe of blends: the scene that every renderer of fields begins with.
+//! A chess pawn, turned on a lathe of blends: the usual first scene of SDF renderers.
 
 use glam::DVec3;
 
@@ -26,7 +26,7 @@ pub(super) fn scene() -> Scene {
     builder.finish()
 }
 
-/// Nine squares in a frame; the tops are at height 0.
+/// Nine squares in a frame, with their tops at height 0.
 fn board(builder: &mut SceneBuilder, [light, dark, frame]: [MaterialId; 3]) {
     let board = builder.add(None, group("Board", Operator::Union));
     let squares = builder.add(board, group("Squares", Operator::Union));
@@ -44,7 +44,7 @@ fn board(builder: &mut SceneBuilder, [light, dark, frame]: [MaterialId; 3]) {
     builder.add(rim, object("Inside", cuboid(3.02, 1.0, 3.02, 0.0), frame));
 }
 
-/// A pawn that stands at `at`, 1.2 m high.
+/// A pawn at `at`, 1.2 m high.
 pub(super) fn pawn(
     builder: &mut SceneBuilder,
     parent: Option<NodeId>,

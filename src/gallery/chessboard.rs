@@ -1,4 +1,4 @@
-//! A chess board: two pawns and four squares, repeated.
+//! A chessboard: two pawns and four squares, repeated.
 
 use super::chess_pawn;
 use super::scene_builder::{SceneBuilder, cuboid, group, object, v};
@@ -21,7 +21,7 @@ pub(super) fn scene() -> Scene {
         object("Frame", cuboid(2.0 * half + 0.8, 0.3, 2.0 * half + 0.8, 0.08), frame).at(v(0.0, -0.26, 0.0)),
     );
     for (name, material, odd) in [("Light", light, 0.0), ("Dark", dark, 1.0)] {
-        // Every other square of a row; each row is shifted by one against the row before.
+        // Every other square of a row; each row is offset by one square from the row before.
         for row in 0..2 {
             let shift = (f64::from(row) + odd) % 2.0;
             let node = object(name, cuboid(SQUARE - 0.02, 0.2, SQUARE - 0.02, 0.02), material);

@@ -1,4 +1,4 @@
-//! Crowds for measuring: many leaves joined by one operator, blended or not.
+//! Crowds for measurements: many leaves joined by one operator, with or without a blend.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::random_groups::{SplitMix, overview};
 use super::scene_builder::{SceneBuilder, blended, cuboid, group, object, sphere, torus};
 use isolith_scene::{BlendKernel, Operator, Scene};
 
-/// `leaves` spheres, rounded boxes and tori in a box that grows with them, in one union: blended, or hard.
+/// `leaves` spheres, rounded boxes and tori in one union, in a box that grows with their number: blended, or hard.
 pub fn crowd(leaves: usize, is_blended: bool, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
     let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
@@ -49,7 +49,7 @@ pub fn boxes(boxes: usize, seed: u64) -> Scene {
     builder.finish()
 }
 
-/// 1 001 spheres that touch their neighbors on a lattice, in a blended union; in a random order, as an artist
+/// 1 001 spheres that touch their neighbors on a lattice, in a blended union. Their order is random, since an artist
 /// would hardly place them row by row.
 pub fn spheres(seed: u64) -> Scene {
     let mut random = SplitMix(seed);

@@ -1,16 +1,16 @@
-//! A shell that grows by nesting: each group holds a rib and the next group, turned and scaled, 80 deep.
+//! A shell built by nesting: each group holds a rib and the next group, turned and scaled, 80 deep.
 //!
-//! The inner group is the first child everywhere. An evaluator then never has to put a value aside,
-//! and depth costs nothing but numbers.
+//! The inner group is the first child everywhere. Evaluators then never need a stack entry, and depth costs nothing but
+//! parameters.
 
 use super::scene_builder::{SceneBuilder, blended, cylinder, group, object, sphere, torus, turn_y, turn_z, v};
 use isolith_scene::{BlendKernel, Operator, Scene};
 
-/// How many groups stand in one another.
+/// Number of nested groups.
 pub const DEPTH: i32 = 80;
-/// Turn from one rib to the next, in degrees.
+/// Rotation from one rib to the next, in degrees.
 const TURN: f64 = 15.0;
-/// Size of a rib in terms of the one before.
+/// Size of a rib relative to the one before.
 const SHRINK: f64 = 0.9655;
 
 pub(super) fn scene() -> Scene {
@@ -33,7 +33,7 @@ pub(super) fn scene() -> Scene {
     let mut parent = shell;
     for level in 0..DEPTH {
         let size = SHRINK.powi(level);
-        // Blend radii are in world units, so they shrink by hand.
+        // Blend radii are in world units, so they are scaled explicitly.
         let level_group = blended(&format!("Level {}", level + 1), Operator::Union, BlendKernel::Circular, 0.11 * size);
         let placed = if level == 0 {
             level_group
@@ -43,7 +43,7 @@ pub(super) fn scene() -> Scene {
         parent = builder.add(parent, placed);
         levels.push(parent);
     }
-    // Only now, so that the inner group comes first among the children of each.
+    // Added last, so that the inner group comes first among the children of each.
     for (level, id) in levels.into_iter().enumerate() {
         let tint = tints[(level * tints.len()) / DEPTH as usize];
         let rib = if level % 2 == 0 { 1.0 } else { 0.9 };

@@ -1,4 +1,4 @@
-//! What is drawn point by point: a knot of a tube, a turned vase, a star, a word, hills and the sea.
+//! Shapes drawn point by point: a knot of a tube, a turned vase, a star, a word, hills and the sea.
 
 use std::f64::consts::TAU;
 
@@ -55,7 +55,7 @@ pub(super) fn scene() -> Scene {
     builder.finish()
 }
 
-/// A trefoil knot whose tube swells three times on its way.
+/// A trefoil knot whose tube swells three times along its length.
 fn knot() -> Shape {
     let point = |i: i32| {
         let t = TAU * f64::from(i) / f64::from(KNOT_POINTS);

@@ -1,4 +1,4 @@
-//! Suzanne, a glTF mesh, dressed in fields: hat, spectacles and scarf run right through the triangles.
+//! Suzanne, a glTF mesh, dressed in fields: hat, spectacles and scarf intersect the triangles.
 
 use super::scene_builder::{
     SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, mesh, object, sphere, torus, turn_x,

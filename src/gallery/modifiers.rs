@@ -9,7 +9,7 @@ use isolith_scene::{
 
 /// Stands in a row.
 const COLUMNS: usize = 4;
-/// From one stand to the next.
+/// Distance between stands, in meters.
 const SPACING: f64 = 1.9;
 
 pub(super) fn scene() -> Scene {
@@ -114,7 +114,7 @@ fn grid() -> Modifier {
     }
 }
 
-/// Two smaller copies at the end of each.
+/// A branching recursion: two smaller copies at the end of each branch.
 fn branches() -> Modifier {
     Modifier::Recursion {
         count: 6,
@@ -128,10 +128,10 @@ fn branches() -> Modifier {
 /// Width and height of a quarter of a brick with its mortar, in pixels.
 const QUARTER: [u32; 2] = [16, 6];
 
-/// The lower right quarter of a brick over the upper left one of another: mirrored tiles of it are a wall.
+/// The lower right quarter of a brick over the upper left one of another: its mirrored tiles form a wall.
 fn bricks(x: u32, y: u32) -> u8 {
     let [width, height] = QUARTER;
     let from_joints = if y < height { [width - 1 - x, height - 1 - y] } else { [x, y - height] };
-    // Up to where the top is flat.
+    // The slope of a brick up to its flat top.
     from_joints.map(|pixels| pixels.min(4)).iter().product::<u32>() as u8 * 15
 }

@@ -7,9 +7,9 @@
 use super::scene_builder::{SceneBuilder, capsule, cuboid, cylinder, object, sphere, turn_x, turn_z, v};
 use isolith_scene::{Blend, BlendKernel, Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
 
-/// One radius for all.
+/// The blend radius of all cells.
 const RADIUS: f64 = 0.26;
-/// From cell to cell, in meters.
+/// Distance between cells, in meters.
 const PITCH: f64 = 1.35;
 
 pub(super) fn scene() -> Scene {
@@ -49,7 +49,7 @@ pub(super) fn scene() -> Scene {
     builder.finish()
 }
 
-/// A group at its place in the sheet.
+/// A group at its cell of the sheet.
 fn cell(builder: &mut SceneBuilder, name: &str, group: Group, column: usize, row: usize) -> NodeId {
     let at = v((column as f64 - 3.0) * PITCH, 0.23, (row as f64 - 2.0) * PITCH);
     builder.add(None, Node::new(name, NodeKind::Group(group)).at(at))

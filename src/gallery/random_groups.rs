@@ -1,18 +1,17 @@
-//! Random scenes for measuring: groups of eight blended leaves, scattered in a box.
+//! Random scenes for measurements: groups of eight blended leaves, scattered in a box.
 
 use glam::{DQuat, DVec3};
 
 use super::scene_builder::{SceneBuilder, blended, cuboid, group, object, sphere, torus};
 use isolith_scene::{BlendKernel, Operator, Scene};
 
-/// Leaves of one group.
+/// Leaves per group.
 const GROUP_LEAVES: usize = 8;
-/// Distance between the places of neighboring groups, in meters.
+/// Distance between the positions of neighboring groups, in meters.
 const SPACING: f64 = 1.5;
 
-/// A scene of `leaves / 8` groups, each of eight shapes (sphere, rounded box, torus) in a blended
-/// union; with the group that holds all, 9/8 leaves + 1 nodes. The same for the same numbers, on every
-/// machine.
+/// A scene of `leaves / 8` groups, each of eight shapes (sphere, rounded box, torus) in a blended union; with the group
+/// around all, 9/8 leaves + 1 nodes. The same arguments give the same scene on every machine.
 pub fn random(leaves: usize, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
     let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
@@ -60,7 +59,7 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
     builder.finish()
 }
 
-/// How many places along each axis: as even as powers of two allow, widest along X.
+/// Number of positions along each axis: as even as powers of two allow, widest along X.
 fn cells(groups: usize) -> [usize; 3] {
     let mut cells = [1, 1, 1];
     for axis in [0, 1, 0, 2, 1, 2].into_iter().cycle() {
@@ -103,7 +102,7 @@ impl SplitMix {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Uniform between the two, with three decimals: a file is for reading too.
+    /// Uniform between the two, rounded to three decimals, so that the file stays readable.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         ((low + (high - low) * self.unit()) * 1e3).round() / 1e3
     }
@@ -112,7 +111,7 @@ impl SplitMix {
         ((self.unit() * count as f64) as usize).min(count - 1)
     }
 
-    /// A rotation, every orientation equally likely: a direction of four numbers out of the unit ball.
+    /// A rotation with every orientation equally likely: a random direction of four numbers from the unit ball.
     pub(super) fn rotation(&mut self) -> DQuat {
         loop {
             let q = [0; 4].map(|_| self.between(-1.0, 1.0));

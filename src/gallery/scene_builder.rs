@@ -1,4 +1,4 @@
-//! The vocabulary in which the example scenes are written.
+//! The builder of the example scenes.
 
 use glam::{DQuat, DVec3};
 
@@ -8,16 +8,16 @@ use isolith_scene::{
     Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape,
 };
 
-/// A scene in the making.
+/// A scene under construction.
 ///
-/// Every number that comes out of a sine or a square root is rounded to nine decimals on the way in:
-/// libraries differ in the last bits, and the files must not.
+/// It rounds every result of a sine or a square root to nine decimals: math libraries differ in the last bits, and the
+/// files must not.
 pub(super) struct SceneBuilder {
     scene: Scene,
 }
 
 impl SceneBuilder {
-    /// Nothing but sky.
+    /// An empty scene with this environment.
     pub fn new(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
         let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment { sky, horizon, ambient }, 1)
             .expect("an empty scene is within every limit");
@@ -34,12 +34,12 @@ impl SceneBuilder {
         self.material(Material { specular, shininess, ..Material::new(MaterialId(0), name, albedo) })
     }
 
-    /// A material that shines by itself.
+    /// A material with emission.
     pub fn glowing(&mut self, name: &str, albedo: [f64; 3], emission: [f64; 3]) -> MaterialId {
         self.material(Material { specular: 0.0, emission, ..Material::new(MaterialId(0), name, albedo) })
     }
 
-    /// A material with a highlight that also shines by itself.
+    /// A material with a highlight and emission.
     pub fn glass(
         &mut self,
         name: &str,
@@ -56,20 +56,20 @@ impl SceneBuilder {
         id
     }
 
-    /// Adds a node behind the others of its parent.
+    /// Adds a node behind the other children of its parent.
     pub fn add(&mut self, parent: impl Into<Option<NodeId>>, node: Node) -> NodeId {
         let inserted = self.scene.insert(parent.into(), usize::MAX, settled(node));
         inserted.expect("example scenes are within every limit")
     }
 
-    /// Parallel light that comes from the direction `from`.
+    /// Parallel light from the direction `from`.
     pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], intensity: f64) {
         let rotation = Camera::looking_at(DVec3::from(from), DVec3::ZERO, 1.0).rotation;
         let light = Light { color, intensity, light: LightKind::Sun {} };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(from)).rotated(rotation));
     }
 
-    /// A lamp that shines everywhere.
+    /// A point light.
     pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], intensity: f64, attenuation: Attenuation) {
         let light = Light { color, intensity, light: LightKind::Point { attenuation } };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)));
@@ -90,7 +90,7 @@ impl SceneBuilder {
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)).rotated(rotation));
     }
 
-    /// The camera.
+    /// Adds the camera.
     pub fn camera(&mut self, position: [f64; 3], target: [f64; 3], fov_y: f64) {
         let camera = CameraNode { fov_y, near: 0.01, far: 1000.0 };
         let (position, target) = (DVec3::from(position), DVec3::from(target));
@@ -98,18 +98,18 @@ impl SceneBuilder {
         self.add(None, Node::new("Camera", NodeKind::Camera(camera)).at(position).rotated(rotation));
     }
 
-    /// The scene.
+    /// The finished scene.
     pub fn finish(self) -> Scene {
         self.scene
     }
 }
 
-/// A group whose children are joined hard.
+/// A group with a hard operator.
 pub(super) fn group(name: &str, operator: Operator) -> Node {
     Node::new(name, NodeKind::Group(Group::new(operator, Blend::HARD)))
 }
 
-/// A group whose children are blended.
+/// A group with a blend.
 pub(super) fn blended(name: &str, operator: Operator, kernel: BlendKernel, radius: f64) -> Node {
     Node::new(name, NodeKind::Group(Group::new(operator, Blend::new(kernel, radius))))
 }
@@ -119,7 +119,7 @@ pub(super) fn object(name: &str, shape: Shape, material: MaterialId) -> Node {
     Node::new(name, NodeKind::Object(Object { shape, material }))
 }
 
-/// A glTF file.
+/// A mesh from a glTF file.
 pub(super) fn mesh(name: &str, path: &str) -> Node {
     Node::new(name, NodeKind::Mesh(MeshNode { path: path.into(), material: None }))
 }

@@ -1,4 +1,4 @@
-//! The golden sheet: every shape there is, on a tile of its own. A new shape gets one by itself.
+//! The golden sheet: every shape, each on its own tile. New shapes appear automatically.
 
 use glam::{DQuat, DVec3};
 
@@ -6,9 +6,9 @@ use super::scene_builder::{SceneBuilder, cuboid, group, object, turn_x, turn_y, 
 use isolith_geometry::Aabb;
 use isolith_scene::{Operator, Scene, ShapeKind};
 
-/// Tiles in a row.
+/// Tiles per row.
 const COLUMNS: usize = 7;
-/// From tile to tile, in meters.
+/// Distance between tiles, in meters.
 const SPACING: f64 = 1.7;
 /// Half the largest side of every shape, in meters.
 const HALF: f64 = 0.6;
@@ -41,8 +41,8 @@ pub(super) fn scene() -> Scene {
     builder.finish()
 }
 
-/// The shape with its default parameters, as large as the others, standing on its tile; a text leans back to face the
-/// camera. Of one without end the part in a box is shown.
+/// The shape with its default parameters, scaled to the size of the others, standing on its tile; a text leans back to
+/// face the camera. An unbounded shape is intersected with a box.
 fn add_shape(builder: &mut SceneBuilder, kind: ShapeKind, color: isolith_scene::MaterialId, at: DVec3) {
     let shape = kind.default_shape();
     let bounds = shape.bounds();

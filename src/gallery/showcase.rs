@@ -1,4 +1,4 @@
-//! A rocket that leaves a small planet: what opens first. Every shape and operator earns its place.
+//! A rocket that leaves a small planet: the scene that opens first. Every shape and operator in it has a purpose.
 
 use glam::DVec3;
 
@@ -28,7 +28,7 @@ pub(super) fn scene() -> Scene {
     builder.finish()
 }
 
-/// A point on the planet's ground: `tilt` degrees from the top, toward `heading` degrees around it.
+/// A point above the planet's ground: `tilt` degrees from the top, in the direction `heading` degrees around it.
 fn on_planet(tilt: f64, heading: f64, height: f64) -> DVec3 {
     let (radians, around) = (tilt.to_radians(), heading.to_radians());
     let out = v(radians.sin() * around.sin(), radians.cos(), radians.sin() * around.cos());
@@ -128,7 +128,7 @@ fn rocket(builder: &mut SceneBuilder) {
     flame(builder, rocket);
 }
 
-/// A fin that sweeps out and down, as seen from `heading` degrees around the hull.
+/// A fin that sweeps outward and down, `heading` degrees around the hull.
 fn fin(builder: &mut SceneBuilder, body: NodeId, heading: f64, red: MaterialId) {
     let fin =
         builder.add(body, blended("Fin", Operator::Difference, BlendKernel::Circular, 0.03).rotated(turn_y(heading)));

@@ -1,14 +1,14 @@
-//! The example scenes as files, with the models that they show.
+//! Writes the example scenes as files, with the models that they show.
 
 use std::path::{Path, PathBuf};
 
 use isolith_scene::file::{self, FileError};
 use isolith_scene::{NodeKind, Scene};
 
-/// Every model that an example shows: its path beside the scene, and its bytes.
+/// Every model of the examples: its path beside the scene, and its bytes.
 const MODELS: &[(&str, &[u8])] = &[("models/suzanne.glb", include_bytes!("models/suzanne.glb"))];
 
-/// Writes every scene as `NAME.json` into `folder`, which must exist, and the models below it. Returns the scenes' files.
+/// Writes every scene as `NAME.json` into `folder`, which must exist, and the models below it. Returns the scene files.
 ///
 /// # Errors
 /// The first file that cannot be written.
@@ -23,7 +23,7 @@ pub fn write_all(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 pub fn install(name: &str, scene: &Scene, folder: &Path) -> Result<PathBuf, FileError> {
     for (model, bytes) in MODELS.iter().filter(|(model, _)| shows(scene, model)) {
         let path = folder.join(model);
-        // A file that is there already is not touched: it may be watched.
+        // An identical file stays untouched: it may be watched.
         if std::fs::read(&path).is_ok_and(|present| present == *bytes) {
             continue;
         }
@@ -35,7 +35,7 @@ pub fn install(name: &str, scene: &Scene, folder: &Path) -> Result<PathBuf, File
     file::save(scene, &path).map(|()| path)
 }
 
-/// Whether a mesh of the scene is read from this path beside it.
+/// Whether a mesh of the scene has this path.
 fn shows(scene: &Scene, model: &str) -> bool {
     scene.nodes().iter().any(|node| matches!(&node.kind, NodeKind::Mesh(mesh) if mesh.path == model))
 }

@@ -14,9 +14,9 @@ pub struct Aabb {
 }
 
 impl Aabb {
-    /// Holds no point; the neutral element of [`Aabb::union`].
+    /// The empty box; the neutral element of [`Aabb::union`].
     pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
-    /// Holds every point; the neutral element of [`Aabb::intersection`].
+    /// The unbounded box; the neutral element of [`Aabb::intersection`].
     pub const EVERYTHING: Self = Self { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
     /// The box between two opposite corners.
@@ -59,17 +59,17 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// What both hold; empty where they do not meet.
+    /// The largest box inside both; empty if they do not meet.
     pub fn intersection(&self, other: &Self) -> Self {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
 
-    /// Grown by `by` on every side. An empty box stays empty.
+    /// The box, expanded by `by` on every side. An empty box stays empty.
     pub fn expanded(&self, by: f64) -> Self {
         if self.is_empty() { *self } else { Self { min: self.min - by, max: self.max + by } }
     }
 
-    /// Moved by `by`.
+    /// The box, moved by `by`.
     pub fn translated(&self, by: DVec3) -> Self {
         Self { min: self.min + by, max: self.max + by }
     }
@@ -110,7 +110,7 @@ impl Aabb {
         out
     }
 
-    /// Where the ray is inside: the parameters of entry (not before 0) and exit, or `None`.
+    /// The parameters of the ray's entry (not before 0) and exit; `None` if it misses.
     pub fn ray_interval(&self, ray: &Ray) -> Option<(f64, f64)> {
         let (mut near, mut far) = (0.0_f64, f64::INFINITY);
         for axis in 0..3 {

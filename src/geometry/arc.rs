@@ -1,8 +1,8 @@
 //! Circular arcs in space, straight pieces among them, and smooth curves made of arcs.
 //!
-//! An arc is written from its middle in a way that stays exact while its radius grows without end: places on it
-//! are given by λ = tan(θ/2) / κ, where θ is the angle from the middle and κ the curvature; on a straight piece that
-//! is half the length.
+//! An arc is represented from its middle, in a form that stays exact while its radius grows without limit: λ =
+//! tan(θ/2) / κ gives a position on it, where θ is the angle from the middle and κ the curvature. On a straight piece
+//! 2λ is the length from the middle.
 
 use glam::DVec3;
 
@@ -15,27 +15,28 @@ pub struct ArcPiece {
     pub middle: DVec3,
     /// Unit direction in the middle.
     pub tangent: DVec3,
-    /// Toward the center, one over the radius long; zero where it is straight. At right angles to the tangent.
+    /// The vector toward the center with the length of one over the radius, perpendicular to the tangent; zero for a
+    /// straight piece.
     pub bend: DVec3,
-    /// λ at its end; at its start it is the negative of that.
+    /// λ at its end; the negative at its start.
     pub reach: f64,
 }
 
-/// An arc that leaves its chord by less than this share of the chord's length is taken for straight.
+/// An arc that leaves its chord by less than this fraction of the chord's length counts as straight.
 const STRAIGHT: f64 = 1e-9;
-/// An arc that turns by more than a full turn without this is refused, as cosine of half its turn plus one.
+/// The limit on the turn of an arc, just below a full turn, as cosine of half its turn plus one.
 const LEAST_OPENING: f64 = 1e-2;
 
 impl ArcPiece {
-    /// The straight piece between two points, which may be one and the same.
+    /// The straight piece between two points, which may coincide.
     pub fn straight(from: DVec3, to: DVec3) -> Self {
         let chord = to - from;
         let tangent = chord.try_normalize().unwrap_or(DVec3::X);
         Self { middle: from + 0.5 * chord, tangent, bend: DVec3::ZERO, reach: 0.25 * chord.length() }
     }
 
-    /// The arc from one point to another that leaves the first along the unit `direction`. Straight where it would be
-    /// all but a full circle.
+    /// The arc from one point to another that leaves the first along the unit `direction`. Straight if it would be
+    /// nearly a full circle.
     pub fn leaving(from: DVec3, direction: DVec3, to: DVec3) -> Self {
         let chord = to - from;
         let length = chord.length();
@@ -54,7 +55,7 @@ impl ArcPiece {
         }
     }
 
-    /// The same arc run through from its end.
+    /// The arc in the opposite direction.
     pub fn reversed(self) -> Self {
         Self { tangent: -self.tangent, ..self }
     }
@@ -65,12 +66,12 @@ impl ArcPiece {
         self.middle + (self.tangent + self.bend * lambda) * share
     }
 
-    /// Where it starts.
+    /// The start point.
     pub fn start(&self) -> DVec3 {
         self.at(-self.reach)
     }
 
-    /// Where it ends.
+    /// The end point.
     pub fn end(&self) -> DVec3 {
         self.at(self.reach)
     }
@@ -86,7 +87,7 @@ impl ArcPiece {
         2.0 * self.way(self.reach)
     }
 
-    /// The way along it from its middle to λ.
+    /// The length along it from its middle to λ.
     pub fn way(&self, lambda: f64) -> f64 {
         let slope = self.bend.length() * lambda;
         if slope.abs() < 1e-4 {
@@ -96,19 +97,19 @@ impl ArcPiece {
         2.0 * lambda * slope.atan() / slope
     }
 
-    /// The piece of it between two places.
+    /// The piece of it between two positions.
     pub fn between(&self, from: f64, to: f64) -> Self {
         Self::leaving(self.at(from), self.direction(from), self.at(to))
     }
 
-    /// Where within it the coordinate along an axis is greatest or least, apart from its ends; ascending.
+    /// The interior positions where the coordinate along an axis is greatest or least; ascending.
     pub fn turns(&self, axis: usize) -> Vec<f64> {
         let (t, n, square) = (self.tangent[axis], self.bend[axis], self.bend.length_squared());
         // t (1 - κ²λ²) + 2 n λ = 0
         self.within(roots(t * square, -n, -t))
     }
 
-    /// Where it crosses the plane at right angles to an axis at `value`; ascending.
+    /// The positions where it crosses the plane perpendicular to an axis at `value`; ascending.
     pub fn crossings(&self, axis: usize, value: f64) -> Vec<f64> {
         let (m, t, n) = (self.middle[axis] - value, self.tangent[axis], self.bend[axis]);
         self.within(roots(m * self.bend.length_squared() + 2.0 * n, t, m))
@@ -127,7 +128,7 @@ impl ArcPiece {
     }
 }
 
-/// The roots of a x² + 2 b x + c; those that are missing are infinite.
+/// The roots of a x² + 2 b x + c; missing roots are infinite.
 fn roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     let square = b * b - a * c;
     if square < 0.0 {
@@ -138,9 +139,9 @@ fn roots(a: f64, b: f64, c: f64) -> [f64; 2] {
     [over(q, a), over(c, q)]
 }
 
-/// A smooth curve through points: between two neighbors two arcs that meet with one direction (a biarc). At a point the
-/// curve has the direction from the point before it to the one after it (Catmull-Rom). One list of arcs for each pair of
-/// neighbors; coinciding points have one without length between them.
+/// A smooth curve through points: two arcs with a common tangent (a biarc) between two neighbors. At a point the
+/// curve has the direction from the point before it to the point after it (Catmull-Rom). One list of arcs for each
+/// pair of neighbors; coinciding points have an arc without length between them.
 pub fn smooth_curve(points: &[DVec3], closed: bool) -> Vec<Vec<ArcPiece>> {
     let count = points.len();
     let spans = if closed { count } else { count.saturating_sub(1) };
@@ -167,13 +168,13 @@ pub fn smooth_curve(points: &[DVec3], closed: bool) -> Vec<Vec<ArcPiece>> {
     (0..spans).map(span).collect()
 }
 
-/// A closed curve of straight pieces through points.
+/// A closed polygon through points.
 pub fn straight_curve(points: &[DVec3]) -> Vec<Vec<ArcPiece>> {
     (0..points.len()).map(|i| vec![ArcPiece::straight(points[i], points[(i + 1) % points.len()])]).collect()
 }
 
-/// Two arcs from point to point with these unit directions at the ends. The joint lies where both tangents are equally long
-/// (Bolton, "Biarc curves", 1975).
+/// Two arcs from point to point with these unit directions at the ends. They join where both tangents are equally
+/// long (Bolton, "Biarc curves", 1975).
 pub fn biarc(from: DVec3, leaving: DVec3, to: DVec3, arriving: DVec3) -> Vec<ArcPiece> {
     let chord = to - from;
     // 2 (1 - a·b) d² + 2 v·(a + b) d - v² = 0

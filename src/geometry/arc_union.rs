@@ -1,9 +1,9 @@
-//! The union of closed curves made of arcs: curves around what at least one of them winds around, which neither cross nor
-//! run inside of what is solid.
+//! The union of closed curves made of arcs: the curves around all points that at least one curve winds around. They
+//! neither cross nor run inside of the solid.
 //!
-//! Pieces are cut where they turn and where they meet, ends that nearly coincide become one, and pieces that coincide are
-//! counted together. Of each piece it is known then how often the curves wind around what lies on either side of it: it
-//! bounds the union where only one of the two is nothing. What remains is joined to closed curves again.
+//! The algorithm cuts pieces where they turn and where they meet, unifies ends that nearly coincide, and counts
+//! coinciding pieces together. It then determines the winding numbers on both sides of each piece: the piece bounds
+//! the union if exactly one of the two is zero. The remaining pieces are joined to closed curves again.
 
 use std::collections::HashMap;
 
@@ -11,25 +11,26 @@ use glam::DVec3;
 
 use super::{Aabb, ArcPiece};
 
-/// Most pairs of pieces with overlapping boxes that are looked at.
+/// The limit on pairs of pieces with overlapping boxes.
 const MAX_PAIRS: usize = 4_000_000;
-/// Most places where pieces are cut.
+/// The limit on cuts.
 const MAX_CUTS: usize = 200_000;
-/// Bands that are asked for what a ray meets.
+/// The limit on bands, which find the edges that a ray crosses.
 const MAX_BANDS: usize = 1_024;
-/// An arc that leaves its chord by less than this share of the snapping distance is crossed as a straight piece.
+/// An arc that leaves its chord by less than this fraction of the snapping distance is intersected as a straight
+/// piece.
 const STRAIGHT: f64 = 0.1;
-/// Pieces between the same ends coincide where their middles are nearer to each other than this many snapping distances.
+/// Pieces between the same ends coincide if their middles are nearer to each other than this many snapping distances.
 const SAME: f64 = 4.0;
 
 /// The curves cross each other too often.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TooDense;
 
-/// The union of closed curves in the XY plane, of either orientation; `None` where the curves are that already, or where
-/// the numbers do not allow to tell. Ends that are nearer than `snap` are one.
+/// The union of closed curves in the XY plane, of either orientation. `None` if the curves are already their union,
+/// or if rounding prevents a result. Ends nearer to each other than `snap` are unified.
 pub fn arc_union(arcs: &[ArcPiece], snap: f64) -> Result<Option<Vec<ArcPiece>>, TooDense> {
-    // Rounding to another distance tells apart what could not be told apart.
+    // Rounding to another distance may resolve an ambiguity.
     for factor in [1.0, 7.0, 50.0] {
         let mut plane = Arrangement::new(arcs, snap * factor);
         plane.cut()?;
@@ -45,7 +46,7 @@ pub fn arc_union(arcs: &[ArcPiece], snap: f64) -> Result<Option<Vec<ArcPiece>>, 
     Ok(None)
 }
 
-/// Points, of which those that are nearer than the snapping distance are one.
+/// Points; those nearer to each other than the snapping distance are unified.
 struct Vertices {
     snap: f64,
     at: Vec<DVec3>,
@@ -53,7 +54,7 @@ struct Vertices {
 }
 
 impl Vertices {
-    /// The number of a point.
+    /// The index of a point.
     fn index(&mut self, p: DVec3) -> usize {
         let cell = |v: f64| (v / self.snap).floor() as i64;
         let (x, y) = (cell(p.x), cell(p.y));
@@ -70,16 +71,16 @@ impl Vertices {
     }
 }
 
-/// A piece that only rises or falls along both axes, and where it is to be cut.
+/// A piece that is monotonic along both axes, and the positions of its cuts.
 struct Cut {
     arc: ArcPiece,
     ends: [usize; 2],
     bounds: Aabb,
-    /// λ and vertex.
+    /// λ and vertex of each cut.
     places: Vec<(f64, usize)>,
 }
 
-/// A piece between two vertices without anything on it, and how often it is run through.
+/// A piece between two vertices without others on it, and how often the curves traverse it.
 struct Edge {
     ends: [usize; 2],
     arc: ArcPiece,
@@ -110,7 +111,7 @@ impl Arrangement {
         Self { vertices, cuts }
     }
 
-    /// Finds where pieces meet.
+    /// Finds the points where pieces meet.
     fn cut(&mut self) -> Result<(), TooDense> {
         let mut order: Vec<usize> = (0..self.cuts.len()).collect();
         order.sort_by(|a, b| self.cuts[*a].bounds.min.x.total_cmp(&self.cuts[*b].bounds.min.x));
@@ -135,7 +136,7 @@ impl Arrangement {
         Ok(())
     }
 
-    /// Cuts two pieces where they meet; how many places that are.
+    /// Cuts two pieces where they meet; returns the number of these points.
     fn meet(&mut self, i: usize, j: usize) -> usize {
         let snap = self.vertices.snap;
         let (a, b) = (self.cuts[i].arc, self.cuts[j].arc);
@@ -172,7 +173,7 @@ impl Arrangement {
         1
     }
 
-    /// The pieces between neighboring vertices, those that coincide as one; and whether that changed anything.
+    /// The pieces between neighboring vertices, with coinciding ones merged; and whether that changed anything.
     fn edges(&mut self) -> (Vec<Edge>, bool) {
         let mut edges: Vec<Edge> = Vec::with_capacity(self.cuts.len());
         let mut known: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
@@ -213,25 +214,25 @@ fn place_on(arc: &ArcPiece, p: DVec3) -> f64 {
     (0.5 * (bend * x).atan2(1.0 - bend * y)).tan() / bend
 }
 
-/// The arc from one point to another that is curved as `like` is.
+/// The arc from one point to another with the curvature of `like`.
 fn curved_alike(like: &ArcPiece, from: DVec3, to: DVec3) -> ArcPiece {
     let chord = to - from;
     let left = DVec3::new(-like.tangent.y, like.tangent.x, 0.0);
     let sine = (0.5 * like.bend.dot(left) * chord.length()).clamp(-1.0, 1.0);
     let cosine = (1.0 - sine * sine).sqrt();
-    // It leaves to the right of the chord where it bends to the left.
+    // An arc that bends to the left leaves to the right of the chord.
     let along = chord.normalize_or_zero();
     let direction = along * cosine - DVec3::new(-along.y, along.x, 0.0) * sine;
     ArcPiece::leaving(from, direction, to)
 }
 
-/// Whether an arc stays as near to its chord as rounding does.
+/// Whether an arc stays within rounding of its chord.
 fn is_straight(arc: &ArcPiece, snap: f64) -> bool {
     let chord = 4.0 * arc.reach;
     arc.bend.length() * chord * chord / 8.0 < STRAIGHT * snap
 }
 
-/// Where the circles or lines of two arcs cross.
+/// The points where the circles or lines of two arcs cross.
 fn crossings(a: &ArcPiece, b: &ArcPiece, snap: f64) -> Vec<DVec3> {
     match (is_straight(a, snap), is_straight(b, snap)) {
         (true, true) => {
@@ -262,7 +263,7 @@ fn crossings(a: &ArcPiece, b: &ArcPiece, snap: f64) -> Vec<DVec3> {
     }
 }
 
-/// Where a straight piece's line crosses an arc's circle.
+/// The points where a straight piece's line crosses an arc's circle.
 fn on_line(line: &ArcPiece, arc: &ArcPiece) -> Vec<DVec3> {
     let (c, r) = (center(arc), 1.0 / arc.bend.length());
     let foot = line.middle + line.tangent * (c - line.middle).dot(line.tangent);
@@ -288,7 +289,7 @@ impl PerpDot for DVec3 {
     }
 }
 
-/// Edges by where they are along an axis.
+/// Edges by their position along an axis.
 struct Bands {
     axis: usize,
     low: f64,
@@ -321,7 +322,7 @@ impl Bands {
         (((value - self.low) / self.width) as usize).min(self.holds.len() - 1)
     }
 
-    /// How often the curves wind around what lies just beyond the middle of an edge, along the other axis.
+    /// The winding number just beyond the middle of an edge, along the other axis.
     fn winding(&self, of: usize, edges: &[Edge], at: &[DVec3]) -> i32 {
         let (axis, along) = (self.axis, 1 - self.axis);
         let p = edges[of].arc.middle;
@@ -334,7 +335,7 @@ impl Bands {
             }
             if a[along].min(b[along]) > p[along] || beyond(&edge.arc, axis, p) {
                 let grows = b[axis] > a[axis];
-                // Seen along X, curves around something solid rise at its far side; along Y they run back there.
+                // Viewed along X, curves around a solid rise at its far side; along Y they run back there.
                 sum += if grows == (axis == 1) { edge.times } else { -edge.times };
             }
         }
@@ -353,14 +354,14 @@ fn beyond(arc: &ArcPiece, axis: usize, p: DVec3) -> bool {
     there[along] > p[along]
 }
 
-/// The edges that bound the union, with what is solid on their left.
+/// The edges that bound the union, with the solid on their left.
 fn boundary(edges: &[Edge], at: &[DVec3]) -> Vec<Edge> {
     let bands = [Bands::new(0, edges, at), Bands::new(1, edges, at)];
     let mut kept = Vec::new();
     for (i, edge) in edges.iter().enumerate() {
         let [from, to] = edge.ends.map(|end| at[end]);
         let way = to - from;
-        // The ray that crosses the edge best.
+        // Choose the ray that crosses the edge more steeply.
         let is_steep = way.y.abs() >= way.x.abs();
         let far = bands[usize::from(is_steep)].winding(i, edges, at);
         let far_is_right = if is_steep { way.y > 0.0 } else { way.x < 0.0 };
@@ -377,7 +378,7 @@ fn boundary(edges: &[Edge], at: &[DVec3]) -> Vec<Edge> {
     kept
 }
 
-/// The edges one after the other as closed curves; `None` where they do not close.
+/// Connects the edges to closed curves; `None` if they do not close.
 fn closed(edges: &[Edge]) -> Option<Vec<ArcPiece>> {
     let mut leaving: HashMap<usize, Vec<usize>> = HashMap::new();
     for (i, edge) in edges.iter().enumerate().rev() {
@@ -385,7 +386,7 @@ fn closed(edges: &[Edge]) -> Option<Vec<ArcPiece>> {
     }
     let mut out = Vec::with_capacity(edges.len());
     for first in edges {
-        // All that leave a vertex are used up where the curves through it are done.
+        // All edges that leave a vertex are used once the curves through it are complete.
         let start = first.ends[0];
         let Some(mut i) = leaving.get_mut(&start).and_then(Vec::pop) else { continue };
         loop {

@@ -13,9 +13,9 @@ pub struct Camera {
     pub rotation: DQuat,
     /// Full vertical angle of view in radians.
     pub fov_y: f64,
-    /// Nothing nearer than this is seen: a distance from the eye along the ray, as depth is, not along the view axis.
+    /// The near limit: the least visible distance from the eye, along the ray as depth is, not along the view axis.
     pub near: f64,
-    /// Nothing farther than this is seen, measured as `near` is.
+    /// The far limit: the greatest visible distance, measured as `near` is.
     pub far: f64,
 }
 
@@ -36,7 +36,7 @@ impl Camera {
         Self { position, rotation, fov_y, near: Self::DEFAULT_NEAR, far: Self::DEFAULT_FAR }
     }
 
-    /// A camera that sees all of a finite box, from `direction` (which points from the box to the eye).
+    /// A camera that shows all of a finite box, from `direction` (which points from the box to the eye).
     pub fn framing(bounds: &Aabb, direction: DVec3, fov_y: f64, aspect: f64) -> Self {
         let radius = bounds.half().length().max(1e-6);
         let half_angle = (fov_y * 0.5).min(((fov_y * 0.5).tan() * aspect).atan());
@@ -47,21 +47,21 @@ impl Camera {
         camera
     }
 
-    /// Half the height of the picture at distance 1 in front of the eye.
+    /// Half the height of the image at distance 1 in front of the eye.
     pub fn tan_half_fov(&self) -> f64 {
         (self.fov_y * 0.5).tan()
     }
 
-    /// The cosine of the angle between the view axis and the rays through the corners of a picture of `size` pixels: no depth
-    /// along the axis is a smaller share of the distance along the ray.
+    /// The cosine of the angle between the view axis and the rays through the corners of an image of `size` pixels:
+    /// the least ratio of the depth along the axis to the distance along the ray.
     pub fn corner_cosine(&self, size: [u32; 2]) -> f64 {
         let up = self.tan_half_fov();
         let right = up * f64::from(size[0]) / f64::from(size[1]);
         1.0 / (1.0 + right * right + up * up).sqrt()
     }
 
-    /// The ray through a point of the picture; `pixel` in pixels from the upper left corner (pixel
-    /// centers at .5), `size` the picture's size in pixels.
+    /// The ray through a point of the image; `pixel` in pixels from the upper left corner (pixel centers at .5),
+    /// `size` the image's size in pixels.
     pub fn ray(&self, pixel: DVec2, size: DVec2) -> Ray {
         let t = self.tan_half_fov();
         let ndc = DVec2::new(2.0 * pixel.x / size.x - 1.0, 1.0 - 2.0 * pixel.y / size.y);
@@ -75,7 +75,7 @@ impl Camera {
         2.0 * self.tan_half_fov() / height_px
     }
 
-    /// Where a world point appears, in pixels, with its depth along the view axis; `None` behind the eye.
+    /// The position of a world point in pixels, with its depth along the view axis; `None` behind the eye.
     pub fn project(&self, p: DVec3, size: DVec2) -> Option<(DVec2, f64)> {
         let local = self.rotation.inverse() * (p - self.position);
         if local.z >= -1e-12 {

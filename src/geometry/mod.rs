@@ -1,4 +1,4 @@
-//! Points, arcs, boxes, rays, transforms and cameras. Knows nothing of scenes.
+//! Points, arcs, boxes, rays, transforms and cameras. Independent of scenes.
 //!
 //! Conventions, for the whole program: right-handed, +Y up, meters, radians inside and degrees at
 //! the border (files, inspector). Matrices are named `target_from_source`.

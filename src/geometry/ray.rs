@@ -5,7 +5,7 @@ use glam::DVec3;
 /// A half line. `direction` has unit length, so a parameter along it is a distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// The start.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,

@@ -1,12 +1,12 @@
-//! Translation, rotation, scale: what an artist edits.
+//! Translation, rotation and scale: the transform that an artist edits.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// Scale first, then rotation, then translation. Kept as these three, never rebuilt by decomposing a
-/// matrix, so that what the artist typed is what stands in the file.
+/// Scale first, then rotation, then translation. The three are stored, and never recovered by decomposing a matrix,
+/// so that the file holds what the artist typed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
-    /// Where the origin goes.
+    /// The image of the origin.
     pub translation: DVec3,
     /// Unit quaternion.
     pub rotation: DQuat,
@@ -15,10 +15,10 @@ pub struct Transform {
 }
 
 impl Transform {
-    /// Leaves every point where it is.
+    /// The identity.
     pub const IDENTITY: Self = Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE };
 
-    /// Only a translation.
+    /// A translation only.
     pub const fn from_translation(translation: DVec3) -> Self {
         Self { translation, ..Self::IDENTITY }
     }
@@ -35,9 +35,9 @@ impl Default for Transform {
     }
 }
 
-/// The least and the greatest factor by which the linear map `m` stretches a length: its extreme
-/// singular values, as square roots of the extreme eigenvalues of mᵀm. The eigenvalues come from
-/// Jacobi rotations, which keep small ones accurate.
+/// The least and the greatest factor by which the linear map `m` stretches a length: its extreme singular values, as
+/// square roots of the extreme eigenvalues of mᵀm. The eigenvalues come from Jacobi rotations, which keep small ones
+/// accurate.
 pub fn singular_values(m: &DMat3) -> (f64, f64) {
     let mut a = (m.transpose() * *m).to_cols_array_2d();
     for _ in 0..16 {

@@ -1,9 +1,8 @@
-//! Work that may panic: what a decoder, a worker or a job panics with comes back as an error, and what waits for it goes
-//! on.
+//! Guards work that may panic: a panic in a decoder, a worker or a job becomes an error, and its caller goes on.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Does the work; the error says what it panicked with. Nothing that the work was changing may be used afterward.
+/// Runs the work; the error is the panic message. State that the work was changing must not be used after a panic.
 ///
 /// # Errors
 /// The work panicked.

@@ -1,5 +1,5 @@
-//! Everything that takes longer than a frame runs here: on a thread of its own, with a name, progress and a cancel flag. A
-//! panic in a job is an error of that job. Whoever starts a job polls it; a status bar lists those that run.
+//! Jobs: work that takes longer than a frame runs on a thread of its own, with a name, progress and a cancel flag. A
+//! panic in a job is an error of that job. The owner of a job polls it; a status bar lists the running ones.
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -9,23 +9,23 @@ use std::time::Duration;
 
 use isolith_guard::guarded;
 
-/// Tells work that takes long to stop; all clones are one.
+/// A flag that stops long work; all clones share it.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<AtomicBool>);
 
 impl Cancel {
-    /// Says stop.
+    /// Requests the work to stop.
     pub fn cancel(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether somebody said stop.
+    /// Whether a stop was requested.
     pub fn is_canceled(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
 
-/// The work was told to stop, and did.
+/// The error of work that stopped on request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Canceled;
 
@@ -35,18 +35,18 @@ impl fmt::Display for Canceled {
     }
 }
 
-/// How a task appears to people.
+/// The visibility of a task in the user interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Visibility {
-    /// It is listed, and can be canceled.
+    /// Listed, and can be canceled.
     Listed,
-    /// It is listed, and runs to its end: stopping in the middle would help nobody.
+    /// Listed, and runs to its end: stopping halfway would help nobody.
     WithoutCancel,
-    /// It is not listed: it is short, and nobody waits for it.
+    /// Not listed: it is short, and nobody waits for it.
     Hidden,
 }
 
-/// A piece of work, as it reports about itself and as others see it. All clones are one.
+/// A piece of work that reports its state. All clones share it.
 #[derive(Clone, Debug)]
 pub struct Task(Arc<Shared>);
 
@@ -55,15 +55,15 @@ struct Shared {
     name: String,
     visibility: Visibility,
     cancel: Cancel,
-    /// The work has come to its end, one way or another.
+    /// Whether the work has ended, for any reason.
     is_over: AtomicBool,
-    /// Bits of an `f32`; NaN while it is unknown.
+    /// Bits of an `f32`; NaN while unknown.
     progress: AtomicU32,
     stage: Mutex<&'static str>,
 }
 
 impl Task {
-    /// A task of this name that can be canceled. The name says what is going on: "Opening pawn.json".
+    /// A task that can be canceled. The name describes the activity: "Opening pawn.json".
     pub fn new(name: impl Into<String>) -> Self {
         Self::with(name, Visibility::Listed, Cancel::default())
     }
@@ -78,7 +78,7 @@ impl Task {
         Self::with(name, Visibility::Hidden, Cancel::default())
     }
 
-    /// A task that somebody else's flag cancels.
+    /// A task that an existing flag cancels.
     pub fn canceled_by(name: impl Into<String>, cancel: &Cancel) -> Self {
         Self::with(name, Visibility::Listed, cancel.clone())
     }
@@ -96,58 +96,58 @@ impl Task {
         }))
     }
 
-    /// What is going on.
+    /// The name of the activity.
     pub fn name(&self) -> &str {
         &self.0.name
     }
 
-    /// The step that the task is at, in a word or two; empty where it has only one.
+    /// The current step, in a word or two; empty if there is only one step.
     pub fn stage(&self) -> &'static str {
         *lock(&self.0.stage)
     }
 
-    /// Says which step begins.
+    /// Sets the current step.
     pub fn set_stage(&self, stage: &'static str) {
         *lock(&self.0.stage) = stage;
     }
 
-    /// How much is done, 0 to 1; `None` while nobody knows.
+    /// The progress from 0 to 1; `None` while unknown.
     pub fn progress(&self) -> Option<f32> {
         let share = f32::from_bits(self.0.progress.load(Ordering::Relaxed));
         share.is_finite().then_some(share)
     }
 
-    /// Says how much is done, 0 to 1.
+    /// Sets the progress, 0 to 1.
     pub fn set_progress(&self, share: f32) {
         self.0.progress.store(share.clamp(0.0, 1.0).to_bits(), Ordering::Relaxed);
     }
 
-    /// Whether it can be canceled.
+    /// Whether the task can be canceled.
     pub fn can_cancel(&self) -> bool {
         self.0.visibility == Visibility::Listed
     }
 
-    /// Tells it to stop, where that is possible.
+    /// Cancels the task, if that is possible.
     pub fn cancel(&self) {
         if self.can_cancel() {
             self.0.cancel.cancel();
         }
     }
 
-    /// The flag that stops it, for work that takes one.
+    /// The cancel flag, for work that takes one.
     pub fn flag(&self) -> &Cancel {
         &self.0.cancel
     }
 
-    /// Whether it is to stop.
+    /// Whether the task was canceled.
     pub fn is_canceled(&self) -> bool {
         self.0.cancel.is_canceled()
     }
 
-    /// Ends work by `?` where it is to stop.
+    /// Ends canceled work by `?`.
     ///
     /// # Errors
-    /// It was told to stop.
+    /// The task was canceled.
     pub fn check(&self) -> Result<(), Canceled> {
         if self.is_canceled() { Err(Canceled) } else { Ok(()) }
     }
@@ -159,7 +159,7 @@ impl Task {
 
 type Wake = Box<dyn Fn() + Send>;
 
-/// The jobs that run, seen from outside. All clones are one.
+/// The running jobs. All clones share them.
 #[derive(Clone, Default)]
 pub struct Jobs {
     running: Arc<Mutex<Vec<Task>>>,
@@ -167,19 +167,19 @@ pub struct Jobs {
 }
 
 impl Jobs {
-    /// Calls this from now on whenever a job ends, from the thread of that job.
+    /// Sets a function to be called whenever a job ends, from the thread of that job.
     pub fn set_wake(&self, wake: impl Fn() + Send + 'static) {
         *lock(&self.wake) = Some(Box::new(wake));
     }
 
-    /// Has whoever polls look at once.
+    /// Makes the poller look at once.
     pub fn wake(&self) {
         if let Some(wake) = &*lock(&self.wake) {
             wake();
         }
     }
 
-    /// Does the work on a thread of its own. Where none can be started the job has failed, and says so when it is polled.
+    /// Starts the work on a thread of its own. If no thread can be started, the job has failed, and polling it says so.
     pub fn start<T: Send + 'static>(&self, task: Task, work: impl FnOnce(&Task) -> T + Send + 'static) -> Job<T> {
         let (sender, answer) = channel();
         let job = Job { task: task.clone(), answer };
@@ -189,7 +189,7 @@ impl Jobs {
         let spawned = std::thread::Builder::new().name("job".into()).spawn(move || {
             let done = guarded(|| work(&at_work));
             at_work.0.is_over.store(true, Ordering::Relaxed);
-            // The receiver is gone where nobody waits for the job any more.
+            // The receiver is gone if nobody waits for the job anymore.
             let _ = sender.send(done);
             jobs.remove(&at_work);
             jobs.wake();
@@ -201,25 +201,25 @@ impl Jobs {
         job
     }
 
-    /// The tasks for people to see, in the order in which they were started. One that was told to stop is not listed, though
-    /// its thread may need some time yet.
+    /// The listed tasks, in the order of their start. Canceled tasks are not listed, though their threads may still be
+    /// running.
     pub fn listed(&self) -> Vec<Task> {
         let is_shown = |task: &&Task| task.0.visibility != Visibility::Hidden && !task.is_canceled();
         lock(&self.running).iter().filter(is_shown).cloned().collect()
     }
 
-    /// Whether any thread is at work, listed or not.
+    /// Whether no thread is running, listed or not.
     pub fn is_idle(&self) -> bool {
         lock(&self.running).is_empty()
     }
 
-    /// The task that there is room to show: the oldest that can be canceled, or else the oldest.
+    /// The task to show if there is room for one only: the oldest that can be canceled, or else the oldest.
     pub fn foremost(&self) -> Option<Task> {
         let tasks = self.listed();
         tasks.iter().find(|task| task.can_cancel()).or(tasks.first()).cloned()
     }
 
-    /// Tells the foremost task to stop; false where there is none that can.
+    /// Cancels the foremost task; false if it cannot be canceled.
     pub fn cancel_foremost(&self) -> bool {
         let task = self.foremost().filter(Task::can_cancel);
         task.iter().for_each(Task::cancel);
@@ -237,18 +237,18 @@ impl fmt::Debug for Jobs {
     }
 }
 
-/// How a job ended.
+/// The end of a job.
 #[derive(Debug, PartialEq, Eq)]
 pub enum JobEnd<T> {
-    /// With this.
+    /// The work returned this.
     Done(T),
-    /// It panicked, or could not be started; the text is for people.
+    /// The work panicked, or could not be started; the text is a reason for the user.
     Failed(String),
-    /// Somebody told it to stop.
+    /// The job was canceled.
     Canceled,
 }
 
-/// A job under way. Dropping it before its end cancels it.
+/// A running job. Dropping it before its end cancels it.
 #[derive(Debug)]
 pub struct Job<T> {
     task: Task,
@@ -256,12 +256,12 @@ pub struct Job<T> {
 }
 
 impl<T> Job<T> {
-    /// What others see of it.
+    /// The task of the job.
     pub fn task(&self) -> &Task {
         &self.task
     }
 
-    /// How it ended, once: afterward it is to be dropped. `None` while it runs. One that was canceled has ended at once.
+    /// The end of the job, once: drop the job afterward. `None` while it runs. A canceled job counts as ended at once.
     pub fn poll(&self) -> Option<JobEnd<T>> {
         if self.task.is_canceled() {
             return Some(JobEnd::Canceled);
@@ -274,13 +274,13 @@ impl<T> Job<T> {
         }
     }
 
-    /// Waits for its end: for where no interface waits.
+    /// Waits for the end. For callers without a user interface.
     pub fn wait(self) -> JobEnd<T> {
         self.wait_telling(Duration::from_secs(1), |_| {})
     }
 
-    /// Waits for its end, and calls `tell` every so often until then. Its thread has ended its work afterward, also where it
-    /// was canceled.
+    /// Waits for the end, and calls `tell` at this interval until then. The thread has finished its work afterward,
+    /// even after a cancel.
     pub fn wait_telling(self, every: Duration, mut tell: impl FnMut(&Task)) -> JobEnd<T> {
         loop {
             let answer = self.answer.recv_timeout(every);
@@ -297,14 +297,14 @@ impl<T> Job<T> {
 
 impl<T> Drop for Job<T> {
     fn drop(&mut self) {
-        // The flag may be somebody else's, who goes on after a job that is over.
+        // Others may share the flag and go on after this job, so a finished job must not set it.
         if !self.task.0.is_over.load(Ordering::Relaxed) {
             self.task.cancel();
         }
     }
 }
 
-/// A list that a panic interrupted is as good as before.
+/// A panic leaves the list intact, so poisoning is ignored.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -368,10 +368,10 @@ mod tests {
         assert_eq!(job.poll(), Some(JobEnd::Canceled));
         assert!(jobs.listed().is_empty() && !jobs.cancel_foremost());
         until("its thread ends", || jobs.is_idle());
-        // Nobody waits for it any more.
+        // Dropping the job cancels it.
         drop(jobs.start(Task::new("Waiting"), endless));
         until("a dropped one ends", || jobs.is_idle());
-        // One that is over cancels nothing any more: its flag may be that of others.
+        // A finished job cancels nothing anymore: others may share its flag.
         let flag = Cancel::default();
         assert_eq!(jobs.start(Task::canceled_by("Adding", &flag), |_| 2).wait(), JobEnd::Done(2));
         assert!(!flag.is_canceled());

@@ -19,7 +19,7 @@ pub(super) enum ComponentType {
 }
 
 impl ComponentType {
-    /// By the code that files hold.
+    /// The component type with this code in files.
     pub fn of(code: Whole) -> Option<Self> {
         Some(match code.0 {
             5120 => Self::I8,
@@ -32,7 +32,7 @@ impl ComponentType {
         })
     }
 
-    /// Whether indices may be of it.
+    /// Whether indices may have this type.
     pub fn is_index(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32)
     }
@@ -46,7 +46,7 @@ impl ComponentType {
     }
 }
 
-/// How many numbers make an entry. Matrices are more than rows of numbers: theirs may be padded.
+/// The number of components of an entry. Matrices differ from vectors: their columns may be padded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ElementShape {
     Vector(usize),
@@ -54,7 +54,7 @@ pub(super) enum ElementShape {
 }
 
 impl ElementShape {
-    /// By the name that files hold.
+    /// The type with this name in files.
     pub fn of(name: &str) -> Option<Self> {
         Some(match name {
             "SCALAR" => Self::Vector(1),
@@ -73,11 +73,11 @@ impl ElementShape {
 pub(super) struct Source<'a> {
     pub root: &'a Root,
     pub buffers: &'a [Cow<'a, [u8]>],
-    /// How many entries have been read so far.
+    /// Entries read so far, for the limit.
     pub entries_read: Cell<u64>,
 }
 
-/// How one run of elements lies in its bytes. Invariant: `bytes` holds `count` elements.
+/// The memory layout of a run of elements. Invariant: `bytes` holds `count` elements.
 struct Layout<'a> {
     bytes: &'a [u8],
     stride: usize,
@@ -86,7 +86,7 @@ struct Layout<'a> {
 }
 
 impl Layout<'_> {
-    /// Component `c` of element `i` as a number; normalized integers as shares (specification, 3.6.2.2).
+    /// Component `c` of element `i` as a number; integers are normalized (specification, 3.6.2.2).
     fn float(&self, i: usize, c: usize) -> f32 {
         let at = i * self.stride + c * self.component.size();
         let b = |k: usize| self.bytes[at + k];
@@ -126,7 +126,7 @@ impl<'a> Source<'a> {
         range.ok_or_else(|| LoadRefusal::at(place, format!("reaches past the {} bytes of its buffer", bytes.len())))
     }
 
-    /// Vectors of `N` components, or of fewer, down to `least`, which are filled up with ones.
+    /// Vectors of `N` components, or of fewer, down to `least`; missing components become 1.
     pub fn floats<const N: usize>(&self, index: Whole, least: usize, user: &str) -> Result<Vec<[f32; N]>, LoadRefusal> {
         let (accessor, component, shape) = self.accessor(index, user)?;
         let width = match shape {
@@ -159,7 +159,7 @@ impl<'a> Source<'a> {
         let read =
             |layout: &Layout<'_>, i: usize| std::array::from_fn(|c| if c < width { layout.float(i, c) } else { 1.0 });
         let base = self.base(accessor, component, width, user)?;
-        // Without data of its own an accessor holds zeros.
+        // An accessor without data of its own holds zeros.
         let zero = std::array::from_fn(|c| if c < width { 0.0 } else { 1.0 });
         let mut out = vec![zero; accessor.count.0 as usize];
         if let Some(base) = base {
@@ -175,7 +175,7 @@ impl<'a> Source<'a> {
         Ok(out)
     }
 
-    /// How many entries the accessor says it has.
+    /// The entry count that the accessor states.
     pub fn count(&self, index: Whole) -> u64 {
         self.root.accessors.get(index.index()).map_or(0, |accessor| accessor.count.0)
     }
@@ -186,7 +186,7 @@ impl<'a> Source<'a> {
         accessor.is_some_and(|accessor| accessor.buffer_view.is_none() && accessor.sparse.is_none())
     }
 
-    /// Vertex numbers.
+    /// Vertex indices.
     pub fn indices(&self, index: Whole, user: &str) -> Result<Vec<u32>, LoadRefusal> {
         let (accessor, component, shape) = self.accessor(index, user)?;
         if shape != ElementShape::Vector(1) || !component.is_index() {
@@ -209,7 +209,7 @@ impl<'a> Source<'a> {
         Ok(out)
     }
 
-    /// The accessor with its component type and the shape of its entries; its count is within limits.
+    /// The accessor with its component type and element type; its count is within limits.
     fn accessor(&self, index: Whole, user: &str) -> Result<(&'a Accessor, ComponentType, ElementShape), LoadRefusal> {
         let wrong = |reason: &str| LoadRefusal::at(user, reason);
         let missing = || wrong("names an accessor that is missing");
@@ -225,7 +225,7 @@ impl<'a> Source<'a> {
         Ok((accessor, component, shape))
     }
 
-    /// Counts entries that are read or made up. A file may ask for the same ones again and again.
+    /// Counts entries that are read or generated against the limit. A file may request the same ones again and again.
     pub fn charge(&self, entries: u64, user: &str) -> Result<(), LoadRefusal> {
         self.entries_read.set(self.entries_read.get().saturating_add(entries));
         if self.entries_read.get() > MAX_ENTRIES_READ {
@@ -234,7 +234,7 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// The dense data; `None` where the accessor starts from zeros.
+    /// The dense data; `None` if the accessor starts from zeros.
     fn base(
         &self,
         accessor: &Accessor,
@@ -293,7 +293,7 @@ impl<'a> Source<'a> {
         let all = self.view(view)?;
         let size = component.size() * width;
         let stride = self.root.buffer_views.get(view.index()).and_then(|v| v.byte_stride);
-        // 0 stands for tightly packed in files of some exporters, as it did in version 1.
+        // Some exporters write 0 for tightly packed, as in version 1.
         let stride = stride.filter(|stride| stride.0 > 0).map_or(size as u64, |stride| stride.0);
         if stride < size as u64 {
             return Err(LoadRefusal::at(user, format!("has a stride of {stride} bytes for entries of {size}")));
@@ -311,7 +311,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// What a sparse accessor puts over its base. Invariant: each target is an entry of the accessor.
+/// The replacements of a sparse accessor. Invariant: each target is an entry of the accessor.
 struct Overlay<'a> {
     targets: Vec<usize>,
     values: Layout<'a>,

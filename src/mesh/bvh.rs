@@ -1,7 +1,7 @@
-//! A tree of boxes over triangles: the nearest hit of a ray in logarithmic time.
+//! A bounding volume hierarchy over triangles: the nearest hit of a ray in logarithmic time.
 //!
-//! Built by binned surface area heuristic (Wald, "On fast construction of SAH-based bounding volume
-//! hierarchies", 2007). Boxes are f64, since triangles may stand farther away than f32 can tell apart.
+//! Built with the binned surface area heuristic (Wald, "On fast construction of SAH-based bounding volume hierarchies",
+//! 2007). Boxes are f64, since triangles may stand too far away for f32 to tell them apart.
 
 use glam::DVec3;
 
@@ -15,16 +15,16 @@ pub type Triangle = [DVec3; 3];
 pub struct BvhNode {
     /// Its box.
     pub bounds: Aabb,
-    /// Inner: index of the right child. Leaf: where its triangles start in [`Bvh::triangles`].
+    /// Inner: index of the right child. Leaf: start of its triangles in [`Bvh::triangles`].
     pub first: u32,
-    /// Inner: 0. Leaf: how many triangles.
+    /// Inner: 0. Leaf: number of triangles.
     pub count: u32,
 }
 
-/// The tree.
+/// The hierarchy.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
-    /// Depth first, the root first; empty without triangles.
+    /// Depth first, with the root first; empty without triangles.
     pub nodes: Vec<BvhNode>,
     /// The triangles in the order of the leaves.
     pub triangles: Vec<u32>,
@@ -33,16 +33,16 @@ pub struct Bvh {
 /// A subtree of at most this many triangles is a leaf.
 const LEAF_TRIANGLES: usize = 4;
 const BINS: usize = 16;
-/// From here on a subtree is halved by count, so that the depth is bounded: 2³² triangles add 32.
+/// From this depth on a subtree is split by count, so that the depth is bounded: 2³² triangles add 32.
 const MAX_SAH_DEPTH: u32 = 48;
 
 impl Bvh {
-    /// The tree over triangles `0..count`.
+    /// Builds the tree over triangles `0..count`.
     pub fn build(count: usize, corners: impl Fn(u32) -> Triangle) -> Self {
         let boxes: Vec<Aabb> = (0..count as u32).map(|t| Aabb::from_points(corners(t))).collect();
         let mut triangles: Vec<u32> = (0..count as u32).collect();
         let mut nodes = Vec::with_capacity(count);
-        // Ranges still to be built, with the inner node whose right child each is.
+        // Pending ranges, each with the inner node whose right child it becomes.
         let mut open = vec![(0..count, None::<usize>, 0)];
         while let Some((range, parent, depth)) = open.pop() {
             if range.is_empty() {
@@ -67,8 +67,8 @@ impl Bvh {
         Self { nodes, triangles }
     }
 
-    /// The nearest hit with 0 ≤ t ≤ `max_t`: parameter, triangle, barycentric weights. Of equally near
-    /// ones, that of the lowest number. Only hits count of which `is_there` says so.
+    /// The nearest hit with 0 ≤ t ≤ `max_t`: parameter, triangle, barycentric weights. Of equally near hits, that of
+    /// the lowest triangle index. Only hits that `is_there` accepts count.
     pub fn hit(
         &self,
         ray: &Ray,
@@ -108,7 +108,7 @@ impl Bvh {
     }
 }
 
-/// Where the ray meets the triangle, from either side: parameter and barycentric weights (Möller and
+/// The intersection of the ray with the triangle, from either side: parameter and barycentric weights (Möller and
 /// Trumbore, "Fast, minimum storage ray/triangle intersection", 1997).
 pub fn hit_triangle(ray: &Ray, [a, b, c]: &Triangle) -> Option<(f64, [f64; 3])> {
     let (ab, ac) = (b - a, c - a);
@@ -125,8 +125,8 @@ pub fn hit_triangle(ray: &Ray, [a, b, c]: &Triangle) -> Option<(f64, [f64; 3])> 
     (u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 && t.is_finite()).then_some((t, [1.0 - u - v, u, v]))
 }
 
-/// Where the ray enters the node's box; widened by a few units in the last place, so that rounding
-/// never loses a triangle that lies in a side of the box.
+/// The parameter at which the ray enters the node's box. The box is widened by a few units in the last place, so that
+/// rounding never loses a triangle that lies in one of its sides.
 fn entry(node: &BvhNode, ray: &Ray) -> Option<f64> {
     let Aabb { min, max } = node.bounds;
     let slack = (min.abs().max(max.abs()).max_element() + ray.origin.abs().max_element()) * 1e-14;
@@ -159,7 +159,7 @@ fn split(triangles: &mut [u32], boxes: &[Aabb], depth: u32) -> usize {
     middle
 }
 
-/// The first bin of the right side, where the sum of surface area times count is least.
+/// The first bin of the right side, at the minimum of the sum of surface area times count.
 fn best_border(triangles: &[u32], boxes: &[Aabb], bin_of: impl Fn(u32) -> usize) -> usize {
     let mut bins = [(Aabb::EMPTY, 0_usize); BINS];
     for &t in triangles {

@@ -1,4 +1,4 @@
-//! The JSON of a glTF file: taken out of its container, parsed, its references checked.
+//! The JSON of a glTF file: extracted from its container, parsed, its references checked.
 
 use super::error::{LoadRefusal, name};
 use super::limits::{MAX_JSON_COMMAS, MAX_JSON_OBJECTS};
@@ -13,7 +13,7 @@ pub(super) struct GltfDocument<'a> {
     pub binary_chunk: Option<&'a [u8]>,
 }
 
-/// Extensions that are read. Files that need another one are refused.
+/// Supported extensions. Files that require another one are refused.
 pub(super) const SUPPORTED: &[&str] =
     &["KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"];
 
@@ -53,7 +53,7 @@ fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadRefusal> 
             (b"JSON", None, None) => text = Some(chunk),
             (_, None, _) => return Err(refuse("does not begin with a JSON chunk".into())),
             (b"BIN\0", Some(_), None) => binary = Some(chunk),
-            // Other chunks belong to extensions, and are to be ignored.
+            // Other chunks belong to extensions; the specification says to ignore them.
             _ => {}
         }
         at = start + size.next_multiple_of(4);
@@ -62,7 +62,7 @@ fn split_container(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), LoadRefusal> 
 }
 
 fn parse(text: &[u8]) -> Result<Root, LoadRefusal> {
-    // Byte order marks are not allowed, and are written by some editors.
+    // Byte order marks are not allowed, but some editors write them.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     check_amount(text)?;
     let versioned: Versioned =
@@ -105,7 +105,8 @@ fn check_amount(text: &[u8]) -> Result<(), LoadRefusal> {
     Ok(())
 }
 
-/// Before anything else is read: files of version 1 are made otherwise, and would be refused for a wrong reason.
+/// Checks the version before anything else is read: files of version 1 have another structure, and would be refused for
+/// a wrong reason.
 fn check_version(asset: Option<&Asset>) -> Result<(), LoadRefusal> {
     let Some(version) = asset.and_then(|asset| asset.version.as_deref()) else {
         return Err(LoadRefusal::at("", "has no asset.version, so it is no glTF file"));

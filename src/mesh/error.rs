@@ -1,11 +1,11 @@
-//! Why a mesh file was refused, and how what stands in files is shown.
+//! Why a mesh file was refused, and how messages show text from files.
 
 use std::path::Path;
 
 use serde::Serialize;
 use thiserror::Error;
 
-/// A mesh file that cannot be used: which, where in it, and why.
+/// A mesh file that cannot be used: which file, where in it, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Error, Serialize)]
 #[error("{file}: {}{reason}", if place.is_empty() { String::new() } else { format!("{place}: ") })]
 pub struct MeshError {
@@ -13,12 +13,12 @@ pub struct MeshError {
     pub file: String,
     /// Where in the file, like `meshes[0].primitives[1].indices`; empty for the file as a whole.
     pub place: String,
-    /// What is the matter, for people.
+    /// The reason, for the user.
     pub reason: String,
 }
 
 impl MeshError {
-    /// An error whose parts may be text from files: they are made fit to be shown.
+    /// An error whose parts may be text from files; it sanitizes them for display.
     pub(super) fn new(file: &str, place: &str, reason: &str) -> Self {
         Self { file: shown(file, LONGEST_PATH), place: shown(place, LONGEST_TEXT), reason: shown(reason, LONGEST_TEXT) }
     }
@@ -37,12 +37,12 @@ impl LoadRefusal {
         Self { place: place.into(), reason: reason.into() }
     }
 
-    /// With the file's name.
+    /// Adds the file's name.
     pub fn of(self, file: &Path) -> MeshError {
         MeshError::new(&file.display().to_string(), &self.place, &self.reason)
     }
 
-    /// As the text of a warning, where the rest of the file can be used without.
+    /// The refusal as a warning, if the rest of the file can be used without the refused part.
     pub fn into_warning(self) -> String {
         format!("{}: {}", self.place, self.reason)
     }
@@ -55,13 +55,13 @@ pub(super) const LONGEST_TEXT: usize = 400;
 /// Most characters of one name within a message.
 const LONGEST_NAME: usize = 80;
 
-/// A name out of a file, short enough to stand in a message.
+/// A name from a file, shortened for a message.
 pub(super) fn name(text: &str) -> String {
     shown(text, LONGEST_NAME)
 }
 
-/// Text that may come from a file, fit for terminals and windows: characters that control either, or turn the order
-/// of others round, are written as their codes, and what is too long is cut.
+/// Sanitizes text that may come from a file for terminals and windows: replaces control characters and characters that
+/// reverse the text direction by their codes, and truncates long text.
 pub(super) fn shown(text: &str, longest: usize) -> String {
     let mut out = String::with_capacity(text.len().min(longest));
     for (i, c) in text.chars().enumerate() {
@@ -74,7 +74,7 @@ pub(super) fn shown(text: &str, longest: usize) -> String {
     out
 }
 
-/// Marks, embeddings, overrides and isolates of the bidirectional algorithm, and the separators of lines.
+/// Marks, embeddings, overrides and isolates of the bidirectional algorithm, and line separators.
 fn changes_direction(c: char) -> bool {
     matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

@@ -1,4 +1,4 @@
-//! The node hierarchy: which mesh stands where.
+//! The node hierarchy: the placement of each mesh.
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
@@ -6,21 +6,21 @@ use super::error::LoadRefusal;
 use super::limits::MAX_NODES;
 use super::schema::{GltfNode, Root};
 
-/// The nodes of a document, at rest: animations are not played.
+/// The nodes of a document in the rest pose: animations are not played.
 pub(super) struct Forest {
-    /// The place of each node in the file's space.
+    /// The transform of each node to the file's space.
     pub world_from_node: Vec<DAffine3>,
-    /// The nodes with meshes that the shown scene holds, in depth-first order.
+    /// The nodes with meshes in the shown scene, in depth-first order.
     pub shown: Vec<usize>,
 }
 
-/// Walks the hierarchy. The default scene is shown; without one the first; without any, every tree.
+/// Traverses the hierarchy. Shows the default scene; without a default the first scene; without any scene, every tree.
 pub(super) fn walk(root: &Root) -> Result<Forest, LoadRefusal> {
     if root.nodes.len() > MAX_NODES {
         return Err(LoadRefusal::at("nodes", format!("has {} entries, more than {MAX_NODES}", root.nodes.len())));
     }
     let (parents, order) = check_forest(root)?;
-    // Joints of skins may stand outside of the scene, so every node has a place.
+    // Joints of skins may stand outside of the scene, so every node gets a transform.
     let mut world_from_node = vec![DAffine3::IDENTITY; root.nodes.len()];
     for index in order {
         let local = local_transform(&root.nodes[index], &format!("nodes[{index}]"))?;
@@ -34,7 +34,7 @@ pub(super) fn walk(root: &Root) -> Result<Forest, LoadRefusal> {
     }
 }
 
-/// The number of the scene that is shown.
+/// The index of the shown scene.
 pub(super) fn shown_scene(root: &Root) -> usize {
     root.scene.map_or(0, |scene| scene.index())
 }
@@ -61,8 +61,8 @@ fn shown_nodes(root: &Root, parents: &[Option<usize>]) -> Result<Vec<usize>, Loa
     Ok(shown)
 }
 
-/// The parent of each node, and all nodes with parents before children. Refuses nodes with two parents and nodes
-/// that are their own ancestors, so that a walk from the top ends.
+/// The parent of each node, and all nodes with parents before children. Refuses nodes with two parents and nodes that
+/// are their own ancestors, so that a traversal from the top ends.
 fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), LoadRefusal> {
     let mut parents = vec![None; root.nodes.len()];
     for (index, node) in root.nodes.iter().enumerate() {
@@ -73,7 +73,7 @@ fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), LoadRef
             }
         }
     }
-    // With one parent each, what cannot be reached from a parentless node is on a cycle or below one.
+    // With one parent each, a node that no root reaches is on a cycle or below one.
     let mut reached = vec![false; root.nodes.len()];
     let mut order: Vec<usize> = (0..root.nodes.len()).filter(|n| parents[*n].is_none()).collect();
     let mut next = 0;
@@ -89,7 +89,7 @@ fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), LoadRef
     }
 }
 
-/// Exporters that compute in f32 leave so much in the last row of a matrix that should be 0 0 0 1.
+/// Exporters that compute in f32 leave an error of this size in the last row of a matrix, which should be 0 0 0 1.
 const ROUNDING: f64 = 1e-5;
 
 fn local_transform(node: &GltfNode, place: &str) -> Result<DAffine3, LoadRefusal> {
@@ -103,7 +103,7 @@ fn local_transform(node: &GltfNode, place: &str) -> Result<DAffine3, LoadRefusal
         if last.w == 0.0 || last.truncate().abs().max_element() > ROUNDING * last.w.abs() {
             return refuse("matrix", "is not affine");
         }
-        // A last number other than 1 scales everything.
+        // A last component other than 1 scales the whole matrix.
         let m = m * (1.0 / last.w);
         return Ok(DAffine3::from_mat3_translation(DMat3::from_mat4(m), m.w_axis.truncate()));
     }

@@ -1,4 +1,4 @@
-//! Every mesh of a scene, loaded once, and again when its files change.
+//! The meshes of a scene: each is loaded once, and again when its files change.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -10,11 +10,11 @@ use super::load::parse_within;
 use super::resolve::{MeshFileStamp, Reader, inside, read_file};
 use super::{MeshError, TriangleMesh};
 
-/// A mesh, or why there is none.
+/// A mesh, or the error why it could not be loaded.
 pub type MeshResult = Result<Arc<TriangleMesh>, Arc<MeshError>>;
 
-/// The meshes that a scene names, by their paths relative to the scene's folder. Failures are kept
-/// too, so that a broken file is read once and not once per frame.
+/// The meshes that a scene names, by their paths relative to the scene's folder. The library keeps failures too, so
+/// that a broken file is read once, not once per frame.
 #[derive(Clone, Debug, Default)]
 pub struct MeshLibrary {
     folder: Option<PathBuf>,
@@ -25,42 +25,42 @@ pub struct MeshLibrary {
 #[derive(Clone, Debug)]
 struct Loaded {
     result: MeshResult,
-    /// The files that it was made from, as they were.
+    /// The stamps of the source files.
     files: Vec<MeshFileStamp>,
 }
 
-/// A mesh of a library with the files that it was made from: enough to read it again on another thread.
+/// The source of a mesh: its path and the stamps of its files. Enough to read the mesh again on another thread.
 #[derive(Clone, Debug)]
 pub struct MeshSource {
     folder: Option<PathBuf>,
     path: String,
     files: Vec<MeshFileStamp>,
-    /// Bytes that its textures may take.
+    /// Bytes available for its textures.
     texture_budget: u64,
 }
 
-/// A mesh that was read again.
+/// The result of reading a mesh again.
 #[derive(Debug)]
 pub struct Reread {
     source: MeshSource,
     result: MeshResult,
 }
 
-/// What came of a mesh that was read again.
+/// The effect of a mesh that was read again.
 #[derive(Clone, Debug)]
 pub enum ReloadOutcome {
-    /// It stands for the old one.
+    /// The new mesh replaces the old one.
     Fresh(Arc<TriangleMesh>),
-    /// It cannot be used, and the old one stays.
+    /// The new one cannot be used, and the old one stays.
     Kept(Arc<MeshError>),
-    /// There was none that could be used, and there is none now.
+    /// Neither the old nor the new one can be used.
     Broken(Arc<MeshError>),
-    /// Nobody waits for it: the library has moved to another folder.
+    /// The result is obsolete: the library has moved to another folder.
     Unwanted,
 }
 
 impl MeshLibrary {
-    /// A library for scenes in `folder`; without one (a scene that was never saved) nothing is found.
+    /// A library for scenes in `folder`. Without a folder (a scene that was never saved) it finds nothing.
     pub fn new(folder: Option<PathBuf>) -> Self {
         Self { folder, ..Self::default() }
     }
@@ -70,20 +70,20 @@ impl MeshLibrary {
         self.folder.as_deref()
     }
 
-    /// Moves to another folder, and forgets everything where it is another one.
+    /// Changes the folder; forgets everything if it differs from the old one.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
         if self.folder != folder {
             *self = Self { revision: self.revision + 1, ..Self::new(folder) };
         }
     }
 
-    /// Another number whenever a mesh was loaded, replaced or forgotten.
+    /// A number that changes whenever a mesh is loaded, replaced or forgotten.
     pub fn revision(&self) -> u64 {
         self.revision
     }
 
-    /// The mesh in the file of this name, from memory if it was asked for before. The path must stay
-    /// inside the folder; the error names it as the scene does.
+    /// The mesh in the file of this name, loaded on the first request. The path must stay inside the folder; the error
+    /// names it as the scene does.
     pub fn get(&mut self, path: &str) -> MeshResult {
         if let Some(known) = self.loaded.get(path) {
             return known.result.clone();
@@ -95,13 +95,13 @@ impl MeshLibrary {
         result
     }
 
-    /// The mesh of this name, if it was loaded before.
+    /// The mesh of this name, if it was requested before.
     pub fn known(&self, path: &str) -> Option<&MeshResult> {
         self.loaded.get(path).map(|loaded| &loaded.result)
     }
 
-    /// Takes what another library, a copy of this one, has read since; not where this one has moved to another folder. So
-    /// meshes are read on another thread, each with what the others leave it of the room for textures.
+    /// Takes over the meshes that a copy of this library has read since; does nothing if this one has moved to another
+    /// folder. So another thread can read meshes, each within the texture budget that the others leave it.
     pub fn take_new(&mut self, other: Self) {
         if self.folder != other.folder {
             return;
@@ -114,7 +114,7 @@ impl MeshLibrary {
         }
     }
 
-    /// Keeps in mind that the mesh of this name cannot be had, and why, until it is read again.
+    /// Records that the mesh of this name cannot be loaded, and why, until it is read again.
     pub fn refuse(&mut self, path: &str, reason: &str) {
         let files = self.folder.iter().map(|folder| MeshFileStamp::of(&folder.join(path))).collect();
         let result = Err(Arc::new(MeshError::new(path, "", reason)));
@@ -122,7 +122,7 @@ impl MeshLibrary {
         self.revision += 1;
     }
 
-    /// All that was asked for, with the files that were read.
+    /// The sources of all requested meshes.
     pub fn sources(&self) -> Vec<MeshSource> {
         let sources = self.loaded.iter().map(|(path, loaded)| self.source(path.clone(), loaded.files.clone()));
         sources.collect()
@@ -136,14 +136,14 @@ impl MeshLibrary {
         MeshSource { folder: self.folder.clone(), path, files, texture_budget }
     }
 
-    /// Puts a mesh that was read again in the place of the old one, unless it is broken and the old one is not.
+    /// Replaces a mesh by a newly read one, unless the new one is broken and the old one is not.
     pub fn replace(&mut self, fresh: Reread) -> ReloadOutcome {
         let Reread { source, result } = fresh;
         let Some(loaded) = self.loaded.get_mut(&source.path).filter(|_| self.folder == source.folder) else {
             return ReloadOutcome::Unwanted;
         };
         self.revision += 1;
-        // Of the broken one, too, so that it is not read again until it changes again.
+        // Recorded for a broken file, too, so that it is not read again until it changes again.
         loaded.files = source.files;
         match (&loaded.result, &result) {
             (Ok(_), Err(error)) => ReloadOutcome::Kept(error.clone()),
@@ -162,22 +162,22 @@ impl MeshLibrary {
 }
 
 impl MeshSource {
-    /// The path, as the scene names it.
+    /// The path as the scene names it.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// The files as they are now; the same as before where nothing has changed.
+    /// The stamps of the files as they are now; equal to the recorded ones if nothing has changed.
     pub(super) fn look(&self) -> Vec<MeshFileStamp> {
         self.files.iter().map(MeshFileStamp::again).collect()
     }
 
-    /// The files as they were when they were read.
+    /// The stamps of the files at the time of reading.
     pub(super) fn files(&self) -> &[MeshFileStamp] {
         &self.files
     }
 
-    /// Reads it, with the files that it names.
+    /// Reads the mesh, with the files that it names.
     pub fn read(mut self) -> Reread {
         let mut files = Vec::new();
         let result = self.read_into(&mut files);
@@ -190,11 +190,11 @@ impl MeshSource {
         let Some(folder) = &self.folder else {
             return Err(refuse("the scene has no folder to look in until it is saved".into()));
         };
-        // Before it is read: what changes meanwhile is seen later.
+        // Stamped before reading, so that a change during the read is noticed later.
         files.push(MeshFileStamp::of(&folder.join(&self.path)));
         let file = inside(folder, &self.path).map_err(refuse)?;
         let bytes = read_file(&file).map_err(refuse)?;
-        // What the glTF names must lie beside it or below, as for any glTF.
+        // Files that the glTF names must lie in its folder or below, as for any glTF.
         let reader = Reader::new(file.parent());
         let mut budget = self.texture_budget;
         let result = parse_within(&bytes, Path::new(&self.path), &reader, &mut budget);
@@ -204,7 +204,7 @@ impl MeshSource {
 }
 
 impl Reread {
-    /// Where it came from.
+    /// The source of the mesh.
     pub fn source(&self) -> &MeshSource {
         &self.source
     }

@@ -1,4 +1,4 @@
-//! From a file to one mesh: the steps in order.
+//! Loads a file as one mesh: the steps in order.
 
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -16,16 +16,16 @@ use super::resolve::{Reader, read_file};
 use super::surface::Surfaces;
 use super::{MeshError, TriangleMesh};
 
-/// Reads a .gltf or .glb file, with the buffers and images it names in its own folder.
+/// Reads a .gltf or .glb file, with the buffers and images that it names in its own folder.
 ///
 /// # Errors
-/// File, place and reason, for everything that is missing, broken, unsafe or too large.
+/// Names file, place and reason of everything that is missing, broken, unsafe or too large.
 pub fn load(path: &Path) -> Result<TriangleMesh, MeshError> {
     let bytes = read_file(path).map_err(|reason| LoadRefusal::at("", reason).of(path))?;
     parse(&bytes, path, Some(path.parent().unwrap_or(Path::new("."))))
 }
 
-/// The same from memory; `file` only names it in errors, other files are looked for in `folder`.
+/// Like [`load`], from memory. `file` only names the file in errors; `folder` is where other files are looked up.
 ///
 /// # Errors
 /// As [`load`].
@@ -34,7 +34,7 @@ pub fn parse(bytes: &[u8], file: &Path, folder: Option<&Path>) -> Result<Triangl
     parse_within(bytes, file, &Reader::new(folder), &mut texture_budget)
 }
 
-/// The same by a given reader; `texture_budget` is how many bytes decoded textures may still take.
+/// Like [`parse`], with a given reader; `texture_budget` is the number of bytes left for decoded textures.
 pub(super) fn parse_within(
     bytes: &[u8],
     file: &Path,
@@ -50,7 +50,7 @@ pub(super) fn parse_within(
         let source = Source { root: &document.root, buffers: &buffers, entries_read: Cell::new(0) };
         write_out(&source, Surfaces::new(&source, reader, texture_budget))
     };
-    // No way into a panic is known, but image decoders and this code meet files that nobody has seen.
+    // No input is known to cause a panic, but the image decoders and this code read untrusted files.
     catch_unwind(AssertUnwindSafe(read))
         .unwrap_or_else(|_| Err(LoadRefusal::at("", "is broken in a way that cannot be named")))
         .map_err(|refusal| refusal.of(file))
@@ -71,7 +71,7 @@ fn read_buffers<'a>(document: &GltfDocument<'a>, reader: &Reader<'_>) -> Result<
             let reason = format!("says {} bytes, but has {}", buffer.byte_length.0, bytes.len());
             return Err(LoadRefusal::at(format!("{place}.byteLength"), reason));
         }
-        // What lies behind the stated length is padding, and not to be read.
+        // Bytes behind the stated length are padding; ignore them.
         match &mut bytes {
             Cow::Owned(bytes) => bytes.truncate(buffer.byte_length.0 as usize),
             Cow::Borrowed(bytes) => *bytes = &bytes[..buffer.byte_length.0 as usize],

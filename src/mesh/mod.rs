@@ -1,13 +1,13 @@
 //! Triangles: glTF files as one indexed mesh, ready for upload, with a ray query.
 //!
 //! ```text
-//! .gltf / .glb ──► resolve (files, data URIs) ──► document (JSON, checked) ──► forest (who stands where)
+//! .gltf / .glb ──► resolve (files, data URIs) ──► document (JSON, checked) ──► forest (placement of nodes)
 //!              ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
 //! ```
 //!
-//! Files come from strangers. Every number is checked before anything is read or allocated by it, all of it runs
-//! behind `catch_unwind`, and nothing outside the file's own folder is opened. What is refused is named: file, place
-//! in the file, reason. What a file contains that is not drawn is named, too (`remarks`).
+//! Files are untrusted. Every number is checked before it sizes a read or an allocation, all of it runs behind
+//! `catch_unwind`, and nothing outside the file's own folder is opened. A refusal names the file, the place in the
+//! file, and the reason. `remarks` lists the contents of a file that are not drawn.
 
 mod accessor;
 mod bvh;

@@ -1,5 +1,5 @@
-//! Where the vertices of a primitive stand: as their node does, or as the joints of a skin carry them; with morph
-//! targets by the weights that the file gives at rest.
+//! The positions of a primitive's vertices: given by its node's transform or by the joints of a skin, with morph
+//! targets at the weights of the rest pose.
 
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
@@ -8,21 +8,21 @@ use super::error::LoadRefusal;
 use super::limits::MAX_JOINTS;
 use super::schema::{GltfNode, Primitive, Root, Skin};
 
-/// What places the vertices of a mesh in the file's space.
+/// The placement of a mesh's vertices in the file's space.
 pub(super) enum Pose {
-    /// All alike.
+    /// One transform for all vertices.
     Rigid(DAffine3),
-    /// Each by the joints that it names; the node's own place does not count (specification, 3.7.3.1).
+    /// Each vertex by its joints; the node's own transform does not count (specification, 3.7.3.1).
     Skinned {
-        /// From the bind pose to the file's space, for each joint.
+        /// The transform from the bind pose to the file's space, for each joint.
         joints: Vec<DAffine3>,
-        /// Places what names no joints.
+        /// The transform for primitives without joints.
         world_from_node: DAffine3,
     },
 }
 
 impl Pose {
-    /// Of the mesh at a node.
+    /// The pose of the mesh at a node.
     pub fn of(source: &Source<'_>, world_from_node: &[DAffine3], node: usize) -> Result<Self, LoadRefusal> {
         let root: &Root = source.root;
         let Some(skin) = root.nodes[node].skin else { return Ok(Self::Rigid(world_from_node[node])) };
@@ -46,7 +46,7 @@ fn joints(
             format!("has {count} entries; 1 to {MAX_JOINTS} are allowed"),
         ));
     }
-    // A skin may carry many meshes.
+    // Many meshes may share a skin.
     source.charge(skin.joints.len() as u64, place)?;
     let places = skin.joints.iter().map(|joint| world_from_node[joint.index()]);
     let Some(accessor) = skin.inverse_bind_matrices else { return Ok(places.collect()) };
@@ -68,13 +68,13 @@ fn joints(
     }
 }
 
-/// The vertices of a primitive as they are stored and moved by morph targets, with what places them.
+/// The vertices of a primitive after the morph targets, with their pose.
 pub(super) struct Vertices<'a> {
     pub positions: Vec<[f32; 3]>,
-    /// `None` where the file has none.
+    /// `None` if the file has none.
     pub normals: Option<Vec<[f32; 3]>>,
     pose: &'a Pose,
-    /// Joints and their weights, four at a time; empty where the pose is rigid.
+    /// Joints and their weights, four at a time; empty if the pose is rigid.
     influences: Vec<Influences>,
 }
 
@@ -84,7 +84,7 @@ struct Influences {
 }
 
 impl<'a> Vertices<'a> {
-    /// Reads what places the vertices. `place` is that of the primitive.
+    /// Reads the attributes that place the vertices. `place` is that of the primitive.
     pub fn read(
         source: &Source<'_>,
         primitive: &Primitive,
@@ -120,7 +120,7 @@ impl<'a> Vertices<'a> {
         Ok(vertices)
     }
 
-    /// Adds the morph targets. Those whose weight is 0 are not even read.
+    /// Adds the morph targets. Does not read targets of weight 0.
     fn morph(
         &mut self,
         source: &Source<'_>,
@@ -171,7 +171,7 @@ impl<'a> Vertices<'a> {
                     return Err(LoadRefusal::at(&users[1], format!("is no share at vertex {i}")));
                 }
                 let names_joint = |joint: f32| joint >= 0.0 && joint.fract() == 0.0 && (joint as usize) < joint_count;
-                // Where the weight is 0 the joint does not matter, and many exporters leave anything there.
+                // A joint of weight 0 has no effect, and many exporters leave any index there.
                 if joints.iter().zip(weights).any(|(joint, weight)| *weight > 0.0 && !names_joint(*joint)) {
                     return Err(LoadRefusal::at(&users[0], format!("names a joint that is missing at vertex {i}")));
                 }
@@ -181,7 +181,7 @@ impl<'a> Vertices<'a> {
         Ok(())
     }
 
-    /// From the stored place of a vertex to that in the file's space.
+    /// The transform of a vertex from its stored position to the file's space.
     pub fn world_from_local(&self, vertex: usize) -> DAffine3 {
         let joints = match self.pose {
             Pose::Rigid(world_from_local) => return *world_from_local,
@@ -199,7 +199,7 @@ impl<'a> Vertices<'a> {
                 }
             }
         }
-        // Weights should sum to 1; what quantization leaves of that would scale the vertex toward the origin.
+        // Weights should sum to 1; the rounding of quantized weights would scale the vertex toward the origin.
         if total > 0.0 {
             DAffine3 { matrix3: matrix3 * (1.0 / total), translation: translation / total }
         } else {
@@ -207,31 +207,31 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// The place of a vertex in the file's space.
+    /// The position of a vertex in the file's space.
     pub fn world(&self, vertex: usize) -> DVec3 {
         self.world_from_local(vertex).transform_point3(DVec3::from(self.positions[vertex].map(f64::from)))
     }
 
-    /// The unit normal of a vertex in the file's space, zero where the file's is; `None` without normals.
+    /// The unit normal of a vertex in the file's space, zero if the file's normal is zero; `None` without normals.
     pub fn normal(&self, vertex: usize) -> Option<DVec3> {
         let normal = DVec3::from(self.normals.as_ref()?[vertex].map(f64::from));
         let cofactors = cofactors(&self.world_from_local(vertex).matrix3);
         Some((cofactors * normal).try_normalize().unwrap_or(DVec3::ZERO))
     }
 
-    /// Whether a triangle at this vertex is turned inside out, so that its corners run the other way.
+    /// Whether the pose mirrors a triangle at this vertex, so that its winding is reversed.
     pub fn is_mirrored(&self, vertex: usize) -> bool {
         self.world_from_local(vertex).matrix3.determinant() < 0.0
     }
 }
 
-/// The weights of the morph targets of the mesh at a node, at rest.
+/// The weights of the morph targets of the mesh at a node, in the rest pose.
 pub(super) fn morph_weights<'a>(root: &'a Root, node: &'a GltfNode) -> &'a [f64] {
     let of_mesh = || node.mesh.and_then(|mesh| root.meshes.get(mesh.index())?.weights.as_deref());
     node.weights.as_deref().or_else(of_mesh).unwrap_or(&[])
 }
 
-/// Refuses an attribute whose entries are not as many as the vertices.
+/// Refuses an attribute whose entry count differs from the vertex count.
 pub(super) fn same_count(count: u64, vertices: usize, place: &str) -> Result<(), LoadRefusal> {
     if count == vertices as u64 {
         return Ok(());
@@ -239,8 +239,8 @@ pub(super) fn same_count(count: u64, vertices: usize, place: &str) -> Result<(),
     Err(LoadRefusal::at(place, format!("has {count} entries for {vertices} vertices")))
 }
 
-/// What carries normals along with `m`: the inverse transpose times the determinant's magnitude, which
-/// exists for flattened matrices too.
+/// The normal matrix of `m`: the inverse transpose times the magnitude of the determinant, which exists for singular
+/// matrices too.
 fn cofactors(m: &DMat3) -> DMat3 {
     let (x, y, z) = (m.x_axis, m.y_axis, m.z_axis);
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * m.determinant().signum()

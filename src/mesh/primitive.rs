@@ -1,7 +1,7 @@
 //! Primitives: from attributes to triangles in the file's space.
 //!
-//! Primitives of a mesh that name the same accessors share their vertices, and only vertices that a triangle uses are
-//! written: 850 primitives that take pieces of one large accessor cost no more than one.
+//! Primitives of a mesh that name the same accessors share their vertices, and only vertices of triangles are written:
+//! 850 primitives that take pieces of one large accessor cost no more than one.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;
@@ -18,22 +18,22 @@ use super::surface::{Surface, Surfaces};
 use super::{MeshPart, TriangleMesh};
 use isolith_geometry::Aabb;
 
-/// Writes meshes into one, one after the other.
+/// Appends meshes to one mesh.
 pub(super) struct Writer<'a> {
     source: &'a Source<'a>,
     surfaces: Surfaces<'a>,
     mesh: TriangleMesh,
     remarks: Remarks,
-    /// Attributes that were looked at so far.
+    /// Attributes counted so far, for the limit.
     attributes: usize,
 }
 
-/// Primitives of one mesh whose vertices are the same.
+/// Primitives of one mesh that share their vertices.
 struct Group<'p> {
-    /// The first of them, whose attributes stand for all.
+    /// The first of them; the attributes of the others are the same.
     primitive: &'p Primitive,
     place: String,
-    /// Of the texture coordinates.
+    /// The set of texture coordinates.
     uv_set: u64,
     runs: Vec<Run>,
 }
@@ -44,7 +44,7 @@ struct Run {
     triangles: Vec<[u32; 3]>,
 }
 
-/// What two primitives must have in common to share vertices.
+/// Primitives with equal keys share vertices.
 type Key = (Vec<(String, Whole)>, Vec<Vec<(String, Whole)>>, u64);
 
 impl<'a> Writer<'a> {
@@ -76,7 +76,7 @@ impl<'a> Writer<'a> {
         self.mesh
     }
 
-    /// Adds a mesh as it stands in the file's space. Points and lines have no surface and are left out.
+    /// Adds a mesh in its pose. Points and lines have no surface and are left out.
     pub fn add(&mut self, mesh: &GltfMesh, pose: &Pose, morph: &[f64], place: &str) -> Result<(), LoadRefusal> {
         for group in self.groups(mesh, place)? {
             self.add_group(&group, pose, morph)?;
@@ -117,7 +117,7 @@ impl<'a> Writer<'a> {
         Ok(groups)
     }
 
-    /// Corners of each triangle, all of them among the vertices; those with a repeated corner are left out.
+    /// The corners of each triangle, checked against the vertex count; triangles with a repeated corner are left out.
     fn triangles(&self, primitive: &Primitive, mode: u64, place: &str) -> Result<Vec<[u32; 3]>, LoadRefusal> {
         let user = format!("{place}.indices");
         let vertices = primitive.attributes.get("POSITION").map_or(0, |accessor| self.source.count(*accessor));
@@ -191,7 +191,7 @@ impl<'a> Writer<'a> {
             let normals = mended_normals(&self.mesh.positions[base as usize..], &written, normals);
             self.mesh.normals.extend(normals);
         } else {
-            // Without normals a surface is flat-shaded (specification, 3.7.2.1): no vertex is shared.
+            // A surface without normals is flat-shaded (specification, 3.7.2.1): no vertices are shared.
             self.reserve(count * 3, count, place)?;
             for run in &group.runs {
                 let first = self.mesh.indices.len() as u32;
@@ -210,8 +210,8 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// What the positions in this box are to be relative to. Near it rounding to f32 does no harm: 0 does, or what the
-    /// part before is relative to.
+    /// The origin for positions in this box, near enough for rounding to f32 to do no harm. Prefers 0, then the origin
+    /// of the part before.
     fn origin(&self, bounds: &Aabb) -> DVec3 {
         let size = (bounds.max - bounds.min).max_element();
         let is_near = |origin: &DVec3| {
@@ -222,7 +222,7 @@ impl<'a> Writer<'a> {
         [Some(DVec3::ZERO), before].into_iter().flatten().find(is_near).unwrap_or_else(|| bounds.center())
     }
 
-    /// The run from `first_index` to the end; joined to the run before where nothing differs.
+    /// Adds the part from `first_index` to the end; extends the part before if surface and origin are the same.
     fn add_part(&mut self, first_index: u32, origin: DVec3, surface: Surface) {
         let end = self.mesh.indices.len() as u32;
         match self.mesh.parts.last_mut() {
@@ -232,7 +232,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Refuses what would make the mesh too large.
+    /// Refuses additions that would exceed the limits of a mesh.
     fn reserve(&self, vertices: usize, triangles: usize, place: &str) -> Result<(), LoadRefusal> {
         if self.mesh.positions.len() + vertices > MAX_VERTICES {
             return Err(LoadRefusal::at(place, format!("makes the mesh larger than {MAX_VERTICES} vertices")));
@@ -262,7 +262,7 @@ impl<'a> Writer<'a> {
         Ok(Some(colors))
     }
 
-    /// The texture coordinates, where a texture needs them.
+    /// The texture coordinates, if a texture needs them.
     fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, LoadRefusal> {
         if group.runs.iter().all(|run| run.surface.texture.is_none()) {
             return Ok(None);
@@ -283,14 +283,14 @@ const TRIANGLES: u64 = 4;
 const STRIP: u64 = 5;
 const FAN: u64 = 6;
 
-/// How many times its size a part may reach from its origin: rounding to f32 then moves a vertex by at most 4e-6 of
-/// the part's size.
+/// Greatest distance of a part from its origin, in multiples of its size: rounding to f32 then moves a vertex by at
+/// most 4e-6 of the part's size.
 const MOST_SIZES_AWAY: f64 = 64.0;
 
-/// The vertices that triangles use, in the order of the file.
+/// The vertices of the triangles, in the order of the file.
 struct Used {
     list: Vec<u32>,
-    /// Where each vertex stands in the list; empty where too few are used for a table to pay.
+    /// The index in the list of each vertex; empty if too few vertices are used for a table to pay.
     table: Vec<u32>,
 }
 
@@ -313,7 +313,7 @@ impl Used {
         Self { list, table }
     }
 
-    /// Where a vertex that is used stands in the list.
+    /// The index in the list of a used vertex.
     fn number(&self, vertex: u32) -> u32 {
         match self.table.get(vertex as usize) {
             Some(number) => *number,
@@ -322,7 +322,7 @@ impl Used {
     }
 }
 
-/// The box around the vertices that are used.
+/// The bounds of the used vertices.
 fn bounds(vertices: &Vertices<'_>, used: &Used, place: &str) -> Result<Aabb, LoadRefusal> {
     let mut bounds = Aabb::EMPTY;
     for v in &used.list {
@@ -336,7 +336,7 @@ fn bounds(vertices: &Vertices<'_>, used: &Used, place: &str) -> Result<Aabb, Loa
     Ok(bounds)
 }
 
-/// Unit normals in f32; those that are zero are replaced by the mean of the faces around the vertex.
+/// Unit normals in f32. The mean of the faces around a vertex replaces a zero normal.
 fn mended_normals(positions: &[[f32; 3]], triangles: &[[u32; 3]], mut normals: Vec<DVec3>) -> Vec<[f32; 3]> {
     if normals.contains(&DVec3::ZERO) {
         let mut sums = vec![DVec3::ZERO; normals.len()];
@@ -351,7 +351,7 @@ fn mended_normals(positions: &[[f32; 3]], triangles: &[[u32; 3]], mut normals: V
     normals.into_iter().map(|n| n.as_vec3().to_array()).collect()
 }
 
-/// The unit normal on the side from which the corners run counter-clockwise; `None` without area.
+/// The unit normal on the side from which the corners run counter-clockwise; `None` if the area is zero.
 fn face_normal(corners: [[f32; 3]; 3]) -> Option<DVec3> {
     let [a, b, c] = corners.map(point);
     (b - a).cross(c - a).try_normalize()

@@ -1,10 +1,10 @@
-//! Whether everything that a document names is there, so that no later step has to ask.
+//! Checks that every reference in a document leads to an entry, so that later steps need not check.
 
 use super::accessor::{ComponentType, ElementShape};
 use super::error::LoadRefusal;
 use super::schema::{Accessor, Primitive, Root, Whole};
 
-/// Refuses the first reference that leads nowhere, and codes that glTF does not know.
+/// Refuses the first reference without a target, and codes that glTF does not define.
 pub(super) fn check_references(root: &Root) -> Result<(), LoadRefusal> {
     for (i, accessor) in root.accessors.iter().enumerate() {
         check_accessor(root, accessor, &format!("accessors[{i}]"))?;

@@ -1,4 +1,4 @@
-//! What a file contains that is not drawn, or not as it stands there: said, and each thing once.
+//! Remarks: contents of a file that are not drawn, or drawn differently. Each is listed once.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::forest::shown_scene;
 use super::limits::MAX_WARNINGS;
 use super::schema::{GltfMaterial, Root};
 
-/// Extensions that change nothing that could be seen, or whose plain data stand beside.
+/// Extensions without visible effect, or with plain data as a fallback.
 const WITHOUT_EFFECT: &[&str] = &[
     "EXT_mesh_features",
     "EXT_structural_metadata",
@@ -21,19 +21,19 @@ const WITHOUT_EFFECT: &[&str] = &[
     "KHR_xmp_json_ld",
 ];
 
-/// The remarks about one file, in the making.
+/// Collects the remarks about one file.
 #[derive(Debug, Default)]
 pub(super) struct Remarks {
     texts: Vec<String>,
-    /// How many are not kept.
+    /// Number of remarks dropped.
     omitted: usize,
-    /// Materials by what of them is not drawn: their titles by their numbers.
+    /// Materials with features that are not drawn: for each feature, titles by material index.
     materials: BTreeMap<&'static str, BTreeMap<usize, String>>,
     points_and_lines: usize,
 }
 
 impl Remarks {
-    /// What can be said of the document as a whole.
+    /// The remarks about the document as a whole.
     pub fn of(root: &Root) -> Self {
         let mut remarks = Self::default();
         for extension in &root.extensions_used {
@@ -58,7 +58,7 @@ impl Remarks {
         remarks
     }
 
-    /// Adds a remark, unless it was made before.
+    /// Adds a remark, unless it exists already.
     pub fn add(&mut self, text: String) {
         if self.texts.contains(&text) {
             return;
@@ -71,7 +71,7 @@ impl Remarks {
         self.points_and_lines += 1;
     }
 
-    /// Says what of a material that is used is not drawn.
+    /// Adds the features of a used material that are not drawn.
     pub fn material(&mut self, index: usize, material: &GltfMaterial) {
         let pbr = &material.pbr_metallic_roughness;
         let emits = material.emissive_factor.is_some_and(|factor| factor.iter().any(|c| *c > 0.0));
@@ -114,7 +114,7 @@ impl Remarks {
     }
 }
 
-/// What the lack of an extension does to the picture; `None`: nothing.
+/// The effect on the picture if an extension is not supported; `None` for no effect.
 fn effect(extension: &str) -> Option<&'static str> {
     Some(match extension {
         "KHR_materials_pbrSpecularGlossiness" => "only its diffuse color is drawn",

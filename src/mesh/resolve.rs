@@ -1,4 +1,4 @@
-//! Where bytes come from: files inside a folder, and data URIs. Nothing outside the folder is opened.
+//! Reads bytes from files inside a folder and from data URIs. Opens nothing outside the folder.
 
 use std::cell::RefCell;
 use std::fs::File;
@@ -9,31 +9,31 @@ use std::time::SystemTime;
 use super::error::name;
 use super::limits::MAX_FILE_BYTES;
 
-/// A file as it was at some moment: what changes when it is written.
+/// A file's stamp: properties that change when the file is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct MeshFileStamp {
     path: PathBuf,
-    /// When it was written and how long it was; `None` where there was no file.
+    /// Modification time and length; `None` if there was no file.
     state: Option<(Option<SystemTime>, u64)>,
 }
 
 impl MeshFileStamp {
-    /// Of the file as it is now.
+    /// The current stamp of the file.
     pub fn of(path: &Path) -> Self {
         let state = path.metadata().ok().map(|metadata| (metadata.modified().ok(), metadata.len()));
         Self { path: path.to_path_buf(), state }
     }
 
-    /// Of the same file as it is now.
+    /// The current stamp of the same file.
     pub fn again(&self) -> Self {
         Self::of(&self.path)
     }
 }
 
-/// Reads what a glTF names, and keeps in mind which files were asked for, whether they are there or not.
+/// Reads the files that a glTF names, and records which were requested, whether they exist or not.
 #[derive(Debug)]
 pub(super) struct Reader<'a> {
-    /// The folder of the glTF file; `None`: it stands in none, and can name no other file.
+    /// The folder of the glTF file; `None` if it has none and so cannot name other files.
     folder: Option<&'a Path>,
     files: RefCell<Vec<MeshFileStamp>>,
 }
@@ -43,12 +43,12 @@ impl<'a> Reader<'a> {
         Self { folder, files: RefCell::default() }
     }
 
-    /// The files that were asked for.
+    /// The requested files.
     pub fn into_files(self) -> Vec<MeshFileStamp> {
         self.files.into_inner()
     }
 
-    /// The bytes that a glTF file names by `uri`. The error is a reason for people.
+    /// The bytes that a glTF file names by `uri`. The error is a reason for the user.
     pub fn uri(&self, uri: &str) -> Result<Vec<u8>, String> {
         if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
             return read_data_uri(&uri[5..]);
@@ -56,13 +56,13 @@ impl<'a> Reader<'a> {
         let Some(folder) = self.folder else {
             return Err("names another file, but this glTF stands in no folder".into());
         };
-        // These have a meaning in URIs, unless they are written as `%23`.
+        // These have a meaning in URIs, unless they are percent-encoded (`%23`).
         if uri.contains([':', '?', '#']) {
             return Err(format!("“{}” is not a plain relative path", name(uri)));
         }
         let path = percent_decoded(uri)?;
         let file = inside(folder, &path);
-        // Before it is read: what changes meanwhile is seen later.
+        // Stamped before reading, so that a change during the read is noticed later.
         let stamp = file
             .as_ref()
             .map_or_else(|_| MeshFileStamp { path: folder.join(&path), state: None }, |file| MeshFileStamp::of(file));
@@ -71,7 +71,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The whole file, unless it is too large or not a plain file. The error is a reason for people.
+/// The whole file. Refuses files that are too large or not regular. The error is a reason for the user.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     let cannot = |e: std::io::Error| format!("cannot be read: {e}");
     let check = |metadata: std::fs::Metadata| {
@@ -83,12 +83,12 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, String> {
             length => Ok(length),
         }
     };
-    // Before it is opened: to open a pipe may wait for ever, and to open a device may do anything.
+    // Checked before opening: opening a pipe may block forever, and opening a device may have side effects.
     check(path.metadata().map_err(cannot)?)?;
     let file = File::open(path).map_err(cannot)?;
     let length = check(file.metadata().map_err(cannot)?)?;
     let mut bytes = Vec::with_capacity(length as usize);
-    // The file may grow while it is read: one byte more than allowed is enough to know.
+    // The file may grow while it is read: one byte more than allowed proves it.
     file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(format!("has more than {MAX_FILE_BYTES} bytes"));
@@ -96,8 +96,8 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// The file that `relative` names, if it exists and lies in `folder`, links followed. The error is a
-/// reason for people.
+/// The file that `relative` names, if it exists and lies in `folder`, links followed. The error is a reason for the
+/// user.
 pub(super) fn inside(folder: &Path, relative: &str) -> Result<PathBuf, String> {
     let shown = name(relative);
     if relative.is_empty() {
@@ -124,7 +124,7 @@ pub(super) fn inside(folder: &Path, relative: &str) -> Result<PathBuf, String> {
     Ok(file)
 }
 
-/// What follows `data:`; only base64 is used in glTF files.
+/// The bytes of a data URI, given the part after `data:`; glTF files use base64 only.
 fn read_data_uri(rest: &str) -> Result<Vec<u8>, String> {
     let Some((header, body)) = rest.split_once(',') else {
         return Err("is a data URI without a comma".into());
@@ -163,7 +163,7 @@ fn base64_decoded(text: &[u8]) -> Result<Vec<u8>, String> {
     Ok(out)
 }
 
-/// A URI's path with its `%41` written out.
+/// Decodes the percent-encoding (`%41`) of a URI's path.
 fn percent_decoded(uri: &str) -> Result<String, String> {
     let wrong = || format!("“{}” is not a valid URI", name(uri));
     let mut out = Vec::with_capacity(uri.len());

@@ -1,17 +1,17 @@
-//! The JSON of a glTF file, as far as it is read. What stands in it beside is passed over.
+//! The supported part of a glTF file's JSON. Other contents are ignored.
 //!
-//! Numbers are f64, as JSON has them: a node that stands in national coordinates needs more than f32.
+//! Numbers are f64, as JSON has them: a node in national grid coordinates needs more precision than f32.
 
 use std::collections::BTreeMap;
 
 use serde::de::{Deserialize, Deserializer, Error, IgnoredAny, Visitor};
 
-/// A whole number that is not negative. `5.0` is one, too: some exporters write it so.
+/// A whole number that is not negative. `5.0` counts as one, too: some exporters write it so.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Whole(pub u64);
 
 impl Whole {
-    /// As an index; what no memory holds becomes an index that no list has.
+    /// The number as an index; one beyond the address space becomes an index that no list has.
     pub fn index(self) -> usize {
         usize::try_from(self.0).unwrap_or(usize::MAX)
     }
@@ -25,7 +25,7 @@ impl<'de> Deserialize<'de> for Whole {
 
 struct WholeVisitor;
 
-/// From here on f64 does not hold every whole number.
+/// Above this f64 cannot represent every whole number.
 const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
 
 impl Visitor<'_> for WholeVisitor {
@@ -51,7 +51,7 @@ impl Visitor<'_> for WholeVisitor {
     }
 }
 
-/// Only what says whether the rest can be understood.
+/// The fields that tell whether the rest can be understood.
 #[derive(Debug, serde::Deserialize)]
 pub(super) struct Versioned {
     pub asset: Option<Asset>,
@@ -94,10 +94,10 @@ pub(super) struct Root {
     pub materials: Vec<GltfMaterial>,
     #[serde(default)]
     pub skins: Vec<Skin>,
-    /// Only how many.
+    /// Only the count matters.
     #[serde(default)]
     pub animations: Vec<IgnoredAny>,
-    /// Only how many.
+    /// Only the count matters.
     #[serde(default)]
     pub cameras: Vec<IgnoredAny>,
 }
@@ -210,7 +210,7 @@ pub(super) struct Image {
 pub(super) struct GltfTexture {
     pub source: Option<Whole>,
     pub sampler: Option<Whole>,
-    /// Where else the image may be; only the names matter.
+    /// Alternative sources of the image; only the names matter.
     #[serde(default)]
     pub extensions: BTreeMap<String, IgnoredAny>,
 }

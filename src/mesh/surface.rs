@@ -1,4 +1,4 @@
-//! Materials: what a run of triangles looks like.
+//! Materials: the appearance of a run of triangles.
 
 use std::collections::HashMap;
 
@@ -11,16 +11,16 @@ use super::resolve::Reader;
 use super::schema::{GltfMaterial, Primitive, TextureInfo, Whole};
 use super::texture::{Sampler, Texture, Wrap, decode};
 
-/// What a run of triangles looks like.
+/// The appearance of a run of triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
-    /// Linear factor of the vertices' colors, and of their opacity.
+    /// Linear factor on the vertices' colors and opacity.
     pub color: [f32; 4],
-    /// Where the opacity is less, there is no surface; `None`: it is everywhere.
+    /// There is no surface where the opacity is below this; `None` for a surface everywhere.
     pub alpha_cutoff: Option<f32>,
     /// Index into [`super::TriangleMesh::textures`]; multiplied with `color` after conversion to linear.
     pub texture: Option<usize>,
-    /// How the texture is looked up.
+    /// The sampler of the texture.
     pub sampler: Sampler,
     /// Rows of the affine map from the vertices' texture coordinates to those of the texture.
     pub texture_from_uv: [[f32; 3]; 2],
@@ -39,21 +39,21 @@ impl Default for Surface {
 }
 
 impl Surface {
-    /// Where the texture is looked up for these coordinates of a vertex or a point between.
+    /// Transforms the texture coordinates of a vertex, or of a point between vertices, to those of the texture.
     pub fn texture_place(&self, uv: DVec2) -> DVec2 {
         let row = |[a, b, c]: [f32; 3]| f64::from(a) * uv.x + f64::from(b) * uv.y + f64::from(c);
         DVec2::new(row(self.texture_from_uv[0]), row(self.texture_from_uv[1]))
     }
 }
 
-/// The materials of a document on their way into a mesh, and its images: each is decoded once.
+/// Converts the materials of a document, and decodes each of its images once.
 pub(super) struct Surfaces<'a> {
     source: &'a Source<'a>,
     reader: &'a Reader<'a>,
     budget: &'a mut u64,
     /// The decoded images.
     pub textures: Vec<Texture>,
-    /// What has become of an image of the document: `None` where it cannot be used.
+    /// The index of each decoded image of the document; `None` if it cannot be used.
     decoded: HashMap<usize, Option<usize>>,
 }
 
@@ -62,7 +62,7 @@ impl<'a> Surfaces<'a> {
         Self { source, reader, budget, textures: Vec::new(), decoded: HashMap::new() }
     }
 
-    /// Of a primitive, with the set of texture coordinates that its texture wants. What cannot be had is left out,
+    /// The surface of a primitive, with the set of texture coordinates for its texture. Leaves out what it cannot load,
     /// with a remark.
     pub fn of(&mut self, primitive: &Primitive, remarks: &mut Remarks) -> (Surface, u64) {
         let Some(index) = primitive.material else { return (Surface::default(), 0) };
@@ -127,7 +127,8 @@ impl<'a> Surfaces<'a> {
     }
 }
 
-/// The base color of a material. That of older files is called diffuse, and counts where it is given.
+/// The base color of a material. The older specular-glossiness extension calls it diffuse; it takes precedence if
+/// present.
 fn base_color(material: &GltfMaterial) -> ([f64; 4], Option<&TextureInfo>) {
     match &material.extensions.specular_glossiness {
         Some(older) => (older.diffuse_factor.unwrap_or([1.0; 4]), older.diffuse_texture.as_ref()),
@@ -146,13 +147,13 @@ fn wrap(code: Option<Whole>) -> Wrap {
     }
 }
 
-/// `NEAREST` and the two modes that take the nearest pixel of a smaller copy.
+/// `NEAREST` and the two mipmap modes with a nearest filter.
 fn is_nearest(code: Option<Whole>) -> bool {
     code.is_some_and(|code| matches!(code.0, 9_728 | 9_984 | 9_986))
 }
 
-/// The map of texture coordinates (extension KHR_texture_transform: scale, then a turn that is counter-clockwise
-/// where V points down, then offset), and the set that it is for.
+/// The map of texture coordinates (extension KHR_texture_transform: scale, then a rotation that is counter-clockwise
+/// with V pointing down, then offset), and the set that it applies to.
 fn transform(info: &TextureInfo) -> ([[f32; 3]; 2], u64) {
     let Some(transform) = &info.extensions.transform else {
         return (Surface::default().texture_from_uv, info.tex_coord.0);

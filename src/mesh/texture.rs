@@ -1,4 +1,4 @@
-//! Base color textures: decoded within a budget, and looked up as a renderer does.
+//! Base color textures: decoded within a budget, and sampled as a renderer does.
 
 use std::io::Cursor;
 
@@ -7,7 +7,7 @@ use image::{DynamicImage, ImageDecoder as _, ImageFormat, ImageReader, Limits};
 
 use super::limits::{MAX_DECODER_BYTES, MAX_IMAGE_SIDE, MAX_TEXTURE_BYTES};
 
-/// A picture.
+/// An image.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Texture {
     /// Width in pixels.
@@ -24,29 +24,29 @@ impl std::fmt::Debug for Texture {
     }
 }
 
-/// What stands beyond the edge of a texture.
+/// The wrapping mode beyond the edge of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// The texture again.
+    /// Repeats the texture.
     #[default]
     Repeat,
-    /// The texture again, each time turned round.
+    /// Repeats the texture, every other time mirrored.
     Mirror,
-    /// The color of the edge.
+    /// Extends the color of the edge.
     Clamp,
 }
 
-/// How a texture is looked up. There are no smaller copies of it, so one filter does for near and far.
+/// A sampler. There are no mipmaps, so one filter serves near and far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Sampler {
     /// Along U and V.
     pub wrap: [Wrap; 2],
-    /// The nearest pixel alone, instead of a mix of the nearest four.
+    /// Nearest pixel instead of bilinear filtering.
     pub nearest: bool,
 }
 
 impl Texture {
-    /// The texture at (u, v): `color` makes numbers of a pixel's bytes, which are mixed.
+    /// Samples the texture at (u, v): `color` converts a pixel's bytes to numbers before they are filtered.
     pub fn sample(&self, sampler: Sampler, u: f64, v: f64, color: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let size = [self.width, self.height].map(i64::from);
         let texel = |x: i64, y: i64| {
@@ -66,7 +66,7 @@ impl Texture {
     }
 }
 
-/// Which pixel of `size` stands at `at`.
+/// The pixel of `size` at coordinate `at`, after wrapping.
 fn wrapped(wrap: Wrap, at: i64, size: i64) -> i64 {
     match wrap {
         Wrap::Repeat => at.rem_euclid(size),
@@ -78,8 +78,8 @@ fn wrapped(wrap: Wrap, at: i64, size: i64) -> i64 {
     }
 }
 
-/// Decodes a PNG or JPEG file into 8-bit sRGB; `budget` is how many bytes all further textures may
-/// take. What it takes is known from its header, before anything is decoded. The error is a reason for people.
+/// Decodes a PNG or JPEG file into 8-bit sRGB; `budget` is the number of bytes left for further textures. The header
+/// tells the size before anything is decoded. The error is a reason for the user.
 pub(super) fn decode(bytes: &[u8], budget: &mut u64) -> Result<Texture, String> {
     let format = match bytes {
         [0x89, b'P', b'N', b'G', ..] => ImageFormat::Png,
@@ -100,7 +100,7 @@ pub(super) fn decode(bytes: &[u8], budget: &mut u64) -> Result<Texture, String> 
     let left = budget.checked_sub(size).ok_or_else(|| {
         format!("is {width} × {height} pixels; the textures of the scene together would take more than {MAX_TEXTURE_BYTES} bytes")
     })?;
-    // 16 bits per channel are twice what is kept.
+    // 16 bits per channel take twice the kept size.
     if decoder.total_bytes() > MAX_DECODER_BYTES {
         return Err(format!("takes {} bytes to decode, more than {MAX_DECODER_BYTES}", decoder.total_bytes()));
     }

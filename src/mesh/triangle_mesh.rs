@@ -1,4 +1,4 @@
-//! Triangles with everything that a renderer uploads.
+//! The triangle mesh with all data that a renderer uploads.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -17,54 +17,54 @@ use isolith_geometry::{Aabb, Ray};
 /// every number is finite; normals have unit length. Counter-clockwise triangles face the viewer.
 #[derive(Debug)]
 pub struct TriangleMesh {
-    /// Places of the vertices, in meters, relative to the origin of the part that they belong to.
+    /// Positions of the vertices, in meters, relative to the origin of their part.
     pub positions: Vec<[f32; 3]>,
     /// Unit normals of the vertices.
     pub normals: Vec<[f32; 3]>,
-    /// Linear colors of the vertices with their opacity, to be multiplied with that of the part.
+    /// Linear colors of the vertices with their opacity, multiplied with the color of the part.
     pub colors: Vec<[f32; 4]>,
     /// Texture coordinates of the vertices; the origin is the upper left corner.
     pub uvs: Vec<[f32; 2]>,
-    /// Three vertices per triangle.
+    /// Three vertex indices per triangle.
     pub indices: Vec<u32>,
-    /// Runs of triangles that look alike and stand near each other.
+    /// Runs of triangles with the same surface that stand near each other.
     pub parts: Vec<MeshPart>,
     /// Base color textures.
     pub textures: Vec<Texture>,
     /// The smallest box around all triangles.
     pub bounds: Aabb,
-    /// What the file contains that is not drawn, for people.
+    /// Contents of the file that are not drawn, as texts for the user.
     pub warnings: Vec<String>,
-    /// For rays; built by the first one.
+    /// The hierarchy for rays; built on first use.
     pub(super) bvh: OnceLock<Bvh>,
 }
 
-/// A run of triangles that look alike and stand near each other.
+/// A run of triangles with the same surface that stand near each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshPart {
-    /// Which of [`TriangleMesh::indices`].
+    /// The range in [`TriangleMesh::indices`].
     pub indices: Range<u32>,
-    /// What its positions are relative to: 0 unless they lie so far away that f32 would change their shape.
+    /// The origin of its positions: 0 unless they lie so far away that f32 would change their shape.
     pub origin: DVec3,
-    /// What it looks like.
+    /// Its appearance.
     pub surface: Surface,
 }
 
-/// Where a ray meets a mesh first.
+/// The first intersection of a ray with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshHit {
     /// Parameter along the ray, in units of its direction's length.
     pub t: f64,
-    /// Which triangle: its corners are `indices[3 * triangle..][..3]`.
+    /// Index of the triangle: its corners are `indices[3 * triangle..][..3]`.
     pub triangle: u32,
     /// Barycentric weights of the three corners; they sum to 1.
     pub weights: [f64; 3],
-    /// The corners' normals mixed by `weights`, of unit length.
+    /// The corners' normals interpolated with `weights`, of unit length.
     pub normal: DVec3,
 }
 
 impl TriangleMesh {
-    /// How many triangles.
+    /// The number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
     }
@@ -81,9 +81,8 @@ impl TriangleMesh {
         &self.parts[after - 1]
     }
 
-    /// The nearest triangle that the ray meets with 0 ≤ t ≤ `max_t`, from either side, where it is not cut out by
-    /// its opacity. The ray is in the mesh's own space; its direction may have any length but zero, and `t` is in its
-    /// units.
+    /// The nearest hit with 0 ≤ t ≤ `max_t`, from either side; points that the opacity cuts out do not count. The ray
+    /// is in the mesh's own space; its direction may have any length but zero, and `t` is in its units.
     pub fn hit(&self, ray_local: &Ray, max_t: f64) -> Option<MeshHit> {
         let is_there = |triangle, weights| !self.is_cut_out(triangle, weights);
         let corners = |triangle| self.corners(triangle);
@@ -91,8 +90,8 @@ impl TriangleMesh {
         Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
     }
 
-    /// Color and opacity at a point of a triangle: of vertices, part and texture together. `decode` makes linear
-    /// numbers of a texture's bytes.
+    /// Color and opacity at a point of a triangle: vertex color times part color times texture. `decode` converts a
+    /// texture's bytes to linear numbers.
     pub fn color(&self, triangle: u32, weights: [f64; 3], decode: impl Fn([u8; 4]) -> DVec4) -> DVec4 {
         let Surface { color, texture, sampler, .. } = self.part(triangle).surface;
         let corners = self.vertices(triangle);
@@ -110,12 +109,12 @@ impl TriangleMesh {
         opacity < f64::from(cutoff)
     }
 
-    /// The tree over the triangles, built on first use.
+    /// The hierarchy over the triangles, built on first use.
     pub fn bvh(&self) -> &Bvh {
         self.bvh.get_or_init(|| Bvh::build(self.triangle_count(), |triangle| self.corners(triangle)))
     }
 
-    /// The normal of the triangle itself, outward; not of unit length, zero where the triangle has no area.
+    /// The outward normal of the triangle itself; not of unit length, zero if the triangle has no area.
     pub fn face_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle);
         (b - a).cross(c - a)

@@ -1,4 +1,4 @@
-//! Looks after the files of meshes on a thread of its own, and reads again what has changed.
+//! Watches the files of meshes on a thread of its own, and reads changed ones again.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::Duration;
@@ -6,10 +6,10 @@ use std::time::Duration;
 use super::library::{MeshSource, Reread};
 use super::resolve::MeshFileStamp;
 
-/// How often the files are looked at.
+/// How often the files are checked.
 const PERIOD: Duration = Duration::from_secs(1);
-/// How soon a file that has changed is looked at again: it is read when it has not changed any more since, so that
-/// one that is being written is not read by halves.
+/// How soon a changed file is checked again: it is read once it has stopped changing, so that no half-written file is
+/// read.
 const SETTLING: Duration = Duration::from_millis(250);
 
 enum Order {
@@ -17,7 +17,7 @@ enum Order {
     ReadAll,
 }
 
-/// The thread, seen from outside. It ends when this is dropped.
+/// The handle of the thread, which ends when the handle is dropped.
 #[derive(Debug)]
 pub struct Watcher {
     orders: Sender<Order>,
@@ -25,7 +25,7 @@ pub struct Watcher {
 }
 
 impl Watcher {
-    /// Starts the thread; it calls `wake` when there is news. The error is a reason for people.
+    /// Starts the thread; it calls `wake` when there is news. The error is a reason for the user.
     pub fn start(wake: impl Fn() + Send + 'static) -> Result<Self, String> {
         let (orders, received) = channel();
         let (sender, news) = channel();
@@ -34,9 +34,9 @@ impl Watcher {
         Ok(Self { orders, news })
     }
 
-    /// Looks after these from now on, and no others.
+    /// Watches exactly these from now on.
     pub fn watch(&self, sources: Vec<MeshSource>) {
-        // The thread lives as long as this.
+        // Cannot fail: the thread lives as long as `self`.
         let _ = self.orders.send(Order::Watch(sources));
     }
 
@@ -45,16 +45,16 @@ impl Watcher {
         let _ = self.orders.send(Order::ReadAll);
     }
 
-    /// What was read again since the last call.
+    /// The meshes read again since the last call.
     pub fn news(&self) -> impl Iterator<Item = Reread> {
         self.news.try_iter()
     }
 }
 
-/// A mesh that is looked after.
+/// A watched mesh.
 struct Watched {
     source: MeshSource,
-    /// Its files as they were seen last, if they have changed since they were read.
+    /// The stamps of its files at the last check, if they differ from those at the time of reading.
     changed: Option<Vec<MeshFileStamp>>,
 }
 

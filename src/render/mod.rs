@@ -1,14 +1,14 @@
-//! The picture, with wgpu; nothing else in the program names it but the window.
+//! The renderer, on wgpu. Apart from it, only the window names wgpu.
 //!
 //! | lives as long as | types |
 //! |---|---|
 //! | the device | [`Gpu`], `Layouts`, `Passes` with the pipelines of passes without fields |
 //! | a structure or template | [`PipelineCache`]: the interpreter, and specialized pipelines as they become ready |
-//! | the scene | `SceneResources`: nodes, numbers, materials, lists; meshes by their own life |
+//! | the scene | `SceneResources`: nodes, rows, materials, tapes; meshes have their own lifetime |
 //! | the picture's size | `Targets`, one set for each [`Slot`] |
-//! | the frame | `FrameResources`: view, lights, dispatches; [`Frame`]: what is still to be done |
+//! | the frame | `FrameResources`: view, lights, dispatches; [`Frame`]: the remaining work |
 //!
-//! In which order the passes of a frame come stands in `recipe`. See `frame::plan` for how it is cut into dispatches.
+//! `recipe` defines the order of the passes, `frame::plan` cuts the frame into dispatches.
 //!
 //! # Example
 //!

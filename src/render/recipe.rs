@@ -1,9 +1,9 @@
-//! The frame from top to bottom: the only place where the order of the passes stands.
+//! The recipe of the frame, from top to bottom: the only place that defines the order of the passes.
 //!
-//! A new pass takes a line here, its Rust file in `render/passes`, and its WGSL file in `shaders/`. The line says what it
-//! runs over; planning, binding, recording, labels and timings follow from it.
+//! A new pass takes a line here, its Rust file in `render/passes`, and its WGSL file in `shaders/`. The line names the
+//! extent that the pass runs over; planning, binding, recording, labels and timings follow from it.
 
-/// Hands the lines of the recipe to the macro `$each`.
+/// Passes the lines of the recipe to the macro `$each`.
 macro_rules! recipe {
     ($each:ident) => {
         $each! {
@@ -15,46 +15,46 @@ macro_rules! recipe {
             Cone: cone = ConePass, "cone.wgsl", over Parts;
             /// Marches one component within these subtiles.
             Trace: trace = TracePass, "trace.wgsl", over Rounds;
-            /// Normals and materials of what is still seen when all components are there.
+            /// Normals and materials of the pixels that remain visible after all components are traced.
             Surface: surface = SurfacePass, "surface.wgsl", over Hits;
-            /// Light, and the background.
+            /// Lighting and background.
             Shade: shade = ShadePass, "shade.wgsl", over Light;
-            /// What was found or counted, as colors over the picture, where a view mode is asked for.
+            /// Hits or counts as colors over the picture, for view modes that ask for it.
             DebugView: debug_view = DebugViewPass, "debug_view.wgsl", over Finished;
-            /// Grid and outline of the selection, where the editor asks for them.
+            /// Grid and selection outline, if the editor asks for them.
             Overlay: overlay = OverlayPass, "overlay.wgsl", over Finished;
         }
     };
 }
 pub(super) use recipe;
 
-/// What of a frame a pass runs over.
+/// The extent of a frame that a pass runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
-    /// The picture, at once.
+    /// The picture, in one dispatch.
     Picture,
-    /// The same, only where there are meshes.
+    /// The picture, if the scene has meshes.
     Meshes,
-    /// Each component that is seen, front to back, in parts that are short enough to be waited for.
+    /// Each visible component, front to back, in parts that are short enough for one dispatch.
     Parts,
-    /// The same, each part again until no ray can be left.
+    /// The same parts, each relaunched until no ray can be left.
     Rounds,
-    /// The parts once more, when all components have been traced.
+    /// The parts again, after all components have been traced.
     Hits,
-    /// The picture, in parts by how many lights there are.
+    /// The picture, in parts whose size depends on the number of lights.
     Light,
     /// The finished picture: recorded with the last dispatch of a frame.
     Finished,
 }
 
 impl Extent {
-    /// Whether it is a part of a component that goes through this pass and the next one of the kind in turn.
+    /// Whether the pass runs over parts, each of which goes through this pass and the next pass of this kind in turn.
     pub fn is_of_parts(self) -> bool {
         matches!(self, Self::Parts | Self::Rounds)
     }
 }
 
-/// Declares [`Pass`] by the recipe.
+/// Declares [`Pass`] from the recipe.
 macro_rules! passes {
     ($($(#[$doc:meta])* $pass:ident: $field:ident = $type:ident, $file:literal, over $extent:ident;)*) => {
         /// A pass of the frame.
@@ -64,10 +64,10 @@ macro_rules! passes {
         }
 
         impl Pass {
-            /// All of them, in the order of the frame.
+            /// All passes, in the order of the frame.
             pub const ALL: &[Self] = &[$(Self::$pass),*];
 
-            /// The name of its passes on the device and of its row among the timings: that of its shader.
+            /// Its label on the device and in the timings: the name of its shader.
             pub fn label(self) -> &'static str {
                 self.file().trim_end_matches(".wgsl")
             }
@@ -79,7 +79,7 @@ macro_rules! passes {
                 }
             }
 
-            /// What it runs over.
+            /// The extent that it runs over.
             pub fn extent(self) -> Extent {
                 match self {
                     $(Self::$pass => Extent::$extent,)*
@@ -95,8 +95,8 @@ mod tests {
     use super::*;
     use isolith_wgsl::{FILES, assemble_plain};
 
-    /// The files of `shaders/` that are no passes of a frame.
-    const NO_PASSES: &[&str] =
+    /// Files in `shaders/` that belong to no pass of a frame.
+    const NO_PASSES: &[&str] = 
         &["driver.wgsl", "probe.wgsl", "probe_lookahead.wgsl", "probe_scene.wgsl", "probe_surface.wgsl"];
 
     #[test]

@@ -1,4 +1,4 @@
-//! The renderer: takes a flat scene and a camera, delivers a picture, in dispatches that can be waited for.
+//! The renderer: draws a flat scene as seen by a camera into a picture, in short dispatches.
 
 mod choice;
 mod error;
@@ -50,7 +50,7 @@ pub use slot::Slot;
 pub use timings::PassTime;
 use timings::PassTimings;
 
-/// What a frame is expected to take that cannot be drawn yet.
+/// Estimated time of a frame that cannot be drawn yet.
 const LONGEST: Duration = Duration::from_secs(1_000_000);
 
 /// Draws flat scenes.
@@ -68,33 +68,33 @@ pub struct Renderer {
     cancel: Cancel,
 }
 
-/// What is to be done for a picture, before anything is uploaded for it.
+/// The plan of a picture, before any upload.
 struct Prepared {
     chosen: Chosen,
     plan: FramePlan,
 }
 
 impl Renderer {
-    /// A renderer on `gpu`. Its interpreter knows no shape until a scene brings one.
+    /// A renderer on `gpu`. Its interpreter knows no shapes until it gets a scene.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
         Self::with_options(gpu, Self::options(gpu))
     }
 
-    /// What pipelines do on this device when nobody asks for something else.
+    /// Default options of pipelines on this device.
     pub fn options(gpu: &Gpu) -> Options {
         let skip_mode = if gpu.is_software() { SkipMode::Selects } else { SkipMode::Branches };
         Options { skip_mode, ..Options::default() }
     }
 
-    /// A renderer for looks that count: its pipelines count, and components are walked by tapes, so that none
-    /// has to be compiled for a view mode.
+    /// A renderer for view modes that show counts: its pipelines count. It evaluates components by tapes, so that a
+    /// view mode compiles no specialized pipelines.
     pub fn counting(gpu: &Gpu) -> Result<Self, RenderError> {
         let mut renderer = Self::with_options(gpu, Options { counting: true, ..Self::options(gpu) })?;
         renderer.set_strategy(EvalStrategy::Tape);
         Ok(renderer)
     }
 
-    /// A renderer with pipelines of these options.
+    /// A renderer whose pipelines have these options.
     pub fn with_options(gpu: &Gpu, options: Options) -> Result<Self, RenderError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
@@ -116,49 +116,49 @@ impl Renderer {
         Ok(renderer)
     }
 
-    /// Chooses how components are evaluated from now on.
+    /// Sets the strategy for the evaluation of components from now on.
     pub fn set_strategy(&mut self, strategy: EvalStrategy) {
         self.strategy = strategy;
     }
 
-    /// What prepares a picture stops where this says so, with [`RenderError::Canceled`].
+    /// Sets the token that stops the preparation of a picture with [`RenderError::Canceled`].
     pub fn set_cancel(&mut self, cancel: &Cancel) {
         self.cancel = cancel.clone();
         self.tape_cache.set_cancel(cancel);
     }
 
-    /// Takes the time of each pass from now on, or no more. That takes time itself: each component has passes of its own then.
+    /// Switches timings of the passes on or off. They cost time: each component then has its own passes on the device.
     pub fn set_timing(&mut self, is_on: bool) {
         self.timings = if is_on { PassTimings::new(&self.gpu) } else { PassTimings::default() };
     }
 
-    /// What each pass of the recipe has taken in the frame that was begun last; `None` where no time is taken, or the device
-    /// has no clock.
+    /// Time of each pass of the recipe in the last frame begun; `None` if timings are off, or the device has no
+    /// timestamps.
     pub fn timings(&self) -> Option<&[PassTime]> {
         self.timings.rows()
     }
 
-    /// How many pipelines are being built.
+    /// Number of pipelines that are being built.
     pub fn pipelines_building(&self) -> usize {
         self.pipelines.building()
     }
 
-    /// How many pipelines could not be built.
+    /// Number of pipelines that failed to build.
     pub fn pipelines_failed(&self) -> usize {
         self.pipelines.failed()
     }
 
-    /// Whether pipelines or tapes are being made: pictures are right without them, and faster with them.
+    /// Whether workers build pipelines or tapes. Pictures are correct without them, and faster with them.
     pub fn is_preparing(&self) -> bool {
         self.pipelines.building() > 0 || self.tape_cache.building() > 0
     }
 
-    /// The tapes.
+    /// The cache of tapes.
     pub fn tape_cache(&mut self) -> &mut TapeCache {
         &mut self.tape_cache
     }
 
-    /// The pipelines.
+    /// The cache of pipelines.
     pub fn pipelines(&mut self) -> &mut PipelineCache {
         &mut self.pipelines
     }
@@ -173,7 +173,7 @@ impl Renderer {
         self.scene.uploaded()
     }
 
-    /// How long a whole frame is expected to take. While tapes are being made it may be more than can be drawn at all.
+    /// Expected time of a whole frame. While workers build tapes, it may exceed what can be drawn at all.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
         match self.prepare(flat, camera, size) {
             Err(RenderError::TooManyDispatches(..)) if self.tape_cache.building() > 0 => Ok(LONGEST),
@@ -184,15 +184,15 @@ impl Renderer {
         }
     }
 
-    /// What evaluates each component.
+    /// Chooses the evaluator of each component.
     fn choose(&mut self, flat: &FlatScene, camera: &Camera) -> Result<Chosen, RenderError> {
         let room = self.scene.most_words(&self.gpu.device);
         let Self { pipelines, tape_cache, strategy, cancel, .. } = self;
         Evaluators { pipelines, tape_cache, strategy: *strategy, room }.choose(flat, camera, cancel)
     }
 
-    /// What evaluates each component, and the work of a frame, no more than the device holds. A component of a thousand
-    /// leaves that is walked without tapes on a driver that ends loops early makes it long.
+    /// Chooses the evaluators and plans a frame within the capacity of the device. A frame becomes long if a component
+    /// of a thousand leaves has no tapes and the driver ends loops early.
     fn prepare(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Prepared, RenderError> {
         let chosen = self.choose(flat, camera)?;
         let (room, limit) = self.room();
@@ -208,7 +208,7 @@ impl Renderer {
         Ok(Prepared { chosen, plan })
     }
 
-    /// What the device can be told of in one frame, and how many bytes of lists it binds.
+    /// The capacity of the device for one frame, and the bytes of lists that it can bind.
     fn room(&self) -> (Room, u64) {
         let limits = self.gpu.device.limits();
         // Buffers grow by powers of two.
@@ -218,7 +218,7 @@ impl Renderer {
         (Room { dispatches, subtiles: bound / bytes_of_subtiles(1) }, bound)
     }
 
-    /// Uploads what has changed and plans the dispatches. `meshes` stands beside `flat.meshes`.
+    /// Uploads changed data and plans the dispatches. `meshes` is parallel to `flat.meshes`.
     pub fn begin(
         &mut self,
         slot: Slot,
@@ -259,14 +259,14 @@ impl Renderer {
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
         if slot == Slot::Preview {
-            // It is to be there at once, and the full one comes after it.
+            // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();
         }
         Ok(frame)
     }
 
-    /// Has the frame end as this look; distances are colored within `depth_range`. For looks that count the renderer must be
-    /// one that does: others have counted nothing that could be shown.
+    /// Makes the frame end with this view mode. Colors of distances span `depth_range`. For view modes that show
+    /// counts, use a renderer that counts: other renderers have no counts to show.
     pub fn debug_view(
         &mut self,
         frame: &mut Frame,
@@ -283,10 +283,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Works on the frame until `budget` is used or the picture is complete; at least one batch of
-    /// dispatches of about [`crate::frame::plan::DISPATCH_TARGET`]. Waits for the device, and updates the cost model.
+    /// Works on the frame until `budget` is spent or the picture is complete, but for at least one batch of dispatches
+    /// of about [`crate::frame::plan::DISPATCH_TARGET`]. Waits for the device, and updates the cost model.
     pub fn advance(&mut self, frame: &mut Frame, budget: Duration) -> Result<(), RenderError> {
-        // What others have submitted before, the painting of a window above all, is none of this frame's time.
+        // Earlier submissions of others, above all the painting of the window, must not count as time of this frame.
         self.gpu.wait()?;
         let start = Instant::now();
         if self.pipelines.collect() {
@@ -300,7 +300,7 @@ impl Renderer {
             self.gpu.wait()?;
             let elapsed = submitted.elapsed();
             // The first dispatch of a pipeline may include its compilation, and a later relaunch marches an unknown
-            // few of its rays: neither says that the device is slow.
+            // number of remaining rays: neither shows that the device is slow.
             let foreseen = relaunches == 0 || elapsed.as_secs_f64() < self.cost_model.seconds(cost);
             let is_typical = !frame.uses_fresh_pipelines(dispatches.clone());
             if is_typical && foreseen {
@@ -321,7 +321,8 @@ impl Renderer {
         }
     }
 
-    /// Hands these dispatches to the device, by the recipe. With the last of all go the passes over the finished picture.
+    /// Submits these dispatches in the order of the recipe. The last submission includes the passes over the finished
+    /// picture.
     fn submit(&mut self, frame: &Frame, range: Range<usize>) -> Result<(), RenderError> {
         let dispatches = &frame.plan.dispatches;
         let mut at = range.start;
@@ -348,7 +349,7 @@ impl Renderer {
         }
     }
 
-    /// Where rays of a frame that is done have not ended, has them go on.
+    /// Continues the rays of a completed frame that have not ended.
     fn go_on(&mut self, frame: &mut Frame) -> Result<(), RenderError> {
         if !frame.may_go_on() {
             return Ok(());
@@ -370,7 +371,7 @@ impl Renderer {
         Ok(counts.iter().map(|counts| counts[0]).collect())
     }
 
-    /// Which components had rays that did not come to an end within the steps allowed.
+    /// Warnings about components with rays that did not end within the step limit.
     pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
         Ok(match frame.unfinished() {
             Some(counts) => frame.warnings(counts),
@@ -378,8 +379,8 @@ impl Renderer {
         })
     }
 
-    /// Dispatches pipelines that have become ready over nothing, for this long: lavapipe compiles a pipeline, or reads what it
-    /// has compiled, when it meets it, which would hold up the next picture. Whether there are more.
+    /// Prewarms pipelines that have become ready, for about this time: lavapipe compiles a pipeline, or loads the
+    /// compiled code, at its first dispatch, which would delay the next picture. Returns whether there are more.
     pub fn prewarm_pipelines(
         &mut self,
         flat: &FlatScene,
@@ -404,8 +405,8 @@ impl Renderer {
         Ok(false)
     }
 
-    /// The picture of a whole scene. `progress` is told the share that is done, between dispatches, and
-    /// answers whether to go on.
+    /// Renders a whole scene. Between dispatches it calls `progress` with the fraction that is done; `progress` returns
+    /// whether to continue.
     pub fn render(
         &mut self,
         flat: &FlatScene,
@@ -417,7 +418,7 @@ impl Renderer {
         self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
     }
 
-    /// The same by another view mode; for those that count the renderer must be one that does.
+    /// Renders with another view mode. View modes that show counts need a renderer that counts.
     pub fn render_as(
         &mut self,
         view_mode: ViewMode,
@@ -439,8 +440,8 @@ impl Renderer {
         Ok((self.read(&frame)?, self.unfinished_rays(&frame)?))
     }
 
-    /// The picture in a slot: complete once its frame is done, and another texture after a
-    /// [`Renderer::begin`] of another size.
+    /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the
+    /// texture.
     pub fn picture(&self, slot: Slot) -> Option<(&wgpu::TextureView, [u32; 2])> {
         self.resources.begun(slot).map(|state| (&state.shown().view, state.shown().size()))
     }
@@ -450,13 +451,13 @@ impl Renderer {
         Ok(read_buffers(&self.gpu, &self.resources.slot(frame.slot).targets)?)
     }
 
-    /// The picture in a slot as it is shown, enlarged where [`OverlaySettings::shown_at`] says so.
+    /// The displayed picture of a slot, enlarged if [`OverlaySettings::shown_at`] asks for it.
     pub fn read_shown(&self, slot: Slot) -> Result<Vec<[u8; 4]>, RenderError> {
         Ok(read_color(&self.gpu, self.resources.slot(slot).shown())?)
     }
 
-    /// The least work that the picture of a finished frame needs: every ray starts at its true depth and
-    /// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
+    /// The minimal work for the picture of a finished frame: every ray starts at its true depth and evaluates the field
+    /// once to confirm it; normals and lighting follow as usual. For measurements only.
     pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
         let limit = measure::limit(frame);
         self.resources.set_work(&self.gpu, &limit.plan.dispatches);
@@ -469,7 +470,7 @@ impl Renderer {
         limit
     }
 
-    /// Sets what a frame has counted to nothing.
+    /// Resets the counters of a frame.
     pub fn forget_counts(&mut self, frame: &Frame) {
         let size = self.resources.slot(frame.slot).targets.size;
         self.resources.counts.reset(&self.gpu, frame.origins.len(), size);
@@ -479,7 +480,7 @@ impl Renderer {
         self.gpu.queue.submit([encoder.finish()]);
     }
 
-    /// What a frame has counted, with pipelines that count.
+    /// The counters of a frame, if the pipelines count.
     pub fn counts(&self, frame: &Frame) -> Result<Counts, RenderError> {
         let words = self.resources.counts.of_components(&self.gpu, frame.origins.len())?;
         let lists = self.resources.subtile_counts.buffer();
@@ -487,12 +488,12 @@ impl Renderer {
         Ok(Counts::new(frame, &words, &lists))
     }
 
-    /// Bytes that hold what is counted.
+    /// Size of the buffer of counters, in bytes.
     pub fn counts_bytes(&self) -> u64 {
         self.resources.counts.buffer().size()
     }
 
-    /// What each pixel of the frame took that was drawn last; empty where pipelines do not count.
+    /// Counters of each pixel of the last frame drawn; empty if the pipelines do not count.
     pub fn pixel_counts(&self, frame: &Frame) -> Result<PixelCounts, RenderError> {
         Ok(self.resources.counts.of_pixels(&self.gpu, self.resources.slot(frame.slot).targets.size)?)
     }

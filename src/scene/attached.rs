@@ -22,7 +22,7 @@ impl Attached {
         }
     }
 
-    /// The file's name; or what a shape uses where there is none.
+    /// The file's name, or the name of the default that a shape uses without a file.
     pub fn label(&self) -> &str {
         let without = match self {
             Self::Heights(_) => Heights::WITHOUT,
@@ -31,7 +31,7 @@ impl Attached {
         self.name().unwrap_or(without)
     }
 
-    /// How the names of files that can be chosen end.
+    /// The accepted file name extensions.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::Heights(_) => Heights::ENDINGS,
@@ -39,7 +39,7 @@ impl Attached {
         }
     }
 
-    /// The same without a file.
+    /// The same kind of attachment, without a file.
     pub fn without(&self) -> Self {
         match self {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
@@ -47,7 +47,7 @@ impl Attached {
         }
     }
 
-    /// The same with another file; or why it cannot be used.
+    /// The same kind of attachment with another file. The error says why the file cannot be used.
     pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
         Ok(match self {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),

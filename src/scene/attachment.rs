@@ -1,5 +1,5 @@
-//! Files that shapes and modifiers keep: images and fonts, held in the scene as they were chosen, so that a scene is whole wherever it
-//! is opened.
+//! Files that shapes and modifiers embed: images and fonts. The scene holds their bytes, so that it stays complete when
+//! it moves to another machine.
 
 use std::fmt;
 use std::sync::Arc;
@@ -15,19 +15,19 @@ use super::limits::{MAX_ATTACHMENT_BYTES, MAX_NAME};
 use isolith_font::Face;
 use isolith_guard::guarded;
 
-/// What a file can be read as.
+/// The decoded contents of an attachment.
 pub trait Content: Sized + Send + Sync + 'static {
-    /// What the file must be, for people.
+    /// The required file type, as messages name it.
     const WHAT: &'static str;
-    /// What a shape uses where there is no file, for people.
+    /// The default that a shape uses without a file, as messages name it.
     const WITHOUT: &'static str;
-    /// How the names of such files end.
+    /// The accepted file name extensions.
     const ENDINGS: &'static [&'static str];
-    /// Reads a file's bytes, or says why they cannot be read.
+    /// Decodes a file's bytes. The error says why they cannot be decoded.
     fn read(bytes: &[u8]) -> Result<Self, String>;
 }
 
-/// A file and what it holds; or none. Copies share it.
+/// A file with its decoded contents, or none. Clones share both.
 pub struct Attachment<T>(Option<Arc<Held<T>>>);
 
 struct Held<T> {
@@ -36,13 +36,13 @@ struct Held<T> {
     content: T,
 }
 
-/// How an attachment is written.
+/// The serialized form of an attachment.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a file in braces")]
 struct Written {
-    /// The file's name, for people.
+    /// The file's name, for messages.
     name: String,
-    /// The file as it is, in base 64.
+    /// The file's bytes in base 64.
     base64: String,
 }
 
@@ -56,7 +56,7 @@ impl<T> Attachment<T> {
     /// No file.
     pub const NONE: Self = Self(None);
 
-    /// What the file holds.
+    /// The decoded contents.
     pub fn content(&self) -> Option<&T> {
         self.0.as_deref().map(|held| &held.content)
     }
@@ -68,7 +68,7 @@ impl<T> Attachment<T> {
 }
 
 impl<T: Content> Attachment<T> {
-    /// The file of this name with these bytes; or why it cannot be used.
+    /// Decodes a file of this name from these bytes. The error says why the file cannot be used.
     pub fn new(name: &str, bytes: Vec<u8>) -> Result<Self, String> {
         let name = cleaned(name);
         if bytes.len() > MAX_ATTACHMENT_BYTES {
@@ -78,14 +78,14 @@ impl<T: Content> Attachment<T> {
             return Ok(Self(Some(known)));
         }
         let refused = |reason: String| format!("{name:?} must be {}: {reason}", T::WHAT);
-        // Readers of foreign files have bugs; one in them is a broken file to us.
+        // Decoders of foreign formats have bugs: a panic in one counts as a broken file.
         let content = guarded(|| T::read(&bytes)).flatten().map_err(refused)?;
         let held = Arc::new(Held { name, bytes, content });
         decode_budget::remember(&held);
         Ok(Self(Some(held)))
     }
 
-    /// Whether two are one and the same file, or both none.
+    /// Whether both share one file, or neither has one.
     pub fn is_same(&self, other: &Self) -> bool {
         match (&self.0, &other.0) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
@@ -94,7 +94,7 @@ impl<T: Content> Attachment<T> {
     }
 }
 
-/// A file's name as it is kept, and as messages name it.
+/// A file name as the scene stores it and messages show it.
 pub(super) fn cleaned(name: &str) -> String {
     name.chars().filter(|c| !c.is_control()).take(MAX_NAME).collect()
 }

@@ -13,7 +13,7 @@ pub enum Axis {
     X,
     /// Upward.
     Y,
-    /// Toward who looks from the front.
+    /// Toward a viewer in front.
     Z,
 }
 
@@ -21,12 +21,12 @@ impl Axis {
     /// All of them, in order.
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
-    /// Name for people.
+    /// Display name.
     pub fn label(self) -> &'static str {
         ["X", "Y", "Z"][self as usize]
     }
 
-    /// Nothing that the name does not say.
+    /// Empty: the name says it all.
     fn help(self) -> &'static str {
         ""
     }

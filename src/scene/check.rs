@@ -1,5 +1,5 @@
-//! What the values of a scene must be, one by one: finite, within [`super::limits`], and at peace with
-//! each other. Files are checked with this on the way in and on the way out, edits on the way through.
+//! Checks the values of a scene one by one: each is finite, within [`super::limits`] and consistent with the others.
+//! Files pass these checks when they are read and written, edits when they are applied.
 
 use glam::DQuat;
 
@@ -11,12 +11,12 @@ use super::{
     Part, SceneError, Shape,
 };
 
-/// A value that is not what it must be.
+/// A value that fails a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// Which value, as a path below the node, the material or the environment.
+    /// The path of the value below the node, the material or the environment.
     pub field: String,
-    /// What it must be, and what it is.
+    /// The requirement and the actual value.
     pub reason: String,
 }
 
@@ -25,13 +25,13 @@ impl Fault {
         Self { field: field.into(), reason: reason.into() }
     }
 
-    /// The fault as the reason why an edit was refused.
+    /// Converts the fault to the reason why an edit was refused.
     pub fn into_error(self, subject: impl Into<String>) -> SceneError {
         SceneError::Invalid { subject: subject.into(), field: self.field, reason: self.reason }
     }
 }
 
-/// Checks every value of a node by itself; ids and references are the table's business.
+/// Checks the values of a node alone; the table checks ids and references.
 pub fn node(node: &Node) -> Result<(), Fault> {
     name(&node.name)?;
     if node.negative && !node.has_field() {
@@ -72,7 +72,7 @@ pub fn environment(environment: &Environment) -> Result<(), Fault> {
     values(environment)
 }
 
-/// Every parameter against the limits of its table.
+/// Checks every parameter against the limits of its table.
 fn values(params: &dyn Params) -> Result<(), Fault> {
     let mut found = Ok(());
     params.visit("", &mut |prefix, param, value| {
@@ -84,7 +84,7 @@ fn values(params: &dyn Params) -> Result<(), Fault> {
     found
 }
 
-/// The value of a parameter against its limits.
+/// Checks the value of a parameter against its limits.
 fn value(param: &Param, value: &ParamValue) -> Result<(), Fault> {
     let (field, limits) = (param.name, &param.limits);
     match value {
@@ -95,24 +95,24 @@ fn value(param: &Param, value: &ParamValue) -> Result<(), Fault> {
         ParamValue::Rotation(rotation) => unit_length(field, *rotation),
         ParamValue::Text(text) => letters(field, text, limits),
         ParamValue::List(list) => self::list(field, list, limits),
-        // A file was checked when it was read; the others are what their types allow.
+        // Attachments are checked when they are read; the types of the others allow valid values only.
         ParamValue::Flag(_) | ParamValue::Flags(_) | ParamValue::Choice(_) | ParamValue::File(_) => Ok(()),
     }
 }
 
-/// How far from 1 the length of a quaternion may be to be taken for a rotation at all.
+/// How far from 1 the length of a quaternion may be for it to count as a rotation.
 const UNIT_TOLERANCE: f64 = 1e-3;
-/// Up to here the length counts as 1 and the numbers are left as they are, so that a file keeps its bytes.
+/// Up to this deviation the length counts as 1 and the numbers stay as they are, so that a file keeps its bytes.
 const UNIT_EXACT: f64 = 1e-12;
 
-/// The unit quaternion that is meant: nearly unit ones are normalized, exact ones left alone.
-/// Anything else comes back as it is, for [`node`] to refuse.
+/// Normalizes a quaternion that is nearly unit and leaves an exactly unit one alone. Returns anything else unchanged,
+/// for [`node`] to refuse.
 pub fn settled_rotation(rotation: DQuat) -> DQuat {
     let off = (rotation.length() - 1.0).abs();
     if off > UNIT_EXACT && off <= UNIT_TOLERANCE { rotation.normalize() } else { rotation }
 }
 
-/// The node with its rotation settled, see [`settled_rotation`].
+/// The node with its rotation normalized, see [`settled_rotation`].
 pub fn settled(mut node: Node) -> Node {
     node.transform.rotation = settled_rotation(node.transform.rotation);
     node
@@ -160,7 +160,7 @@ fn unit_length(field: &str, rotation: DQuat) -> Result<(), Fault> {
     Ok(())
 }
 
-/// What the values of a shape must be together.
+/// Checks the values of a shape against each other.
 fn shape(shape: &Shape) -> Result<(), Fault> {
     if let Shape::Text { text, font, .. } = shape
         && let Some(reason) = text_fault(text, font)
@@ -181,7 +181,7 @@ fn letters(field: &str, text: &str, limits: &Limits) -> Result<(), Fault> {
     Ok(())
 }
 
-/// How many rows a list has, and every number in it.
+/// Checks the row count of a list and every number in it.
 fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
     let [least, most] = list.count;
     if list.rows.len() < least || list.rows.len() > most {
@@ -195,7 +195,7 @@ fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
     Ok(())
 }
 
-/// What the values of a light must be together.
+/// Checks the values of a light against each other.
 fn light(light: &Light) -> Result<(), Fault> {
     match &light.light {
         LightKind::Sun {} => Ok(()),
@@ -239,7 +239,7 @@ fn number(field: &str, value: f64, limits: &Limits) -> Result<(), Fault> {
     Err(Fault::new(field, format!("must be {least} to {most}{space}{unit}{of_what}, not {value}")))
 }
 
-/// A number for a message: with an exponent where it would have many zeros.
+/// Formats a number for a message: with an exponent where it would have many zeros.
 fn plain(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 || (1e-4..1e9).contains(&magnitude) { value.to_string() } else { format!("{value:e}") }

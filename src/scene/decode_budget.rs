@@ -1,5 +1,5 @@
-//! The budget of what is decoded while a scene is read. A small file may hold many large images, each of which takes long
-//! to read; so all that are read for one scene are counted, from what their first bytes say, before they are.
+//! The budget for decoding attachments while a scene is read. A small file may hold many large images, each of which
+//! takes long to decode. So their pixels are summed up from the image headers before any of them is decoded.
 
 use std::any::Any;
 use std::cell::RefCell;
@@ -7,11 +7,11 @@ use std::sync::Arc;
 
 use super::limits::{MAX_IMAGE_BYTES, MAX_IMAGE_SIDE, MAX_SCENE_PIXELS};
 
-/// What was read for the scene that is being read on this thread.
+/// The attachments of the scene that this thread is reading.
 #[derive(Default)]
 struct Reading {
     pixels: u64,
-    /// Each file once: copies of a node hold the same one.
+    /// Each file once: copies of a node share it.
     files: Vec<Arc<dyn Any + Send + Sync>>,
 }
 
@@ -19,7 +19,7 @@ thread_local! {
     static READING: RefCell<Option<Reading>> = const { RefCell::new(None) };
 }
 
-/// Counts together all that `read` reads.
+/// Runs `read` with one budget for everything that it decodes.
 pub(super) fn within<T>(read: impl FnOnce() -> T) -> T {
     struct Ended;
     impl Drop for Ended {
@@ -32,7 +32,7 @@ pub(super) fn within<T>(read: impl FnOnce() -> T) -> T {
     read()
 }
 
-/// Takes so many pixels out of the budget, or says that they are not in it.
+/// Takes pixels out of the budget. The error says that the budget is exceeded.
 pub(super) fn spend(pixels: u64) -> Result<(), String> {
     let sum = READING.with_borrow_mut(|reading| {
         let Some(reading) = reading else { return pixels };
@@ -45,7 +45,7 @@ pub(super) fn spend(pixels: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// The file that was read before and is meant.
+/// Finds a file that was decoded before.
 pub(super) fn known<T: Any + Send + Sync>(is_meant: impl Fn(&T) -> bool) -> Option<Arc<T>> {
     READING.with_borrow(|reading| {
         let files = reading.as_ref()?.files.iter();
@@ -53,7 +53,7 @@ pub(super) fn known<T: Any + Send + Sync>(is_meant: impl Fn(&T) -> bool) -> Opti
     })
 }
 
-/// Keeps a file in mind until the scene is read.
+/// Remembers a file until the scene is read.
 pub(super) fn remember<T: Any + Send + Sync>(file: &Arc<T>) {
     READING.with_borrow_mut(|reading| {
         if let Some(reading) = reading {
@@ -62,7 +62,7 @@ pub(super) fn remember<T: Any + Send + Sync>(file: &Arc<T>) {
     });
 }
 
-/// Refuses an image of this size that takes so many bytes as pixels; else how many pixels it has.
+/// The number of pixels of an image. Refuses a side, or a size in bytes, above the limits.
 pub(super) fn check_size([width, height]: [u64; 2], bytes: u64) -> Result<u64, String> {
     let most = u64::from(MAX_IMAGE_SIDE);
     if width > most || height > most {

@@ -1,4 +1,4 @@
-//! What is drawn point by point: the curve of a tube, the curve of a profile.
+//! Shapes drawn point by point: the curve of a tube, the curve of a profile.
 
 use std::f64::consts::TAU;
 use std::ops::Deref;
@@ -12,21 +12,21 @@ use super::attachment::Attachment;
 use isolith_font::{Face, text_curve};
 use isolith_geometry::{Aabb, ArcPiece, smooth_curve, straight_curve};
 
-/// Smaller letters are no letters, in meters.
+/// Letters smaller than this are not drawn, in meters.
 const LEAST_TEXT: f64 = 1e-6;
 
-/// Points of a curve in space: x, y, z, radius. Copies share them.
+/// Points of a curve in space: x, y, z, radius. Clones share them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Points(Arc<Vec<[f64; 4]>>);
 
-/// Corners of a profile in the XY plane. Copies share them.
+/// Corners of a profile in the XY plane. Clones share them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Corners(Arc<Vec<[f64; 2]>>);
 
 impl Points {
-    /// These points.
+    /// A curve through these points.
     pub fn new(points: impl Into<Vec<[f64; 4]>>) -> Self {
         Self(Arc::new(points.into()))
     }
@@ -40,23 +40,23 @@ impl Deref for Points {
 }
 
 impl Corners {
-    /// These corners.
+    /// A profile with these corners.
     pub fn new(corners: impl Into<Vec<[f64; 2]>>) -> Self {
         Self(Arc::new(corners.into()))
     }
 
-    /// A star of so many tips, one of them upward; the radii are those of the tips and of the notches, in meters.
+    /// A star with one of its tips upward; the radii are those of the tips and of the notches, in meters.
     pub fn star(tips: u32, outer: f64, inner: f64) -> Self {
         let corner = |i: u32| {
             let (s, c) = (TAU * f64::from(i) / f64::from(2 * tips)).sin_cos();
             let r = if i.is_multiple_of(2) { outer } else { inner };
-            // To a micrometer, so that a file shows tidy numbers.
+            // Rounded to a micrometer, so that files show tidy numbers.
             [-r * s, r * c].map(|v| (v * 1e6).round() / 1e6 + 0.0)
         };
         Self::new((0..2 * tips).map(corner).collect::<Vec<_>>())
     }
 
-    /// Half of a bowl on a foot, to be turned around the Y axis.
+    /// The half profile of a bowl on a foot, to be revolved around the Y axis.
     pub fn vase() -> Self {
         Self::new([
             [0.0, -0.6],
@@ -80,7 +80,7 @@ impl Deref for Corners {
     }
 }
 
-/// The curve of a tube as arcs, those between two neighbors together.
+/// The curve of a tube as arcs; the arcs between two neighboring points form one group.
 pub fn tube_curve(points: &[[f64; 4]], closed: bool) -> Vec<Vec<ArcPiece>> {
     let places: Vec<DVec3> = points.iter().map(|[x, y, z, _]| DVec3::new(*x, *y, *z)).collect();
     smooth_curve(&places, closed)
@@ -107,9 +107,9 @@ pub(super) fn tube_bounds(points: &[[f64; 4]], radius: f64, closed: bool) -> Aab
     })
 }
 
-/// The profiles of a text whose font is `size` meters high; nothing where `text_fault` finds something.
+/// The profiles of a text whose font is `size` meters high; empty where `text_fault` reports a fault.
 pub fn text_profile(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPiece> {
-    // Without a size, or without ink, a point is left.
+    // A text without size or without ink becomes a point.
     if size < LEAST_TEXT {
         return Vec::new();
     }
@@ -118,7 +118,7 @@ pub fn text_profile(text: &str, font: &Attachment<Face>, size: f64) -> Vec<ArcPi
     text_curve(text, font.content()).map(|arcs| arcs.iter().map(sized).collect()).unwrap_or_default()
 }
 
-/// Why a text cannot be drawn with its font: that would take too much.
+/// Why a text cannot be drawn with its font: it would exceed a limit.
 pub(super) fn text_fault(text: &str, font: &Attachment<Face>) -> Option<String> {
     let reason = text_curve(text, font.content()).err()?;
     Some(match font.name() {

@@ -1,28 +1,29 @@
 //! The empty set as an operand. Its field is infinite everywhere, and every rule here follows from that.
 //!
-//! Empty are: a visible group without children, or whose children are all hidden or empty; a text that draws no letter; a
-//! shape whose size is 0 along every axis, unless a modifier thickens it. Hidden nodes are not empty: they are left out
-//! ([`Operator::needs_first`] has the one exception), and so are groups that hold only lights, cameras and meshes.
+//! Empty are: a visible group without children, or whose children are all hidden or empty; a text that draws no letter;
+//! a shape whose size is 0 along every axis, unless a modifier thickens it. Hidden nodes are not empty: the fold leaves
+//! them out ([`Operator::needs_first`] has the one exception). It also leaves out groups that hold only lights, cameras
+//! and meshes.
 
 use super::{Modifier, Operator, Shape};
 use isolith_geometry::Aabb;
 
-/// What `a` joined with `b` is where at least one of the two is the empty set.
+/// The result of joining `a` with `b` if at least one of them is the empty set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmptyOperandResult {
     /// The empty set.
     Nothing,
-    /// `a`, as it is.
+    /// `a`, unchanged.
     First,
-    /// `b`, as it is.
+    /// `b`, unchanged.
     Second,
 }
 
 impl Operator {
-    /// What is left of `a` joined with `b` where only `a` (`is_first`) or only `b` is there, and the other is the empty set.
-    /// `share` is that of [`super::Group::share`].
+    /// The result of joining `a` with `b` if one of them is the empty set: `is_first` says that only `a` is present,
+    /// otherwise only `b` is. `share` is that of [`super::Group::share`].
     ///
-    /// A morph is (1 − share) a + share b: infinite wherever the empty set has any share in it.
+    /// A morph is (1 − share) a + share b: infinite wherever the empty set has a nonzero share.
     pub fn with_nothing(self, share: f64, is_first: bool) -> EmptyOperandResult {
         match (self, is_first) {
             (Self::Union | Self::Xor, false) => EmptyOperandResult::Second,
@@ -34,22 +35,22 @@ impl Operator {
         }
     }
 
-    /// Whether the later children are tools that work on the first one. Where the first child is hidden, the whole group
-    /// is: as in other programs, hiding what is cut never shows the cutter in its place. The children of all other
-    /// operators play the same part, so a hidden one is left out and the others stay.
+    /// Whether the later children are tools that work on the first one. If the first child is hidden, the whole group
+    /// is hidden: as in other programs, hiding the workpiece never shows the cutter in its place. The children of all
+    /// other operators have equal parts, so a hidden one is left out and the others stay.
     pub fn needs_first(self) -> bool {
         matches!(self, Self::Difference | Self::Groove | Self::Tongue | Self::Engrave | Self::Paint)
     }
 }
 
 impl Shape {
-    /// Whether nothing is inside of it and its surface is a point at most. `bounds` are its own.
+    /// Whether the shape has no interior and its surface is at most a point. `bounds` are the shape's own bounds.
     pub fn is_point(bounds: &Aabb) -> bool {
         bounds.is_empty() || bounds.min == bounds.max
     }
 
-    /// Whether it is a text that draws no letter: blanks only, or letters that its font does not draw. It stays empty
-    /// whatever is done to it.
+    /// Whether the shape is a text that draws no letter: blanks only, or letters that its font does not draw. No
+    /// modifier makes it non-empty.
     pub fn is_blank(&self, bounds: &Aabb) -> bool {
         let is_line = bounds.min.x == bounds.max.x && bounds.min.y == bounds.max.y;
         matches!(self, Self::Text { .. }) && (is_line || bounds.is_empty())
@@ -57,7 +58,7 @@ impl Shape {
 }
 
 impl Modifier {
-    /// Whether it can make something with an inside of a point: by growing it, or by drawing it apart.
+    /// Whether the modifier can give a point an interior, by growing it or by drawing it apart.
     pub fn thickens(&self) -> bool {
         matches!(
             self,
@@ -75,7 +76,7 @@ impl Modifier {
 mod tests {
     use super::*;
 
-    /// The formula of each operator on numbers, without a blend, with so large a field for the empty set.
+    /// The formula of each operator on numbers, without a blend, with a very large field for the empty set.
     fn join(operator: Operator, a: f64, b: f64, share: f64) -> f64 {
         let (half, depth) = (0.05, 0.1);
         match operator {

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::{MaterialId, NodeId};
 
-/// Why a change to a scene was refused. The scene is as it was before.
+/// Why a change to a scene was refused. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum SceneError {
     /// No node has this id.
@@ -22,42 +22,42 @@ pub enum SceneError {
     /// Something still uses the material.
     #[error("material {0} is still used by node {1}")]
     MaterialInUse(MaterialId, NodeId),
-    /// A limit of [`super::limits`].
+    /// The change exceeds a limit of [`super::limits`].
     #[error("{what} would pass its limit of {limit}")]
     Limit {
-        /// What is limited.
+        /// The limited quantity.
         what: &'static str,
         /// The limit.
         limit: usize,
     },
-    /// The id stands in the table already.
+    /// A node with this id exists already.
     #[error("node {0} is in the scene already")]
     DuplicateNode(NodeId),
-    /// The id stands in the table already.
+    /// A material with this id exists already.
     #[error("material {0} is in the scene already")]
     DuplicateMaterial(MaterialId),
-    /// An edit of nodes that names none.
+    /// An edit of nodes names no node.
     #[error("no node is chosen")]
     Nothing,
     /// A table is not in depth-first pre-order.
     #[error("node {0} does not stand next to the other nodes of its group")]
     OutOfOrder(NodeId),
-    /// A parameter that is not there, or a value of another type, see [`super::ParamPath`].
+    /// A parameter does not exist, or the value has another type, see [`super::ParamPath`].
     #[error("{path}: {reason}")]
     Param {
         /// The path of the parameter.
         path: String,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
-    /// A value is not what it must be, see [`super::check`].
+    /// A value fails a check, see [`super::check`].
     #[error("{subject}: {field}: {reason}")]
     Invalid {
         /// The node or material, by name and id, or the environment.
         subject: String,
-        /// Which value, as a path below the subject, such as `object.shape.radius`.
+        /// The path of the value below the subject, such as `object.shape.radius`.
         field: String,
-        /// What it must be.
+        /// The requirement.
         reason: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Heights from an image, as a grid that is drawn as a smooth surface.
+//! Heights from an image, as a grid for a smooth surface.
 
 mod exr;
 
@@ -15,25 +15,25 @@ use super::attachment::{Attachment, Content};
 use super::decode_budget::{check_size, spend};
 use super::limits::{MAX_HEIGHTS, MAX_IMAGE_BYTES};
 
-/// A grid of heights from 0 to 1, line by line; each stands in the middle of its cell.
+/// A grid of heights from 0 to 1, row by row; each height belongs to the middle of its cell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heights {
-    /// Columns and lines; at least 1, at most [`MAX_HEIGHTS`].
+    /// Columns and rows; at least 1, at most [`MAX_HEIGHTS`].
     pub size: [usize; 2],
     /// The heights.
     pub values: Vec<f64>,
-    /// How many pixels were read for them.
+    /// Number of decoded pixels, for the budget.
     pub pixels: u64,
 }
 
 impl Heights {
-    /// The height in a cell; beyond the border that of the nearest one.
+    /// The height of a cell; outside the grid that of the nearest cell.
     pub fn at(&self, column: isize, line: isize) -> f64 {
         let [x, z] = [(column, self.size[0]), (line, self.size[1])].map(|(i, n)| i.clamp(0, n as isize - 1) as usize);
         self.values[z * self.size[0] + x]
     }
 
-    /// Those of an image; where there is none, a hill.
+    /// The heights of an image; without an image, a hill.
     pub fn of(image: &Attachment<Self>) -> &Self {
         static HILL: LazyLock<Heights> = LazyLock::new(Heights::hill);
         image.content().unwrap_or(&HILL)
@@ -52,8 +52,8 @@ impl Heights {
 }
 
 impl Attachment<Heights> {
-    /// An image of so many columns and lines, at least 1 of each, as a PNG file of this name; `level` says how white each
-    /// pixel is, up to 255.
+    /// Draws an image of at least 1 × 1 pixels and returns it as a PNG file of this name; `level` gives the brightness
+    /// of each pixel, up to 255.
     pub fn drawn(name: &str, [columns, lines]: [u32; 2], level: impl Fn(u32, u32) -> u8) -> Self {
         let mut file = Cursor::new(Vec::new());
         let pixels = GrayImage::from_fn(columns, lines, |x, y| Luma([level(x, y)]));
@@ -67,8 +67,8 @@ impl Content for Heights {
     const WITHOUT: &'static str = "A hill";
     const ENDINGS: &'static [&'static str] = &["png", "jpg", "jpeg", "exr"];
 
-    /// Black is 0, white 1; what is brighter is cut. Larger images are made smaller, by the means of their pixels; those that
-    /// say that they are to be shown turned are turned.
+    /// Decodes an image. Black is 0, white 1; brighter values are clamped. Larger images are reduced by averaging their
+    /// pixels. An orientation tag is applied.
     fn read(bytes: &[u8]) -> Result<Self, String> {
         match guess_format(bytes).map_err(|_| "it is of another kind")? {
             ImageFormat::OpenExr => {
@@ -89,10 +89,10 @@ fn decoded(bytes: &[u8], format: ImageFormat) -> Result<Heights, String> {
     let (width, height) = decoder.dimensions();
     let pixels = check_size([width.into(), height.into()], decoder.total_bytes())?;
     spend(pixels * passes(bytes, format))?;
-    // A damaged note about how to show it says nothing.
+    // Ignores a damaged orientation tag.
     let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
     Ok(match DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())? {
-        // The most pixels are of this kind, and are not copied.
+        // Most images are of this kind; this avoids a copy.
         DynamicImage::ImageLuma8(image) if square_side(&image) > 1 => {
             Heights::from_image(&image, u8::MAX.into(), orientation, pixels)
         }
@@ -100,7 +100,8 @@ fn decoded(bytes: &[u8], format: ImageFormat) -> Result<Heights, String> {
     })
 }
 
-/// How often the pixels are gone through: a progressive JPEG repeats them for each scan, of which it may have thousands.
+/// How often decoding passes over the pixels: a progressive JPEG repeats them for each scan, of which it may have
+/// thousands.
 fn passes(bytes: &[u8], format: ImageFormat) -> u64 {
     const USUAL_SCANS: u64 = 16;
     if format != ImageFormat::Jpeg {
@@ -111,7 +112,7 @@ fn passes(bytes: &[u8], format: ImageFormat) -> u64 {
 }
 
 impl Heights {
-    /// Those of an image in which `white` is 1.
+    /// The heights of an image in which `white` is 1.
     fn from_image<S>(image: &ImageBuffer<Luma<S>, Vec<S>>, white: f64, orientation: Orientation, pixels: u64) -> Self
     where
         S: Primitive + 'static,
@@ -123,7 +124,7 @@ impl Heights {
     }
 }
 
-/// The heights of an image, made smaller where it is larger than they may be.
+/// The heights of an image, reduced if it exceeds the size of the grid.
 fn grid<S>(image: &ImageBuffer<Luma<S>, Vec<S>>, white: f64) -> Heights
 where
     S: Primitive + 'static,
@@ -138,7 +139,7 @@ where
     Heights { size: [columns as usize, lines as usize], values, pixels: 0 }
 }
 
-/// The side of the squares of which [`means`] makes a pixel: 1 for images that are resized as they are.
+/// The side of the squares that [`means`] averages to one pixel; 1 for images that are resized directly.
 fn square_side<S>(image: &ImageBuffer<Luma<S>, Vec<S>>) -> u32
 where
     S: Primitive + 'static,
@@ -147,8 +148,8 @@ where
     (image.width().max(image.height()) / (4 * MAX_HEIGHTS as u32)).max(1)
 }
 
-/// An image whose sides are much longer than those of the grid, by the means of squares of its pixels: resizing it well from
-/// there takes a tenth of the time, and is as good. White is 1.
+/// Reduces an image whose sides are much longer than those of the grid by averaging squares of its pixels. High-quality
+/// resizing from there takes a tenth of the time, and is as good. White is 1.
 fn means<S>(image: &ImageBuffer<Luma<S>, Vec<S>>, white: f64) -> ImageBuffer<Luma<f32>, Vec<f32>>
 where
     S: Primitive + 'static,
@@ -177,7 +178,7 @@ where
     out
 }
 
-/// The heights as they are to be shown.
+/// The heights in their display orientation.
 fn turned(heights: Heights, orientation: Orientation) -> Heights {
     let [columns, lines] = heights.size;
     let (is_aside, flips_x, flips_y) = match orientation {
@@ -223,7 +224,7 @@ mod tests {
         let drawn = Attachment::drawn("x.png", [2, 3], |x, y| (100 * x + 50 * y) as u8);
         let drawn = drawn.content().unwrap();
         assert_eq!((drawn.size, drawn.at(1, 2), drawn.at(0, 1)), ([2, 3], 200.0 / 255.0, 50.0 / 255.0));
-        // A line of pixels stays a line.
+        // A single row of pixels stays a single row.
         assert_eq!(Heights::read(&png(2000, 1, |_, _| 9)).unwrap().size, [MAX_HEIGHTS, 1]);
     }
 
@@ -250,7 +251,7 @@ mod tests {
         assert_eq!(at_once.size, by_means.size);
         let off = at_once.values.iter().zip(&by_means.values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(off < 2e-3, "{off}");
-        // Of 8 bits too, finer than these: no steps.
+        // 8-bit images, too, give heights finer than 8 bits: no steps.
         let image = ImageBuffer::from_fn(2048, 64, |x, _| Luma([(x / 8) as u8]));
         let ramp = Heights::from_image(&image, 255.0, Orientation::NoTransforms, 0);
         let steps = (4..MAX_HEIGHTS - 4).map(|x| ramp.values[x] - ramp.values[x - 1]);

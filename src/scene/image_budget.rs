@@ -1,12 +1,12 @@
-//! How many pixels the images of a scene have together: a change that passes the limit is refused, since what it makes could
-//! not be read again.
+//! The budget for the pixels of all images of a scene. A change that exceeds it is refused, since the resulting scene
+//! could not be read again.
 
 use std::sync::Arc;
 
 use super::limits::MAX_SCENE_PIXELS;
 use super::{Attached, Attachment, Heights, Node, NodeKind, ParamValue, SceneError, Shape};
 
-/// The images that a node holds.
+/// The images of a node.
 fn images(node: &Node) -> Vec<Attachment<Heights>> {
     let shape = match &node.kind {
         NodeKind::Object(object) => match &object.shape {
@@ -23,7 +23,8 @@ fn images(node: &Node) -> Vec<Attachment<Heights>> {
     shape.into_iter().chain(of_modifiers).filter(|image| image.content().is_some()).collect()
 }
 
-/// Refuses `new` nodes whose images a scene of `nodes` has no room for: it could not be read again. `old` is replaced.
+/// Refuses `new` nodes whose images would exceed the budget of a scene of `nodes`: it could not be read again. `old` is
+/// the node that they replace.
 pub(super) fn check(nodes: &[Arc<Node>], old: Option<&Node>, new: &[Node]) -> Result<(), SceneError> {
     let added: Vec<_> = new.iter().flat_map(images).collect();
     let there = old.map(images).unwrap_or_default();

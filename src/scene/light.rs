@@ -1,4 +1,4 @@
-//! Lights and the world. A light shines along its node's local −Z.
+//! Lights and the environment. A light shines along its node's local −Z.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -55,12 +55,12 @@ param_variants! { LightKind by |light| light.table(); {
 nested_variants!(LightKind, "Type", "Where the light comes from; it shines along the node's −Z.");
 
 impl LightKind {
-    /// A spot light as it is first.
+    /// A spot light with default parameters.
     fn spot() -> Self {
         Self::Spot { attenuation: Attenuation::default(), inner: 20.0, outer: 30.0 }
     }
 
-    /// What is known about its parameters; [`Attenuation`] has its own table.
+    /// The table of its parameters; [`Attenuation`] has its own table.
     fn table(&self) -> &'static [super::Param] {
         match self {
             Self::Spot { .. } => param_rows! {
@@ -114,7 +114,7 @@ impl Light {
 }
 
 param_struct! {
-    /// What surrounds the scene. Colors are linear.
+    /// The environment of a scene. Colors are linear.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
     pub struct Environment {

@@ -1,6 +1,6 @@
-//! Every limit of a scene, by name. Files are checked against them on the way in, edits on the way through.
+//! Every limit of a scene, by name. Files are checked against them when they are read, edits when they are applied.
 
-/// The range a value may have (`hard`) and the range that a slider offers (`soft`).
+/// The range that a value may have (`hard`) and the range that a slider offers (`soft`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Range offered when dragging.
@@ -9,18 +9,18 @@ pub struct Limits {
     pub hard: [f64; 2],
     /// Unit shown behind the number.
     pub unit: &'static str,
-    /// Which of the numbers within the range have a meaning.
+    /// The rule for valid numbers within the range.
     pub rule: Rule,
 }
 
-/// Which numbers have a meaning.
+/// A rule for valid numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rule {
-    /// All.
+    /// All numbers.
     Any,
-    /// Whole ones.
+    /// Whole numbers only.
     Whole,
-    /// Those whose magnitude is within the range; the sign is free.
+    /// Numbers whose magnitude is within the range, of either sign.
     Magnitude,
 }
 
@@ -30,12 +30,12 @@ impl Limits {
         Self { soft, hard, unit, rule: Rule::Any }
     }
 
-    /// The same for whole numbers.
+    /// The same limits for whole numbers.
     pub const fn whole(self) -> Self {
         Self { rule: Rule::Whole, ..self }
     }
 
-    /// The same for the magnitude of numbers of either sign.
+    /// The same limits for the magnitude of numbers of either sign.
     pub const fn magnitude(self) -> Self {
         Self { rule: Rule::Magnitude, ..self }
     }
@@ -46,19 +46,19 @@ impl Limits {
         value.is_finite() && value >= self.hard[0] && value <= self.hard[1]
     }
 
-    /// Whether only whole numbers mean something.
+    /// Whether only whole numbers are valid.
     pub fn is_whole(&self) -> bool {
         self.rule == Rule::Whole
     }
 
-    /// The hard range with its sign: that of a magnitude reaches to both sides of 0.
+    /// The hard range with its sign: that of a magnitude extends to both sides of 0.
     pub fn signed_range(&self) -> [f64; 2] {
         let [least, most] = self.hard;
         if self.rule == Rule::Magnitude { [-most, most] } else { [least, most] }
     }
 }
 
-/// For what is not a number.
+/// For parameters that are not numbers.
 pub const NO_LIMITS: Limits = Limits::new([0.0, 1.0], [f64::MIN, f64::MAX], "");
 
 /// Most nodes in a scene.
@@ -67,7 +67,7 @@ pub const MAX_NODES: usize = 100_000;
 pub const MAX_DEPTH: usize = 1_024;
 /// Most materials in a scene.
 pub const MAX_MATERIALS: usize = 10_000;
-/// Greatest id of a node or material: every reader of JSON keeps integers up to here exactly.
+/// Greatest id of a node or material: every JSON reader keeps integers up to here exactly.
 pub const MAX_ID: u64 = (1 << 53) - 1;
 /// Longest path of a mesh file, in characters.
 pub const MAX_PATH: usize = 1_024;
@@ -75,8 +75,8 @@ pub const MAX_PATH: usize = 1_024;
 pub const MAX_NAME: usize = 256;
 /// Largest scene file in bytes.
 pub const MAX_FILE_BYTES: u64 = 256 << 20;
-/// Most values in one node, material or other entry of a file: numbers, texts, and lists and braces around them. The largest
-/// node that passes all other limits has some 10 000.
+/// Most values in one node, material or other entry of a file: numbers, texts, and the lists and objects around them.
+/// The largest node within all other limits has some 10 000.
 pub const MAX_ENTRY_VALUES: usize = 65_536;
 
 /// Fewest and most points of a curve.
@@ -84,15 +84,15 @@ pub const POINTS: [usize; 2] = [2, 256];
 /// Fewest and most corners of a profile.
 pub const CORNERS: [usize; 2] = [3, 256];
 
-/// Largest file that a shape or modifier keeps in the scene, in bytes.
+/// Largest file embedded in the scene, in bytes.
 pub const MAX_ATTACHMENT_BYTES: usize = 16 << 20;
-/// Widest and highest image that is read, in pixels.
+/// Greatest width and height of an image, in pixels.
 pub const MAX_IMAGE_SIDE: u32 = 8_192;
-/// Most bytes that the pixels of an image take while it is read.
+/// Most bytes of an image's pixels while it is decoded.
 pub const MAX_IMAGE_BYTES: u64 = 512 << 20;
-/// Most pixels of all images of a scene together, each file counted once: so many are read within seconds.
+/// Most pixels of all images of a scene together, each file counted once: decoding so many takes seconds.
 pub const MAX_SCENE_PIXELS: u64 = 1 << 27;
-/// Most heights along a side that an image gives; larger images are made smaller.
+/// Most heights along a side of a grid; larger images are reduced.
 pub const MAX_HEIGHTS: usize = 256;
 
 /// Longest text, in letters.
@@ -110,11 +110,11 @@ pub const THICKNESS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
 pub const POSITION: Limits = Limits::new([-10.0, 10.0], [-1e9, 1e9], "m");
 /// Magnitude of a scale factor; its sign is free, zero is refused.
 pub const SCALE: Limits = Limits::new([0.01, 10.0], [1e-6, 1e6], "").magnitude();
-/// Length of a wave or a hill.
+/// Length of a wave or size of a hill.
 pub const WAVELENGTH: Limits = Limits::new([0.1, 10.0], [1e-2, 1e6], "m");
-/// Layers of noise, and waves; whole numbers.
+/// Layers of noise, and numbers of waves; whole numbers.
 pub const OCTAVES: Limits = Limits::new([1.0, 10.0], [1.0, 10.0], "").whole();
-/// Seeds of what is random; whole numbers.
+/// Seeds of random numbers; whole numbers.
 pub const SEED: Limits = Limits::new([0.0, 100.0], [0.0, 1e6], "").whole();
 /// Angles.
 pub const TURN: Limits = Limits::new([-180.0, 180.0], [-3600.0, 3600.0], "°");
@@ -122,9 +122,9 @@ pub const TURN: Limits = Limits::new([-180.0, 180.0], [-3600.0, 3600.0], "°");
 pub const BLEND_RADIUS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
 /// Steps and columns of a blend.
 pub const STEPS: Limits = Limits::new([1.0, 12.0], [1.0, 64.0], "").whole();
-/// Most siblings that a node names as not to be blended with.
+/// Most siblings that a node may exclude from blending.
 pub const MAX_APART: usize = 64;
-/// Shares and reflectances.
+/// Weights and reflectances.
 pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
@@ -138,21 +138,21 @@ pub const ATTENUATION: Limits = Limits::new([0.0, 2.0], [0.0, 1e6], "");
 pub const CONE: Limits = Limits::new([0.0, 89.0], [0.0, 89.9], "°");
 /// Half of an arc, in degrees.
 pub const ARC: Limits = Limits::new([0.0, 180.0], [0.0, 180.0], "°");
-/// Half angle of a part of a ball, in degrees: less than all of it, whose sides would meet.
+/// Half angle of a part of a ball, in degrees: less than the whole ball, whose sides would meet.
 pub const SECTOR: Limits = Limits::new([0.0, 179.0], [0.0, 179.9], "°");
 /// Sides of a polygon, points of a star.
 pub const SIDES: Limits = Limits::new([3.0, 12.0], [3.0, 64.0], "").whole();
-/// How often a fractal repeats itself.
+/// Iterations of a fractal.
 pub const ITERATIONS: Limits = Limits::new([0.0, 5.0], [0.0, 8.0], "").whole();
 /// The power of a Mandelbulb; a whole number.
 pub const POWER: Limits = Limits::new([2.0, 12.0], [2.0, 16.0], "").whole();
-/// How often a Julia set squares and a Mandelbulb is raised to its power.
+/// Iterations of a Julia set and of a Mandelbulb.
 pub const SQUARES: Limits = Limits::new([0.0, 10.0], [0.0, 16.0], "").whole();
 /// Each number of a Julia set's constant.
 pub const CONSTANT: Limits = Limits::new([-1.0, 1.0], [-2.0, 2.0], "");
 /// Sizes of a Kleinian set, in its own unit.
 pub const FOLD: Limits = Limits::new([0.0, 1.5], [0.0, 10.0], "");
-/// How much of a Kleinian set is shown, in its own unit.
+/// Size of the visible part of a Kleinian set, in its own unit.
 pub const REACH: Limits = Limits::new([0.5, 4.0], [0.1, 10.0], "");
 /// Vertical angle of view, in degrees.
 pub const FOV: Limits = Limits::new([10.0, 120.0], [0.1, 170.0], "°");
@@ -166,11 +166,11 @@ pub const COPIES: Limits = Limits::new([0.0, 16.0], [0.0, 1e6], "").whole();
 pub const ANGLE: Limits = Limits::new([-180.0, 180.0], [-1e4, 1e4], "°");
 /// Angles per length, in degrees per meter.
 pub const CURVATURE: Limits = Limits::new([-360.0, 360.0], [-3.6e4, 3.6e4], "°/m");
-/// Change of width per height.
+/// Change of width per meter of height.
 pub const TAPER: Limits = Limits::new([-1.0, 1.0], [-1e3, 1e3], "/m");
-/// How far a displacement moves the surface.
+/// Greatest distance by which a displacement moves the surface.
 pub const AMPLITUDE: Limits = Limits::new([0.0, 0.5], [0.0, 1e6], "m");
 /// The same, outward or inward.
 pub const DISPLACEMENT: Limits = Limits::new([-0.5, 0.5], [-1e6, 1e6], "m");
-/// Width of what is repeated side by side.
+/// Width of a repeated tile.
 pub const TILE: Limits = Limits::new([0.1, 5.0], [1e-4, 1e6], "m");

@@ -1,4 +1,4 @@
-//! Materials: shared by id, so that one edit changes every object that uses it.
+//! Materials. Objects share them by id, so that one edit changes every object that uses a material.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};

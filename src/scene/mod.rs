@@ -1,6 +1,6 @@
-//! What the artist made, as plain data: a flat table of nodes, a table of materials, an environment.
+//! The scene as plain data: a flat table of nodes, a table of materials, an environment.
 //!
-//! Nothing here evaluates, draws or changes over time; see `flat`, `render` and `document` for that.
+//! Nothing here evaluates, draws or changes over time; see `field`, `render` and `document` for that.
 //!
 //! # Example
 //!

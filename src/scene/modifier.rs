@@ -1,9 +1,8 @@
-//! Modifiers: what a node does to itself, or to all below it, before it takes its place. The table below is
-//! the only list of them: the enum, the file format, the inspector, the tests and the golden sheet follow
-//! from it.
+//! Modifiers: changes of a node's own field, or of that of its subtree, before its transform applies. The table below
+//! is the only list of them: the enum, the file format, the inspector, the tests and the golden sheet follow from it.
 //!
-//! To add one: an entry here, its row in `flat/modifier_table.rs`, what it does to bounds and steps in `flat/modify.rs`,
-//! `mod_name_…` in `flat/eval/modifier.rs` and in `shaders/mod/`.
+//! To add one: an entry here, its row in `field/modifier_table.rs`, its effect on bounds and steps in
+//! `field/modify.rs`, `mod_name_…` in `field/eval/modifier.rs` and in `shaders/mod/`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,7 +25,7 @@ param_kinds! {
     #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
     pub enum Modifier;
 
-    /// Which modifier, without its parameters. The number is the code that the GPU reads.
+    /// The kind of a modifier, without its parameters. The number is the code that the GPU reads.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
     #[repr(u32)]
     pub enum ModifierKind;
@@ -153,7 +152,7 @@ impl ModifierKind {
     }
 }
 
-/// Copies around an axis: each is a shape of its own.
+/// Copies around an axis: each is evaluated as a shape of its own.
 const AROUND: Limits = Limits::new([2.0, 32.0], [1.0, 1024.0], "").whole();
 /// Copies of a recursion.
 const RECURSION: Limits = Limits::new([1.0, 8.0], [1.0, 12.0], "").whole();

@@ -31,32 +31,32 @@ impl std::fmt::Display for NodeId {
 pub struct Node {
     /// Identity.
     pub id: NodeId,
-    /// The group that holds it; `None` at the top.
+    /// The group that contains it; `None` at the top.
     pub parent: Option<NodeId>,
-    /// Name for people; need not be unique.
+    /// Display name; need not be unique.
     pub name: String,
-    /// Hidden nodes, and all below them, are not drawn and take no part in any operator; the first child of a group
-    /// hides what works on it, see [`Operator::needs_first`].
+    /// Hidden nodes and their subtrees are not drawn and take no part in any operator. A hidden first child can hide
+    /// its whole group, see [`Operator::needs_first`].
     pub visible: bool,
-    /// Locked nodes are not selected or changed through the viewport.
+    /// The viewport neither selects nor changes locked nodes.
     pub locked: bool,
-    /// Cut away from what precedes it in its group instead of joined; objects and groups only.
+    /// Subtracted from what precedes it in its group instead of joined; objects and groups only.
     pub negative: bool,
     /// How it blends with its siblings; objects and groups only.
     pub blend_override: BlendOverride,
-    /// Siblings with which it does not blend, nor they with it; what is no sibling does not count. Objects and
-    /// groups only.
+    /// Siblings with which it does not blend; it holds in both directions. Ids of other nodes have no effect. Objects
+    /// and groups only.
     pub apart: Vec<NodeId>,
     /// Parent from local.
     pub transform: Transform,
-    /// What it does to itself and all below it, in its own space, the first one first; objects and groups only.
+    /// The modifiers of the node and its subtree, in its own space, in order of application; objects and groups only.
     pub modifiers: Vec<ModifierSlot>,
-    /// What it is.
+    /// The kind of the node, with its data.
     pub kind: NodeKind,
 }
 
 impl Node {
-    /// A visible, unlocked, positive node at the origin. Its id is given by [`super::Scene::insert`].
+    /// A visible, unlocked, positive node at the origin. [`super::Scene::insert`] assigns its id.
     pub fn new(name: impl Into<String>, kind: NodeKind) -> Self {
         Self {
             id: NodeId(0),
@@ -73,31 +73,31 @@ impl Node {
         }
     }
 
-    /// The same node somewhere else.
+    /// The same node at this translation.
     pub fn at(mut self, translation: DVec3) -> Self {
         self.transform.translation = translation;
         self
     }
 
-    /// The same node turned.
+    /// The same node with this rotation.
     pub fn rotated(mut self, rotation: DQuat) -> Self {
         self.transform.rotation = rotation;
         self
     }
 
-    /// The same node scaled.
+    /// The same node with this scale.
     pub fn scaled(mut self, scale: DVec3) -> Self {
         self.transform.scale = scale;
         self
     }
 
-    /// The same node cut away instead of joined.
+    /// The same node, subtracted instead of joined.
     pub fn negative(mut self) -> Self {
         self.negative = true;
         self
     }
 
-    /// The same node with one more modifier, after those that it has.
+    /// The same node with one more modifier, behind the others.
     pub fn modified(mut self, modifier: Modifier) -> Self {
         self.modifiers.push(modifier.into());
         self
@@ -109,7 +109,7 @@ impl Node {
     }
 }
 
-/// What a node is.
+/// The kind of a node, with its data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NodeKind {
     /// Joins its children.
@@ -170,10 +170,10 @@ fn is_half(share: &f64) -> bool {
 }
 
 impl Group {
-    /// A hard union: what a new group is.
+    /// A hard union: the default of a new group.
     pub const UNION: Self = Self::new(Operator::Union, Blend::HARD);
 
-    /// A group with the usual width, depth and share.
+    /// A group with the default width, depth and share.
     pub const fn new(operator: Operator, blend: Blend) -> Self {
         Self { operator, blend, width: usual_width(), depth: usual_depth(), share: half() }
     }

@@ -1,4 +1,4 @@
-//! How the operands of a group are joined.
+//! Operators and blends: how a group joins its operands.
 
 use std::sync::LazyLock;
 
@@ -12,7 +12,7 @@ use super::params::{
 };
 
 /// An operator. It folds over the children in the artist's order: the first child is the start, `a`; each
-/// later child, `b`, is joined to what stands so far.
+/// later child, `b`, joins the running result.
 ///
 /// The formulas of pipe, groove, tongue and engraving follow Mercury's hg_sdf (2015), halved or divided where
 /// that makes them safe to step by.
@@ -55,10 +55,10 @@ impl Operator {
         Self::Morph,
         Self::Paint,
     ];
-    /// The operators on sets: with a radius of 0 they know only inside and outside.
+    /// The set operators: with a radius of 0 they depend on inside and outside only.
     pub const SETS: [Self; 4] = [Self::Union, Self::Intersection, Self::Difference, Self::Xor];
 
-    /// Name for people.
+    /// Display name.
     pub fn label(self) -> &'static str {
         match self {
             Self::Union => "Union",
@@ -74,7 +74,7 @@ impl Operator {
         }
     }
 
-    /// What it makes, for people.
+    /// The help text.
     pub fn help(self) -> &'static str {
         match self {
             Self::Union => "What is in any child",
@@ -90,7 +90,7 @@ impl Operator {
         }
     }
 
-    /// Whether its blends have a kernel and a radius; for [`Operator::Paint`] the radius is that of the soft edge.
+    /// Whether its blends have a radius; for [`Operator::Paint`] the radius is that of the soft edge.
     pub fn has_radius(self) -> bool {
         !matches!(self, Self::Pipe | Self::Morph)
     }
@@ -100,23 +100,24 @@ impl Operator {
         self.has_radius() && self != Self::Paint
     }
 
-    /// Whether a [`BlendKernel`] with steps has its steps here. Grooves and tongues have the plain bevel instead.
+    /// Whether a [`BlendKernel`] with steps gets its steps with this operator. Grooves and tongues use the plain bevel
+    /// instead.
     pub fn has_steps(self) -> bool {
         self.has_kernel() && !matches!(self, Self::Groove | Self::Tongue)
     }
 
-    /// Whether it has a width: the full width of groove or tongue, the diameter of a pipe.
+    /// Whether it has a width: the full width of a groove or tongue, the diameter of a pipe.
     pub fn has_width(self) -> bool {
         matches!(self, Self::Pipe | Self::Groove | Self::Tongue)
     }
 
-    /// Whether it has a depth: how deep groove or V are cut, how high a tongue rises.
+    /// Whether it has a depth: that of a groove or V, or the height of a tongue.
     pub fn has_depth(self) -> bool {
         matches!(self, Self::Groove | Self::Tongue | Self::Engrave)
     }
 }
 
-/// The curve with which a blend rounds or cuts the edge. All are convex combinations of the operands, so the
+/// The curve by which a blend rounds or cuts the edge. All are convex combinations of the operands, so the
 /// field stays safe to step by, and all give the same greatest thickening at equal radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -127,8 +128,8 @@ pub enum BlendKernel {
     Quadratic,
     /// A cubic: curvature without a jump, widest.
     Cubic,
-    /// A flat bevel with softened ends. Of all smooth blends of one thickening it adds the least volume but for 4 %:
-    /// a blend's profile is convex and leaves the middle at 45°, so that it never lies below the bevel.
+    /// A flat bevel with softened ends. Its volume is within 4 % of the least among smooth blends of equal
+    /// thickening: the profile of a blend is convex and leaves the middle at 45°, so it never lies below the bevel.
     /// Earlier files call it `lean`.
     #[serde(alias = "lean")]
     SmoothChamfer,
@@ -149,7 +150,7 @@ impl BlendKernel {
     /// fillet of radius 1 adds at the middle of a right-angled corner. For steps and columns the greatest.
     pub const THICKENING: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
-    /// Name for people.
+    /// Display name.
     pub fn label(self) -> &'static str {
         match self {
             Self::Circular => "Circular",
@@ -162,7 +163,7 @@ impl BlendKernel {
         }
     }
 
-    /// What the blend looks like, for people.
+    /// The help text.
     pub fn help(self) -> &'static str {
         match self {
             Self::Circular => "A fillet with a round section",
@@ -204,7 +205,7 @@ impl BlendKernel {
     }
 }
 
-/// What a blend radius is measured in.
+/// The unit of a blend radius.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RadiusUnit {
@@ -212,8 +213,8 @@ pub enum RadiusUnit {
     #[default]
     #[serde(rename = "metres")]
     Meters,
-    /// The size of the operands: of what joins and of what stands so far, the lesser of the largest half extents
-    /// of their bounds in the world. What has no end does not count; 1 m where neither has one.
+    /// The size of the operands: the largest half extent of the bounds in the world, of the joining operand or of the
+    /// running result, whichever is less. Unbounded operands do not count; 1 m if both are unbounded.
     Size,
 }
 
@@ -221,7 +222,7 @@ impl RadiusUnit {
     /// Every unit, in the order of the user interface.
     pub const ALL: [Self; 2] = [Self::Meters, Self::Size];
 
-    /// Name for people.
+    /// Display name.
     pub fn label(self) -> &'static str {
         match self {
             Self::Meters => "Absolute",
@@ -229,7 +230,7 @@ impl RadiusUnit {
         }
     }
 
-    /// What the radius becomes, for people.
+    /// The help text.
     pub fn help(self) -> &'static str {
         match self {
             Self::Meters => "The same length whatever the size",
@@ -271,24 +272,25 @@ impl Blend {
         Self { kernel, radius, ..Self::HARD }
     }
 
-    /// How far apart two distances may be and still blend. The radius must be in meters.
+    /// The distance difference up to which the operands blend. The radius must be in meters.
     pub fn support(&self) -> f64 {
         self.kernel.support(self.steps) * self.radius
     }
 
-    /// The most that the blend can add to or take from the hard operator's value. The radius must be in meters.
+    /// The greatest amount that the blend adds to or takes from the hard operator's value. The radius must be in
+    /// meters.
     pub fn thickening(&self) -> f64 {
         BlendKernel::THICKENING * self.radius
     }
 
-    /// The same in meters, between operands of this size, see [`RadiusUnit::Size`].
+    /// The same blend with its radius in meters, between operands of this size, see [`RadiusUnit::Size`].
     pub fn in_meters(self, size: f64) -> Self {
         let factor = if self.unit == RadiusUnit::Size { size } else { 1.0 };
         Self { radius: self.radius * factor, unit: RadiusUnit::Meters, ..self }
     }
 }
 
-/// How a node blends with its siblings; it counts inside of groups.
+/// How a node blends with its siblings; it has an effect in groups only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BlendOverride {
@@ -302,12 +304,12 @@ pub enum BlendOverride {
 }
 
 impl BlendOverride {
-    /// The radius that a node gets first when it is to have its own.
+    /// The first own radius of a node.
     const FIRST_RADIUS: f64 = 0.1;
-    /// Every way, in the order of the user interface.
+    /// Every variant, in the order of the user interface.
     const ALL: [Self; 3] = [Self::Inherit, Self::Hard, Self::Radius(Self::FIRST_RADIUS)];
 
-    /// Name for people.
+    /// Display name.
     fn label(self) -> &'static str {
         match self {
             Self::Inherit => "Inherit",
@@ -316,7 +318,7 @@ impl BlendOverride {
         }
     }
 
-    /// What it does, for people.
+    /// The help text.
     fn help(self) -> &'static str {
         match self {
             Self::Inherit => "With the radius of its group",
@@ -325,7 +327,7 @@ impl BlendOverride {
         }
     }
 
-    /// What is known about the radius.
+    /// The description of the radius.
     fn radius_param() -> &'static Param {
         let table = param_rows! {
             /// The blend radius of this node's blend.
@@ -335,13 +337,13 @@ impl BlendOverride {
     }
 }
 
-/// A choice, below which stands the radius where there is one.
+/// A choice, followed by the radius if there is one.
 impl ParamField for BlendOverride {
     const ANIMATABLE: bool = false;
 
     fn choices() -> &'static [Choice] {
         static CHOICES: LazyLock<Vec<Choice>> = LazyLock::new(|| {
-            // The one with a radius is no word in files but holds a number; its key is the name of that.
+            // In files, the variant with a radius is an object, not a word; its key serves as the key of the choice.
             let mut choices = choices_of(&BlendOverride::ALL, BlendOverride::label, BlendOverride::help);
             choices[2].key = "radius".into();
             choices

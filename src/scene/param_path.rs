@@ -1,4 +1,4 @@
-//! Names for every parameter of a scene.
+//! Paths: names for every parameter of a scene.
 //!
 //! In text a path is the owner and the field as files and their errors name it: `node.12.object.shape.radius`,
 //! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.albedo`, `environment.sky`.
@@ -10,36 +10,36 @@ use std::str::FromStr;
 use super::params::{Param, ParamValue, Params};
 use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError};
 
-/// Names a parameter of a scene, or one of the three elements of one.
+/// Names a parameter of a scene, or one element of a parameter with three.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ParamPath {
-    /// What has the parameter.
+    /// The owner of the parameter.
     pub owner: ParamOwner,
     /// The parameter's key in files, below its owner: `radius`, `blend.radius`.
     pub name: Cow<'static, str>,
-    /// Which of its three elements is meant; `None` for all of it.
+    /// Index of one of its three elements; `None` for the whole value.
     pub element: Option<usize>,
 }
 
-/// What has parameters.
+/// An owner of parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ParamOwner {
     /// A part of a node.
     Node(NodeId, Part),
     /// A material.
     Material(MaterialId),
-    /// What surrounds the scene.
+    /// The environment.
     Environment,
 }
 
 /// A part of a node that has parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Part {
-    /// The node itself: whether it is seen, how it is joined.
+    /// The node itself: visibility, blending.
     Node,
-    /// Its place in its group.
+    /// Its transform.
     Transform,
-    /// The modifier at this place in its list.
+    /// The modifier at this index of its list.
     Modifier(usize),
     /// The shape of an object.
     Shape,
@@ -54,7 +54,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// The parts that the node has, in the order of files.
+    /// The parts of the node, in the order of files.
     pub fn of(node: &Node) -> impl Iterator<Item = Self> {
         let kind = match &node.kind {
             NodeKind::Group(_) => Self::Operator,
@@ -67,7 +67,7 @@ impl Part {
         [Self::Node, Self::Transform].into_iter().chain(modifiers).chain([kind])
     }
 
-    /// The parameters of this part of the node, where it has one.
+    /// The parameters of this part of the node, if it exists.
     pub fn params(self, node: &Node) -> Option<&dyn Params> {
         Some(match (self, &node.kind) {
             (Self::Node, _) => node,
@@ -82,7 +82,7 @@ impl Part {
         })
     }
 
-    /// The same, to be changed.
+    /// The same parameters, mutable.
     pub fn params_mut(self, node: &mut Node) -> Option<&mut dyn Params> {
         if self == Self::Node {
             return Some(node);
@@ -99,7 +99,7 @@ impl Part {
         })
     }
 
-    /// The field of files, below the node, that keeps the parameter.
+    /// The path of the parameter's field in files, below the node.
     pub fn field(self, name: &str) -> String {
         match self {
             Self::Node => name.to_owned(),
@@ -114,7 +114,7 @@ impl Part {
         }
     }
 
-    /// The part whose parameter a field of files is, and its name; see [`Part::field`].
+    /// The part and the parameter's name for a field in files; the inverse of [`Part::field`].
     fn of_field(field: &str) -> Option<(Self, &str)> {
         const PARTS: [(&str, Part); 6] = [
             ("transform.", Part::Transform),
@@ -137,31 +137,31 @@ impl Part {
     }
 }
 
-/// The one parameter of a modifier that its place in the list has, not the modifier.
+/// The only parameter that belongs to a modifier's slot in the list, not to the modifier.
 const ENABLED: &str = "enabled";
 
-/// A number as paths write it: without a sign or zeros in front.
+/// A number in the form that paths use: without a sign or leading zeros.
 fn whole<T: FromStr + fmt::Display>(text: &str) -> Option<T> {
     text.parse().ok().filter(|number: &T| number.to_string() == text)
 }
 
 impl ParamPath {
-    /// Of a part of a node.
+    /// A parameter of a part of a node.
     pub fn of_node(id: NodeId, part: Part, name: impl Into<Cow<'static, str>>) -> Self {
         Self { owner: ParamOwner::Node(id, part), name: name.into(), element: None }
     }
 
-    /// Of a material.
+    /// A parameter of a material.
     pub fn of_material(id: MaterialId, name: impl Into<Cow<'static, str>>) -> Self {
         Self { owner: ParamOwner::Material(id), name: name.into(), element: None }
     }
 
-    /// Of the environment.
+    /// A parameter of the environment.
     pub fn of_environment(name: impl Into<Cow<'static, str>>) -> Self {
         Self { owner: ParamOwner::Environment, name: name.into(), element: None }
     }
 
-    /// The same for one of the parameter's three elements.
+    /// The path of one of the parameter's three elements.
     pub fn element(self, index: usize) -> Self {
         Self { element: Some(index), ..self }
     }
@@ -177,7 +177,7 @@ impl ParamPath {
         all
     }
 
-    /// All parameters of a scene: the environment's, the materials', the nodes'.
+    /// All parameters of a scene: those of the environment, the materials and the nodes.
     pub fn all(scene: &Scene) -> Vec<(Self, &'static Param, ParamValue)> {
         let mut all = Vec::new();
         collect(ParamOwner::Environment, &scene.environment, &mut all);
@@ -188,32 +188,32 @@ impl ParamPath {
         all
     }
 
-    /// What is known about the parameter.
+    /// The description of the parameter.
     pub fn param(&self, scene: &Scene) -> Result<&'static Param, SceneError> {
         let params = self.params(scene)?;
         params.find(&self.name).ok_or_else(|| self.unknown(params))
     }
 
-    /// Its value; of one element as a value of its own.
+    /// Its value; that of one element is a value of its own.
     pub fn get(&self, scene: &Scene) -> Result<ParamValue, SceneError> {
         let params = self.params(scene)?;
         self.value_in(params).ok_or_else(|| self.unknown(params))
     }
 
-    /// Its value in a node, whatever the node's id is; `None` where it has no such parameter.
+    /// Its value in a node, whatever the node's id; `None` if the node has no such parameter.
     pub fn get_in(&self, node: &Node) -> Option<ParamValue> {
         let ParamOwner::Node(_, part) = self.owner else { return None };
         self.value_in(part.params(node)?)
     }
 
-    /// Sets it in a node, whatever the node's id is; false, and nothing changed, where it has no such parameter or the value
-    /// is of another type. Nothing is checked against limits.
+    /// Sets it in a node, whatever the node's id. Returns false and changes nothing if the node has no such parameter
+    /// or the value is of another type. Does not check limits.
     pub fn set_in(&self, node: &mut Node, value: ParamValue) -> bool {
         let ParamOwner::Node(_, part) = self.owner else { return false };
         part.params_mut(node).is_some_and(|params| self.set_value(params, value))
     }
 
-    /// What has the parameter, with another value for it; the scene stays as it is. Nothing is checked against limits.
+    /// A copy of the owner with another value for the parameter; the scene stays unchanged. Does not check limits.
     pub fn changed(&self, scene: &Scene, value: ParamValue) -> Result<Changed, SceneError> {
         let refusal = |params: &dyn Params| match self.value_in(params) {
             None => self.unknown(params),
@@ -294,7 +294,7 @@ fn collect(owner: ParamOwner, params: &dyn Params, all: &mut Vec<(ParamPath, &'s
     });
 }
 
-/// What has a parameter, after a change of it.
+/// The owner of a parameter, after a change of the parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Changed {
     /// A node.

@@ -1,9 +1,9 @@
-//! Shapes, each with its named parameters. The table below is the only list of them: the enum, the
-//! file format, the inspector, the packing for the GPU, the tests and the golden sheet follow from it.
+//! Shapes, each with its named parameters. The table below is the only list of them: the enum, the file format, the
+//! inspector, the packing for the GPU, the tests and the golden sheet follow from it.
 //!
-//! To add one: an entry here and its bounds in `shape/extent.rs`, `sdf_name` in `flat/eval/sdf/`, `sdf_name` in
-//! `shaders/sdf/`. `src/README.md` shows one. One `with data` is evaluated from numbers that `flat::PreparedShape` makes of its
-//! parameters.
+//! To add one: an entry here, its bounds in `shape/extent.rs`, `sdf_name` in `field/eval/sdf/` and in `shaders/sdf/`.
+//! `CONTRIBUTING.md` shows an example. A shape `with data` is evaluated from a payload that `field::PreparedShape`
+//! derives from its parameters.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

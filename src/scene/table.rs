@@ -1,4 +1,4 @@
-//! The scene: tables of nodes and materials, and the few ways to change them.
+//! The scene: tables of nodes and materials, and the few methods that change them.
 
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -12,10 +12,10 @@ use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneErro
 
 /// A scene.
 ///
-/// Invariants, held by every method: the node table is in depth-first pre-order, so a subtree is a
-/// contiguous range and siblings stand in the artist's order; every parent is a group; ids are unique
-/// and below `next_id`; every object's material exists. Nodes, depths and index are shared (`Arc`), so
-/// that cloning a scene for undo copies pointers to nodes only, and a changed value leaves the rest shared.
+/// Invariants, held by every method: the node table is in depth-first pre-order, so a subtree is a contiguous range and
+/// siblings stand in the artist's order; every parent is a group; ids are unique and below `next_id`; every object's
+/// material exists. Nodes, depths and index are shared (`Arc`): cloning a scene for undo copies only pointers to nodes,
+/// and changing a value leaves the others shared.
 #[derive(Clone, Debug)]
 pub struct Scene {
     nodes: Vec<Arc<Node>>,
@@ -23,12 +23,12 @@ pub struct Scene {
     index: Arc<HashMap<NodeId, u32>>,
     materials: Vec<Arc<Material>>,
     next_id: u64,
-    /// What surrounds the nodes.
+    /// The environment.
     pub environment: Environment,
 }
 
 impl PartialEq for Scene {
-    /// Depths and index follow from the nodes; shared entries are equal without a look at them.
+    /// Depths and index follow from the nodes; shared entries are equal without a comparison.
     fn eq(&self, other: &Self) -> bool {
         fn same<T: PartialEq>(a: &[Arc<T>], b: &[Arc<T>]) -> bool {
             a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b) || a == b)
@@ -47,7 +47,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// No nodes, and one material for new objects.
+    /// A scene without nodes, and with one material for new objects.
     pub fn new() -> Self {
         Self {
             nodes: Vec::new(),
@@ -59,8 +59,8 @@ impl Scene {
         }
     }
 
-    /// A scene from its tables: nodes in depth-first pre-order, each with its final id and parent.
-    /// `next_id` is raised above every id.
+    /// A scene from its tables: nodes in depth-first pre-order, each with its final id and parent. Raises `next_id`
+    /// above every id.
     pub fn from_tables(
         nodes: Vec<Node>,
         materials: Vec<Material>,
@@ -80,8 +80,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Takes a whole new table of nodes, in depth-first pre-order with final ids and parents, in one
-    /// step: what moves or copies many nodes builds the table that it wants. `next_id` only grows.
+    /// Replaces the whole table of nodes in one step. The new one is in depth-first pre-order with final ids and
+    /// parents. Edits that move or copy many nodes build the table they want and set it here. `next_id` only grows.
     pub fn set_nodes(&mut self, nodes: Vec<Arc<Node>>) -> Result<(), SceneError> {
         check_limit("the number of nodes", nodes.len(), MAX_NODES)?;
         let depths = nest(nodes.iter().map(|n| &**n), None, 0)?;
@@ -103,12 +103,12 @@ impl Scene {
         &self.nodes
     }
 
-    /// How deep each node is nested, parallel to [`Scene::nodes`]; 0 at the top.
+    /// The depth of each node, parallel to [`Scene::nodes`]; 0 at the top.
     pub fn depths(&self) -> &[u32] {
         &self.depths
     }
 
-    /// The id that the next new node will get.
+    /// The id of the next new node.
     pub fn next_id(&self) -> u64 {
         self.next_id
     }
@@ -118,12 +118,12 @@ impl Scene {
         self.index_of(id).map(|i| &self.nodes[i])
     }
 
-    /// Where the node stands in [`Scene::nodes`].
+    /// The index of the node in [`Scene::nodes`].
     pub fn index_of(&self, id: NodeId) -> Option<usize> {
         self.index.get(&id).map(|i| *i as usize)
     }
 
-    /// The range in [`Scene::nodes`] of the node at `index` and all below it.
+    /// The range in [`Scene::nodes`] of the subtree whose root is at `index`.
     pub fn subtree(&self, index: usize) -> Range<usize> {
         let depth = self.depths[index];
         let below = self.depths[index + 1..].iter().take_while(|d| **d > depth).count();
@@ -142,7 +142,7 @@ impl Scene {
         self.nodes[range].iter().filter(move |n| n.parent == parent)
     }
 
-    /// Whether `node` is `ancestor` or stands below it.
+    /// Whether `node` is `ancestor` or one of its descendants.
     pub fn is_within(&self, node: NodeId, ancestor: NodeId) -> bool {
         match (self.index_of(node), self.index_of(ancestor)) {
             (Some(n), Some(a)) => self.subtree(a).contains(&n),
@@ -150,7 +150,7 @@ impl Scene {
         }
     }
 
-    /// World from the node's local space: the whole chain of transforms.
+    /// The transform from the node's local space to the world: the whole chain of transforms.
     pub fn world_from_local(&self, id: NodeId) -> DAffine3 {
         let mut matrix = DAffine3::IDENTITY;
         let mut at = self.node(id);
@@ -161,16 +161,14 @@ impl Scene {
         matrix
     }
 
-    /// Adds a node as the `position`-th child of `parent` (at the end where there are fewer), and
-    /// gives it a new id.
+    /// Adds a node as the `position`-th child of `parent` (at the end if there are fewer), and assigns it a new id.
     pub fn insert(&mut self, parent: Option<NodeId>, position: usize, node: Node) -> Result<NodeId, SceneError> {
         let id = NodeId(self.next_id);
         self.insert_subtree(parent, position, vec![Node { id, parent, ..node }])?;
         Ok(id)
     }
 
-    /// Adds a whole subtree, in pre-order with final ids, its first node as the `position`-th child of
-    /// `parent`.
+    /// Adds a whole subtree, in pre-order with final ids, with its root as the `position`-th child of `parent`.
     pub fn insert_subtree(
         &mut self,
         parent: Option<NodeId>,
@@ -203,7 +201,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Takes out a node and all below it, and returns them in pre-order.
+    /// Removes a node with its subtree, and returns them in pre-order.
     pub fn remove(&mut self, id: NodeId) -> Result<Vec<Arc<Node>>, SceneError> {
         let range = self.subtree(self.index_of(id).ok_or(SceneError::NoNode(id))?);
         let start = range.start;
@@ -217,8 +215,8 @@ impl Scene {
         Ok(removed)
     }
 
-    /// Makes a node, with all below it, the `position`-th child of `parent`; `position` counts the
-    /// children as they are without the node.
+    /// Makes a node with its subtree the `position`-th child of `parent`; `position` counts the children without the
+    /// moved node.
     pub fn move_to(&mut self, id: NodeId, parent: Option<NodeId>, position: usize) -> Result<(), SceneError> {
         let index = self.index_of(id).ok_or(SceneError::NoNode(id))?;
         let range = self.subtree(index);
@@ -246,7 +244,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Replaces a node by one of the same id. Its place in the tree stays, whatever `node.parent` says.
+    /// Replaces the node of the same id. Its place in the tree stays, whatever `node.parent` says.
     pub fn replace(&mut self, node: Node) -> Result<(), SceneError> {
         let index = self.index_of(node.id).ok_or(SceneError::NoNode(node.id))?;
         self.check_material(&node)?;
@@ -285,14 +283,14 @@ impl Scene {
         Ok(())
     }
 
-    /// Replaces a material by one of the same id.
+    /// Replaces the material of the same id.
     pub fn replace_material(&mut self, material: Material) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == material.id).ok_or(SceneError::NoMaterial(material.id))?;
         self.materials[at] = Arc::new(material);
         Ok(())
     }
 
-    /// Takes out a material that nothing uses.
+    /// Removes a material that no node uses.
     pub fn remove_material(&mut self, id: MaterialId) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == id).ok_or(SceneError::NoMaterial(id))?;
         if let Some(node) = self.nodes.iter().find(|n| material_of(n) == Some(id)) {
@@ -324,7 +322,7 @@ impl Scene {
         }
     }
 
-    /// Where in the table the `position`-th child of `parent` starts, or would start.
+    /// The index in the table of the `position`-th child of `parent`, existing or new.
     fn insertion_index(&self, parent: Option<NodeId>, position: usize) -> usize {
         let range = match parent.and_then(|p| self.index_of(p)) {
             None => 0..self.nodes.len(),
@@ -344,7 +342,7 @@ impl Scene {
         }
     }
 
-    /// Panics unless every invariant holds; for tests.
+    /// Panics if an invariant is violated; for tests.
     #[doc(hidden)]
     pub fn assert_invariants(&self) {
         assert_eq!(self.nodes.len(), self.depths.len());

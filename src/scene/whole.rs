@@ -1,5 +1,5 @@
 //! Whole numbers in files. JSON has one kind of number: `3.0` is as whole as `3`, as the schema says, and some programs
-//! write all numbers so.
+//! write all numbers that way.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -7,12 +7,13 @@ use std::marker::PhantomData;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
-/// Above this not every whole number is an `f64`, so that one may stand for another.
+/// Above this, `f64` cannot represent every whole number, so a value may stand for another.
 const MAX_EXACT: f64 = (1_u64 << 53) as f64;
 
-/// Reads a whole number, however it is written.
+/// Reads a whole number in any notation.
 pub(super) fn read<'de, D: Deserializer<'de>, T: TryFrom<u64>>(deserializer: D) -> Result<T, D::Error> {
-    // As a number of any kind: what is read as a whole first (an enum told apart by its `type`) knows only its own.
+    // Deserializes a number of any kind: when serde buffers an enum with an inner `type`, a number accepts only the
+    // kind that it was buffered as.
     deserializer.deserialize_f64(Whole(PhantomData))
 }
 

@@ -1,5 +1,5 @@
-//! The arrays of a document that changes: at once where that is quick, otherwise by a job, which stops when something newer is
-//! wanted.
+//! The arrays of a changing document. Quick scenes are flattened at once, others by a job, which stops when a newer
+//! revision needs flattening.
 
 use std::sync::Arc;
 
@@ -12,27 +12,27 @@ use isolith_scene::Scene;
 #[derive(Debug, Default)]
 pub(super) struct Arrays {
     flattener: Flattener,
-    /// The last one that could be made.
+    /// The last successful one.
     scene: Arc<FlatScene>,
-    /// The revision that was looked at last.
+    /// The revision handled last.
     revision: Option<u64>,
     problem: Option<String>,
     job: Option<Job<FlattenReply>>,
     is_canceled: bool,
 }
 
-/// What a job gives back: what it flattens with, and what came of it; nothing where it was canceled.
+/// The result of a job: the flattener, and the flat scene or an error; no scene if the job was canceled.
 type FlattenReply = (Flattener, Result<Option<Arc<FlatScene>>, String>);
 
 const CANCELED: &str = "preparing it was canceled";
 
 impl Arrays {
-    /// The arrays that somebody else has made of this revision.
+    /// Arrays of this revision that were made elsewhere.
     pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, revision: u64) -> Self {
         Self { flattener, scene, revision: Some(revision), ..Self::default() }
     }
 
-    /// No arrays of this revision, for a reason.
+    /// No arrays for this revision, for this reason.
     pub fn refused(problem: String, revision: u64) -> Self {
         Self { problem: Some(problem), revision: Some(revision), ..Self::default() }
     }
@@ -45,22 +45,22 @@ impl Arrays {
         self.problem.as_deref()
     }
 
-    /// Whether a job is at work.
+    /// Whether a job is running.
     pub fn is_under_way(&self) -> bool {
         self.job.is_some()
     }
 
-    /// Whether the arrays are older than the document because somebody has canceled the job.
+    /// Whether the arrays are older than the document because the job was canceled.
     pub fn is_canceled(&self) -> bool {
         self.is_canceled
     }
 
-    /// Makes the arrays of the same revision again.
+    /// Flattens the same revision again.
     pub fn prepare_again(&mut self) {
         self.revision = None;
     }
 
-    /// Brings the arrays up to date, or has a job do it, and takes over what a job has made. True if anything is new.
+    /// Updates the arrays, or starts a job for it, and takes over the result of a job. Returns whether anything is new.
     pub fn follow(&mut self, jobs: &Jobs, document: &Document) -> bool {
         let revision = document.revision();
         let is_new = self.revision != Some(revision);

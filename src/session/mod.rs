@@ -1,13 +1,13 @@
-//! What is derived from a document and kept while it is edited: its arrays, its models, and the jobs that make them. Names no
-//! user interface, so that editor, command line, playback and export go the same way.
+//! A session: data derived from a document while it is edited. These are its arrays, its models, and the jobs that make
+//! them. It names no user interface, so that editor, command line, playback and export share it.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `prepare` | a scene made ready to be drawn, in one go: for opening, and for who draws once |
-//! | `open` | a document read and made ready as one job |
-//! | `arrays` | the arrays of a document that changes |
-//! | `models` | the models that it names, read beside the frames and again when their files change |
-//! | `notice` | what a session has to say |
+//! | `prepare` | a scene prepared for drawing, in one call: for opening, and for a single picture |
+//! | `open` | a document read and prepared by one job |
+//! | `arrays` | the arrays of a changing document |
+//! | `models` | the models that it names, read in the background and again when their files change |
+//! | `notice` | messages of a session |
 
 mod arrays;
 mod models;
@@ -30,7 +30,7 @@ use isolith_jobs::{Job, Jobs, Task};
 use isolith_mesh::MeshLibrary;
 use isolith_scene::NodeId;
 
-/// See the module.
+/// The session of one document; see the module.
 #[derive(Debug, Default)]
 pub struct SceneSession {
     jobs: Jobs,
@@ -39,18 +39,18 @@ pub struct SceneSession {
 }
 
 impl SceneSession {
-    /// Where everything runs that takes longer than a frame.
+    /// The jobs for all work that takes longer than a frame.
     pub fn jobs(&self) -> &Jobs {
         &self.jobs
     }
 
-    /// Forgets everything for a document that is not prepared yet, whose models lie in this folder.
+    /// Forgets everything, for a document that is not prepared yet; its models lie in this folder.
     pub fn reset(&mut self, folder: Option<PathBuf>) {
         self.arrays = Arrays::default();
         self.models.set_folder(folder);
     }
 
-    /// Takes over a document that was opened by a job, and returns it.
+    /// Takes over a document that a job has opened, and returns it.
     pub fn adopt(&mut self, opened: Opened) -> Document {
         let Opened { document, prepared } = opened;
         self.reset(document.path().and_then(folder_of));
@@ -64,54 +64,54 @@ impl SceneSession {
         document
     }
 
-    /// Models lie in this folder from now on.
+    /// Sets the folder of the models.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
         self.models.set_folder(folder);
     }
 
-    /// Follows the document, and takes over what jobs have made. Once a frame; whether something is new.
+    /// Follows the document, and takes over the results of jobs. Called once a frame. Returns whether anything is new.
     pub fn follow(&mut self, document: &Document) -> bool {
         let has_arrays = self.arrays.follow(&self.jobs, document);
         let has_models = self.models.follow(&self.jobs, self.arrays.scene(), has_arrays);
         has_arrays || has_models
     }
 
-    /// Whether arrays or models of the document are still on their way.
+    /// Whether arrays or models of the document are being prepared.
     pub fn is_preparing(&self) -> bool {
         self.arrays.is_under_way() || self.models.is_under_way()
     }
 
-    /// Tries again what was canceled.
+    /// Repeats canceled work.
     pub fn prepare_again(&mut self) {
         self.arrays.prepare_again();
     }
 
-    /// Whether preparing was canceled, so that what is shown is older than the document.
+    /// Whether preparing was canceled, so that the arrays are older than the document.
     pub fn is_canceled(&self) -> bool {
         self.arrays.is_canceled()
     }
 
-    /// The document as arrays; the last good ones where it is beyond a limit or on its way.
+    /// The arrays of the document; the last good ones if the document exceeds a limit or is being prepared.
     pub fn flat(&self) -> &Arc<FlatScene> {
         self.arrays.scene()
     }
 
-    /// Why the document is not shown as it is.
+    /// Why the arrays do not show the current document.
     pub fn problem(&self) -> Option<&str> {
         self.arrays.problem()
     }
 
-    /// A model that cannot be read, and why.
+    /// A node whose model cannot be read, and why.
     pub fn model_problem(&self) -> Option<&(NodeId, String)> {
         self.models.problem()
     }
 
-    /// The models that were read.
+    /// The library of models.
     pub fn library(&self) -> &MeshLibrary {
         self.models.library()
     }
 
-    /// The same, to ask it for one that was not.
+    /// The library, to request further models.
     pub fn library_mut(&mut self) -> &mut MeshLibrary {
         self.models.library_mut()
     }
@@ -121,12 +121,12 @@ impl SceneSession {
         self.models.reload();
     }
 
-    /// What there is to say since the last call.
+    /// The messages since the last call.
     pub fn take_notices(&mut self) -> Vec<Notice> {
         self.models.take_notices()
     }
 
-    /// Reads a document and makes it ready, beside what is shown.
+    /// Starts a job that reads and prepares a document while the current one stays.
     pub fn open(&self, name: &str, read: ReadDocument) -> Job<Result<Opened, String>> {
         self.jobs.start(Task::new(format!("Opening {name}")), move |task| Opened::by(&read, task))
     }
@@ -142,7 +142,7 @@ mod tests {
     use isolith_jobs::JobEnd;
     use isolith_scene::{Modifier, Node, NodeKind, Object, Scene, ShapeKind};
 
-    /// A ball in rings, so often that flattening it takes longer than a frame.
+    /// A ball in many rings: flattening it takes longer than a frame.
     fn rings(count: u32) -> Node {
         let around = |count| Modifier::Polar { count, radius: 9.0, mirrored: false };
         let material = Scene::new().materials()[0].id;
@@ -174,7 +174,7 @@ mod tests {
         wait(&mut session, &document);
         assert_eq!(**session.flat(), flatten(document.scene(), 0.0).unwrap());
         assert!(!session.follow(&document), "nothing is new");
-        // What is canceled leaves the arrays of before, and is made when it is asked for again.
+        // A canceled job leaves the old arrays, and a new request makes the new ones.
         let node = document.scene().nodes()[0].id;
         document.apply(Edit::Replace(Node { id: node, ..rings(99) })).unwrap();
         let before = Arc::clone(session.flat());
@@ -199,13 +199,13 @@ mod tests {
         assert_eq!(**session.flat(), flatten(document.scene(), 0.0).unwrap());
         session.follow(&document);
         assert!(!session.is_preparing(), "nothing is left to make");
-        // Beyond a limit it opens all the same, and says so.
+        // A scene beyond a limit opens nonetheless, and reports the limit.
         let too_many = session.open("rings", Arc::new(|_| Ok(self::document(1_000))));
         let JobEnd::Done(Ok(opened)) = too_many.wait() else { panic!("it opens") };
         let document = session.adopt(opened);
         session.follow(&document);
         assert!(session.problem().is_some() && session.flat().nodes.is_empty());
-        // A reader that refuses says why.
+        // A reader that refuses reports its reason.
         let refused = session.open("rings", Arc::new(|_| Err("no rings".into()))).wait();
         assert!(matches!(refused, JobEnd::Done(Err(reason)) if reason == "no rings"));
     }

@@ -1,5 +1,5 @@
-//! The models that a scene names: read by a job when they are wanted first, and again when their files change or the artist
-//! asks for it. What their files hold that is not drawn is told.
+//! The models that a scene names. A job reads them on the first request; they are read again when their files change or
+//! the artist requests it. A notice lists the contents of their files that are not drawn.
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -12,19 +12,19 @@ use isolith_jobs::{Job, JobEnd, Jobs, Task};
 use isolith_mesh::{MeshLibrary, ReloadOutcome, TriangleMesh, Watcher};
 use isolith_scene::NodeId;
 
-/// Looks after the models.
+/// Loads the models and watches their files.
 #[derive(Debug, Default)]
 pub(super) struct Models {
     library: MeshLibrary,
-    /// Reads what the library lacks.
+    /// The job that reads the missing models.
     reading: Option<Reading>,
-    /// Started when there is something to look after.
+    /// Started with the first model to watch.
     watcher: Option<Watcher>,
-    /// That of the library that the watcher knows.
+    /// The revision of the library at the last update of the watcher.
     revision: Option<u64>,
-    /// What has been told about, by path.
+    /// The meshes already reported, by path.
     told: HashMap<String, Weak<TriangleMesh>>,
-    /// A model that cannot be read, and why.
+    /// A node whose model cannot be read, and why.
     problem: Option<(NodeId, String)>,
     notices: Vec<Notice>,
 }
@@ -35,7 +35,7 @@ struct Reading {
     paths: Vec<String>,
 }
 
-/// Most things that one message says about a model.
+/// Most items in one message about a model.
 const THINGS_TOLD: usize = 4;
 
 impl Models {
@@ -60,7 +60,7 @@ impl Models {
         std::mem::take(&mut self.notices)
     }
 
-    /// Moves to another folder, and forgets everything where it is another one.
+    /// Changes the folder; forgets everything if it differs from the old one.
     pub fn set_folder(&mut self, folder: Option<PathBuf>) {
         if self.library.folder() != folder.as_deref() {
             self.reading = None;
@@ -68,7 +68,7 @@ impl Models {
         }
     }
 
-    /// Takes what somebody else has read.
+    /// Takes over models that were read elsewhere.
     pub fn take_new(&mut self, library: MeshLibrary) {
         self.library.take_new(library);
     }
@@ -80,7 +80,8 @@ impl Models {
         }
     }
 
-    /// Has read what the arrays name, and takes over what was read. Once a frame; whether anything is new.
+    /// Starts reading the models that the arrays name, and takes over the results. Called once a frame. Returns whether
+    /// anything is new.
     pub fn follow(&mut self, jobs: &Jobs, flat: &FlatScene, is_new: bool) -> bool {
         self.take_reread();
         self.take_read();

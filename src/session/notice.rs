@@ -1,22 +1,22 @@
-//! What a session has to say, for whoever shows it.
+//! Messages of a session for its user interface.
 
-/// How much it matters.
+/// The severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoticeLevel {
-    /// Good to know.
+    /// For information only.
     Info,
-    /// Worth a look.
+    /// Deserves attention.
     Warning,
-    /// It failed.
+    /// An operation failed.
     Error,
 }
 
-/// One or two plain sentences.
+/// A message of one or two plain sentences.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
-    /// How much it matters.
+    /// Its severity.
     pub level: NoticeLevel,
-    /// For people.
+    /// The text for the user.
     pub text: String,
 }
 

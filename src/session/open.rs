@@ -1,4 +1,4 @@
-//! A document read and made ready as one job: what is shown stays until the next one is whole.
+//! A document read and prepared by one job: the current one stays until the next is complete.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use super::prepare::PreparedScene;
 use isolith_document::Document;
 use isolith_jobs::{Canceled, Task};
 
-/// Reads a document, or says why it cannot.
+/// Reads a document. The error is a reason for the user.
 pub type ReadDocument = Arc<dyn Fn(&Task) -> Result<Document, String> + Send + Sync>;
 
 /// Reads the document in this file.
@@ -21,26 +21,26 @@ pub fn folder_of(file: &Path) -> Option<PathBuf> {
     file.parent().map(|folder| if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.to_path_buf() })
 }
 
-/// A document that can be shown at once.
+/// A document that is ready to be shown.
 #[derive(Debug)]
 pub struct Opened {
     /// The document.
     pub document: Document,
-    /// What is drawn of it, or why nothing is: a scene beyond a limit can still be edited.
+    /// The prepared scene, or the reason why there is none: a scene beyond a limit can still be edited.
     pub(super) prepared: Result<PreparedScene, String>,
 }
 
 impl Opened {
-    /// Reads the document and makes it ready.
+    /// Reads and prepares the document.
     ///
     /// # Errors
-    /// It cannot be read, or the task was canceled.
+    /// The document cannot be read, or the task was canceled.
     pub fn by(read: &ReadDocument, task: &Task) -> Result<Self, String> {
         task.set_stage("reading");
         Self::of(read(task)?, task)
     }
 
-    /// Makes the document ready.
+    /// Prepares the document.
     ///
     /// # Errors
     /// The task was canceled.

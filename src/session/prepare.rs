@@ -1,4 +1,4 @@
-//! A scene made ready to be drawn: its arrays, and the models that it names.
+//! A scene prepared for drawing: its arrays, and the models that it names.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,22 +8,22 @@ use isolith_jobs::Task;
 use isolith_mesh::MeshLibrary;
 use isolith_scene::Scene;
 
-/// Progress of a task when the arrays are there. Reading the scene comes before that.
+/// Progress of a task after flattening. The part before belongs to reading the scene.
 const FLATTENED: f32 = 0.75;
 
-/// See the module.
+/// A prepared scene; see the module.
 #[derive(Debug)]
 pub struct PreparedScene {
     /// The arrays.
     pub flat: Arc<FlatScene>,
-    /// The models, read or refused.
+    /// The models, or the errors of those that cannot be read.
     pub library: MeshLibrary,
-    /// What made the arrays, and makes them again after a small change.
+    /// The flattener of the arrays, for updates after small changes.
     pub(super) flattener: Flattener,
 }
 
 impl PreparedScene {
-    /// The scene at `time` seconds, with its models from this folder; nothing where the task was canceled.
+    /// Prepares the scene at `time` seconds, with its models from this folder; `None` if the task was canceled.
     ///
     /// # Errors
     /// The scene is beyond a limit.
@@ -39,7 +39,7 @@ impl PreparedScene {
     }
 }
 
-/// Reads what the library lacks of these; false where the task was canceled. `start` is how much of the task was done before.
+/// Reads the models that the library lacks; false if the task was canceled. `start` is the progress of the task so far.
 pub(super) fn read_models(paths: &[String], library: &mut MeshLibrary, task: &Task, start: f32) -> bool {
     task.set_stage("models");
     for (index, path) in paths.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn read_models(paths: &[String], library: &mut MeshLibrary, task: &Ta
             return false;
         }
         task.set_progress(start + (1.0 - start) * index as f32 / paths.len() as f32);
-        // One that cannot be read is kept in the library as such.
+        // The library records models that cannot be read.
         let _ = library.get(path);
     }
     !task.is_canceled()

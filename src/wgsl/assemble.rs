@@ -1,4 +1,4 @@
-//! The whole WGSL source of each pass: what depends on the evaluator is generated.
+//! Assembles the whole WGSL source of each pass, with generated text for the parts that depend on the evaluator.
 
 use std::fmt::Write as _;
 
@@ -13,7 +13,7 @@ use super::op_set::OpSet;
 use super::options::{Options, SkipMode};
 use super::specialize::{Fold, specialize};
 
-/// The whole source of the shader `entry`, each file included once, before its first user.
+/// The whole source of the shader `entry`. It contains each file once, before its first user.
 pub fn assemble(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
     let mut out = String::new();
     let (fineness, ops) = (options.quality.fineness(), evaluator.op_set());
@@ -38,13 +38,13 @@ pub fn assemble(entry: &str, evaluator: &Evaluator, options: Options) -> Result<
     Ok(out)
 }
 
-/// The same for a shader that evaluates no field.
+/// The source of a shader that evaluates no field.
 pub fn assemble_plain(entry: &str) -> Result<String, ShaderError> {
     let nothing = Evaluator::Interpreter(OpSet::none());
     assemble(entry, &nothing, Options::default())
 }
 
-/// Files that do not exist: the evaluator decides what is in them.
+/// The text of files that exist only as generated text, which depends on the evaluator.
 fn generated(name: &str, evaluator: &Evaluator, options: Options) -> Option<String> {
     use Evaluator::{Baked, Interpreter, StraightLine, Tape};
     let include = |file: &str| Some(format!("#include \"field/{file}.wgsl\""));

@@ -1,4 +1,4 @@
-//! Calls of the functions of shapes: the lines that include them, their arguments, and the choice among them.
+//! Calls of the functions of shapes: their include lines, their arguments, and the `switch` among them.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -19,8 +19,7 @@ pub fn gradient_include(kind: ShapeKind) -> String {
     format!("#include \"generated/dual/{}.wgsl\"", kind.function())
 }
 
-/// The generated file: the choice of the shape by its code. Each shape reads only the rows it has, from
-/// `row` on.
+/// The generated file that selects the shape by its code. Each shape reads only the rows it has, from `row` on.
 pub fn shapes_wgsl(ops: &OpSet) -> String {
     let mut out = String::new();
     for kind in &ops.shapes {
@@ -32,7 +31,7 @@ pub fn shapes_wgsl(ops: &OpSet) -> String {
     out
 }
 
-/// The generated file: the same choice of the gradients.
+/// The generated file that selects the gradient by the shape's code.
 pub fn gradients_wgsl(ops: &OpSet) -> String {
     let mut out = String::new();
     for kind in &ops.shapes {
@@ -43,7 +42,7 @@ pub fn gradients_wgsl(ops: &OpSet) -> String {
     out
 }
 
-/// A function that calls what belongs to the shape.
+/// A function that selects among the calls of the shapes.
 fn choice(
     out: &mut String,
     shapes: &BTreeSet<ShapeKind>,
@@ -59,7 +58,7 @@ fn choice(
     writeln!(out, "        default: {{ return {nothing}; }}\n    }}\n}}").expect("strings take all");
 }
 
-/// The arguments of a shape's function, its parameters read from their rows, and where its data begin.
+/// The arguments of a shape's function, which reads its parameters from their rows, and the start of its payload rows.
 fn read_rows(kind: ShapeKind) -> String {
     let parameters = kind.parameter_rows();
     let row = |i: usize| if i < parameters { format!("scene_row(row + {i}u)") } else { "vec4f(0.0)".to_owned() };
@@ -68,7 +67,7 @@ fn read_rows(kind: ShapeKind) -> String {
     format!("p, {}, {}{data}", row(0), row(1))
 }
 
-/// Sets `{name}{at}` to what `call` says for the shape whose code stands in the row.
+/// Sets `{name}{at}` to the result of `call` for the shape whose code is in the row.
 pub fn select_by_shape(
     shapes: ShapeSet,
     at: usize,
@@ -89,7 +88,7 @@ pub fn select_by_shape(
     out
 }
 
-/// The place of `point` in the leaf's own space, the parameters of its shape, and where its data begin.
+/// The point in the leaf's own space, the parameters of its shape, and the start of its payload rows.
 pub fn arguments(point: &str, entry: &StructureEntry, shape: ShapeKind, row: usize) -> String {
     let placed = if entry.moved { "placed_moved" } else { "placed" };
     let parameter = |i: usize| {
@@ -100,12 +99,12 @@ pub fn arguments(point: &str, entry: &StructureEntry, shape: ShapeKind, row: usi
     format!("{placed}({point}, q{}, q{}, q{}), {a}, {b}{data}", row + 1, row + 2, row + 3)
 }
 
-/// The first of the data that the row at `at` of the component's says where to find.
+/// The first payload row, whose place is in the component's row `at`.
 pub fn data_argument(at: usize) -> String {
     format!("first_row + {at}u + u32(q{at}.y)")
 }
 
-/// Reads the rows of an entry, whose first is `row`. `offset` is code: something to add to each place.
+/// Reads the rows of an entry, from `row` on. `offset` is code that is added to each place.
 pub(super) fn read_entry_rows(entry: &StructureEntry, row: usize, offset: &str) -> String {
     (row..row + entry.rows()).map(|row| format!("    let q{row} = rows[{row}u{offset}];\n")).collect()
 }

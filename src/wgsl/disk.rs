@@ -1,8 +1,9 @@
-//! Shaders from disk, for whoever changes them: with the feature `shaders-from-disk` an edit needs no rebuild, only another start.
+//! Shaders from disk, for shader development: with the feature `shaders-from-disk` an edit needs a restart, but no
+//! rebuild.
 
 use std::path::Path;
 
-/// The text of a file of `shaders/` as it is now, if it can be read.
+/// The current text of a file of `shaders/`, if it is readable.
 pub fn read(root: &Path, name: &str) -> Option<String> {
     std::fs::read_to_string(root.join(name)).ok()
 }

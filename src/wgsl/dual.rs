@@ -1,10 +1,10 @@
-//! Distances with their gradients: from the WGSL of a distance function the WGSL of its dual function that also
+//! Forward-mode automatic differentiation: generates from the WGSL of a distance function its dual function, which also
 //! returns the derivatives along x, y and z.
 //!
-//! Forward mode: every value that follows the point is carried with three tangents of its own type, so
-//! the rules of vectors are those of numbers. One evaluation of a dual function gives what central differences
-//! need six for, and without their error. What does not follow the point, or what the result does not
-//! follow, is written as it stands; the result of a function `detach_…` counts as constant.
+//! Every value that depends on the point carries three tangents of its own type, so the rules of vectors are those of
+//! scalars. One evaluation of a dual function replaces the six that central differences need, and has no truncation
+//! error. The generated text copies expressions that do not depend on the point, or that do not affect the result. The
+//! result of a function `detach_…` counts as constant.
 //!
 //! At kinks the derivative is that of one side. Tangents are finite where values are.
 
@@ -26,7 +26,7 @@ use activity::Activity;
 pub use error::DualError;
 use tangent_writer::TangentWriter;
 
-/// What dual functions need, once before the first of them: values with their derivatives along x, y and z.
+/// Prelude of dual functions, needed once before the first: values with their derivatives along x, y and z.
 pub const DUAL_PRELUDE: &str = "
 struct DualF32 { v: f32, x: f32, y: f32, z: f32 }
 struct DualVec2 { v: vec2f, x: vec2f, y: vec2f, z: vec2f }
@@ -34,11 +34,12 @@ struct DualVec3 { v: vec3f, x: vec3f, y: vec3f, z: vec3f }
 struct DualVec4 { v: vec4f, x: vec4f, y: vec4f, z: vec4f }
 ";
 
-/// The dual functions of `function`, named `dual_…`, and of what it calls with values that follow its point.
+/// The dual functions of `function`, named `dual_…`, and of those functions it calls with values that depend on its
+/// point.
 ///
-/// `source` is complete: it holds all that `function` calls. The point is the first argument, a `vec3f`;
-/// all others are constants. The dual function returns the derivatives along x, y and z, then the distance. It
-/// stands beside `source`, whose functions it calls, and after [`DUAL_PRELUDE`].
+/// `source` is complete: it contains every function that `function` calls. The point is the first argument, a `vec3f`;
+/// all other arguments are constants. The dual function returns the derivatives along x, y and z, then the distance.
+/// Its text needs `source`, whose functions it calls, and follows [`DUAL_PRELUDE`].
 pub fn dual(source: &str, function: &str) -> Result<String, DualError> {
     let module = naga::front::wgsl::parse_str(source).map_err(|e| DualError::Source(e.emit_to_string(source)))?;
     let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
@@ -48,7 +49,7 @@ pub fn dual(source: &str, function: &str) -> Result<String, DualError> {
     let (entry, _) = module.functions.iter().find(named).ok_or_else(|| DualError::NoFunction(function.to_owned()))?;
     check(&module, function)?;
 
-    // Callers stand after what they call: backward, all callers of a function are known before it.
+    // Callers follow their callees: backward, all callers of a function are known before the function.
     let seeds = module.functions[entry].arguments.iter().enumerate().map(|(i, _)| i == 0).collect();
     let mut active: HashMap<_, Vec<bool>> = HashMap::from([(entry, seeds)]);
     let mut derived = Vec::new();
@@ -68,7 +69,7 @@ pub fn dual(source: &str, function: &str) -> Result<String, DualError> {
     Ok(out)
 }
 
-/// Refuses what could hide from the analysis that a value follows the point, and names that dual functions need.
+/// Rejects constructs that could hide a dependency from the analysis, and names that dual functions need.
 fn check(module: &Module, function: &str) -> Result<(), DualError> {
     let refuse = |function: &str, construct: &str| {
         Err(DualError::Unsupported { function: function.to_owned(), construct: construct.to_owned() })

@@ -1,4 +1,4 @@
-//! Build script: puts every file under `shaders/` into the program, so that it runs from any folder.
+//! Build script: embeds every file of `shaders/` in the program, so that it runs from any folder.
 
 #![allow(clippy::print_stdout, reason = "a build script speaks to cargo on standard output")]
 
@@ -8,7 +8,7 @@ use std::{env, fs};
 
 fn main() {
     let here = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it"));
-    // In a published package the shaders stand beside this file.
+    // In a published package the shaders lie beside this file.
     let root = [here.join("../../shaders"), here.join("shaders")].into_iter().find(|folder| folder.is_dir());
     let root = root.and_then(|folder| folder.canonicalize().ok()).expect("shaders/ is part of the source");
     println!("cargo:rerun-if-changed={}", root.display());

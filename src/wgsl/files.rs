@@ -1,4 +1,4 @@
-//! The files of `shaders/`, put together by what they include.
+//! The files of `shaders/`, and the resolution of their includes.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use super::disk;
 /// Every file of `shaders/`, by its path there.
 pub const FILES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// The text of a file of `shaders/`: as it was when the program was built or, with `shaders-from-disk`, as it is now.
+/// The text of a file of `shaders/`: from the time of the build or, with `shaders-from-disk`, as it is now.
 fn text_of(name: &str) -> Option<Cow<'static, str>> {
     let shipped = FILES.iter().find(|(file, _)| *file == name).map(|(_, text)| Cow::Borrowed(*text))?;
     if cfg!(feature = "shaders-from-disk") {
@@ -20,29 +20,30 @@ fn text_of(name: &str) -> Option<Cow<'static, str>> {
     Some(shipped)
 }
 
-/// Where `shaders/` was when the program was built.
+/// The folder `shaders/` at the time of the build.
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shaders");
 
-/// Why a shader could not be put together.
+/// Why a shader could not be assembled.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ShaderError {
-    /// An include names no file.
+    /// An include names a missing file.
     #[error("{from}: includes {name}, which does not exist")]
     NoFile {
         /// The including file.
         from: String,
-        /// What it includes.
+        /// The name in the include.
         name: String,
     },
 }
 
-/// The text of `entry` with all that it includes, each file once, before its first user. It may use nothing that is generated.
+/// The text of `entry` with all its includes, each file once, before its first user. It may not include generated
+/// files.
 pub fn library(entry: &str) -> Result<String, ShaderError> {
     resolve(entry, false, &|_| None)
 }
 
-/// The same where `generated` holds the text of what has no file. What stands between `#if MODIFIERS` and `#end` is kept
-/// for scenes that have some.
+/// Like [`library`], where `generated` returns the text of files that do not exist. The part between `#if MODIFIERS`
+/// and `#end` remains only for scenes with modifiers.
 pub fn resolve(
     entry: &str,
     has_modifiers: bool,
@@ -67,7 +68,7 @@ impl Resolver<'_> {
         }
         let mut generated = (self.generated)(name);
         if let Some(text) = generated.as_mut().filter(|_| name.starts_with("generated/dual/")) {
-            // Dual functions of functions that several shapes call stand in each of their texts, and are written once.
+            // The texts of several shapes may contain the dual function of the same function; write it once.
             let fresh = text.split("\n\n").filter(|part| self.seen.insert((*part).trim_end().to_owned()));
             *text = fresh.collect::<Vec<_>>().join("\n\n");
         }

@@ -1,5 +1,5 @@
-//! The functions of shapes and modifiers together with their gradients; derived once, however many pipelines hold
-//! them.
+//! The functions of shapes and modifiers together with their gradients. Each is derived once, however many pipelines
+//! contain it.
 
 use std::collections::BTreeMap;
 use std::sync::{LazyLock, Mutex, PoisonError};
@@ -9,14 +9,14 @@ use super::files::library;
 use super::modifiers::{file, own_rows};
 use isolith_scene::ModifierKind;
 
-/// A shape's function, or one about a modifier (see [`modifier_gradient`]), with its gradient.
+/// The function of a shape, or one of a modifier (see [`modifier_gradient`]), with its gradient.
 pub fn gradient_wgsl(function: &str) -> Option<String> {
     static DERIVED: LazyLock<Mutex<BTreeMap<String, String>>> = LazyLock::new(Mutex::default);
     let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(text) = derived.get(function) {
         return Some(text.clone());
     }
-    // What has no derivative has no pipeline; a test derives every one.
+    // Functions without a derivative have no pipeline; a test derives all of them.
     let text = match function.strip_prefix("sdf_") {
         Some(shape) => dual(&with_rows(library(&format!("sdf/{shape}.wgsl")).ok()?), function).ok()?,
         None => modifier_gradient(function)?,
@@ -25,7 +25,7 @@ pub fn gradient_wgsl(function: &str) -> Option<String> {
     Some(text)
 }
 
-/// A source with something that stands for the data it reads; their derivative is zero.
+/// A source with placeholders for the rows it reads, whose derivative is zero.
 pub(super) fn with_rows(text: String) -> String {
     if !text.contains("scene_row(") {
         return text;
@@ -33,12 +33,12 @@ pub(super) fn with_rows(text: String) -> String {
     format!("{text}\nfn scene_row(at: u32) -> vec4f {{ return vec4f(f32(at)); }}\n")
 }
 
-/// The derivatives of one of three functions of a modifier: `pull_mod_x`, of the point in the copy along a vector;
-/// `along_mod_x`, of the value by the point; `through_mod_x`, of the value by the field of the content.
+/// The derivatives of one of three functions of a modifier: `pull_mod_x` (the point in the copy along a vector),
+/// `along_mod_x` (the value by the point), `through_mod_x` (the value by the field of the content).
 fn modifier_gradient(function: &str) -> Option<String> {
     let (way, name) = function.split_once("_mod_")?;
     let kind = ModifierKind::ALL.iter().copied().find(|kind| file(*kind) == name)?;
-    // All three may differentiate the same function by other arguments: each has its own copy of the source.
+    // All three may differentiate the same function by different arguments, so each has its own copy of the source.
     let text = renamed(&library(&format!("mod/{name}.wgsl")).ok()?, &format!("{way}_{name}"));
     let text = text.lines().filter(|line| !line.starts_with("const ")).collect::<Vec<_>>().join("\n");
     let rows = own_rows(kind, &|i| format!("r{i}: vec4f"), &|_| "data: u32".to_owned());
@@ -62,10 +62,10 @@ fn modifier_gradient(function: &str) -> Option<String> {
     Some(format!("{source}{derived}"))
 }
 
-/// The source with every function's name followed by `_suffix`.
+/// The source with `_suffix` appended to the name of each function.
 fn renamed(source: &str, suffix: &str) -> String {
     let mut names: Vec<&str> = source.lines().filter_map(|line| line.strip_prefix("fn ")?.split('(').next()).collect();
-    // Longer ones first: a name may begin another.
+    // Longer names first, since a name may start with another.
     names.sort_unstable_by_key(|name| std::cmp::Reverse(name.len()));
     names.iter().fold(source.to_owned(), |text, name| text.replace(&format!("{name}("), &format!("{name}_{suffix}(")))
 }

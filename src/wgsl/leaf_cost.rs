@@ -1,12 +1,13 @@
-//! What it costs to evaluate leaves, counted in the source of their shapes: what decides between straight-line code and
+//! The cost of evaluating leaves, counted in the source of their shapes. It decides between straight-line code and
 //! tapes.
 //!
-//! Straight-line code evaluates every leaf of a component at every step; tapes evaluate some six, whose shape is chosen by
-//! a `switch` of which software drivers execute every arm. So tapes cost about 6 (K + 6) where K is the cost of one leaf of
-//! each kind of shape in the scene, and straight-line code the sum over all leaves, all in leaves that are spheres. Measured
-//! with leaves in one blend on lavapipe 22.3.6, where both took the same time: 45 spheres (by this rule 42), 32 boxes (34),
-//! 35 tori (39), 10 ellipsoids (10), 65 of nine kinds (70). Where leaves crowd, or are nested, tapes are longer: 80 tori of a
-//! shell 21 entries, a hundred nested balls 19. Once the tapes are there, their mean length takes the place of six.
+//! Straight-line code evaluates every leaf of a component at every step. Tapes evaluate about six, each with a `switch`
+//! over the shapes, of which software drivers execute every arm. So tapes cost about 6 (K + 6), where K is the cost of
+//! one leaf of each kind of shape in the scene, and straight-line code costs the sum over all leaves; the unit is the
+//! cost of a sphere. Measured with leaves in one blend on lavapipe 22.3.6, both took the same time with 45 spheres (42
+//! by this rule), 32 boxes (34), 35 tori (39), 10 ellipsoids (10), 65 of nine kinds (70). Crowded or nested leaves have
+//! longer tapes: 80 tori of a shell 21 entries, a hundred nested balls 19. Once tapes are ready, their mean length
+//! replaces the six.
 
 use std::collections::BTreeSet;
 use std::sync::LazyLock;
@@ -21,19 +22,19 @@ use super::op_set::shape_loops;
 use isolith_field::{Component, FlatNode, FlatScene, has_tape, leaf_payload};
 use isolith_scene::ShapeKind;
 
-/// Entries of a tape that are evaluated at a point, about, before the tapes are there.
+/// Approximate number of tape entries evaluated at a point, before tapes are ready.
 const EVALUATED_ENTRIES: f64 = 6.0;
-/// What an entry of a tape costs beside its shape.
+/// Cost of a tape entry besides its shape.
 const ENTRY_COST: f64 = 6.0;
-/// Instructions that a leaf of straight-line code takes beside its shape: its place and its blend.
+/// Instructions of a leaf in straight-line code besides its shape: its placement and its blend.
 const LEAF_INSTRUCTIONS: f64 = 60.0;
-/// What it takes to read a row of data at a place that is not constant.
+/// Cost of reading a payload row at a place that is not constant.
 const ROW_LOAD: f64 = 12.0;
-/// Rows of data in a piece of what is drawn: what loops over data take for one iteration.
+/// Payload rows in a piece of a drawing: the rows that a loop over payload reads in one iteration.
 const ROWS_OF_PIECE: f64 = 3.0;
 
-/// Whether a component, as one of its scene, is drawn faster by tapes than by straight-line code. `entries`: how many
-/// its tapes hold on average, where they are there already.
+/// Whether tapes draw a component faster than straight-line code in its scene. `entries`: mean length of its tapes,
+/// once they are ready.
 pub fn tapes_are_cheaper(
     flat: &FlatScene,
     component: &Component,
@@ -49,12 +50,12 @@ pub fn tapes_are_cheaper(
         leaf_cost(kind, leaf_payload(kind, &flat.params[node.params as usize..]).len())
     };
     let straight: f64 = nodes.iter().filter(|node| node.is_leaf()).map(cost).sum();
-    // Pieces are walked by tapes as well, but only those of the leaves that are near.
+    // Tapes, too, loop over pieces, but only for nearby leaves.
     let of_kinds: f64 = kinds.iter().map(|kind| leaf_cost(*kind, 0)).sum();
     straight > entries.unwrap_or(EVALUATED_ENTRIES) * (of_kinds + ENTRY_COST)
 }
 
-/// The cost of a leaf with so many rows of data, in spheres.
+/// The cost of a leaf with `data` payload rows, in units of a sphere.
 fn leaf_cost(kind: ShapeKind, data: usize) -> f64 {
     static COUNTED: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| {
         let instructions = |kind: &ShapeKind| Instructions::of(*kind).unwrap_or_default();
@@ -68,7 +69,7 @@ fn leaf_cost(kind: ShapeKind, data: usize) -> f64 {
     instructions(kind, data) / instructions(ShapeKind::Sphere, 0)
 }
 
-/// What a shape's function executes: outside of loops, and in one iteration of each.
+/// Instructions that a shape's function executes: outside loops, and in one iteration of each loop.
 #[derive(Clone, Copy, Debug, Default)]
 struct Instructions {
     once: f64,
@@ -80,8 +81,8 @@ impl Instructions {
         [self.once, self.in_loops]
     }
 
-    /// Of the function of a shape with all that it calls. `None` where the source cannot be read, which the tests of
-    /// shaders refuse.
+    /// Counts the function of a shape with all that it calls. `None` if the source does not parse, which the shader
+    /// tests reject.
     fn of(kind: ShapeKind) -> Option<Self> {
         let shape = kind.function().trim_start_matches("sdf_");
         let text = with_rows(library(&format!("sdf/{shape}.wgsl")).ok()?);
@@ -112,7 +113,7 @@ impl InstructionCounter<'_> {
             match statement {
                 Statement::Emit(range) => range.clone().for_each(|e| self.expression(handle, e, in_loop)),
                 Statement::Block(inner) => self.block(handle, inner, in_loop),
-                // Software drivers execute both.
+                // Software drivers execute both branches.
                 Statement::If { accept, reject, .. } => {
                     self.block(handle, accept, in_loop);
                     self.block(handle, reject, in_loop);
@@ -160,12 +161,12 @@ impl InstructionCounter<'_> {
         }
     }
 
-    /// Whether a function reads a row of data.
+    /// Whether a function reads a payload row.
     fn is_row(&self, handle: Handle<Function>) -> bool {
         self.module.functions[handle].name.as_deref() == Some("scene_row")
     }
 
-    /// Numbers that the value of an expression holds.
+    /// Number of scalars in the value of an expression.
     fn lanes(&self, handle: Handle<Function>, at: Handle<Expression>) -> f64 {
         let types = &self.module.types;
         let inner = match &self.info[handle][at].ty {
@@ -186,7 +187,7 @@ mod tests {
     use isolith_field::{CellTree, flatten};
     use isolith_scene::{Blend, Group, MaterialId, Node, NodeKind, Object, Operator, Scene, Shape};
 
-    /// So many of each shape in one blend.
+    /// One blend of `count` leaves of each shape.
     fn blend(shapes: &[Shape], count: usize) -> FlatScene {
         let mut scene = Scene::new();
         let blend = Blend { radius: 0.05, ..Blend::HARD };
@@ -220,7 +221,7 @@ mod tests {
         assert!(leaf_cost(ShapeKind::Tube, 30) > 2.0 * leaf_cost(ShapeKind::Tube, 3), "{all:?}");
     }
 
-    /// Either side of where both were measured to take the same time.
+    /// Tests either side of the measured break-even points.
     #[test]
     fn tapes_draw_many_or_dear_leaves() {
         let sphere = Shape::Sphere { radius: 0.3 };
@@ -234,8 +235,8 @@ mod tests {
         }
     }
 
-    /// By straight-line code the shell and the nest take little more than half the time that they take by tapes, the tubes
-    /// nine times as long.
+    /// With straight-line code the shell and the nest take little more than half the time of tapes, and the tubes nine
+    /// times as long.
     #[test]
     fn long_lists_are_left_for_straight_line_code() {
         let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));

@@ -1,13 +1,13 @@
-//! What straight-line code proves of the field ahead on a ray.
+//! Lookahead: lower bounds of the field ahead on a ray, from straight-line code.
 //!
 //! The distance to a convex body is a convex function along a ray: ahead it lies above the line through its last two
-//! values. So each leaf is known to be no less, some way ahead, than a number that costs nothing; and as a fold never
-//! falls where its operands rise, the same fold over these numbers is no more than the field is anywhere until there. Where
-//! all blends are concave so is the fold of the lines themselves, also of those that rise: until there the field lies above
-//! the line from what it is to what that fold is there. Both folds are made side by side: a fold is a chain in which each
-//! blend waits for the one before, so the second one takes hardly any time.
+//! values. So each leaf has a lower bound for some way ahead, at no cost. Since a fold never falls when its operands
+//! rise, the same fold over these bounds is a lower bound of the field on that stretch. If all blends are concave, so
+//! is the fold of the lines themselves, including rising ones: on that stretch the field lies above the line from its
+//! present value to the value of that fold at the end. The code computes both folds side by side. In a fold each blend
+//! waits for the one before, so the second fold takes hardly any time.
 //!
-//! The same is true before the two values, and so an overstep to where the surface is expected can be proven afterward: see
+//! The same holds before the two values, so an overstep to the expected surface can be verified afterward: see
 //! `shaders/common/march.wgsl`.
 
 use super::evaluator::Evaluator;
@@ -16,14 +16,14 @@ use super::structure::{EntryKind, Structure, StructureEntry};
 use isolith_field::Join;
 use isolith_scene::{BlendKernel, ShapeKind};
 
-/// How convex the field of a shape is.
+/// Degree of convexity of a shape's field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Convexity {
-    /// Everywhere: the exact distance to a convex body.
+    /// Convex everywhere: the exact distance to a convex body.
     Everywhere,
-    /// But for what the function `sdf_…_concavity` beside its field says.
+    /// Convex except for what the function `sdf_…_concavity` beside its field accounts for.
     Nearly,
-    /// It is not, or nobody knows.
+    /// Not convex, or not known to be.
     Unknown,
 }
 
@@ -43,14 +43,15 @@ pub fn convexity(kind: ShapeKind) -> Convexity {
     }
 }
 
-/// Whether pipelines look ahead. Not with modifiers, nor with operators that may fall where an operand rises; and only on
-/// processors: on graphics cards it has not been measured, and code that is skipped knows no last value.
+/// Whether pipelines use lookahead. Modifiers and operators that may fall when an operand rises exclude it. Only
+/// software drivers use it: it has not been measured on graphics cards, and skipped code has no last value.
 pub fn has_lookahead(structure: &Structure, options: Options) -> bool {
     options.skip_mode == SkipMode::Selects && !structure.is_modified() && !structure.has_extended_joins()
 }
 
-/// Lines of constants: whether the pipeline looks ahead; whether the fold is concave, so that it lies above the line from what
-/// it is here to what it is of lines below its leaves; and whether each leaf has such a line, so that oversteps can be proven.
+/// WGSL constants that tell whether the pipeline uses lookahead; whether the fold is concave, so that the field lies
+/// above the line from its present value to the fold of lines below its leaves; and whether each leaf has such a line,
+/// so that oversteps can be verified.
 pub fn constants(evaluator: &Evaluator, options: Options) -> String {
     let [lookahead, concave, convex] = match evaluator {
         Evaluator::StraightLine(structure) => {
@@ -68,15 +69,15 @@ pub fn constants(evaluator: &Evaluator, options: Options) -> String {
     )
 }
 
-/// Whether what an entry joins with is a concave function of both operands: min is, and less a blend as long as the
-/// derivative of the blend never falls. Intersections are convex; steps and columns are neither.
+/// Whether the entry's join is a concave function of both operands. Min is, also after subtracting a blend whose
+/// derivative never falls. Intersections are convex; steps and columns are neither.
 fn is_concave(entry: &StructureEntry) -> bool {
     let smooth =
         |kernel: u8| !matches!(BlendKernel::ALL[usize::from(kernel)], BlendKernel::Stairs | BlendKernel::Columns);
     matches!(entry.join, Join::First | Join::Union) && entry.kernel.is_none_or(smooth)
 }
 
-/// Whether the leaf's field, whichever shape it has, is convex or nearly so.
+/// Whether the leaf's field is convex or nearly so for every shape that it may have.
 fn has_convex_leaves(entry: &StructureEntry) -> bool {
     match entry.kind {
         EntryKind::Leaf(kind) => convexity(kind) != Convexity::Unknown,
@@ -85,8 +86,8 @@ fn has_convex_leaves(entry: &StructureEntry) -> bool {
     }
 }
 
-/// Names the value of the leaf `at`, and the least (below an odd number of cuts the most) that it can be in the window
-/// ahead. `value` is code; so is `arguments`, those of the field of a kind.
+/// Declares the value of the leaf `at`, and its lower bound in the window ahead (below an odd number of cuts the upper
+/// bound). `value` is code, and so are the `arguments` of a shape's field.
 pub fn leaf(
     at: usize,
     entry: &StructureEntry,
@@ -131,8 +132,8 @@ mod tests {
     use crate::random::Random;
     use isolith_field::eval::shape_distance;
 
-    /// How far the middle of a chord is below the field, at most, over random chords of what `kind` is by default, less
-    /// what a concavity as far around the first end as the chord is long allows.
+    /// The largest distance by which the middle of a chord lies below the field, over random chords of `kind` with
+    /// default parameters, minus the allowance of a concavity within the chord's length of the first end.
     fn worst(kind: ShapeKind, concavity: impl Fn([f64; 3], f64) -> f64) -> f64 {
         let prepared = isolith_field::PreparedShape::new(&kind.default_shape());
         let field = |p: [f64; 3]| shape_distance(kind, p, &prepared.parameters, &|row| prepared.payload[row]);

@@ -1,15 +1,14 @@
-//! The second half of a specialized surface: what each leaf has its share in. The fold has left the weight
-//! of every blend in `w…`; gradient and material are the sums over the leaves of what they are there, each
-//! times the product of the weights on its way (reverse mode: a blend's weight is its derivative). So only
-//! leaves that the surface really follows are looked at, most often one. Materials are only weighed here; see
-//! `shaders/common/mixture.wgsl`.
+//! Second half of a specialized surface: the weight of each leaf. The fold has left the weight of every blend in `w…`.
+//! Gradient and material are sums over the leaves, each times the product of the weights on its path (reverse mode: the
+//! weight of a blend is its derivative). So the code visits only leaves with an influence on the surface, most often
+//! one. It only computes the weights of materials here; see `shaders/common/mixture.wgsl`.
 //!
-//! On graphics cards each leaf's rows are read once more here, from places that no compiler knows to be the same. Otherwise it
-//! keeps everything that the fold has computed of every leaf until here, where the same is needed with its derivatives: seven
-//! ellipsoids took 216 vector registers, and take 80.
+//! On graphics cards this code reads each leaf's rows again, from places that no compiler can recognize as the same.
+//! Otherwise the compiler keeps all that the fold has computed of every leaf until here, where the derivatives need the
+//! same values: seven ellipsoids took 216 vector registers, and now take 80.
 //!
-//! With operators beyond the first three a blend has two derivatives of any sign, and a share of the material that is
-//! neither. `w…` holds them all then, and `wear…` is carried along beside `share…`.
+//! With operators beyond the first three a blend has two derivatives of any sign, and a material weight that equals
+//! neither. `w…` then holds all of them, and the code carries `wear…` along beside `share…`.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -20,7 +19,7 @@ use super::structure::{EntryKind, Structure, StructureEntry};
 use isolith_field::Join;
 use isolith_scene::ShapeKind;
 
-/// The text that declares and sums `gradient` and `materials`. `reads_again`: see the module.
+/// The text that declares and accumulates `gradient` and `materials`. `reads_again`: see the module.
 pub fn material_weights(structure: &Structure, reads_again: bool, skip_mode: SkipMode) -> String {
     let rows = structure.entries.iter().scan(0, |row, entry| {
         let first = *row;
@@ -37,11 +36,12 @@ pub fn material_weights(structure: &Structure, reads_again: bool, skip_mode: Ski
         writer.line("    var worn0 = 1.0;");
     }
     if reads_again {
-        // Nothing, which no compiler knows.
+        // Always 0, but no compiler knows that.
         writer.line("    let again = subject.first >> 31u;");
     }
     writer.siblings(0..entries, 0, 1.0);
-    // Mostly one leaf has it all. A loop, since lavapipe would compile and compute the same for each leaf.
+    // Usually one leaf has all the weight. A loop, since without it lavapipe would compile and compute the same code
+    // for each leaf.
     writer.line("    var materials = mixture_of(nodes[surface_first + l0].material);");
     writer.line("    if heaviest < 1.0 { materials = mixture_none(); }");
     writer.line(&format!("    var weighed = select({entries}u, 0u, heaviest < 1.0);"));
@@ -61,15 +61,15 @@ struct MaterialWeights<'a> {
 }
 
 impl MaterialWeights<'_> {
-    /// The operands in `range`, last first: each takes its weight of what those behind it have left. `sign`
-    /// is -1 in what is cut away.
+    /// The operands in `range`, last first: each takes its weight of the rest that those after it have left. `sign` is
+    /// -1 inside a cut.
     fn siblings(&mut self, range: Range<usize>, level: usize, sign: f32) {
         let mut operands = Vec::new();
         let mut at = range.start;
         while at < range.end {
             let entry = &self.structure.entries[at];
             if entry.kind == EntryKind::Run {
-                // Has no value of its own: its operands are siblings.
+                // A run has no value of its own: its operands are siblings.
                 at += 1;
                 continue;
             }
@@ -93,7 +93,7 @@ impl MaterialWeights<'_> {
         }
     }
 
-    /// What an operand has of the gradient, and what of the material.
+    /// An operand's weights in the gradient and in the material.
     fn general_share(&mut self, at: usize, entry: &StructureEntry, level: usize) {
         if entry.join == Join::First {
             self.line(&format!("    let share{at} = rest{level};\n    let wear{at} = worn{level};"));
@@ -103,7 +103,7 @@ impl MaterialWeights<'_> {
         self.line(&format!("    rest{level} *= w{at}.y;\n    worn{level} -= wear{at};"));
     }
 
-    /// One operand, left out where it has no share.
+    /// One operand, skipped if it has no weight.
     fn operand(&mut self, at: usize, entry: &StructureEntry, level: usize, sign: f32) {
         let wear = if self.general { "wear" } else { "share" };
         let has = format!("share{at} {} 0.0", if self.general { "!=" } else { ">" });
@@ -134,7 +134,7 @@ impl MaterialWeights<'_> {
             let part = format!("share{at} * {factor} * {moved}");
             self.line(&match self.skip_mode {
                 SkipMode::Branches | SkipMode::Never => format!("    gradient += {part};"),
-                // A leaf without a share may have no gradient here.
+                // A leaf without weight may have no gradient here.
                 SkipMode::Selects => format!("    gradient += select(vec3f(0.0), {part}, {has});"),
             });
             self.line(&format!("    weights[{at}u] = {wear}{at};\n    heaviest = max(heaviest, {wear}{at});"));

@@ -1,13 +1,13 @@
-//! How a component is evaluated on the GPU: the source of the passes for one way or another.
+//! The WGSL that evaluates components on the GPU: the source of the passes for each evaluator.
 //!
-//! An [`Evaluator`] is either the interpreter, which walks any component, or straight-line code for the
-//! [`Structure`] of one. Both call the same functions of `shaders/sdf/`.
+//! An [`Evaluator`] is an interpreter, which evaluates any component, or straight-line code for the [`Structure`] of
+//! one. Both call the same functions of `shaders/sdf/`.
 //!
-//! | file | what it does |
+//! | file | contents |
 //! |---|---|
-//! | `files` | the files of `shaders/`, and what they include |
-//! | `op_set`, `structure` | what of a scene, and of a component, decides the source |
-//! | `options`, `evaluator` | how it is to be evaluated |
+//! | `files` | the files of `shaders/`, and their includes |
+//! | `op_set`, `structure` | the properties of a scene, and of a component, that determine the source |
+//! | `options`, `evaluator` | options of the pipelines, and the evaluators |
 //! | `calls`, `modifiers` | calls of the functions of shapes and modifiers |
 //! | `dual`, `gradients` | these functions with their derivatives |
 //! | `lookahead`, `material_weights`, `specialize` | straight-line code |

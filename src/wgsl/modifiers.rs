@@ -1,4 +1,4 @@
-//! WGSL for modifiers: the choice by their code, and their gradients.
+//! WGSL of modifiers: the `switch` over their codes, and their gradients.
 
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -16,7 +16,7 @@ pub fn modifier_include(kind: ModifierKind) -> String {
     format!("#include \"mod/{}.wgsl\"", file(kind))
 }
 
-/// The generated file: the choice of a modifier's functions by its code.
+/// The generated file that selects a modifier's functions by its code.
 pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let mut out = String::new();
     for kind in modifiers {
@@ -45,7 +45,7 @@ pub fn modifiers_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     out
 }
 
-/// The generated file: how gradients go through modifiers.
+/// The generated file that passes gradients through modifiers.
 pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     let mut out = String::new();
     let moving: Vec<_> = modifiers.iter().copied().filter(|k| moves_point(*k)).collect();
@@ -70,21 +70,21 @@ pub fn modifier_gradients_wgsl(modifiers: &BTreeSet<ModifierKind>) -> String {
     out
 }
 
-/// The arguments of a modifier's function: `first`, then its rows read from `row` on.
+/// The arguments of a modifier's function: `first`, then its rows, which are read from `row` on.
 fn arguments(kind: ModifierKind, first: &str) -> String {
     let row = |i: usize| format!("scene_row(row + {i}u)");
     let rows = own_rows(kind, &row, &|i| format!("row + {i}u + u32({}.y)", row(i)));
     if first.is_empty() { rows.trim_start_matches(", ").to_owned() } else { format!("{first}{rows}") }
 }
 
-/// A modifier's own rows as further arguments, what `row` makes of each; instead of the one that says where its data are,
-/// what `data` makes of it.
+/// A modifier's own rows as further arguments: the text that `row` returns for each, but for the row with the place of
+/// its payload the text that `data` returns.
 pub fn own_rows(kind: ModifierKind, row: &dyn Fn(usize) -> String, data: &dyn Fn(usize) -> String) -> String {
     let argument = |i: usize| if modifier_payload_row(kind) == Some(i) { data(i) } else { row(i) };
     (0..modifier_rows(kind)).map(|i| format!(", {}", argument(i))).collect()
 }
 
-/// A function that calls what belongs to the modifier.
+/// A function that selects among the calls of the modifiers.
 fn choice(
     out: &mut String,
     signature: &str,

@@ -1,25 +1,24 @@
-//! Which shapes, modifiers and operators a source holds.
+//! The set of shapes, modifiers and operators in a source.
 
 use std::collections::BTreeSet;
 
 use isolith_field::{self as field, FIRST_EXTENDED_KERNEL, FlatNode, FlatScene, Join, MAX_STACK, modifier_rows};
 use isolith_scene::{ModifierKind, ShapeKind};
 
-/// What the interpreter must be able to evaluate. Pipelines are built for it and cached by it, so a
-/// changed value never builds one.
+/// The operations that an interpreter supports. They are its cache key, so a changed value never builds a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct OpSet {
     /// Shapes in use.
     pub shapes: BTreeSet<ShapeKind>,
     /// Modifiers in use.
     pub modifiers: BTreeSet<ModifierKind>,
-    /// Accumulators that can be put aside: a power of two.
+    /// Size of the stack of accumulators: a power of two.
     pub stack: u32,
     /// Operators and blend kernels beyond the first three.
     pub extended: Extended,
 }
 
-/// Which of the operators a source holds: those beyond the first three are left out where nothing needs them.
+/// Operators that a source contains only if an entry needs them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Extended {
     /// Whether there are operators beyond union, intersection and difference.
@@ -29,7 +28,7 @@ pub struct Extended {
 }
 
 impl Extended {
-    /// What these entries need.
+    /// The needs of these entries.
     fn of(nodes: &[FlatNode]) -> Self {
         Self {
             joins: nodes.iter().any(|node| Join::ALL[node.join() as usize].is_extended()),
@@ -39,7 +38,7 @@ impl Extended {
 }
 
 impl OpSet {
-    /// What `flat` uses.
+    /// The operations in `flat`.
     pub fn of(flat: &FlatScene) -> Self {
         let mut used = vec![false; ShapeKind::ALL.len()];
         let mut modifiers = BTreeSet::new();
@@ -55,12 +54,12 @@ impl OpSet {
         Self { shapes, modifiers, stack: stack.max(1).next_power_of_two(), extended: Extended::of(&flat.nodes) }
     }
 
-    /// Nothing.
+    /// The empty set.
     pub fn none() -> Self {
         Self { shapes: BTreeSet::new(), modifiers: BTreeSet::new(), stack: 1, extended: Extended::default() }
     }
 
-    /// Everything there is.
+    /// All operations.
     pub fn all() -> Self {
         Self {
             shapes: ShapeKind::ALL.iter().copied().collect(),
@@ -70,8 +69,8 @@ impl OpSet {
         }
     }
 
-    /// Loops that the code holds besides the walk itself. lavapipe counts one iteration of each for every entry
-    /// that is walked, also where no lane enters it.
+    /// Loops in the code besides the main loop over entries. lavapipe counts one iteration of each for every entry,
+    /// even if no lane enters the loop.
     pub fn loops(&self) -> u32 {
         let modifiers = if self.modifiers.is_empty() { 0 } else { MODIFIER_LOOPS };
         modifiers + self.shapes.iter().map(|kind| shape_loops(*kind)[0]).sum::<u32>()
@@ -87,18 +86,18 @@ impl OpSet {
             && has(self.extended.kernels, other.extended.kernels)
     }
 
-    /// Whether it holds hardly more than `other`: a few shapes, no loops.
+    /// Whether it contains hardly more than `other`: a few shapes, no loops.
     pub fn is_near(&self, other: &Self) -> bool {
         const FEW: usize = 3;
-        // Rough ones draw otherwise: what a picture is like must not depend on those before it.
+        // Rough fields are marched differently, and a picture must not depend on the pictures before it.
         self.is_rough() == other.is_rough()
             && self.loops() == other.loops()
             && self.shapes.len() <= other.shapes.len() + FEW
     }
 
-    /// Whether rays may come as near to 0 as to a surface, and touch nothing: fields of fractals and landscapes may be far
-    /// below the distance, and so may what is divided by the stretch of a deformation. Then nothing but a change of sign
-    /// is a hit, and oversteps are short: they would pass bumps of a fraction of a pixel.
+    /// Whether rays may come as close to 0 as to a surface without touching one. Fields of fractals and landscapes may
+    /// be far below the distance, and so may fields divided by the stretch of a deformation. Then only a change of sign
+    /// is a hit, and oversteps are short: longer ones would pass bumps of a fraction of a pixel.
     pub(super) fn is_rough(&self) -> bool {
         use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
         let is_rough = |kind: &ShapeKind| {
@@ -108,17 +107,17 @@ impl OpSet {
     }
 }
 
-/// Loops in the code about modifiers: the choice of the next copy, steps of recursions, layers of noise, each for
-/// every place it is called from.
+/// Loops in the code of modifiers (the choice of the next copy, recursion steps, layers of noise), each counted for
+/// every place that calls it.
 const MODIFIER_LOOPS: u32 = 16;
 
-/// Loops in a shape's function, and how many iterations they take together at most; those over data come on top, at most
-/// one for each of the shape's rows.
+/// Number of loops in a shape's function, and the upper bound of their iterations together. Loops over payload come on
+/// top, at most one for each of the shape's rows.
 pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     match kind {
         ShapeKind::MengerSponge => [1, 8],
         ShapeKind::Julia | ShapeKind::Kleinian => [2, 64],
-        // Up to 16 powers by 5 squarings each, and as many ways back by 6 steps each.
+        // Up to 16 powers by 5 squarings each, and as many steps back by 6 iterations each.
         ShapeKind::Mandelbulb => [4, 240],
         ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
         ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
@@ -126,7 +125,7 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
     }
 }
 
-/// Whether pipelines for templates hold the shape: it neither loops nor has data.
+/// Whether pipelines for templates contain the shape: it has neither loops nor payload.
 pub fn fits_templates(kind: ShapeKind) -> bool {
     !kind.is_iterated() && !kind.has_data()
 }

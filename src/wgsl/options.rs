@@ -1,35 +1,35 @@
-//! What the pipelines do, and how near they come to the surface.
+//! Options of the pipelines, and the tolerance of the march.
 
-/// How code leaves out what cannot matter.
+/// How code skips entries without influence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum SkipMode {
-    /// By `if`: free where a branch that no lane takes is not executed.
+    /// By `if`: cheap where the device skips a branch that no lane takes.
     #[default]
     Branches,
-    /// Not within straight-line code, where all is computed and chosen from: lavapipe executes the body of every `if`
-    /// and the first iteration of every loop, and what is read as uniform within either costs 25 times as much.
+    /// No branches within straight-line code, which computes all values and selects. lavapipe executes the body of
+    /// every `if` and the first iteration of every loop, and uniform reads within either cost 25 times as much.
     Selects,
-    /// Not at all: every node at every step, as the benches' baselines do it.
+    /// No skipping: every node at every step, as in the baselines of the benches.
     Never,
 }
 
-/// How near a march comes to the surface.
+/// Tolerance of the march at the surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Quality {
     /// A tenth of a pixel's footprint.
     Draft,
-    /// A thousandth.
+    /// A thousandth of the footprint.
     #[default]
     Default,
-    /// A hundred thousandth.
+    /// A hundred-thousandth of the footprint.
     Fine,
 }
 
 impl Quality {
-    /// All of them.
+    /// All qualities.
     pub const ALL: [Self; 3] = [Self::Draft, Self::Default, Self::Fine];
 
-    /// Its name, as reports write it.
+    /// Its name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Draft => "draft",
@@ -38,7 +38,7 @@ impl Quality {
         }
     }
 
-    /// Tolerances of the march relative to the default's.
+    /// Tolerances of the march, relative to the default.
     pub(super) fn fineness(self) -> f32 {
         match self {
             Self::Draft => 100.0,
@@ -48,18 +48,18 @@ impl Quality {
     }
 }
 
-/// What the pipelines do beside drawing, and what they may assume.
+/// Options of the pipelines: counting, and the algorithms in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Options {
-    /// Count steps and evaluations.
+    /// Whether they count steps and evaluations.
     pub counting: bool,
-    /// How pipelines leave out what is out of reach.
+    /// How they skip entries out of reach.
     pub skip_mode: SkipMode,
-    /// Whether cones around tiles go before the rays.
+    /// Whether the cone pass over tiles precedes the rays.
     pub cones: bool,
-    /// Whether rays take longer steps than from sphere to sphere, where they expect that nothing is there.
+    /// Whether rays take steps longer than sphere tracing, where they expect empty space.
     pub relaxed: bool,
-    /// How near a march comes to the surface.
+    /// Tolerance of the march at the surface.
     pub quality: Quality,
 }
 

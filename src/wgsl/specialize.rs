@@ -1,4 +1,4 @@
-//! Straight-line WGSL for a structure. Emits calls only: no formula of a distance stands here.
+//! Straight-line WGSL for a structure. It contains only calls; distance formulas are in `shaders/sdf/`.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::structure::{EntryKind, ShapeSet, Structure, StructureEntry};
 use isolith_field::{GROUP_ROWS, Join, MODIFIER_ROWS, changes_value, is_copying, moves_point};
 use isolith_scene::{ModifierKind, ShapeKind};
 
-/// Which of the two folds is written.
+/// The two folds over a structure.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Fold {
     /// `field`: the distance.
@@ -20,10 +20,10 @@ pub enum Fold {
     Surface,
 }
 
-/// Groups of fewer entries are not worth a branch.
+/// Smallest group that justifies a branch, in entries.
 const LEAST_SKIPPED: u32 = 4;
 
-/// The generated file for one fold over `structure`; with `baked` rows they are written into it, as bits.
+/// The generated file for one fold over `structure`. With `baked` rows it contains them as bits.
 pub fn specialize(structure: &Structure, baked: Option<&Vec<[u32; 4]>>, fold: Fold, options: Options) -> String {
     let lookahead = fold == Fold::Value && baked.is_none() && lookahead::has_lookahead(structure, options);
     let mut writer =
@@ -37,10 +37,10 @@ struct FoldWriter<'a> {
     structure: &'a Structure,
     baked: Option<&'a Vec<[u32; 4]>>,
     fold: Fold,
-    /// Whether it also says what the field can be ahead.
+    /// Whether it also writes the lookahead.
     lookahead: bool,
     options: Options,
-    /// Names of the point outside and in each modifier under way.
+    /// Names of the point outside, and in each open modifier.
     points: Vec<String>,
     out: String,
 }
@@ -70,8 +70,8 @@ impl FoldWriter<'_> {
             self.line("#include \"field/surface.wgsl\"");
             self.line("var<private> surface_first: u32;");
         }
-        // Copied once: a uniform read at each use costs several times as much on a processor. A surface is
-        // evaluated once only, and reads where it needs to.
+        // Copied once: a uniform read at each use costs several times as much on a processor. The surface is evaluated
+        // only once, and reads at the use.
         let is_copied = self.fold == Fold::Value && self.baked.is_none() && !self.reads_at_use();
         let copied = if is_copied { rows } else { 0 };
         for (row, bits) in self.baked.into_iter().flatten().enumerate() {
@@ -94,13 +94,13 @@ impl FoldWriter<'_> {
         self.line("}");
     }
 
-    /// Whether rows are read where they are used. Graphics cards hold uniforms in scalar registers, some hundred: with all rows
-    /// read before the march, most of them were spilled into lanes of vector registers.
+    /// Whether rows are read at their use. Graphics cards hold uniforms in about a hundred scalar registers: when all
+    /// rows were read before the march, most of them spilled into lanes of vector registers.
     fn reads_at_use(&self) -> bool {
         self.options.skip_mode == SkipMode::Branches && self.baked.is_none()
     }
 
-    /// What stands before the fold.
+    /// Writes the declarations before the fold.
     fn open_fold(&mut self) {
         if self.fold == Fold::Surface {
             self.line("fn surface(p: vec3f) -> Surface {\n    var s0 = 0.0;\n    var l0 = 0u;");
@@ -110,7 +110,7 @@ impl FoldWriter<'_> {
             }
             for (at, entry) in self.structure.entries.iter().enumerate() {
                 if entry.join != Join::First && entry.kind != EntryKind::Run {
-                    // The weight of what joins; in general what `op_join` returns.
+                    // The weight of the joined operand, or in general the result of `op_join`.
                     let nothing = if self.is_general() { "vec4f(0.0, 1.0, 0.0, 0.0)" } else { "0.0" };
                     self.line(&format!("    var w{at} = {nothing};"));
                 }
@@ -131,7 +131,7 @@ impl FoldWriter<'_> {
         let surface = self.fold == Fold::Surface;
         self.open_fold();
         let mut row = 0;
-        // Groups and runs under way: where each begins, its entry, its first row.
+        // Open groups and runs: the start of each, its entry, its first row.
         let mut open: Vec<(usize, StructureEntry, usize)> = Vec::new();
         let mut level = 0;
         for (at, entry) in self.structure.entries.iter().enumerate() {
@@ -191,7 +191,7 @@ impl FoldWriter<'_> {
         }
     }
 
-    /// Whether surfaces need derivatives and shares of the material apart.
+    /// Whether surfaces need derivatives and material weights apart.
     fn is_general(&self) -> bool {
         self.fold == Fold::Surface && self.structure.has_extended_joins()
     }
@@ -214,7 +214,7 @@ impl FoldWriter<'_> {
         format!("v{at}")
     }
 
-    /// The value of a leaf of any shape, computed before it is named.
+    /// Writes the code for the value of a leaf of any shape, and returns an expression for it.
     fn generic_leaf(&mut self, at: usize, entry: &StructureEntry, shapes: ShapeSet, row: usize) -> String {
         self.line(&format!("    var d{at} = 0.0;"));
         let call = |kind: ShapeKind| format!("{}({})", kind.function(), arguments(self.point(), entry, kind, row));
@@ -223,7 +223,7 @@ impl FoldWriter<'_> {
         format!("d{at} * q{row}.y")
     }
 
-    /// Joins `value` to the accumulator of this level; `leaf` is the one that it comes from.
+    /// Joins `value` to the accumulator of this level. `leaf` is the leaf that it comes from.
     fn join(&mut self, level: usize, at: usize, entry: &StructureEntry, row: usize, value: &str, leaf: &str) {
         let surface = self.fold == Fold::Surface;
         let name = match entry.join {
@@ -268,12 +268,12 @@ impl FoldWriter<'_> {
         }
     }
 
-    /// The name of the point where the fold stands.
+    /// The name of the current point of the fold.
     fn point(&self) -> &str {
         self.points.last().map_or("p", String::as_str)
     }
 
-    /// The point in the modifier's space and in its content, and the loop over copies where there are several.
+    /// Opens a modifier: the point in its space and in its content, and a loop over copies if there are several.
     fn open_modifier(&mut self, at: usize, entry: &StructureEntry, kind: ModifierKind, row: usize) {
         let placed = if entry.moved { "placed_moved" } else { "placed" };
         let [x, y, z] = [0, 1, 2].map(|i| row + GROUP_ROWS + i);
@@ -308,8 +308,8 @@ impl FoldWriter<'_> {
         }
     }
 
-    /// A block that is entered only if what follows can change what stands so far. Every group has one
-    /// of its own in any case: the group after it needs the same name for its accumulator.
+    /// Opens a block that is entered only if its operands can change the accumulator. Every group has its own block in
+    /// any case: the next group needs the same name for its accumulator.
     fn open_block(&mut self, level: usize, entry: &StructureEntry, row: usize, skipped: bool) {
         if !skipped {
             self.line("    {");
@@ -325,7 +325,7 @@ impl FoldWriter<'_> {
     }
 }
 
-/// The name of the least that an operand can be ahead.
+/// The name of an operand's lower bound ahead.
 fn lookahead_minimum(level: usize, at: usize, entry: &StructureEntry) -> String {
     if entry.is_leaf() { format!("a{at}") } else { format!("h{}", level + 1) }
 }

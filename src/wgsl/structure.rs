@@ -1,4 +1,4 @@
-//! What of a component decides its pipeline: everything but its numbers.
+//! The structure of a component, which determines its pipeline: everything but its parameters.
 
 use super::op_set::{Extended, OpSet, fits_templates};
 use isolith_field::{
@@ -7,52 +7,52 @@ use isolith_field::{
 };
 use isolith_scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
-/// Most rows of a component that gets a pipeline of its own: the 16 KiB of a uniform buffer that every device has.
+/// Row limit of a component with its own pipeline: 16 KiB, the uniform buffer that every device has.
 pub const MAX_PIPELINE_ROWS: u32 = 1024;
 
-/// Most entries of a component that gets a pipeline of its own: compiling grows faster than linearly, and
-/// beyond this the interpreter has made many pictures by the time the pipeline is ready.
+/// Entry limit of a component with its own pipeline. Compile time grows faster than linearly, and beyond this limit the
+/// interpreter has drawn many pictures before the pipeline is ready.
 pub const MAX_PIPELINE_ENTRIES: u32 = 128;
 
-/// What an entry of the subtree-extent array is.
+/// Kind of an entry of the subtree-extent array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EntryKind {
     /// A shape.
     Leaf(ShapeKind),
-    /// One of these shapes: which one stands in its rows, see [`template_rows`].
+    /// One of these shapes; its rows tell which one, see [`template_rows`].
     GenericLeaf(ShapeSet),
-    /// Operands with an accumulator of their own.
+    /// A group of operands with its own accumulator.
     Nested,
-    /// What a modifier holds.
+    /// The content of a modifier.
     Modified(ModifierKind),
-    /// Operands that may be skipped together.
+    /// Operands that the fold may skip together.
     Run,
 }
 
-/// Shapes, a bit for each.
+/// A set of shapes, with a bit for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ShapeSet(pub u64);
 
 impl ShapeSet {
-    /// Whether one pipeline for all of them is worth computing them all where one is chosen, even where there are not too
-    /// many structures for pipelines of their own.
+    /// Whether the shapes are few enough to share one pipeline, which computes all of them to select one, even if
+    /// structures are few enough for pipelines of their own.
     pub fn is_small(self) -> bool {
         self.count() <= 4
     }
 
-    /// How many they are.
+    /// Number of shapes.
     pub fn count(self) -> u32 {
         self.0.count_ones()
     }
 
-    /// These.
+    /// The set of these shapes.
     pub fn of(shapes: impl IntoIterator<Item = ShapeKind>) -> Self {
         let mut all = Self::default();
         shapes.into_iter().for_each(|kind| all.insert(kind));
         all
     }
 
-    /// Puts one in.
+    /// Adds a shape.
     pub fn insert(&mut self, kind: ShapeKind) {
         self.0 |= 1 << kind as u32;
     }
@@ -63,22 +63,22 @@ impl ShapeSet {
     }
 }
 
-/// One entry of the subtree-extent array, without its numbers.
+/// One entry of the subtree-extent array, without its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct StructureEntry {
-    /// What it is.
+    /// Its kind.
     pub kind: EntryKind,
-    /// Entries of this one and all below.
+    /// Number of entries of its subtree, including itself.
     pub extent: u32,
-    /// How it joins what precedes it.
+    /// How it joins the preceding operands.
     pub join: Join,
-    /// Kernel of the blend; `None` where the blend is hard.
+    /// Kernel of the blend; `None` for a hard join.
     pub kernel: Option<u8>,
-    /// Only moved, not turned or scaled; leaves and modifiers only.
+    /// Whether it is only moved, not turned or scaled; leaves and modifiers only.
     pub moved: bool,
-    /// Its field is taken without a factor; leaves and modifiers only.
+    /// Whether its field has no factor; leaves and modifiers only.
     pub unscaled: bool,
-    /// Whether it may be skipped by its bounds; all but leaves.
+    /// Whether its bounds allow skipping it; all but leaves.
     pub bounded: bool,
 }
 
@@ -88,7 +88,7 @@ impl StructureEntry {
         matches!(self.kind, EntryKind::Leaf(_) | EntryKind::GenericLeaf(_))
     }
 
-    /// Rows of numbers that it takes.
+    /// Number of its rows.
     pub fn rows(&self) -> usize {
         match self.kind {
             EntryKind::Leaf(shape) => LEAF_ROWS + shape.rows(),
@@ -107,7 +107,7 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// The structure of a component, or `None` where it is too large for a pipeline.
+    /// The structure of a component, or `None` if it is too large for a pipeline.
     pub fn of(flat: &FlatScene, component: &Component) -> Option<Self> {
         fits(component).then(|| Self::whole(flat, component))
     }
@@ -118,8 +118,8 @@ impl Structure {
         Self { entries: flat.nodes[range].iter().map(|node| entry(flat, node)).collect() }
     }
 
-    /// A key that equal structures share and different ones practically never (128 bits of FNV-1a), made
-    /// without building the structure. `None` where it is too large for a pipeline.
+    /// A key that equal structures share and different ones practically never (128 bits of FNV-1a), computed without
+    /// building the structure. `None` if the component is too large for a pipeline.
     pub fn key(flat: &FlatScene, component: &Component) -> Option<u128> {
         if !fits(component) {
             return None;
@@ -140,10 +140,10 @@ impl Structure {
         Some(hash)
     }
 
-    /// The template of a component: its structure with leaves that may be any of these shapes, placed anyhow. Many
-    /// structures have one template, and one pipeline. `None` where it is too large for one, or has no template: the code of a
-    /// shape stands where extended operators keep their depth, modifiers have rows of their own, and shapes with loops
-    /// would run them for every leaf.
+    /// The template of a component: its structure, with leaves that may have any of these shapes and any placement.
+    /// Many structures share one template, and its pipeline. `None` if the component is too large, or has no template:
+    /// extended operators keep their depth in the place of the shape's code, modifiers have rows of their own, and
+    /// shapes with loops would run them for every leaf.
     pub fn template(flat: &FlatScene, component: &Component, shapes: ShapeSet) -> Option<Self> {
         if !has_template(flat, component) {
             return None;
@@ -163,7 +163,7 @@ impl Structure {
         self.entries.iter().any(|entry| matches!(entry.kind, EntryKind::GenericLeaf(_)))
     }
 
-    /// A key of the template, and the shapes that the component uses; `None` where it has no template.
+    /// A key of the template, and the shapes in the component; `None` if it has no template.
     pub fn template_key(flat: &FlatScene, component: &Component) -> Option<(u128, ShapeSet)> {
         if !fits(component) || !has_template(flat, component) {
             return None;
@@ -189,7 +189,7 @@ impl Structure {
         Some((hash, shapes))
     }
 
-    /// A key of everything about a component of any size, its numbers too.
+    /// A key of a component of any size, including its parameters.
     pub fn baked_key(flat: &FlatScene, component: &Component) -> u128 {
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
         let codes = flat.nodes[range(component.first, component.count)].iter().map(|node| node.code);
@@ -197,7 +197,7 @@ impl Structure {
         codes.chain(params).fold(FNV_START, |hash, word| (hash ^ u128::from(word)).wrapping_mul(FNV_PRIME))
     }
 
-    /// All shapes that its leaves are or may be.
+    /// All shapes that its leaves have or may have.
     pub fn shapes(&self) -> ShapeSet {
         let mut all = ShapeSet::default();
         for entry in &self.entries {
@@ -210,7 +210,7 @@ impl Structure {
         all
     }
 
-    /// Whether it holds modifiers.
+    /// Whether it contains modifiers.
     pub fn is_modified(&self) -> bool {
         self.entries.iter().any(|e| matches!(e.kind, EntryKind::Modified(_)))
     }
@@ -220,7 +220,7 @@ impl Structure {
         self.entries.iter().any(|entry| entry.join.is_extended())
     }
 
-    /// What an interpreter must know to evaluate it.
+    /// The operations that an interpreter needs for it.
     pub fn op_set(&self) -> OpSet {
         let mut ops = OpSet::none();
         ops.extended = Extended {
@@ -228,7 +228,7 @@ impl Structure {
             kernels: self.entries.iter().any(|e| e.kernel.is_some_and(|k| u32::from(k) >= FIRST_EXTENDED_KERNEL)),
         };
         ops.shapes = self.shapes().shapes().collect();
-        // Where the groups and modifiers under way end.
+        // Ends of the open groups and modifiers.
         let mut open: Vec<usize> = Vec::new();
         for (at, entry) in self.entries.iter().enumerate() {
             open.retain(|end| *end > at);
@@ -246,7 +246,7 @@ impl Structure {
         ops
     }
 
-    /// Rows of the entries of a component of this structure.
+    /// Number of rows of a component of this structure.
     pub fn rows(&self) -> usize {
         self.entries.iter().map(StructureEntry::rows).sum()
     }
@@ -255,8 +255,9 @@ impl Structure {
 /// Rows of a leaf in a template: room for the parameters of any shape.
 const TEMPLATE_LEAF_ROWS: usize = LEAF_ROWS + SHAPE_FLOATS / 4;
 
-/// Appends the rows of a component, from `params`, as a pipeline for its template reads them: every leaf takes as many, and the fourth
-/// number of its first row, the depth that only extended operators have, is the code of its shape.
+/// Appends the rows of a component, from `params`, in the layout of its template's pipeline. Every leaf takes the same
+/// number of rows. The fourth number of its first row holds the code of its shape; otherwise only extended operators
+/// use that number, for their depth.
 pub fn template_rows(flat: &FlatScene, params: &[ParamRow], component: &Component, out: &mut Vec<ParamRow>) {
     for node in &flat.nodes[component.first as usize..][..component.count as usize] {
         let (rows, first) = (&params[node.params as usize..], out.len());
@@ -279,7 +280,8 @@ fn fits(component: &Component) -> bool {
     component.param_rows - component.payload_rows <= MAX_PIPELINE_ROWS && component.count <= MAX_PIPELINE_ENTRIES
 }
 
-/// Whether a component has a template: no modifiers, no operators beyond the first three, no shapes with loops or data.
+/// Whether a component has a template: no modifiers, no operators beyond the first three, no shapes with loops or
+/// payload.
 fn has_template(flat: &FlatScene, component: &Component) -> bool {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let is_extended = |node: &FlatNode| Join::ALL[node.join() as usize].is_extended();

@@ -1,5 +1,5 @@
-//! The GPU's gradients and materials are the CPU evaluator's: for every operator with every kernel, by every evaluator. Normals
-//! are these gradients, and the weights of blends make them; shapes have a test of their own beside `render::wgsl::dual`.
+//! The GPU's gradients and materials agree with the CPU evaluator, for every operator, kernel and evaluator. Normals
+//! are these gradients, and the weights of blends combine them. Shapes have their own test beside `render::wgsl::dual`.
 
 use glam::{DVec3, Vec3Swizzles as _};
 use isolith::field::eval::{MIXED, Mixture, SurfacePoint, surface};
@@ -13,17 +13,17 @@ use isolith::wgsl::{Evaluator, OpSet, Options, SkipMode, Structure};
 use crate::contract::samples::Random;
 use crate::gpu::shared;
 
-/// Points at random places, and as many on the surface.
+/// Number of points at random places, and of points on the surface.
 const POINTS: usize = 600;
-/// How far gradients, and colors, may be from each other.
+/// Tolerance of gradients and colors.
 const TOLERANCE: f64 = 2e-3;
-/// Around a point, in meters: where the gradient turns by more than [`KINK`] within it, rounding decides.
+/// Distance from a point, in meters: where the gradient turns by more than [`KINK`] within it, rounding decides.
 const NEAR: f64 = 2e-5;
 const KINK: f64 = 5e-3;
 
 const COLORS: [[f64; 3]; 4] = [[1.0, 0.1, 0.0], [0.0, 0.9, 0.2], [0.1, 0.0, 0.8], [0.7, 0.7, 0.1]];
 
-/// A box, a ball that joins it, and a group of two that joins both: leaves and groups join by code of their own.
+/// A box, a ball joined to it, and a group of two joined to both: leaves and groups join by different code.
 fn scene(group: Group) -> Scene {
     let mut scene = Scene::new();
     for (i, color) in COLORS.into_iter().enumerate() {
@@ -45,7 +45,7 @@ fn scene(group: Group) -> Scene {
     scene
 }
 
-/// Places where the gradient is smooth: half of them anywhere, the others on the surface.
+/// Points where the gradient is smooth: half of them anywhere, the others on the surface.
 fn places(flat: &FlatScene, component: &Component, random: &mut Random) -> [Vec<DVec3>; 2] {
     let at = |p: DVec3| surface(flat, component, p);
     let smooth = |p: &DVec3| {
@@ -73,7 +73,7 @@ fn difference(found: &SurfacePoint, albedo: DVec3) -> f64 {
     (found.material.albedo - albedo).length()
 }
 
-/// How far the weight of any material is off.
+/// The largest error of any material's weight.
 fn weights_apart(found: &Mixture, meant: &Mixture) -> f64 {
     let weight = |of: &Mixture, id: u32| {
         let held = of.ids.iter().zip(of.weights).filter(|(held, _)| **held == id);
@@ -83,13 +83,13 @@ fn weights_apart(found: &Mixture, meant: &Mixture) -> f64 {
     ids.map(|id| (weight(found, *id) - weight(meant, *id)).abs()).fold(0.0, f64::max)
 }
 
-/// The first disagreement between the CPU evaluator and what was found.
+/// The first disagreement between the CPU evaluator and `found`.
 fn compare(flat: &FlatScene, component: &Component, points: &[DVec3], found: &[ProbedSurface]) -> Result<(), String> {
     assert_eq!(points.len(), found.len());
     for (p, gpu) in points.iter().zip(found) {
         let cpu = surface(flat, component, *p);
         let apart = (gpu.gradient - cpu.gradient).length();
-        // Written so that what is no number disagrees.
+        // The form of the comparison makes NaN disagree.
         if !(apart < TOLERANCE
             && difference(&cpu, gpu.albedo) < TOLERANCE
             && (gpu.distance - cpu.distance).abs() < 1e-5
@@ -126,7 +126,7 @@ fn gradients_of_every_operator_agree() {
         );
         let all = [on_surface.clone(), anywhere].concat();
         let ops = OpSet::of(&flat);
-        // Where no surface is near, tapes hold a bound and no gradient.
+        // Away from surfaces, tapes hold a bound and no gradient.
         for (evaluator, points) in [
             (Evaluator::Interpreter(ops.clone()), &all),
             (Evaluator::Tape(ops), &on_surface),
@@ -162,7 +162,7 @@ fn a_wrong_gradient_is_caught() {
         assert!(found(&|s| ProbedSurface { albedo: s.material.albedo.zxy(), ..right(s) }).is_err(), "{name}");
         let other = |m: Mixture| Mixture { ids: m.ids.map(|id| id.wrapping_add(1)), ..m };
         assert!(found(&|s| ProbedSurface { materials: other(s.materials), ..right(s) }).is_err(), "{name}");
-        // What joins hard has other gradients where the blend is.
+        // Hard joins have different gradients inside the blend.
         if group.operator.has_radius() && group.operator != Operator::Paint {
             let hard = flatten(&scene(Group { blend: Blend { radius: 0.02, ..group.blend }, ..group }), 0.0).unwrap();
             let of_hard = |p: &DVec3| ProbedSurface {
@@ -175,7 +175,7 @@ fn a_wrong_gradient_is_caught() {
     }
 }
 
-/// Six balls of six materials in one blend: at the middle all of them have a part.
+/// Six balls of six materials in one blend: all of them contribute at the center.
 fn six() -> Scene {
     let mut scene = Scene::new();
     let blend = Blend::new(BlendKernel::Quadratic, 1.5);
@@ -192,8 +192,8 @@ fn six() -> Scene {
     scene
 }
 
-/// How far apart mixtures may be where more than four materials meet: of weights that are as good as equal rounding decides
-/// which two of six are left out, a third of the whole.
+/// Tolerance of mixtures where more than four materials meet: rounding decides between nearly equal weights, which two
+/// of six are dropped, a third of the total.
 const LEFT_OUT: f64 = 0.35;
 
 #[test]

@@ -1,11 +1,12 @@
-//! What pipelines prove of the field ahead on a ray is so: the CPU evaluator is nowhere negative on the way.
+//! What pipelines prove about the field ahead on a ray holds: the CPU evaluator is nowhere negative in that interval.
 
 use super::*;
 
-/// Steps in which the way is looked at.
+/// Number of samples along the interval.
 const LOOKS: usize = 24;
 
-/// How many of the proofs go farther than the distance, of how many, and how many say more of the way behind than the distance does.
+/// Counts the proofs that go farther than the distance, all proofs, and those that cover more of the ray behind than
+/// the distance does.
 fn proofs_hold(what: &str, flat: &FlatScene, index: usize, evaluator: &Evaluator, random: &mut Random) -> [usize; 3] {
     let pairs: Vec<DVec3> = (0..POINTS)
         .flat_map(|i| {

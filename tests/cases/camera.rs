@@ -1,4 +1,4 @@
-//! Cameras: narrow and wide pixels, near and far planes, large scenes with small parts.
+//! Cameras: narrow and wide pixels, near and far limits, large scenes with small details.
 
 mod hand;
 mod large;
@@ -17,22 +17,22 @@ use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
 use crate::gpu::{BenchScene, shared};
 use hand::Seen;
 
-/// Every way to evaluate a component.
+/// Every evaluator.
 const STRATEGIES: [EvalStrategy; 3] = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
 
-/// A scene of `tests/cases`, by its name without ending, seen by its own camera.
+/// A scene of `tests/cases`, by its path without extension, seen by its own camera.
 fn case(name: &str) -> BenchScene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(format!("{name}.json"));
     let scene = file::load(&path).unwrap_or_else(|error| panic!("{error}"));
     BenchScene::new(name, &scene, path.parent().map(Path::to_path_buf))
 }
 
-/// An object of the first material.
+/// An object with the first material.
 fn object(shape: Shape, at: DVec3) -> Node {
     Node::new("object", NodeKind::Object(Object { shape, material: MaterialId(1) })).at(at)
 }
 
-/// A scene of these nodes at the top.
+/// A scene with these nodes at the top level.
 fn scene_of(nodes: impl IntoIterator<Item = Node>) -> Scene {
     let mut scene = Scene::new();
     for node in nodes {
@@ -51,8 +51,8 @@ fn draw(bench_scene: &BenchScene, size: [u32; 2], strategy: EvalStrategy) -> GBu
     buffers
 }
 
-/// A camera that looks at `target` from `distance` away, turned so that no axis of the picture is one of the world, and whose
-/// longer side sees an angle of `degrees`.
+/// A camera that faces `target` from `distance`, rotated so that no axis of the picture is parallel to a world axis.
+/// `degrees` is the angle of view of its longer side.
 fn looking(target: DVec3, distance: f64, degrees: f64, [width, height]: [u32; 2]) -> Camera {
     let half = (0.5 * degrees).to_radians().tan();
     let up = if height >= width { half } else { half * f64::from(height) / f64::from(width) };
@@ -63,11 +63,11 @@ fn looking(target: DVec3, distance: f64, degrees: f64, [width, height]: [u32; 2]
     camera
 }
 
-/// The pixels of a picture that are not what `seen` says about their rays, in words; and how many show something.
+/// Describes the pixels that differ from `seen` for their rays; and counts the pixels that show something.
 ///
-/// Depth may be off by 0.05 footprints, where the ray meets the surface at an angle by what 0.02 footprints to the side come
-/// to besides, and by four roundings of f32, in which depth is stored. Rays that pass an outline by less than 0.02 footprints
-/// may be on either side of it.
+/// The tolerance of depth is 0.05 footprints, plus the change of depth over 0.02 footprints to the side where the ray
+/// meets the surface at an angle, plus four roundings of f32, the format of depth. Rays that pass an outline by less
+/// than 0.02 footprints may be on either side of it.
 fn faults(picture: &GBuffer, camera: &Camera, seen: &dyn Fn(&isolith::geometry::Ray) -> Seen) -> (Vec<String>, usize) {
     let size = DVec2::new(picture.width.into(), picture.height.into());
     let footprint = camera.footprint(size.y);
@@ -102,7 +102,7 @@ fn faults(picture: &GBuffer, camera: &Camera, seen: &dyn Fn(&isolith::geometry::
     (wrong, hits)
 }
 
-/// Draws the bench_scene by the methods and compares each picture with what `seen` says.
+/// Draws the bench_scene with the strategies and compares each picture with `seen`.
 fn check(
     bench_scene: &BenchScene,
     size: [u32; 2],
@@ -123,8 +123,8 @@ fn check(
     all
 }
 
-/// Draws a case by all methods and compares each with the reference: no pixel but those whose ray passes an edge within
-/// rounding may show another thing, or be off by more than a footprint.
+/// Draws a case with all strategies and compares each with the reference: only pixels whose ray passes an edge within
+/// rounding may show something else or be off by more than a footprint.
 fn check_by_reference(name: &str, size: [u32; 2]) -> Vec<String> {
     let bench_scene = case(name);
     let right = render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, size, &|_| ());

@@ -6,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 use isolith::scene::{MaterialId, MeshNode, Node, NodeKind, Object, Scene, Shape, file};
 use serde_json::Value;
 
-/// A ball, and a model whose file is missing where `with_model`.
+/// A ball, and with `with_model` a model whose file is missing.
 fn scene(with_model: bool) -> Scene {
     let mut scene = Scene::new();
     let ball = NodeKind::Object(Object { shape: Shape::Sphere { radius: 0.5 }, material: MaterialId(1) });
@@ -40,7 +40,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     program(folder, arguments).output().expect("the program starts")
 }
 
-/// Runs it with a file as standard input.
+/// Runs the program with a file as standard input.
 fn run_with(folder: &Path, arguments: &[&str], input: &str) -> Output {
     let input = std::fs::File::open(folder.join(input)).expect("the input is there");
     program(folder, arguments).stdin(input).output().expect("the program starts")
@@ -50,7 +50,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("text")
 }
 
-/// It ended with `code` and one line on standard error that holds `parts`.
+/// Asserts that the program exited with `code` and one line on standard error that contains `parts`.
 fn assert_fails(output: &Output, code: i32, parts: &[&str]) {
     let error = text(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{error}");
@@ -60,7 +60,7 @@ fn assert_fails(output: &Output, code: i32, parts: &[&str]) {
     }
 }
 
-/// One JSON object a line.
+/// One JSON object per line.
 fn objects(output: &Output) -> Vec<Value> {
     text(&output.stdout).lines().map(|line| serde_json::from_str(line).expect("an object")).collect()
 }
@@ -201,7 +201,8 @@ fn a_word_that_is_neither_command_nor_file_is_not_a_scene() {
 fn names_from_files_do_not_control_the_terminal() {
     let place = folder();
     let mut scene = scene(true);
-    // Control characters are refused where the file is read; what turns the direction of writing is a letter like others.
+    // The reader of the file refuses control characters; a character that changes the text direction is an ordinary
+    // letter.
     let evil = "\u{202e}gnp.elcnu";
     let statue = scene.nodes().iter().find(|node| node.name == "statue").expect("the model");
     let renamed = Node { name: evil.into(), ..(**statue).clone() };

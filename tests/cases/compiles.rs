@@ -1,4 +1,4 @@
-//! Choice of evaluators, and how long compiling keeps a picture waiting.
+//! Choice of evaluators, and the time that a picture waits for compiling.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -19,21 +19,21 @@ fn case(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/numerics").join(name)
 }
 
-/// Every component of the scene, and whether the window draws it by tapes at first.
+/// For every component of the scene, whether the window first draws it by tapes.
 fn listed(flat: &isolith::field::FlatScene) -> Vec<bool> {
     let leaves = flat.nodes.iter().filter(|node| node.is_leaf());
     let kinds: BTreeSet<ShapeKind> = leaves.map(|node| ShapeKind::ALL[(node.code & 0xffff) as usize]).collect();
     flat.components.iter().map(|component| tapes_are_cheaper(flat, component, &kinds, None)).collect()
 }
 
-/// By straight-line code these 60 blended tubes take nine times as long as by tapes.
+/// Straight-line code takes nine times as long as tapes for these 60 blended tubes.
 #[test]
 fn a_blend_of_many_dear_leaves_is_drawn_by_tapes() {
     let scene = file::load(&case("auto_is_slow_60_tube.json")).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(listed(&flatten(&scene, 0.0).expect("within the limits")), [true]);
 }
 
-/// Groups of eight leaves take a fifth of the time by straight-line code.
+/// Straight-line code takes a fifth of the time for groups of eight leaves.
 #[test]
 fn small_groups_are_drawn_by_straight_line_code() {
     for name in ["random-37", "random-145", "random-577"] {
@@ -42,7 +42,7 @@ fn small_groups_are_drawn_by_straight_line_code() {
     }
 }
 
-/// A hundred groups, each the second child of the one before: what a walk puts aside is compiled into its pipeline.
+/// A hundred groups, each the second child of the one before: an interpreter pipeline has its stack size compiled in.
 #[test]
 fn deep_nests_are_drawn_right_and_put_little_aside() {
     let scene = file::load(&case("deep_nest_100_alternating.json")).unwrap_or_else(|error| panic!("{error}"));
@@ -55,7 +55,7 @@ fn deep_nests_are_drawn_right_and_put_little_aside() {
     const SIDE: u32 = 64;
     let meant = render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE, SIDE], &|_| {})
         .expect("traced");
-    // Tapes tell less of the field away from the surface, so rays pass skins that are a fraction of a pixel thick here.
+    // Tapes have looser bounds away from the surface, so rays here pass skins a fraction of a pixel thick.
     for (strategy, most) in [(EvalStrategy::Interpreter, 0), (EvalStrategy::StraightLine, 0), (EvalStrategy::Tape, 8)] {
         let drawn = bench_scene.render(SIDE, strategy);
         let differ = |i: &usize| {
@@ -67,7 +67,8 @@ fn deep_nests_are_drawn_right_and_put_little_aside() {
     }
 }
 
-/// The whole program with a driver that has compiled nothing yet. Took 45 s at 100 levels, nearly all of it compiling.
+/// The whole program with a driver that has compiled nothing yet. It took 45 s at 100 levels, nearly all of it
+/// compiling.
 #[test]
 #[cfg(unix)]
 fn nothing_waits_long_for_compiling() {
@@ -83,12 +84,12 @@ fn nothing_waits_long_for_compiling() {
             .output()
             .expect("the program starts");
         assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
-        // 2 to 4 s on two quiet cores; other tests run at the same time.
+        // 2 to 4 s on two idle cores; other tests run at the same time.
         assert!(started.elapsed() < Duration::from_secs(20), "{name}: {:?}", started.elapsed());
     }
 }
 
-/// Groups in groups, each the second child of the one before, by operators in turn; a ball in each.
+/// Nested groups with alternating operators, each the second child of the one before; each contains a ball.
 fn nested(groups: usize) -> Scene {
     let mut scene = Scene::new();
     let mut parent = None;
@@ -109,14 +110,14 @@ fn nested(groups: usize) -> Scene {
     scene
 }
 
-/// The window's pictures are these, in pixels.
+/// Size of the window's picture, in pixels.
 const WINDOW: [u32; 2] = [641, 401];
-/// What the window waits for: see `app::canvas`.
+/// The window's limit for an immediate picture: see `app::canvas`.
 const AT_ONCE: Duration = Duration::from_millis(60);
 const WORTH_WAITING: [Duration; 2] = [Duration::from_millis(1500), Duration::from_millis(300)];
 
-/// Draws as the window does when a scene is opened, with a device that was just opened. Until the first coarse picture, and
-/// until the full one.
+/// Draws as the window does after it opens a scene, on a newly opened device. Returns the times to the first coarse
+/// picture and to the full one.
 fn first_pictures(scene: &Scene) -> [Duration; 2] {
     let flat = flatten(scene, 0.0).expect("within the limits");
     let camera: Camera = flat.default_camera(&[], f64::from(WINDOW[0]) / f64::from(WINDOW[1]));
@@ -142,12 +143,12 @@ fn first_pictures(scene: &Scene) -> [Duration; 2] {
     [coarse, draw(&mut renderer, Slot::Full, WINDOW)]
 }
 
-/// What the first picture may take where a driver has compiled nothing yet, coarse and full: 2 and 10 s on a quiet machine, where
-/// both together take 1.2 s of processor time. Other tests run at the same time, and made it five times as long. It was
-/// 16 s for 40 nested groups and 250 s for 100.
+/// Time limits of the first coarse and full picture with a driver that has compiled nothing yet: 2 and 10 s on an idle
+/// machine, where both together take 1.2 s of processor time. Other tests run at the same time and made it five times
+/// as long. It was 16 s for 40 nested groups and 250 s for 100.
 const FIRST: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(50)];
 
-/// Run with `MESA_SHADER_CACHE_DISABLE=true` it tells what a cold driver takes.
+/// With `MESA_SHADER_CACHE_DISABLE=true` it shows the times of a cold driver.
 #[test]
 #[expect(clippy::print_stdout, reason = "a test has no other way to say how long something took")]
 fn the_first_pictures_of_nested_groups_wait_for_no_compiler() {

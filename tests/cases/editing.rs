@@ -1,2 +1,2 @@
-//! Input that went wrong in the window stands in `editor/`: `order`, `popups`, `fields`, `saving`, `locks`, `names`; what only a
-//! window shows in `window.sh`.
+//! Faults of the window have their tests in `editor/`: `order`, `popups`, `fields`, `saving`, `locks`, `names`. Faults
+//! that need a real window are in `window.sh`.

@@ -1,4 +1,4 @@
-//! Files written: pictures, scenes, recovery.
+//! Output files: pictures, scenes, recovery.
 
 mod conflict;
 mod killed;
@@ -17,7 +17,7 @@ use isolith::scene::{Group, Node, NodeKind, Scene, file};
 
 use crate::settle::Settle;
 
-/// Groups whose names can be shown, and end in `mark`.
+/// Groups with displayable names that end in `mark`.
 fn plain_scene(mark: u64, nodes: u64) -> Scene {
     let mut scene = Scene::new();
     for i in 0..nodes {
@@ -27,7 +27,7 @@ fn plain_scene(mark: u64, nodes: u64) -> Scene {
     scene
 }
 
-/// The names in a folder, in order.
+/// The sorted names in a folder.
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).expect("the folder is there");
     let mut names: Vec<String> =
@@ -36,7 +36,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// An editor without a GPU, prepared by `with`.
+/// An editor without a GPU, set up by `with`.
 fn editor(document: Document, with: impl FnOnce(&mut Editor)) -> Harness<'static, Editor> {
     let mut editor = Editor::new(document);
     editor.ask_for_paths_in_window();
@@ -78,7 +78,7 @@ fn has(document: &Document, name: &str) -> bool {
     document.scene().nodes().iter().any(|node| node.name == name)
 }
 
-/// Waits until it is true.
+/// Waits until the condition is true.
 fn until(what: &str, is_true: impl Fn() -> bool) {
     let start = Instant::now();
     while !is_true() {
@@ -87,7 +87,7 @@ fn until(what: &str, is_true: impl Fn() -> bool) {
     }
 }
 
-/// The scenes that lie below the folder, whoever they belong to.
+/// All scenes below the folder, of any process.
 fn kept(root: &Path) -> Vec<PathBuf> {
     let folders = fs::read_dir(root).into_iter().flatten().flatten();
     folders.map(|entry| entry.path().join("scene.json")).filter(|path| path.exists()).collect()

@@ -1,4 +1,4 @@
-//! Empty operands, and scenes that are built to take all memory or time.
+//! Empty operands, and scenes built to exhaust memory or time.
 
 mod empty;
 mod hostile;
@@ -11,7 +11,7 @@ use isolith::scene::{
     Blend, BlendKernel, Group, MaterialId, Modifier, Node, NodeId, NodeKind, Object, Operator, Scene, Shape, file,
 };
 
-/// A file among the cases.
+/// The path of a case.
 fn case(name: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(name)
 }
@@ -44,7 +44,7 @@ fn flat(scene: &Scene) -> FlatScene {
     flatten(scene, 0.0).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// So many copies around Y.
+/// A polar repeat of `count` copies around Y.
 fn around(count: u32) -> Modifier {
     Modifier::Polar { count, radius: 1.0, mirrored: false }
 }

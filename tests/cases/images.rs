@@ -1,4 +1,4 @@
-//! Images as heights and textures, and JSON that is large or written by other programs.
+//! Images as heights and textures, and JSON that is large or comes from other programs.
 
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
@@ -12,7 +12,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use isolith::scene::{Attachment, Content, Heights, NodeKind, Scene, Shape, file};
 use serde_json::{Value, json};
 
-/// How long a hostile file may take.
+/// Time limit for a hostile file.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 fn case(name: &str) -> PathBuf {
@@ -28,7 +28,7 @@ fn value(name: &str) -> Value {
     serde_json::from_str(&text).expect("it is JSON")
 }
 
-/// The heights in the middle of the quarters, line by line.
+/// The heights at the centers of the quarters, row by row.
 fn quarters(heights: &Heights) -> [f64; 4] {
     let [w, h] = heights.size.map(|n| n as isize);
     [(1, 1), (3, 1), (1, 3), (3, 3)].map(|(x, y)| heights.at(x * w / 4, y * h / 4))
@@ -56,7 +56,7 @@ fn read(name: &str, bytes: Vec<u8>) -> Heights {
     file.content().expect("it holds heights").clone()
 }
 
-/// Gray levels of four quarters, 16 by 16 pixels.
+/// Gray levels of the four quarters, 16 by 16 pixels each.
 const LEVELS: [f64; 4] = [0.2, 0.4, 0.6, 0.8];
 
 fn level(x: usize, y: usize) -> f64 {
@@ -67,7 +67,7 @@ fn gray() -> Vec<u8> {
     (0..256).map(|i| (255.0 * level(i % 16, i / 16)).round() as u8).collect()
 }
 
-/// A note of how to show an image, as cameras write it.
+/// EXIF data with an orientation, as cameras write it.
 fn exif(orientation: u8) -> Vec<u8> {
     let mut out = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".to_vec();
     out.extend([orientation, 0, 0, 0, 0, 0, 0]);
@@ -113,7 +113,7 @@ fn photos_are_turned_as_they_are_to_be_shown() {
     }
 }
 
-/// A PNG file of these lines, each with its filter in front; uncompressed.
+/// An uncompressed PNG file of these rows, each prefixed by its filter.
 fn png(depth: u8, color: u8, palette: &[u8], lines: &[u8]) -> Vec<u8> {
     let crc = |bytes: &[u8]| {
         let step = |crc: u32, byte: &u8| {
@@ -152,7 +152,7 @@ fn every_kind_of_pixel_is_a_height() {
     let flat = |x, y| vec![(255.0 * level(x, y)).round() as u8];
     assert_quarters(&read("16.png", png(16, 0, &[], &lines(&deep))), LEVELS, "16 bits");
     assert!((quarters(&read("16.png", png(16, 0, &[], &lines(&deep))))[0] - 0.2).abs() < 1e-5);
-    // What is hidden by alpha has a height all the same.
+    // Pixels hidden by alpha still have a height.
     let faint = |x, y| [flat(x, y), vec![7]].concat();
     assert_quarters(&read("la.png", png(8, 4, &[], &lines(&faint))), LEVELS, "gray and alpha");
     let color = |x, y| flat(x, y).repeat(3);
@@ -162,7 +162,7 @@ fn every_kind_of_pixel_is_a_height() {
     assert_quarters(&read("p.png", png(8, 3, &palette, &lines(&entry))), LEVELS, "palette");
 }
 
-/// An EXR file with these channels, all of them the levels.
+/// An EXR file with these channels, each with the gray levels.
 fn exr_of(names: &[&str]) -> Vec<u8> {
     let samples = || FlatSamples::F32((0..256).map(|i| level(i % 16, i / 16) as f32).collect());
     let channels = names.iter().map(|name| AnyChannel::new(*name, samples())).collect();
@@ -193,14 +193,14 @@ fn kinds_of_images_that_are_not_read_are_named() {
     assert!(error.contains("TIFF") || error.contains("Tiff"), "{error}");
     let wide = Attachment::<Heights>::new("x.png", {
         let mut file = png(8, 0, &[], &[0; 17 * 16]);
-        // The width in the first chunk; its checksum is wrong then, so nothing is read beyond it.
+        // Overwrite the width in the first chunk. Its checksum is wrong then, so the reader stops there.
         file[16..20].copy_from_slice(&20_000_u32.to_be_bytes());
         file
     });
     assert!(wide.is_err());
 }
 
-/// A reader of files that has a bug.
+/// A file reader with a bug.
 struct Buggy;
 
 impl Content for Buggy {
@@ -221,7 +221,7 @@ fn a_panic_of_a_reader_is_an_error() {
     assert!(Attachment::<Buggy>::new("x.bug", vec![1; 20]).is_ok());
 }
 
-/// A scene of so many large images; `name` says how each file is called.
+/// A scene of `count` large images; `name` gives each file's name.
 fn many(count: usize, name: impl Fn(usize) -> String) -> Value {
     let mut scene = value("hostile/png-8192-1bit.json");
     let nodes = scene["nodes"].as_array_mut().expect("a list of nodes");
@@ -245,7 +245,7 @@ fn the_pixels_of_all_images_of_a_scene_are_counted_before_they_are_read() {
     assert_eq!(error.node.as_deref(), Some("hill 2 #1002"), "{error}");
     assert!(error.field.as_deref().is_some_and(|field| field.ends_with("object.shape.image")), "{error}");
     assert!(error.reason.contains("128 megapixels"), "{error}");
-    // One file is read once, however many nodes hold it.
+    // The loader reads a file once, however many nodes use it.
     let begun = Instant::now();
     let scene = parse(&many(120, |_| "same.png".into())).unwrap_or_else(|error| panic!("{error}"));
     assert!(begun.elapsed() < PATIENCE, "it took {:?}", begun.elapsed());
@@ -256,7 +256,7 @@ fn the_pixels_of_all_images_of_a_scene_are_counted_before_they_are_read() {
 fn a_scene_with_images_that_could_not_be_read_again_is_not_made() {
     let mut scene = parse(&many(2, |i| format!("{i}.png"))).unwrap_or_else(|error| panic!("{error}"));
     let hill = scene.nodes().iter().rev().find(|node| node.name.starts_with("hill")).expect("a hill").clone();
-    // A copy shares the image, and moving a node changes nothing about it.
+    // A copy shares the image, and moving a node does not touch it.
     let copy = scene.insert(None, 0, isolith::scene::Node::clone(&hill)).expect("copies cost nothing");
     let mut third = isolith::scene::Node::clone(scene.node(copy).expect("it is there"));
     third.transform.translation.x += 1.0;
@@ -278,7 +278,7 @@ fn json_of_other_programs_is_read() {
     for name in ["json/schema-key.json", "json/whole-floats.json"] {
         let scene = file::load(&case(name)).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(scene.nodes().len(), 2);
-        // What is written has neither.
+        // The written file has neither.
         let text = file::to_json(&scene).expect("a sound scene");
         assert!(!text.contains("$schema") && !text.contains("100000.0"), "{text}");
     }
@@ -307,7 +307,7 @@ fn whole_numbers_may_be_written_with_a_point_everywhere() {
     }
 }
 
-/// Writes all whole numbers with a point.
+/// Writes all integers with a decimal point.
 fn points(value: &mut Value) {
     match value {
         Value::Number(number) if number.is_u64() => *value = json!(number.as_f64().expect("a small number")),
@@ -348,7 +348,8 @@ fn large_json_is_refused_before_it_is_built() {
     }
 }
 
-/// The memory of the program is bounded too; the limit is that of addresses, of which a program reserves more than it uses.
+/// Bounds the memory of the program as well. The limit applies to address space, of which a program reserves more than
+/// it uses.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_file_of_64_mib_takes_less_than_a_gibibyte() {

@@ -1,4 +1,4 @@
-//! Rays: flush cuts, thin things, rays that take many steps.
+//! Ray marching: flush cuts, thin shapes, rays with many steps.
 
 use std::path::Path;
 use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
@@ -17,12 +17,12 @@ use isolith::wgsl::{Options, SkipMode};
 
 use crate::gpu::{BenchScene, shared};
 
-/// By tapes, by specialized pipelines, by what the window picks of them.
+/// The interpreter, tapes, specialized pipelines, and the window's choice among them.
 const STRATEGIES: [EvalStrategy; 4] =
     [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine, EvalStrategy::Auto];
 
-/// Renderers with the pipelines of this device, and with those that skip by branches, as graphics cards get them. Tapes are
-/// made for components of any size.
+/// A renderer with the pipelines of this device, and one with pipelines that skip by branches, as graphics cards get
+/// them. Both build tapes for components of any size.
 fn renderers() -> MutexGuard<'static, [Renderer; 2]> {
     static RENDERERS: LazyLock<Mutex<[Renderer; 2]>> = LazyLock::new(|| {
         let gpu = shared().gpu.clone();
@@ -36,18 +36,18 @@ fn renderers() -> MutexGuard<'static, [Renderer; 2]> {
     RENDERERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// How a picture differs from the reference, in pixels.
+/// Differences between a picture and the reference, in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Found {
-    /// Nothing was hit where something should be, or something where nothing should be.
+    /// A miss in place of a hit, or a hit in place of a miss.
     hit_or_miss: usize,
-    /// Those of them whose ray passes so near that f32 cannot tell.
+    /// Those of them whose ray passes too near an edge for f32.
     grazing: usize,
-    /// Those of them whose ray passes within a thousandth of a footprint.
+    /// Those of them whose ray passes an edge within a thousandth of a footprint.
     near: usize,
-    /// The depth is off by more than a footprint.
+    /// Depth errors of more than a footprint.
     other_surface: usize,
-    /// The normal is off by more than a right angle.
+    /// Normals off by more than a right angle.
     turned: usize,
 }
 
@@ -96,8 +96,8 @@ fn draw(
     picture.unwrap_or_else(|error| panic!("{}: {error}", bench_scene.name))
 }
 
-/// Draws the bench_scene by every method, and by branching pipelines too where `branching` says so; what is found against `right`
-/// must be `allowed` by each.
+/// Draws the bench_scene with every strategy, and with branching pipelines too if `branching`. `is_allowed` must accept
+/// each strategy's differences from `right`.
 fn compare(bench_scene: &BenchScene, right: &ReferenceImage, branching: bool, is_allowed: impl Fn(&Found) -> bool) {
     let size = [right.buffers.width, right.buffers.height];
     let footprint = bench_scene.camera.footprint(f64::from(size[1]));
@@ -114,7 +114,7 @@ fn compare(bench_scene: &BenchScene, right: &ReferenceImage, branching: bool, is
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// Every pixel as in the reference, by all methods and pipelines.
+/// Asserts that every pixel matches the reference, for all strategies and pipelines.
 fn is_right(bench_scene: &BenchScene, side: u32) {
     compare(bench_scene, &reference(bench_scene, [side; 2]), true, |found| *found == NOTHING);
 }
@@ -131,12 +131,12 @@ fn group(operator: Operator, radius: f64) -> Node {
     Node::new("Group", NodeKind::Group(Group::new(operator, Blend::new(BlendKernel::Quadratic, radius))))
 }
 
-/// Turned by no simple angle.
+/// A rotation by no simple angle.
 fn turn() -> DQuat {
     DQuat::from_axis_angle(DVec3::new(0.2, 1.0, 0.4).normalize(), 0.7)
 }
 
-/// These parts below `top`.
+/// A scene of these parts below `top`.
 fn scene(top: Node, parts: impl IntoIterator<Item = Node>) -> Scene {
     let mut scene = Scene::new();
     let parent: NodeId = scene.insert(None, usize::MAX, top).expect("there is room");
@@ -146,7 +146,7 @@ fn scene(top: Node, parts: impl IntoIterator<Item = Node>) -> Scene {
     scene
 }
 
-/// Seen from above and from the side.
+/// A view from above and from the side.
 fn seen(name: &str, scene: &Scene, target: DVec3) -> BenchScene {
     let mut bench_scene = BenchScene::new(name, scene, None);
     bench_scene.camera = Camera::looking_at(target + turn() * DVec3::new(0.9, 3.1, 1.7), target, 0.75);
@@ -160,26 +160,27 @@ fn holes_that_end_flush_with_a_face_are_open() {
     }
 }
 
-/// The reference would tell the two faces apart by how f32 has rounded them in the arrays; what is right is the same with a
-/// cutter that sticks out.
+/// The reference would tell the two faces apart by their rounding to f32 in the arrays. The right picture is the one
+/// with a protruding cutter.
 fn is_open(name: &str, target: DVec3, made: impl Fn(f64) -> Scene) {
     const OUT: f64 = 1e-3;
     let (flush, open) = (seen(name, &made(0.0), target), seen(name, &made(OUT), target));
     let right = reference(&open, [96; 2]);
     let hits = right.buffers.depth.iter().filter(|depth| depth.is_finite()).count();
     assert!(hits > 500, "{name}: {hits} pixels show anything");
-    // Edges are as sharp as numbers of the size of the largest leaf can tell: by something of 60 m to 0.0005 footprints.
+    // f32 numbers of the size of the largest leaf limit the sharpness of edges: to 0.0005 footprints for a leaf of 60
+    // m.
     let is_allowed =
         |found: &Found| found.hit_or_miss == found.near && found.near <= 1 && found.other_surface + found.turned == 0;
     compare(&flush, &right, true, is_allowed);
-    // Closed by a skin of a millimeter it is told.
+    // A skin of a millimeter over the pocket is detected.
     let closed = seen(name, &made(-OUT), target);
     let (picture, _) = draw(&mut renderers()[0], &closed, [96; 2], EvalStrategy::Interpreter);
     let found = found(&picture, &right, flush.camera.footprint(96.0));
     assert!(found.other_surface > 50, "{name}: {found:?}");
 }
 
-/// A pocket in a plate, `out` beyond its upper face, 0.6 deep.
+/// A pocket in a plate, 0.6 deep; its cutter protrudes from the upper face by `out`.
 fn pocket(out: f64, cutter: impl Fn([f64; 3]) -> Node, radius: f64, top: impl Fn(Node) -> Node) -> Scene {
     let height = 0.6 + out;
     let cutter = cutter([0.8, height, 0.7]).at(DVec3::new(0.1, 0.5 - 0.6 + 0.5 * height, 0.0));
@@ -196,12 +197,12 @@ fn pockets_are_open_wherever_they_are_and_however_they_are_cut() {
     is_open("far off", far, |out| pocket(out, cuboid, 0.0, |top| top.at(far)));
     is_open("stretched", DVec3::ZERO, |out| pocket(out, cylinder, 0.0, |top| top.scaled(DVec3::new(1.0, 0.8, 1.2))));
     is_open("twisted", DVec3::ZERO, |out| pocket(out, cuboid, 0.0, |top| top.modified(Modifier::Twist { angle: 0.3 })));
-    // A hundred times as large as what it cuts: nothing is left above its upper face.
+    // A cutter a hundred times as large as the plate: nothing remains above its upper face.
     is_open("by something large", DVec3::ZERO, |out| {
         let cutter = cuboid([60.0, 60.0 + out, 0.7]).at(DVec3::new(29.7, 0.5 - 30.0 + 0.5 * out, 0.0));
         scene(group(Operator::Difference, 0.0).rotated(turn()), [cuboid([2.0, 1.0, 1.9]), cutter])
     });
-    // A child that is cut away, and the common part with what is not cut.
+    // A negative child, and the intersection with the uncut part.
     is_open("negative", DVec3::ZERO, |out| {
         let cutter = cuboid([0.8, 0.6 + out, 0.7]).at(DVec3::new(0.1, 0.2 + 0.5 * out, 0.0)).negative();
         scene(group(Operator::Union, 0.0).rotated(turn()), [cuboid([2.0, 1.0, 1.9]), cutter])
@@ -217,7 +218,7 @@ fn what_is_taken_from_itself_is_nothing() {
             is_right(&seen("nothing", &scene(group(operator, 0.0), [part(), part()]), DVec3::ZERO), 64);
         }
     }
-    // Two boxes that only touch have nothing in common.
+    // Two touching boxes have an empty intersection.
     let [left, right] = [-0.5, 0.5].map(|x| cuboid([1.0; 3]).at(DVec3::X * x));
     let touching = scene(group(Operator::Intersection, 0.0).rotated(turn()), [left, right]);
     is_right(&seen("touching", &touching, DVec3::ZERO), 64);
@@ -234,11 +235,11 @@ fn what_has_no_thickness_is_nothing() {
     };
     bench_scene = shell(0.0);
     is_right(&bench_scene, 64);
-    // A thin one is there.
+    // A thin shell exists.
     is_right(&shell(1e-4), 64);
 }
 
-/// Whether a thing is seen must not depend on how large the picture is.
+/// The picture's size must not decide whether a shape is visible.
 #[test]
 fn thin_sheets_are_seen_in_small_pictures_too() {
     let bench_scene = case("thin-sheet", "sheet");
@@ -250,7 +251,7 @@ fn thin_sheets_are_seen_in_small_pictures_too() {
     }
 }
 
-/// A thing of one shape, turned by so many degrees, seen from so far.
+/// A single shape, rotated by `degrees`, seen from `distance`.
 fn alone(shape: Shape, degrees: f64, distance: f64) -> BenchScene {
     let axis = DVec3::new(0.9, 0.1, 0.3).normalize();
     let node = object(shape).rotated(DQuat::from_axis_angle(axis, degrees.to_radians()));
@@ -263,7 +264,7 @@ fn alone(shape: Shape, degrees: f64, distance: f64) -> BenchScene {
 fn thin_things_are_seen_from_the_side_that_is_entered() {
     is_right(&case("numerics", "sheet_02mm_auto"), 256);
     for degrees in [0.0, 30.0, 60.0, 80.0, 87.0] {
-        // Of 20 um seen from 10 m at 3 degrees f32 loses some.
+        // At 20 um, from 10 m and at 3 degrees, f32 loses some pixels.
         for thickness in [1e-3, 1e-4, 2e-5].into_iter().take(if degrees < 80.0 { 3 } else { 2 }) {
             is_right(&alone(Shape::Box { size: [4.0, 4.0, thickness], rounding: 0.0 }, degrees, 10.0), 48);
         }
@@ -278,24 +279,25 @@ fn thin_things_are_seen_from_the_side_that_is_entered() {
 #[test]
 fn what_is_pressed_flat_keeps_its_pixels() {
     let bench_scene = case("numerics", "scale_torus_y_1e_4");
-    // It ends in edges as sharp as f32 can tell.
+    // Its edges are as sharp as f32 permits.
     let is_allowed = |found: &Found| {
         found.hit_or_miss == found.grazing && found.grazing <= 4 && found.other_surface + found.turned == 0
     };
     compare(&bench_scene, &reference(&bench_scene, [256; 2]), true, is_allowed);
 }
 
-/// A turn is 1.5 cm high, a pixel 1 cm wide: where a ray meets it hangs on the rounding of its angle, but it enters there.
+/// A turn is 1.5 cm high and a pixel 1 cm wide: the rounding of its angle decides where a ray hits, but the hit enters
+/// the solid.
 #[test]
 fn what_is_twisted_a_hundred_times_faces_the_eye() {
     let bench_scene = case("numerics", "twist_100_turns");
-    // As measured; none of these pixels is one in which the reference is sure within a thousandth of a footprint.
+    // As measured; in none of these pixels is the reference certain within a thousandth of a footprint.
     let is_allowed =
         |found: &Found| found.hit_or_miss <= found.near.min(3) && found.other_surface <= 13 && found.turned == 0;
     compare(&bench_scene, &reference(&bench_scene, [256; 2]), false, is_allowed);
 }
 
-/// A wall faces the eye; one that is entered from inside, at the near plane, has the normal that its field has there.
+/// A wall faces the eye. A surface entered from inside, at the near plane, has the normal of the field there.
 #[test]
 fn an_eye_in_a_solid_sees_what_the_reference_sees() {
     let mut bench_scene = alone(Shape::Sphere { radius: 1.0 }, 0.0, 0.4);
@@ -304,15 +306,15 @@ fn an_eye_in_a_solid_sees_what_the_reference_sees() {
     is_right(&bench_scene, 32);
 }
 
-/// The row in the middle of an odd number of rows looks along the upper face: the field is 0 there and never negative, so
-/// what is behind is seen. Each of these rays takes some 80 000 steps.
+/// With an odd number of rows, the middle row looks along the upper face: the field there is 0 and never negative, so
+/// rays see what is behind. Each of these rays takes some 80 000 steps.
 #[test]
 fn rays_along_a_face_pass_it() {
     is_right(&case("numerics", "along_face_1000m_odd"), 255);
     is_right(&case("numerics", "along_face_1000m_odd"), 64);
 }
 
-/// A heightmap with one white pixel: as steep as that is, all of it is stepped.
+/// A heightmap with one white pixel: its steepness sets the step length everywhere.
 fn one_white_pixel() -> BenchScene {
     let image = Attachment::drawn("white.png", [256, 256], |x, y| if (x, y) == (160, 104) { 255 } else { 0 });
     let land = object(Shape::Heightmap { image, size: [20.0, 0.5, 20.0], height: 15.0 });
@@ -323,8 +325,8 @@ fn one_white_pixel() -> BenchScene {
 
 #[test]
 fn rays_that_take_many_steps_go_on_until_they_end() {
-    // Its bumps are far smaller than a pixel: chords shorter than the longest creeping step may be missed. Where rays were
-    // not continued, 123 pixels showed what is behind.
+    // Its bumps are far smaller than a pixel: rays may miss chords shorter than the longest min step. Without
+    // relaunches, 123 pixels showed what is behind.
     let terrain = case("numerics", "steps_terrain_soft_auto");
     let is_allowed = |found: &Found| found.hit_or_miss <= 16 && found.other_surface <= 80;
     compare(&terrain, &reference(&terrain, [48; 2]), false, is_allowed);
@@ -332,8 +334,8 @@ fn rays_that_take_many_steps_go_on_until_they_end() {
     compare(&land, &reference(&land, [48; 2]), false, |found| found.hit_or_miss + found.other_surface == 0);
 }
 
-/// In a picture this high a ray along the face of a box 100 km long creeps too slowly: that it has not ended is told, with
-/// the node.
+/// In a picture this high, a ray along the face of a box 100 km long advances too slowly: a warning reports that it has
+/// not ended, with the node.
 #[test]
 fn rays_that_are_given_up_are_counted_and_reported() {
     let long = cuboid([1.0, 1.0, 1e5]).at(DVec3::new(0.0, -0.5, -5e4 - 1.0));

@@ -1,4 +1,4 @@
-//! glTF models: what they show, on the device and in the reference alike.
+//! glTF models: their pictures on the device and in the reference.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -21,7 +21,7 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/gltf")
 }
 
-/// A case of the folder, seen through its camera, with its warnings.
+/// A case of the folder, seen by its own camera, with its warnings.
 fn case(name: &str) -> (BenchScene, Vec<Warning>) {
     let scene = file::load(&folder().join(format!("{name}.json"))).unwrap_or_else(|error| panic!("{error}"));
     let flat = flatten(&scene, 0.0).unwrap();
@@ -30,8 +30,8 @@ fn case(name: &str) -> (BenchScene, Vec<Warning>) {
     (BenchScene { name: name.into(), flat, meshes, camera }, warnings)
 }
 
-/// The picture by the device, after it was compared with the reference: the same pixels hit, in nearly the same place
-/// and color, but for one at an edge.
+/// The device's picture, after a comparison with the reference: the same pixels hit, at nearly the same depth and
+/// color, except for one at an edge.
 fn picture(bench_scene: &BenchScene) -> GBuffer {
     let drawn = bench_scene.render(SIDE, EvalStrategy::Interpreter);
     let different = differing(&drawn, &reference(bench_scene));
@@ -43,7 +43,7 @@ fn reference(bench_scene: &BenchScene) -> GBuffer {
     render_reference(&bench_scene.flat, &bench_scene.meshes, &bench_scene.camera, [SIDE; 2], &|_| ()).unwrap().buffers
 }
 
-/// How many pixels differ in what is hit, where, or in color.
+/// Number of pixels that differ in hit, depth or color.
 fn differing(drawn: &GBuffer, right: &GBuffer) -> usize {
     let differs = |i: &usize| {
         let i = *i;
@@ -58,8 +58,8 @@ fn hits(picture: &GBuffer) -> usize {
     picture.leaf.iter().filter(|leaf| **leaf != NO_LEAF).count()
 }
 
-/// The color where the camera sees a point, each channel as on or off: light and highlights leave a full one at 225.
-/// `None` where nothing is drawn.
+/// The color at the projection of a point, each channel as on or off: lighting and highlights leave a full channel at
+/// 225. `None` for a miss.
 fn color_at(bench_scene: &BenchScene, picture: &GBuffer, point: DVec3) -> Option<[u8; 3]> {
     let local = point - bench_scene.camera.position;
     let half = (bench_scene.camera.fov_y * 0.5).tan() * -local.z;
@@ -77,8 +77,8 @@ fn color_at(bench_scene: &BenchScene, picture: &GBuffer, point: DVec3) -> Option
     }))
 }
 
-/// How many pixels a square of 2 m, 5 m away, takes: 64 / (5 · tan 20°) = 35.2 along each side, in which lie the centers
-/// of 36.
+/// Number of pixels of a square of 2 m at 5 m: 64 / (5 · tan 20°) = 35.2 along each side, which contains the centers of
+/// 36.
 const SQUARE: usize = 36 * 36;
 
 #[test]
@@ -125,7 +125,7 @@ fn a_clamped_texture_keeps_the_color_of_its_edge() {
 
 #[test]
 fn texture_coordinates_are_transformed() {
-    // By scale 1/2 and offset (1/2, 0) only the upper right quarter of the texture is seen.
+    // With scale 1/2 and offset (1/2, 0), only the upper right quarter of the texture is visible.
     for offset in [0.2, 0.5, 0.8] {
         assert_eq!(quarters("transform", offset), [GREEN; 4], "{offset}");
     }
@@ -161,12 +161,12 @@ fn a_cube_far_from_its_origin_is_a_cube() {
     let mesh = bench_scene.meshes[0].as_ref().unwrap();
     let size = mesh.bounds.max - mesh.bounds.min;
     assert!((size - 0.74).abs().max_element() < 1e-6, "{size}");
-    // As the same cube that was never far away.
+    // Identical to a cube near the origin.
     let drawn = picture(&bench_scene);
     let side = 0.74_f64;
     let width = f64::from(SIDE) / (2.0 * 20_f64.to_radians().tan());
     let distance = bench_scene.camera.position.length();
-    // A cube seen at an angle shows between one and √3 of its sides.
+    // A cube at an angle shows between one and √3 times the area of a side.
     let least = (side * width / (distance + side)).powi(2);
     let most = 3_f64.sqrt() * (side * width / (distance - side)).powi(2);
     assert!((least..most).contains(&(hits(&drawn) as f64)), "{} pixels, {least} to {most}", hits(&drawn));
@@ -213,7 +213,7 @@ fn textures_are_looked_up_as_the_reference_does() {
             json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json!([0.5, 1, 0.25, 1]);
         })),
     ];
-    // Each shows something else, and the comparison sees it.
+    // Each shows something else, and the comparison detects it.
     while let Some(one) = pictures.pop() {
         assert!(pictures.iter().all(|other| differing(&one, other) > 50));
     }

@@ -1,4 +1,4 @@
-//! The reference renderer, and how pictures are compared with it.
+//! The reference renderer, and the comparison of pictures with it.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ use isolith::wgsl::{Evaluator, OpSet, Options, Structure};
 use crate::contract::samples::{Random, ordinary};
 use crate::gpu::shared;
 
-/// An input that went wrong, with its camera.
+/// A case with its camera.
 fn case(name: &str) -> (FlatScene, Camera) {
     let flat = flatten(&file::load(&path(name)).unwrap(), 0.0).unwrap();
     let camera = flat.cameras[0].camera;
@@ -65,8 +65,8 @@ fn a_convex_solid_shows_only_what_faces_the_eye() {
     assert!(hits > 2_000, "{hits}");
 }
 
-/// Points of the surface of a component, with the normal that a point a little outside has; not where that is another one
-/// than beside or behind it.
+/// Points on the surface of a component, with the normal a little outside. Leaves out points where that normal differs
+/// from the normals next to the surface and behind it.
 fn surface_points(flat: &FlatScene, random: &mut Random, count: usize) -> Vec<(DVec3, DVec3)> {
     let component = &flat.components[0];
     let reach = if component.bounds.is_finite() { component.bounds.half().length() } else { 1.0 };
@@ -93,7 +93,7 @@ fn surface_points(flat: &FlatScene, random: &mut Random, count: usize) -> Vec<(D
     found
 }
 
-/// What takes its sign from a question and its size from a distance, so that the two may disagree.
+/// Shapes that take their sign from a test and their magnitude from a distance, so that the two may disagree.
 const TWO_FACED: [ShapeKind; 13] = [
     ShapeKind::BoxFrame,
     ShapeKind::CappedCone,
@@ -176,7 +176,7 @@ fn sheets_and_wires_of_a_micrometer_are_hit() {
         let flat = scene_of(node);
         for distance in [0.1, 10.0, 300.0] {
             for i in 0..60 {
-                // Head on, and at any angle up to 84 degrees.
+                // Head-on, and at angles up to 84 degrees.
                 let aside = if i == 0 { 0.0 } else { 10.0 * distance * random.range(0.0, 1.0).powi(3) };
                 let target = DVec3::new(random.range(-1.3, 1.3), random.range(-1.3, 1.3), 0.5 * THIN);
                 let origin = target + DVec3::new(aside, 0.3 * aside, distance);
@@ -187,7 +187,7 @@ fn sheets_and_wires_of_a_micrometer_are_hit() {
             }
         }
     }
-    // A wire is hit where the ray meets its axis, and passed where it does not.
+    // A ray hits a wire if it meets its axis, and passes it otherwise.
     let wire = Shape::Capsule { start: [0.0, -1.0, 0.0], end: [0.0, 1.0, 0.0], radius: 0.5 * THIN };
     let flat = scene_of(object(wire));
     for x in [0.0, 0.3 * THIN, 0.6 * THIN, -2.0 * THIN] {
@@ -211,7 +211,7 @@ fn a_sheet_of_a_tenth_of_a_millimeter_is_seen_in_pictures_of_any_size() {
     }
 }
 
-/// Where a ray meets the upper face of a slab one meter thick, or the wall of a hole through it: nothing, where it leaves
+/// Where a ray meets the upper face of a slab one meter thick, or the wall of a hole through it; `None` if it leaves
 /// through the hole.
 fn pierced_slab(ray: &Ray, hole: DVec3, radius: f64) -> Option<f64> {
     let top = -ray.origin.y / ray.direction.y;
@@ -274,7 +274,7 @@ fn a_ball_blended_with_a_box_a_thousand_kilometers_away_is_a_ball() {
     assert!(hits > 50, "{hits}");
 }
 
-/// A block with a hole whose cutter ends flush with the upper face, turned and placed at random.
+/// A block with a hole whose cutter ends flush with the upper face, at a random position and rotation.
 fn flush_hole(random: &mut Random) -> (FlatScene, Ray) {
     let mut scene = Scene::new();
     let turn = DQuat::from_axis_angle(random.direction(), random.range(0.0, 6.0));
@@ -290,7 +290,7 @@ fn flush_hole(random: &mut Random) -> (FlatScene, Ray) {
     let block = object(Shape::Box { size: [2.0, 2.0 * half, 2.0], rounding: 0.0 });
     scene.insert(Some(parent), 0, block).unwrap();
     scene.insert(Some(parent), 1, object(cutter).at(DVec3::Y * (half - 0.5 * depth))).unwrap();
-    // Into the hole, down to its floor.
+    // A ray into the hole, down to its floor.
     let [from, to] = [DVec3::new(0.1, half + 3.0, -0.2), DVec3::new(-0.05, half - depth, 0.1)];
     let [from, to] = [from, to].map(|p| place + turn * p);
     (flatten(&scene, 0.0).unwrap(), Ray { origin: from, direction: (to - from).normalize() })
@@ -302,10 +302,10 @@ fn a_flush_cut_leaves_no_skin_however_it_is_turned() {
     for i in 0..60 {
         let (flat, ray) = flush_hole(&mut random);
         let found = hit(&flat, &ray).unwrap_or_else(|| panic!("{i}: the block is passed"));
-        // The upper face is three meters away, and the floor at least a tenth more.
+        // The upper face is three meters away, and the floor at least 0.1 m farther.
         assert!(found.t > 3.09, "{i}: hit at {}", found.t);
     }
-    // A skin that somebody made is one.
+    // A skin that the artist made remains.
     let mut scene = Scene::new();
     let group = Node::new("Group", NodeKind::Group(Group::new(Operator::Difference, Blend::HARD)));
     let parent = scene.insert(None, 0, group).unwrap();
@@ -323,7 +323,7 @@ fn what_has_no_thickness_is_nothing_for_the_reference() {
     let mut tracer = Tracer::new(&flat);
     for ray in rays(&camera, 48) {
         if let Some(hit) = tracer.march(&ray, camera.near, camera.far).unwrap().hit {
-            // Only the ball beside it is there.
+            // Only the ball next to it is visible.
             assert!(((ray.at(hit.t) - DVec3::X * 1.5).length() - 0.3).abs() < 1e-6, "{hit:?}");
         }
     }
@@ -331,8 +331,8 @@ fn what_has_no_thickness_is_nothing_for_the_reference() {
     assert!(field(&flat, component, DVec3::ZERO) >= 0.0);
 }
 
-/// Rays that follow faces a thousand kilometers long were given up after minutes. What is said of a ray that is given up is
-/// tested in `cli::failure`.
+/// The tracer used to give up rays along faces a thousand kilometers long, after minutes. `cli::failure` tests the
+/// message about a ray that is given up.
 #[test]
 fn rays_along_endless_faces_get_on_and_meet_what_is_there() {
     const SAMPLES: u32 = 20_000;
@@ -341,7 +341,7 @@ fn rays_along_endless_faces_get_on_and_meet_what_is_there() {
     let component = &flat.components[0];
     let mut tracer = Tracer::new(&flat);
     let (mut hits, mut passed) = (0, 0);
-    // As it is, and from where its rays meet it.
+    // From the case's camera, and from where its rays hit.
     for (near, back) in [(camera.near, 0.0), (1e-3, 0.0), (1e-3, 40.0)] {
         for i in 0..6 {
             let place = DVec2::new(f64::from(i % 3) + 0.5, f64::from(i / 3) + 0.5);
@@ -365,7 +365,7 @@ fn rays_along_endless_faces_get_on_and_meet_what_is_there() {
     assert!(started.elapsed() < Duration::from_secs(60));
 }
 
-/// What a yardstick says of a picture of one scene that should show another: the reference draws both.
+/// Accuracy of a picture that shows one scene and should show another: the reference draws both.
 fn mistaken(shown: &Scene, meant: &Scene, camera: &Camera, side: u32) -> Accuracy {
     let picture = |scene: &Scene| {
         let flat = flatten(scene, 0.0).unwrap();
@@ -396,16 +396,16 @@ fn pockets_drawn_closed_are_seen_though_the_block_stands_behind_them() {
     assert_eq!((right.wrong, right.faults()), (0, vec![]));
     let closed = changed(&scene, |node| node.visible = !is_cutter(node));
     let found = mistaken(&closed, &scene, &camera, 128);
-    // Neither by hit or miss nor by the 99th percentile, but by nodes and depths.
+    // Hit or miss and the 99th percentile do not detect it; nodes and depths do.
     assert!(found.hit_miss_differs == 0 && found.wrong > 60, "{found:?}");
     assert!(!found.faults().is_empty());
-    // One pocket of four is enough.
+    // One pocket of four is detected as well.
     let one = changed(&scene, |node| node.visible = node.id.0 != 3);
     let found = mistaken(&one, &scene, &camera, 128);
     assert!(found.depth_p99 < 1e-3 && found.wrong > 10 && !found.faults().is_empty(), "{found:?}");
 }
 
-/// Something before a wall, seen face on.
+/// A shape in front of a wall, face on.
 fn before_a_wall(shape: Shape) -> Scene {
     let mut scene = Scene::new();
     let wall = object(Shape::Box { size: [9.0, 9.0, 1.0], rounding: 0.0 }).at(DVec3::Z * -2.0);
@@ -422,7 +422,7 @@ fn wires_and_sheets_before_a_wall_are_seen() {
     let hidden = changed(&wire(0.02), |node| node.visible = node.id.0 == 1);
     let found = mistaken(&hidden, &wire(0.02), &camera, 96);
     assert!(found.hit_miss_differs == 0 && found.wrong > 20 && !found.faults().is_empty(), "{found:?}");
-    // A disc without thickness is nothing, and is wrong where it is drawn: no ray that meets it face on grazes.
+    // A disc without thickness is empty, so drawing it is wrong: no ray that meets it face on grazes it.
     let disc = |height| before_a_wall(Shape::Cylinder { radius: 0.8, height, rounding: 0.0 });
     let found = mistaken(&disc(1e-3), &disc(0.0), &camera, 96);
     assert!(found.wrong > 500 && found.grazing == 0, "{found:?}");
@@ -433,7 +433,7 @@ fn wires_and_sheets_before_a_wall_are_seen() {
 fn a_silhouette_off_by_a_rounding_grazes_and_one_off_by_a_hundredth_of_a_pixel_is_wrong() {
     let camera = Camera::looking_at(DVec3::new(0.0, 0.0, 4.0), DVec3::ZERO, 0.7);
     let footprint = camera.footprint(64.0);
-    // The edge of a block, exactly through the middle of a row of pixels at distance 3.5.
+    // The edge of a block, exactly through the centers of a row of pixels at distance 3.5.
     let block = |by: f64| {
         let ray = camera.ray(DVec2::new(40.5, 32.0), DVec2::splat(64.0));
         let edge = ray.direction.x / -ray.direction.z * 3.5 + 3.5 * by;

@@ -41,7 +41,7 @@ fn arcs(name: &str) -> Vec<ArcPiece> {
     text_profile(&text, &font, 1.0)
 }
 
-/// Where the ink of each closed curve begins and ends, from left to right.
+/// Start and end of the ink of each closed curve, from left to right.
 fn inks(arcs: &[ArcPiece]) -> Vec<[f64; 2]> {
     let mut out = Vec::new();
     let mut open: Option<(ArcPiece, Aabb)> = None;
@@ -66,7 +66,7 @@ fn assert_inks(found: &[ArcPiece], expected: &[[f64; 2]]) {
     assert!(is_same, "ink at {found:?}, not at {expected:?}");
 }
 
-/// The outlines of a text with a font made by code.
+/// The outlines of a text in a font made by code.
 fn drawn(font: &Font, text: &str) -> Vec<ArcPiece> {
     let font = Attachment::new("made.ttf", font.file()).unwrap_or_else(|error| panic!("{error}"));
     text_profile(text, &font, 1.0)
@@ -74,12 +74,12 @@ fn drawn(font: &Font, text: &str) -> Vec<ArcPiece> {
 
 #[test]
 fn letters_stand_where_the_font_says() {
-    // The pair A B is kerned by -200 units.
+    // The pair A B has a kerning of -200 units.
     let kerned = inks(&arcs("ab"));
     assert!((kerned[0][0] + 0.3).abs() < 1e-6 && (kerned[kerned.len() - 1][1] - 0.3).abs() < 1e-6, "{kerned:?}");
-    // The side bearing is not where the outline starts.
+    // The outline does not start at the side bearing.
     assert_inks(&arcs("side-bearing/ab"), &[[-0.5, -0.1], [0.1, 0.3]]);
-    // A font whose letters are symbols.
+    // A font with symbol encoding.
     assert_inks(&arcs("a"), &inks(&arcs("plain")));
     assert_eq!(arcs("decomposed"), arcs("composed"));
     assert_eq!(inks(&arcs("composed")).len(), 2, "a letter and its accent");
@@ -108,7 +108,7 @@ fn hebrew_runs_from_right_to_left() {
 
 #[test]
 fn directions_mix_and_brackets_are_mirrored() {
-    // Bars of three widths for two Hebrew letters and a Latin one; a bracket on the left, one on the right.
+    // Bars of three widths for two Hebrew letters and a Latin one; one bracket on the left, one on the right.
     let bar = |width: i16| rectangles(&[[0, 0, width, 700]]);
     let bracket = |x: i16| rectangles(&[[x, 0, x + 10, 700]]);
     let font = Font::new()
@@ -130,7 +130,7 @@ fn directions_mix_and_brackets_are_mirrored() {
     // A text that starts in Hebrew runs from right to left as a whole.
     assert_eq!(widths("אבA"), [50, 200, 100]);
     assert_eq!(widths("A\u{200f}אA"), [50, 100, 50]);
-    // An opening bracket opens to its content in either direction.
+    // An opening bracket faces its content in either direction.
     let latin = inks(&drawn(&font, "(A)"));
     let hebrew = inks(&drawn(&font, "(א)"));
     assert!(latin[0][0] < latin[1][0] - 0.09 && hebrew[0][0] < hebrew[1][0] - 0.09, "{latin:?} {hebrew:?}");
@@ -158,7 +158,7 @@ fn arabic_letters_are_joined() {
     assert_eq!(heights("ب"), [100]);
     assert_eq!(heights("بب"), [400, 200]);
     assert_eq!(heights("ببب"), [400, 300, 200]);
-    // A space parts words, a joiner joins to nothing.
+    // A space separates words; a joiner connects to nothing.
     assert_eq!(heights("ب\u{200c}ب"), [100, 100]);
     assert_eq!(heights("ب\u{200d}"), [200]);
 }
@@ -183,21 +183,21 @@ fn overlapping_contours_look_as_their_union() {
 
 #[test]
 fn letters_that_overlap_are_one() {
-    // Strokes that reach into the next letter with edges in one line, as joined letters do.
+    // Strokes that reach into the next letter with collinear edges, like joined letters.
     let font = Font::new().glyph(rectangles(&[[-100, 100, 700, 300]]), 600).letter('a', 1);
     let arcs = drawn(&font, "aaa");
     assert_inks(&arcs, &[[-1.0, 1.0]]);
     assert!((arcs.iter().map(ArcPiece::length).sum::<f64>() - 4.4).abs() < 1e-6);
-    // Two strokes that turn in opposite directions cancel where they cross, as in every program that draws fonts.
+    // Two strokes of opposite orientation cancel where they cross, as in every program that draws fonts.
     let cross = [[0, 200], [600, 200], [600, 400], [0, 400], [200, 0], [200, 600], [400, 600], [400, 0]];
     let font = Font::new().glyph(polygons(&cross, 4), 600).letter('a', 1);
     assert!((drawn(&font, "a").iter().map(ArcPiece::length).sum::<f64>() - 3.2).abs() < 1e-6);
-    // Three glyphs at one place are one.
+    // Three glyphs at one place act as one.
     let font = Font::new().glyph(rectangles(&[[0, 0, 300, 300]]), 400).glyph(composite(&[1, 1, 1]), 400).letter('a', 2);
     assert_eq!(inks(&drawn(&font, "a")).len(), 1);
 }
 
-/// Tries a text with a font; why it was refused.
+/// Tries a text with a font; returns the reason for the refusal.
 fn refusal(font: &Font, text: &str) -> String {
     let begun = Instant::now();
     let refused = refused(font, text);
@@ -244,13 +244,13 @@ fn fonts_of_endless_work_are_refused_by_name() {
 #[test]
 fn relatives_of_fonts_of_endless_work() {
     let a = |glyph: u32| Font::new().letter('a', glyph);
-    // A glyph that is a part of itself, at once and by another.
+    // A glyph that contains itself, directly and through another.
     let ring = a(1).glyph(composite(&[2]), 500).glyph(composite(&[1]), 500);
     assert!(refusal(&ring, "a").contains("is a part of itself"), "{}", refusal(&ring, "a"));
-    // A long chain of parts.
+    // A long chain of composite glyphs.
     let chain = (1..60).fold(a(59), |font, i: u16| font.glyph(composite(&[i - 1]), 500));
     assert!(refusal(&chain, "a").contains("deep"), "{}", refusal(&chain, "a"));
-    // Two thousand parts of twenty points are too many, twenty are not.
+    // Two thousand parts of twenty points are too many; twenty parts are not.
     let dense: Vec<[i16; 2]> = (0..20).map(|i| [10 * i, i * i]).collect();
     let parts = |count: usize| a(2).glyph(polygons(&dense, 20), 500).glyph(composite(&vec![1; count]), 500);
     assert!(refusal(&parts(2_000), "a").contains("points"));
@@ -258,17 +258,17 @@ fn relatives_of_fonts_of_endless_work() {
     // A glyph of 60 000 points.
     let dense: Vec<[i16; 2]> = (0..60_000).map(|i| [(i % 500) as i16, (i / 500) as i16]).collect();
     assert!(refusal(&a(1).glyph(polygons(&dense, 4), 500), "a").contains("points"));
-    // Lines that cross each other everywhere: 4 000 long ones.
+    // 4 000 long lines that all cross each other.
     let star: Vec<[i16; 2]> = (0..8_000).map(|i| [(i * 7_919 % 1_000) as i16, (i * 104_729 % 997) as i16]).collect();
     let reason = refusal(&a(1).glyph(polygons(&star, 8), 500), "a");
     assert!(reason.contains("cross each other too often"), "{reason}");
-    // Many letters of many points.
+    // Many letters with many points.
     let dense: Vec<[i16; 2]> = (0..4_000)
         .map(|i| [(i / 4 % 40 * 20) as i16 + [0, 0, 9, 9][i % 4], (i / 160 * 20) as i16 + [0, 9, 9, 0][i % 4]])
         .collect();
     let reason = refusal(&a(1).glyph(polygons(&dense, 4), 1_000), &"a".repeat(64));
     assert!(reason.contains("takes more than 32768 arcs"), "{reason}");
-    // A map of all letters there are, many times over, costs nothing.
+    // A map of all letters, repeated many times, costs nothing.
     let mut wide = a(1).glyph(rectangles(&[[0, 0, 300, 300]]), 400);
     wide.letters.extend((0..100_000).map(|i| (0x1_0000 + i, u32::MAX - 1, 1)));
     assert_eq!(refusal(&wide, "ab\u{1f600}\u{10ffff}"), "");
@@ -276,7 +276,7 @@ fn relatives_of_fonts_of_endless_work() {
 
 #[test]
 fn tables_of_layout_that_share_everything_are_refused() {
-    // 10 000 lookups, all of them the same one, with 10 000 parts that are all the same.
+    // 10 000 references to one lookup, with 10 000 identical parts.
     let count = 10_000_u16;
     let mut table: Vec<u16> = vec![1, 0, 10, 10, 10, count];
     table.extend(vec![2 + 2 * count; usize::from(count)]);
@@ -343,7 +343,7 @@ fn names_show_letters_of_every_script_that_a_font_of_the_system_has() {
     };
     let ctx = egui::Context::default();
     assert_eq!(found(&ctx), [false; 7], "the editor's own fonts have none of them");
-    // As the window does, by a feature of eframe.
+    // As in the window, through a feature of eframe.
     ctx.add_font_provider(std::sync::Arc::new(egui_system_font_provider::SystemFontProvider::new()));
     let found = found(&ctx);
     let files: Vec<Vec<u8>> = font_files(Path::new("/usr/share/fonts")).iter().flat_map(std::fs::read).collect();

@@ -1,5 +1,5 @@
-//! Who joins whom, and how round: radii relative to the size, radii of single operands, pairs that do not blend;
-//! and how much volume the kernels add.
+//! Pairs that blend, and their radii: relative to the size, overrides of single operands, excluded pairs; and the
+//! volume that kernels add.
 
 use glam::DVec3;
 use isolith::field::eval::{BlendParams, field, op_union, surface};
@@ -23,7 +23,7 @@ fn scene(group: Group, children: Vec<Node>) -> (Scene, Vec<NodeId>) {
     (scene, ids)
 }
 
-/// The field of a scene, at a point of the world.
+/// The field of a scene at a world position.
 fn at(flat: &FlatScene, p: DVec3) -> f64 {
     flat.components.iter().map(|c| field(flat, c, p - c.origin)).fold(f64::INFINITY, f64::min)
 }
@@ -85,7 +85,7 @@ fn a_radius_of_its_own_counts_in_a_group_that_does_not_blend() {
     assert!(same(at(&flat, p), blended(distance(p, 0.0, 0.5), distance(p, 0.8, 0.5), 0.3)));
 }
 
-/// Both arms blend with the shoulder, and neither with the body.
+/// The body and the arm blend with the shoulder, but not with each other.
 #[test]
 fn pairs_kept_apart_do_not_blend() {
     let (mut scene, ids) = scene(UNION, vec![ball(0.0, 0.5), ball(0.8, 0.4), ball(0.3, 0.45)]);
@@ -129,7 +129,7 @@ fn paint_changes_only_the_material() {
     assert!(same(at(&flat, DVec3::X), 0.5));
 }
 
-/// What a blend adds, in cubic meters: points inside of the group but not inside of it without a blend.
+/// The volume that a blend adds, in cubic meters: points inside the group, but outside without the blend.
 fn added(shapes: &[(Shape, DVec3)], kernel: BlendKernel, half: DVec3) -> f64 {
     let flat = |radius: f64| {
         let children = shapes.iter().map(|(shape, place)| {
@@ -145,7 +145,7 @@ fn added(shapes: &[(Shape, DVec3)], kernel: BlendKernel, half: DVec3) -> f64 {
     for i in 0..CELLS.pow(3) {
         let index = DVec3::new((i % CELLS) as f64, (i / CELLS % CELLS) as f64, (i / CELLS / CELLS) as f64);
         let p = (index + 0.5) * side - half;
-        // The share of the cell that is inside, about.
+        // Approximate fraction of the cell that is inside.
         let width = side.max_element();
         let share = |f: f64| (0.5 - f / width).clamp(0.0, 1.0);
         sum += share(at(&soft, p)) - share(at(&hard, p));
@@ -153,8 +153,8 @@ fn added(shapes: &[(Shape, DVec3)], kernel: BlendKernel, half: DVec3) -> f64 {
     sum * side.x * side.y * side.z
 }
 
-/// Of all kernels that are smooth in their middle and thicken equally none can add less to a right-angled corner than
-/// the bevel does (their profiles are convex), and where surfaces coincide all add the same. The smooth chamfer comes near.
+/// Among kernels with a smooth middle and equal thickening, none can add less to a right-angled corner than the bevel
+/// (their profiles are convex). Where surfaces coincide, all add the same. The smooth chamfer comes near the bevel.
 #[test]
 fn the_smooth_chamfer_adds_the_least_of_all_smooth_ones() {
     let capsule = Shape::Capsule { start: [-0.5, 0.0, 0.0], end: [0.5, 0.0, 0.0], radius: 0.25 };

@@ -1,5 +1,5 @@
-//! What shapes with data are, said a second time: see `surfaces`. Their curves are taken as sampled arcs, which the tests
-//! of `geometry` hold to what they should be.
+//! A second definition of the shapes with a payload: see `surfaces`. Samples their curves by arcs, which the tests of
+//! `geometry` check.
 
 use std::sync::Arc;
 
@@ -30,13 +30,13 @@ fn pieces(points: &[[f64; 4]], radius: f64, closed: bool) -> Vec<Piece> {
     out
 }
 
-/// The radius at λ: it changes evenly with the way.
+/// The radius at λ, linear in the arc length.
 fn radius_at((arc, [from, to]): &Piece, lambda: f64) -> f64 {
     let share = if arc.length() > 0.0 { 0.5 + arc.way(lambda) / arc.length() } else { 0.0 };
     from + (to - from) * share
 }
 
-/// Distance to the nearest ball of a piece: the best of samples, and around it by thirds.
+/// Distance to the nearest ball of a piece: the best of some samples, refined by ternary search.
 fn to_piece(piece: &Piece, p: DVec3) -> f64 {
     const SAMPLES: i32 = 16;
     let reach = piece.0.reach;
@@ -51,24 +51,24 @@ fn to_piece(piece: &Piece, p: DVec3) -> f64 {
     f(0.5 * (low + high)).min(f(place(best)))
 }
 
-/// Whether a ball of one of the pieces holds the point; most are told from afar.
+/// Whether a ball of one of the pieces contains the point. A bounding sphere rejects most pieces.
 fn any_holds(pieces: &[Piece], p: DVec3) -> bool {
     let is_near = |(arc, radii): &&Piece| p.distance(arc.at(0.0)) <= 0.5 * arc.length() + radii[0].max(radii[1]);
     pieces.iter().filter(is_near).any(|piece| to_piece(piece, p) < 0.0)
 }
 
-/// The distance to a tube from outside, that to the nearest of its balls.
+/// The distance from outside to a tube: to the nearest of its balls.
 pub fn tube_distance(shape: &Shape, p: DVec3) -> f64 {
     let Shape::Tube { points, radius, closed } = shape else { panic!("a tube") };
     pieces(points, *radius, *closed).iter().fold(f64::INFINITY, |least, piece| least.min(to_piece(piece, p)))
 }
 
-/// The place of an arc at a share of the way from its start to its end, as λ.
+/// λ at this fraction of the length of an arc from its start.
 fn lambda_at(arc: &ArcPiece, share: f64) -> f64 {
     arc.reach * (2.0 * share - 1.0)
 }
 
-/// A curve as chords, and the ray upward that says whether a point is inside.
+/// A curve as chords, for a crossing test with an upward ray.
 struct Chords(Vec<[DVec2; 2]>);
 
 impl Chords {
@@ -78,7 +78,7 @@ impl Chords {
         let mut chords = Vec::new();
         for arc in arcs {
             let count = if arc.bend == DVec3::ZERO { 1 } else { per_arc };
-            // Rounded, so that two arcs that meet end in one point: between two there would be a way in.
+            // Round, so that two adjoining arcs end in one point: a ray could pass between two points.
             let tidy = |v: f64| (v * 1e12).round() / 1e12;
             let at = |i: i32| arc.at(lambda_at(arc, f64::from(i) / f64::from(count))).truncate().map(tidy);
             chords.extend((0..count).map(|i| [at(i), at(i + 1)]));
@@ -86,7 +86,7 @@ impl Chords {
         Self(chords)
     }
 
-    /// Whether the curves go around the point an odd number of times.
+    /// Whether an upward ray from the point crosses the curves an odd number of times.
     fn hold(&self, p: DVec2) -> bool {
         let is_above =
             |[a, b]: &&[DVec2; 2]| (a.x > p.x) != (b.x > p.x) && a.y + (b.y - a.y) * (p.x - a.x) / (b.x - a.x) > p.y;
@@ -94,7 +94,7 @@ impl Chords {
     }
 }
 
-/// A profile as a prism without end, whose field at its middle says how deep a point of the plane is in it.
+/// A profile as a very long prism, whose field at the middle is the depth of a point in the profile.
 fn endless(shape: &Shape) -> PreparedShape {
     let mut prism = shape.clone();
     match &mut prism {
@@ -155,7 +155,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
             let turn = |arc: ArcPiece| -> Patch {
                 Box::new(move |u, v| {
                     let at = arc.at(lambda_at(&arc, v));
-                    // What lies on the axis bounds nothing.
+                    // Points on the axis do not bound anything.
                     (at.x + offset > 1e-12).then(|| turned(at.x + offset, at.y, u))
                 })
             };
@@ -182,7 +182,7 @@ fn tube(pieces: Vec<Piece>) -> Vec<Patch> {
         }
         let growth = if arc.length() > 0.0 { (radii[1] - radii[0]) / arc.length() } else { 1.0 };
         if growth.abs() >= 1.0 {
-            // One of the balls at its ends holds all others.
+            // One of the balls at its ends contains all others.
             continue;
         }
         let across = arc.tangent.cross(arc.bend).try_normalize().unwrap_or(arc.tangent.any_orthonormal_vector());
@@ -198,7 +198,7 @@ fn tube(pieces: Vec<Piece>) -> Vec<Patch> {
     patches
 }
 
-/// The arcs of a profile. Letters have profiles that do not overlap.
+/// The arcs of a profile. Profiles of letters do not overlap.
 fn profile_of(shape: &Shape) -> Vec<ArcPiece> {
     match shape {
         Shape::Extrusion { corners, smooth, .. } => profile_curve(corners, *smooth),
@@ -219,7 +219,7 @@ fn extrusion(shape: &Shape, half: f64, rounding: f64) -> Vec<Patch> {
         }));
     }
     let bounds = shape.bounds();
-    // Faces in tiles, so that the grid of each meets the strokes of letters.
+    // Split faces into tiles, so that the grid of each resolves the strokes of letters.
     const TILES: [u32; 2] = [8, 3];
     for tile in 0..2 * TILES[0] * TILES[1] {
         let side = if tile % 2 == 0 { -1.0 } else { 1.0 };

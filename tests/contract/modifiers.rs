@@ -1,4 +1,4 @@
-//! The contract of every modifier, over content that is not symmetric.
+//! The contract of every modifier, over asymmetric content.
 
 use glam::{DQuat, DVec3};
 use isolith::field::eval::{field, gradient};
@@ -12,7 +12,7 @@ use isolith::scene::{
 use super::rules::{gradient_is_right, steps_are_safe};
 use super::samples::{Random, image, many};
 
-/// Something lopsided: an L of two boxes, and a ball blended to it.
+/// Asymmetric content: an L of two boxes, and a ball blended with it.
 fn content(scene: &mut Scene, group: Node) -> NodeId {
     let parent = scene.insert(None, usize::MAX, group).unwrap();
     let boxed = |size: [f64; 3]| Shape::Box { size, rounding: 0.05 };
@@ -33,7 +33,7 @@ fn blended() -> Node {
     Node::new("Content", NodeKind::Group(Group::new(Operator::Union, blend)))
 }
 
-/// A scene of the lopsided content with these modifiers.
+/// A scene of the asymmetric content with these modifiers.
 pub fn modified(modifiers: &[Modifier]) -> Scene {
     let mut scene = Scene::new();
     let node = modifiers.iter().fold(blended(), |node, modifier| node.modified(modifier.clone()));
@@ -42,7 +42,7 @@ pub fn modified(modifiers: &[Modifier]) -> Scene {
     scene
 }
 
-/// The default; with an image where it does nothing without one.
+/// The default modifier; with an image if it has no effect without one.
 pub fn usual(kind: ModifierKind) -> Modifier {
     let (mut modifier, mut random) = (kind.default_modifier(), Random::new(kind as u64));
     for (index, value) in modifier.values().into_iter().enumerate() {
@@ -53,7 +53,7 @@ pub fn usual(kind: ModifierKind) -> Modifier {
     modifier
 }
 
-/// The default, one with random numbers within the range that is offered, others at the limits of that range.
+/// The default, one with random values in the soft range, others at the limits of that range.
 pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
     let mut random = Random::new(50 + kind as u64);
     let mut all = vec![usual(kind)];
@@ -88,7 +88,7 @@ pub fn samples(kind: ModifierKind, count: usize) -> Vec<Modifier> {
     all
 }
 
-/// Large blends below modifiers: of each kind one, the later ones upon a twist.
+/// Large blends below modifiers: one of each kind, the later ones on top of a twist.
 pub fn modified_crowds() -> Vec<Scene> {
     let of_kind = |(i, &kind): (usize, &ModifierKind)| {
         let mut scene = gallery::crowd(40, true, i as u64);
@@ -104,7 +104,7 @@ pub fn modified_crowds() -> Vec<Scene> {
     ModifierKind::ALL.iter().enumerate().map(of_kind).filter(single).collect()
 }
 
-/// Every component of every modifier's samples, twice the samples alone and once on top of a twist.
+/// Visits every component of every modifier's samples: all samples alone, two of them also on top of a twist.
 fn for_each(count: usize, mut visit: impl FnMut(&str, ModifierKind, &FlatScene, &Component)) {
     for &kind in ModifierKind::ALL {
         for (i, modifier) in samples(kind, count).into_iter().enumerate() {
@@ -112,7 +112,7 @@ fn for_each(count: usize, mut visit: impl FnMut(&str, ModifierKind, &FlatScene, 
             for (list, modifiers) in lists.iter().enumerate().take(if i < 2 { 2 } else { 1 }) {
                 let flat = match flatten(&modified(modifiers), 0.0) {
                     Ok(flat) => flat,
-                    // Copies that reach too far into each other are refused by name.
+                    // Flattening refuses copies that reach too far into each other, and names them.
                     Err(error) => {
                         assert!(kind == ModifierKind::Repeat && error.what.contains("copies"), "{modifier:?}: {error}");
                         continue;
@@ -126,7 +126,7 @@ fn for_each(count: usize, mut visit: impl FnMut(&str, ModifierKind, &FlatScene, 
     }
 }
 
-/// A sphere around what is to be looked at.
+/// A sphere around the interesting region.
 fn surroundings(component: &Component) -> (DVec3, f64) {
     let bounds = component.bounds;
     if bounds.is_finite() && bounds.half().length() < 20.0 {
@@ -140,8 +140,8 @@ fn surroundings(component: &Component) -> (DVec3, f64) {
 fn steps_through_modifiers_are_safe() {
     for_each(8, |what, kind, flat, component| {
         if kind == ModifierKind::Repeat {
-            // Neighbors are looked at by place, so the field may rise at once where it is far from the surface; that
-            // it never exceeds the distance is tested against copies.
+            // The evaluator selects neighbors by position, so the field may jump far from the surface. The comparison
+            // with explicit copies tests that it never exceeds the distance.
             return;
         }
         let (center, reach) = surroundings(component);
@@ -167,7 +167,7 @@ fn bounds_enclose_what_is_modified() {
 #[test]
 fn gradients_through_modifiers_are_those_of_central_differences() {
     for_each(3, |what, kind, flat, component| {
-        // Layers of noise bend faster than differences can follow, and walls fold the field.
+        // Layers of noise curve too quickly for differences, and walls fold the field.
         if matches!(kind, ModifierKind::Noise | ModifierKind::Onion | ModifierKind::Recursion | ModifierKind::Waves) {
             return;
         }
@@ -202,7 +202,7 @@ fn a_modifier_rises_with_the_distance_from_its_bounds() {
     assert!(count > 20, "{count}");
 }
 
-/// The copies of a repetition as nodes of their own.
+/// The copies of a repetition as separate nodes.
 fn explicit(modifier: &Modifier) -> Scene {
     let Modifier::Repeat { counts, spacing, offset, turn, mirrored, carve_from, carve_to } = *modifier else {
         panic!("a repetition")
@@ -242,7 +242,7 @@ fn repetitions() -> Vec<Modifier> {
     };
     let (none, off, zero) = ([[0; 3]; 2], [false; 3], [0.0; 3]);
     vec![
-        // Clear of the walls, touching them, through several cells.
+        // Clear of the walls, touching them, across several cells.
         repeat([4, 1, 1], [2.0; 3], zero, 0.0, off, none),
         repeat([3, 2, 3], [0.9, 1.1, 0.5], zero, 0.0, off, none),
         repeat([9, 1, 1], [0.25, 1.0, 1.0], zero, 0.0, off, none),
@@ -268,14 +268,14 @@ fn a_repetition_is_the_union_of_its_copies() {
             let p = bounds.center() + random.point(0.6) * (2.0 * bounds.half() + 0.6);
             let f = field(&one, &one.components[0], p - one.components[0].origin);
             let union = copies.components.iter().map(|c| field(&copies, c, p - c.origin)).fold(f64::INFINITY, f64::min);
-            // Never more than the true field outside, of the same sign everywhere.
+            // Outside, never more than the true field; everywhere the same sign.
             assert!(f <= union.max(0.0) + 1e-5, "{modifier:?} at {p}: {f}, the copies say {union}");
             assert!(union.abs() < 1e-5 || (f < 0.0) == (union < 0.0), "{modifier:?} at {p}: {f} {union}");
             inside += usize::from(union < 0.0);
             short += usize::from((f - union).abs() > 1e-5);
         }
         assert!(inside > 20, "{modifier:?}: {inside} points inside");
-        // Near the surface it is the same to the last bits; away from it most are.
+        // Near the surface it is exact to the last bits, and away from it mostly.
         assert!(4 * short < 3 * many(6_000), "{modifier:?}: {short} points are only a bound");
     }
 }
@@ -292,7 +292,7 @@ fn a_mirror_and_a_ring_are_the_copies_they_stand_for() {
     assert_eq!(flatten(&modified(&[seam]), 0.0).unwrap().components.len(), 1);
 }
 
-/// A plate whose top is displaced: its heights are those of the image, tile by tile, mirrored and without a jump.
+/// A plate with a displaced top: its heights match the image, repeated in mirrored tiles without a jump.
 #[test]
 fn a_displacement_repeats_its_image_mirrored() {
     const TILE: f64 = 0.5;
@@ -305,7 +305,7 @@ fn a_displacement_repeats_its_image_mirrored() {
         let node = Node::new("Plate", NodeKind::Object(object)).modified(displaced);
         scene.insert(None, 0, node).unwrap();
         let flat = flatten(&scene, 0.0).unwrap();
-        // A point over the face, so far right and down as the image is seen from there.
+        // A point above the face, at these distances right and down in the orientation of the image.
         let at = |right: f64, down: f64, up: f64| match axis {
             Axis::X => DVec3::new(up, -down, -right),
             Axis::Y => DVec3::new(right, up, down),
@@ -323,7 +323,7 @@ fn a_displacement_repeats_its_image_mirrored() {
         let side = TILE / 4.0;
         let mut random = Random::new(3);
         for _ in 0..200 {
-            // From the image's upper left corner, in pixels: mirrored at each border.
+            // In pixels from the image's upper left corner, mirrored at each border.
             let [x, y] = [random.range(-20.0, 20.0), random.range(-20.0, 20.0)].map(f64::floor);
             let folded = |v: f64, n: f64| {
                 let v = v.rem_euclid(2.0 * n);
@@ -331,13 +331,13 @@ fn a_displacement_repeats_its_image_mirrored() {
             };
             let place = |x: f64, y: f64| ((x + 0.5) * side - 0.5 * TILE, (y + 0.5) * side - 0.25 * TILE);
             let pixel = |x: f64, y: f64| heights.at(folded(x, 4.0), folded(y, 2.0));
-            // The spline in the middle of a pixel.
+            // The spline at the center of a pixel.
             let weights = [(-1.0, 0.125), (0.0, 0.75), (1.0, 0.125)];
             let mean: f64 = weights.iter().flat_map(|(i, a)| weights.map(|(j, b)| a * b * pixel(x + i, y + j))).sum();
             let (right, down) = place(x, y);
             let found = surface(right, down);
             assert!((found - height * mean).abs() < 1e-6, "{axis:?} at {x} {y}: {found}, not {}", height * mean);
-            // No jump at the border of any pixel.
+            // No jump at any pixel border.
             let border = right + 0.5 * side;
             let step = surface(border + 1e-7, down) - surface(border - 1e-7, down);
             assert!(step.abs() < 1e-6, "{axis:?} at {x} {y}: {step}");
@@ -354,7 +354,7 @@ fn without_an_image_a_displacement_is_nothing() {
     assert_eq!(flatten(&flat, 0.0), flatten(&none, 0.0));
 }
 
-/// Cells of noise are counted by whole numbers of 32 bits, which end.
+/// Noise counts its cells with 32-bit integers, which can overflow.
 #[test]
 fn noise_has_a_field_however_far_away() {
     let noise = Modifier::Noise { amplitude: 0.1, size: 1e-3, octaves: 3, seed: 4 };
@@ -366,7 +366,7 @@ fn noise_has_a_field_however_far_away() {
     }
 }
 
-/// So many cells reach into each other that they cannot even be counted along three axes.
+/// So many cells overlap that even counting them along three axes overflows.
 #[test]
 fn large_content_in_tiny_cells_is_refused_by_its_node() {
     let mut scene = Scene::new();

@@ -6,20 +6,20 @@ use isolith::scene::{Blend, BlendKernel, Operator};
 
 use super::samples::{Random, many};
 
-/// The first three: those that a kernel rounds alike.
+/// The first three operators: the ones that kernels round in the same way.
 const PLAIN: [Join; 3] = [Join::Union, Join::Intersection, Join::Difference];
 
 fn kernels() -> impl Iterator<Item = (u32, BlendKernel)> {
     BlendKernel::ALL.into_iter().enumerate().map(|(i, kernel)| (i as u32, kernel))
 }
 
-/// A blend as flattening writes it.
+/// Blend parameters as flattening writes them.
 fn blend_params(join: Join, blend: &Blend, [half_width, depth]: [f64; 2]) -> BlendParams {
     let has_width = matches!(join, Join::Pipe | Join::Groove | Join::Tongue);
     BlendParams { support: blend.support(), size: if has_width { half_width } else { blend.steps.into() }, depth }
 }
 
-/// Grooves and tongues have no steps.
+/// Whether the combination exists: grooves and tongues have no steps.
 fn applies(join: Join, kernel: BlendKernel) -> bool {
     !(kernel.has_steps() && matches!(join, Join::Groove | Join::Tongue))
 }
@@ -46,8 +46,8 @@ fn equal_radii_thicken_equally() {
                 for steps in [1, 2, 5] {
                     let blend = Blend { steps, ..Blend::new(kernel, radius) };
                     for a in [-0.7, 0.0, 2.0] {
-                        // The thickening measured along the diagonal, where the operands are equal; steps and columns
-                        // have it at their edges and fronts.
+                        // Measure the thickening along the diagonal, where the operands are equal; for steps and
+                        // columns at their edges and fronts.
                         let places = if kernel.has_steps() { 2 * steps } else { 1 };
                         let change = |i: u32| {
                             let apart = if kernel.has_steps() {
@@ -94,7 +94,7 @@ fn beyond_the_support_the_operators_are_hard() {
     }
 }
 
-/// What flattening and tapes rely upon.
+/// Flattening and tapes rely on this.
 #[test]
 fn far_from_the_second_operand_the_first_is_left_as_it_is() {
     let mut random = Random::new(4);
@@ -218,7 +218,7 @@ fn paint_is_whole_inside_and_fades_over_its_edge() {
     assert_eq!([hard(-1e-9), hard(1e-9)], [1.0, 0.0]);
 }
 
-/// `SmoothChamfer` as shaders write it: `SMOOTH_CHAMFER`.
+/// The name in shaders: `SmoothChamfer` becomes `SMOOTH_CHAMFER`.
 fn screaming(name: &str) -> String {
     let word = |(i, c): (usize, char)| if i > 0 && c.is_uppercase() { format!("_{c}") } else { c.to_string() };
     name.char_indices().map(word).collect::<String>().to_uppercase()
@@ -238,6 +238,6 @@ fn the_shader_numbers_joins_and_kernels_alike() {
     }
     let joins: Vec<Join> = Operator::ALL.into_iter().map(Join::of).collect();
     assert_eq!(joins, Join::ALL[1..=joins.len()]);
-    // No artist's operator: a difference with its operands exchanged.
+    // Not one of the artist's operators: a difference with exchanged operands.
     assert_eq!(Join::ALL[joins.len() + 1..], [Join::ReverseDifference]);
 }

@@ -1,5 +1,4 @@
-//! The same as `surfaces`, for shapes that are a profile turned about the Y axis, a polygon drawn out along it, a
-//! tube or a sheet.
+//! Like `surfaces`, for solids of revolution about the Y axis, polygons extruded along it, tubes and sheets.
 
 use std::f64::consts::{PI, TAU};
 
@@ -119,8 +118,8 @@ fn inside_fractal(shape: &Shape, p: DVec3) -> bool {
     }
 }
 
-/// The distance from outside to a Menger sponge: to the nearest of its smallest cubes, of which those in cubes that
-/// are farther than the best so far are left out.
+/// The distance from outside to a Menger sponge: to the nearest of its smallest cubes, without the cubes farther away
+/// than the best so far.
 pub fn menger_distance(p: DVec3, center: DVec3, size: f64, iterations: i32, best: f64) -> f64 {
     let to_cube = ((p - center).abs() - 0.5 * size).max(DVec3::ZERO).length();
     if iterations == 0 || to_cube >= best {
@@ -134,7 +133,7 @@ pub fn menger_distance(p: DVec3, center: DVec3, size: f64, iterations: i32, best
     kept.into_iter().fold(best, |best, cell| menger_distance(p, cell, size / 3.0, iterations - 1, best))
 }
 
-/// The surface; nothing for fractals.
+/// The surface as patches; empty for fractals.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
         Shape::MengerSponge { .. } | Shape::Julia { .. } | Shape::Kleinian { .. } | Shape::Mandelbulb { .. } => vec![],
@@ -164,9 +163,9 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
 
 type Curve = Box<dyn Fn(f64) -> DVec2>;
 
-/// The profiles of the bodies of revolution, over 0 to 1: distance from the axis, height. Pieces may lie inside.
+/// The profiles of the solids of revolution, over 0 to 1: distance from the axis, height. Pieces may lie inside.
 fn curves(shape: &Shape) -> Vec<Curve> {
-    // Part of a circle; angles from +Y, in radians.
+    // An arc; angles from +Y, in radians.
     let circle = |center: DVec2, radius: f64, from: f64, to: f64| -> Curve {
         Box::new(move |t| {
             let (s, c) = (from + (to - from) * t).sin_cos();
@@ -182,7 +181,7 @@ fn curves(shape: &Shape) -> Vec<Curve> {
             };
             (0..sides.0.round() as u32).map(|k| line(corner(k), corner(k + 1))).collect()
         }
-        // Finer near the tip.
+        // Finer sampling near the tip.
         Shape::Cone { half_angle } => {
             let (s, c) = half_angle.0.to_radians().sin_cos();
             vec![Box::new(move |t| DVec2::new(s, -c) * (64.0 * t * t))]
@@ -205,7 +204,7 @@ fn curves(shape: &Shape) -> Vec<Curve> {
                 (radius * radius - cut_radius * cut_radius + distance * distance) / (2.0 * distance).max(1e-30);
             let angle = if radius > 0.0 { (height / radius).clamp(-1.0, 1.0).acos() } else { 0.0 };
             let meets = DVec2::new(angle.sin(), angle.cos()) * radius - DVec2::Y * distance;
-            // Where the balls do not meet, all of the inner one is hollow.
+            // If the balls do not intersect, the whole inner one is hollow.
             let hollow = if distance + cut_radius < radius { 0.0 } else { meets.x.atan2(meets.y) };
             let mut all = vec![circle(DVec2::ZERO, radius, angle, PI)];
             if distance < radius + cut_radius {
@@ -228,20 +227,20 @@ fn curves(shape: &Shape) -> Vec<Curve> {
     }
 }
 
-/// The angle between −Y and the rim of a ball that is cut.
+/// The angle between −Y and the rim of a cut ball.
 fn bowl_angle(radius: f64, cut: f64) -> f64 {
     if radius == 0.0 { 0.5 * PI } else { (-cut / radius).clamp(-1.0, 1.0).acos() }
 }
 
-/// Where on X the center of a spindle's arc lies, and the arc's radius.
+/// The X coordinate of the center of a spindle's arc, and the arc's radius.
 fn arc(height: f64, width: f64) -> (f64, f64) {
     let (b, a) = (0.5 * height, 0.5 * width.min(height));
     ((a * a - b * b) / (2.0 * a), (a * a + b * b) / (2.0 * a))
 }
 
-/// The tubes of rings, round ends included.
+/// The tubes of rings, with their round ends.
 fn tubes(shape: &Shape) -> Vec<Patch> {
-    // Around a curve in the XZ plane, given with the unit direction across it.
+    // A tube around a curve in the XZ plane; the curve returns a point and the unit direction across it.
     let tube = |radius: f64, curve: Box<dyn Fn(f64) -> (DVec2, DVec2)>| -> Patch {
         Box::new(move |u, v| {
             let (at, across) = curve(u);
@@ -284,7 +283,7 @@ fn tubes(shape: &Shape) -> Vec<Patch> {
     patches.into_iter().map(|patch| outside_only(patch, shape.clone())).collect()
 }
 
-/// Both faces of a sheet, the round of its edges, the balls at its corners.
+/// Both faces of a sheet, its rounded edges, the balls at its corners.
 fn sheet(shape: &Shape, radius: f64) -> Vec<Patch> {
     let points = corners(shape, 1.0);
     let at = |k: usize| DVec3::new(points[k % points.len()].x, 0.0, points[k % points.len()].y);
@@ -304,7 +303,7 @@ fn sheet(shape: &Shape, radius: f64) -> Vec<Patch> {
     patches.into_iter().map(|patch| outside_only(patch, shape.clone())).collect()
 }
 
-/// How a prism is rounded: by a smaller one within, with everything near it.
+/// Rounding of a prism: all points within a distance of a smaller prism.
 struct Drawn {
     shrunk: f64,
     half: f64,
@@ -357,7 +356,7 @@ fn prism(shape: &Shape) -> Vec<Patch> {
     patches.into_iter().map(rounded).collect()
 }
 
-/// The corners of the polygon in the XZ plane that a prism or a sheet is made from, scaled.
+/// The scaled corners of the polygon in the XZ plane that defines a prism or a sheet.
 fn corners(shape: &Shape, scale: f64) -> Vec<DVec2> {
     let of = |points: &[[f64; 2]]| points.iter().map(|p| DVec2::from(*p) * scale).collect();
     match *shape {
@@ -391,7 +390,7 @@ fn corners(shape: &Shape, scale: f64) -> Vec<DVec2> {
     }
 }
 
-/// Whether the polygon holds the point: a ray from it crosses an odd number of sides.
+/// Whether the polygon contains the point: a ray from it crosses an odd number of sides.
 fn holds(corners: &[DVec2], q: DVec2) -> bool {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let crossed =
@@ -399,7 +398,7 @@ fn holds(corners: &[DVec2], q: DVec2) -> bool {
     crossed.count() % 2 == 1
 }
 
-/// The point of the polygon that is nearest to `q`.
+/// The point of the polygon nearest to `q`.
 fn nearest(corners: &[DVec2], q: DVec2) -> DVec2 {
     if holds(corners, q) {
         return q;

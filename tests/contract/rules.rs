@@ -1,12 +1,12 @@
-//! The rules of the contract, as functions that say what is wrong. Fields that break them stand in the
-//! tests below, so that the rules are known to be able to fail.
+//! The rules of the contract, as functions that return the violation. The tests below apply them to fields that break
+//! them, to show that the rules can fail.
 
 use glam::DVec3;
 
 use super::samples::{Random, many};
 
-/// |f(a) − f(b)| ≤ |a − b| over random pairs, near and far, within `half` of `center`. `noise` is what
-/// rounding may add.
+/// |f(a) − f(b)| ≤ |a − b| over random pairs, near and far, within `half` of `center`. `noise` is the tolerance for
+/// rounding.
 pub fn steps_are_safe(
     field: &dyn Fn(DVec3) -> f64,
     center: DVec3,
@@ -27,7 +27,7 @@ pub fn steps_are_safe(
     Ok(())
 }
 
-/// The gradient is what central differences say, wherever the field is smooth enough for them.
+/// The gradient matches central differences wherever the field is smooth enough for them.
 pub fn gradient_is_right(
     field: &dyn Fn(DVec3) -> (f64, DVec3),
     points: impl Iterator<Item = DVec3>,
@@ -64,7 +64,7 @@ fn a_field_that_grows_too_fast_is_caught() {
     assert_eq!(steps_are_safe(&good, DVec3::ZERO, 2.0, 2_000, 0.0), Ok(()));
     let steep = |p: DVec3| (p.length() - 1.0) * 1.01;
     assert!(steps_are_safe(&steep, DVec3::ZERO, 2.0, 2_000, 0.0).is_err());
-    // The quick formula for an ellipsoid, which is no bound.
+    // The fast approximation for an ellipsoid, which is not a bound.
     let r = DVec3::new(1.0, 0.2, 0.4);
     let quick = |p: DVec3| {
         let k = (p / r).length();

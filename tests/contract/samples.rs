@@ -11,7 +11,7 @@ use isolith::field::eval::{Real, shape_distance};
 use isolith::scene::limits::UNIT;
 use isolith::scene::{Attached, Limits, ParamValue, Shape, ShapeKind};
 
-/// A small generator (Steele, Lea and Flood, "SplitMix", 2014).
+/// A small random number generator (Steele, Lea and Flood, "SplitMix", 2014).
 pub struct Random(u64);
 
 impl Random {
@@ -44,7 +44,7 @@ impl Random {
         from[self.index(from.len())]
     }
 
-    /// Uniform in the cube of this half size.
+    /// Uniform in the cube with this half size.
     pub fn point(&mut self, half: f64) -> DVec3 {
         DVec3::new(self.range(-half, half), self.range(-half, half), self.range(-half, half))
     }
@@ -60,7 +60,7 @@ impl Random {
     }
 }
 
-/// So many points, times the factor that `ISOLITH_TIMES` names: `make nightly` looks at many more.
+/// `count` times the factor in `ISOLITH_TIMES`, which `make nightly` sets for more samples.
 pub fn many(count: usize) -> usize {
     static TIMES: LazyLock<NonZeroUsize> = LazyLock::new(|| match std::env::var("ISOLITH_TIMES") {
         Ok(times) => times.parse().unwrap_or_else(|error| panic!("ISOLITH_TIMES: {error}")),
@@ -69,7 +69,7 @@ pub fn many(count: usize) -> usize {
     count * TIMES.get()
 }
 
-/// A shape whose numbers all come from `number`, which is given their limits.
+/// A shape with all its parameters from `number`, which receives their limits.
 pub fn shape_with(kind: ShapeKind, mut number: impl FnMut(&Limits) -> f64) -> Shape {
     let mut shape = kind.default_shape();
     for (i, value) in shape.values().into_iter().enumerate() {
@@ -111,13 +111,13 @@ pub fn image(instead_of: &Attached, pixel: &mut dyn FnMut() -> u16) -> Attached 
     instead_of.with("random.png", bytes.into_inner()).unwrap()
 }
 
-/// A number from the soft range; lengths up to `longest` meters.
+/// A value in the soft range; lengths up to `longest` meters.
 pub fn usual(random: &mut Random, limits: &Limits, longest: f64) -> f64 {
     let [low, high] = limits.soft;
     if limits.unit == "m" { random.range(low.max(-longest), high.min(longest)) } else { random.range(low, high) }
 }
 
-/// Ordinary shapes: the default, random ones, random ones with zeros, all zero.
+/// Ordinary shapes: the default, all zeros, random, and random with zeros.
 pub fn ordinary(kind: ShapeKind, count: usize) -> Vec<Shape> {
     let mut random = Random::new(kind as u64);
     let mut shapes = vec![kind.default_shape(), shape_with(kind, |_| 0.0)];
@@ -129,7 +129,7 @@ pub fn ordinary(kind: ShapeKind, count: usize) -> Vec<Shape> {
     shapes
 }
 
-/// Shapes at the limits: zeros, tiny and huge numbers in every mixture.
+/// Shapes at the limits: mixtures of zeros, tiny and huge values.
 pub fn extreme(kind: ShapeKind, count: usize) -> Vec<Shape> {
     let mut random = Random::new(1_000 + kind as u64);
     (0..count).map(|_| shape_with(kind, |_| random.pick(&[0.0, 1e-30, 1e-9, 1e-3, 1.0, 1.0, 1e3, 1e6, 1e9]))).collect()
@@ -140,7 +140,7 @@ pub fn evaluate<T: Real>(prepared: &PreparedShape, p: [T; 3]) -> T {
     shape_distance(prepared.kind, p, &prepared.parameters, &|row| prepared.payload[row])
 }
 
-/// The size of a shape: the greatest of its numbers, or of its bounds' where some are no lengths.
+/// The size of a shape: the largest of its parameters, or of its bounds if it has a payload.
 pub fn size(shape: &Shape) -> f64 {
     if shape.kind().has_data() {
         let bounds = shape.bounds();
@@ -149,7 +149,7 @@ pub fn size(shape: &Shape) -> f64 {
     shape.packed().iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// Points where formulas break: the center, the axes, planes of symmetry, edges, far away.
+/// Points at which formulas break: the center, the axes, planes of symmetry, edges, far away.
 pub fn special_points(shape: &Shape) -> Vec<DVec3> {
     let q = if shape.kind().has_data() {
         [shape.bounds().max.to_array(), [0.0; 3]].concat()

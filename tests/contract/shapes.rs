@@ -1,4 +1,4 @@
-//! Every shape.
+//! The contract of every shape.
 
 use glam::DVec3;
 use isolith::field::PreparedShape;
@@ -20,8 +20,8 @@ fn with_gradient(shape: &Shape, p: DVec3) -> (f64, DVec3) {
     (v, d)
 }
 
-/// Inside tubes that meet themselves and rounded notches the field only has to be a bound; above hills and waves
-/// everywhere, and where a drawn profile is rounded.
+/// Whether the field must equal the distance. It may be just a bound inside of self-intersecting tubes and rounded
+/// notches, everywhere for terrains, heightmaps and oceans, and for extrusions and texts with a rounding.
 fn is_exact_at(shape: &Shape, f: f64) -> bool {
     let meets_itself = match *shape {
         Shape::Terrain { .. } | Shape::Ocean { .. } | Shape::Heightmap { .. } => return false,
@@ -37,13 +37,13 @@ fn is_exact_at(shape: &Shape, f: f64) -> bool {
     f >= 0.0 || !meets_itself
 }
 
-/// What is wrong with the value `f` at `p`.
+/// Returns the violation by the value `f` at `p`, if any.
 fn check_distance(shape: &Shape, surface: &[super::surfaces::Patch], p: DVec3, f: f64) -> Result<(), String> {
     let is_inside = inside(shape, p);
     let d = match shape {
         Shape::Tube { .. } if !is_inside => tube_distance(shape, p),
-        // Only the sign is judged, since a search over all balls takes minutes. How deep the field may be is looked at in
-        // `every_ball_of_the_fields_radius_is_on_one_side`.
+        // Check the sign only, because a search over all balls takes minutes.
+        // `every_ball_of_the_fields_radius_is_on_one_side` checks the depth.
         Shape::Tube { .. } => f.abs(),
         _ => brute_distance(surface, p),
     };
@@ -55,7 +55,8 @@ fn check_distance(shape: &Shape, surface: &[super::surfaces::Patch], p: DVec3, f
     if f.abs() > d + tolerance {
         return fail("no safe step");
     }
-    // Where the rims of sheets pass from tubes to balls the search ends early, a few hundred-thousandths too far off.
+    // Where the rims of sheets change from tubes to balls, the search ends early, a few hundred-thousandths too far
+    // away.
     let seams = if matches!(shape, Shape::Triangle { .. } | Shape::Quad { .. }) { 6e-5 } else { 0.0 };
     if is_exact_at(shape, f) && f.abs() < d - tolerance - seams {
         return fail("not the distance");
@@ -75,7 +76,7 @@ fn distances_are_those_of_a_sampled_surface() {
             }
             let reach = 0.3 + size(&shape).min(2.5);
             for i in 0..24 {
-                // Some points on planes of symmetry, where the nearest point is not unique.
+                // Some points lie on planes of symmetry, where the nearest point is not unique.
                 let mut p = random.point(reach);
                 if i % 4 == 3 {
                     p[random.index(3)] = 0.0;
@@ -109,7 +110,7 @@ fn a_wrong_distance_is_caught() {
     }
 }
 
-/// No step of the field's length leads to the other side.
+/// No step of the field's length crosses the surface.
 #[test]
 fn every_ball_of_the_fields_radius_is_on_one_side() {
     for &kind in ShapeKind::ALL {
@@ -197,7 +198,7 @@ fn bounds_enclose_every_shape() {
                 let p = random.point(reach);
                 let f = distance(&shape, p);
                 assert!(bounds.contains(p) || f > 0.0, "{shape:?} at {p}: {f}");
-                // A field that is a distance is at least that to the bounds.
+                // An exact field is at least the distance to the bounds.
                 assert!(bounds.contains(p) || f >= bounds.distance(p) - 1e-9 * reach, "{shape:?} at {p}: {f}");
             }
         }
@@ -224,7 +225,7 @@ fn a_shape_that_absorbs_a_scale_is_the_scaled_shape() {
     }
 }
 
-/// Of a profile 1e9 m long, details at one end are closed as they are: all of them lie within the rounding of the whole.
+/// In a profile 1e9 m long, details at one end stay closed: all of them are within the rounding of the whole.
 #[test]
 fn details_of_a_huge_profile_are_closed() {
     let corners = Corners::new([[1.0, 1.0], [0.001, 1e-9], [1e9, 1e-30], [1.0, 1e-30], [1.0, 0.001]]);

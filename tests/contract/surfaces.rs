@@ -1,5 +1,5 @@
-//! What each shape is, said a second time and in another way: which points are inside, and its surface
-//! as patches over the unit square. From them comes the distance by brute force.
+//! A second, independent definition of each shape: the points inside, and the surface as patches over the unit square.
+//! The patches give the distance by brute force.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -8,8 +8,8 @@ use isolith::scene::Shape;
 
 use super::{drawn, profiles};
 
-/// A piece of a surface over (u, v) in the unit square; `None` where the piece is not part of the
-/// surface because it lies inside.
+/// A piece of a surface over (u, v) in the unit square; `None` at points inside the shape, which are not part of its
+/// surface.
 pub type Patch = Box<dyn Fn(f64, f64) -> Option<DVec3>>;
 
 /// Whether the point is inside, by definition of the shape.
@@ -54,7 +54,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
     }
 }
 
-/// The surface.
+/// The surface as patches.
 pub fn patches(shape: &Shape) -> Vec<Patch> {
     match *shape {
         Shape::Sphere { radius } => vec![ball(DVec3::ZERO, DVec3::splat(radius), shape.clone())],
@@ -114,14 +114,14 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
     }
 }
 
-/// The distance from `p` to the nearest point of the patches: the best of a grid on each, then from the
-/// best few of these the best of ever smaller neighborhoods.
+/// The distance from `p` to the nearest point of the patches: evaluates a grid on each patch, then refines the best few
+/// points in ever smaller neighborhoods.
 pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     let measure = |patch: &Patch, [u, v]: [f64; 2]| patch(u, v).map_or(f64::INFINITY, |s| s.distance(p));
     let grid = (40.0 / (patches.len() as f64).sqrt()).clamp(6.0, 20.0) as usize;
     let mut starts: Vec<(f64, &Patch, [f64; 2])> = Vec::new();
     for patch in patches {
-        // Middles of cells: at the border of a patch many (u, v) can be one point.
+        // Use cell centers: at the border of a patch, many (u, v) can be one point.
         let middle = |k: usize| (k as f64 + 0.5) / grid as f64;
         let cells = (0..grid * grid).map(|k| [middle(k % grid), middle(k / grid)]);
         let mut best = cells.map(|uv| (measure(patch, uv), patch, uv)).collect::<Vec<_>>();
@@ -135,8 +135,8 @@ pub fn brute_distance(patches: &[Patch], p: DVec3) -> f64 {
     refined.fold(f64::INFINITY, f64::min)
 }
 
-/// The least value around `uv`: again from where the last search ended, since in a narrow valley across the
-/// parameters one search ends early.
+/// The minimum near `uv`. Restarts the search from its last result, because one search ends early in a narrow valley
+/// across the parameters.
 fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], step: f64) -> f64 {
     let mut least = f64::INFINITY;
     for _ in 0..6 {
@@ -149,7 +149,7 @@ fn refine(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], step: f64) -> f64
     least
 }
 
-/// By moves of `step` in sixteen directions, doubled where one helps and halved where none does.
+/// A pattern search: moves by `step` in sixteen directions, doubled after an improvement and halved without one.
 fn refine_once(measure: &dyn Fn([f64; 2]) -> f64, mut uv: [f64; 2], longest: f64) -> (f64, [f64; 2]) {
     const MOVES: [[f64; 2]; 16] = [
         [1.0, 0.0],
@@ -193,12 +193,12 @@ impl Bar {
     }
 }
 
-/// The bars of a frame: along each axis, at the four corners of the other two.
+/// The bars of a frame: along each axis, at the four corners of the other two axes.
 fn bars(size: DVec3, thickness: f64) -> Vec<Bar> {
     let half = size * 0.5;
     let span = |axis: usize, upper: bool| {
         let width = thickness.min(size[axis]);
-        // Where two opposite bars meet, they fill the whole width and nothing is between them.
+        // If two opposite bars meet, they fill the whole width without a gap.
         if thickness >= half[axis] {
             (-half[axis], half[axis])
         } else if upper {
@@ -237,7 +237,7 @@ fn rectangles(bar: Bar) -> Vec<Patch> {
     faces
 }
 
-/// The two caps and the side.
+/// The two caps and the side of a frustum.
 fn frustum(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
     let half = height * 0.5;
     let ring = |from: [f64; 2], to: [f64; 2]| -> Patch {
@@ -246,7 +246,7 @@ fn frustum(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
     vec![ring([0.0, -half], [bottom, -half]), ring([bottom, -half], [top, half]), ring([top, half], [0.0, half])]
 }
 
-/// Two balls, and the side that touches both.
+/// Two balls, and the side tangent to both.
 fn round_cone(bottom: f64, top: f64, height: f64) -> Vec<Patch> {
     let shape = Shape::RoundCone { bottom_radius: bottom, top_radius: top, height };
     let half = 0.5 * height;
@@ -285,7 +285,7 @@ pub fn triangle([a, b, c]: [DVec3; 3]) -> Patch {
     Box::new(move |u, v| Some(a.lerp(b, u).lerp(a.lerp(c, u), v)))
 }
 
-/// A ball with one radius per axis, where it is not inside `shape`.
+/// A ball with one radius per axis, without the parts inside `shape`.
 pub fn ball(center: DVec3, radii: DVec3, shape: Shape) -> Patch {
     outside_only(sphere(center, radii), shape)
 }
@@ -298,18 +298,18 @@ pub fn sphere(center: DVec3, radii: DVec3) -> Patch {
     })
 }
 
-/// The point (radius, y) turned about the Y axis by `u` of a full turn.
+/// The point (radius, y), rotated about the Y axis by the fraction `u` of a full turn.
 pub fn turned(radius: f64, y: f64, u: f64) -> DVec3 {
     let (s, c) = (TAU * u).sin_cos();
     DVec3::new(radius * c, y, radius * s)
 }
 
-/// The patch without what lies inside the shape.
+/// The patch without the parts inside the shape.
 pub fn outside_only(patch: Patch, shape: Shape) -> Patch {
     outside_of(patch, move |p| inside(&shape, p))
 }
 
-/// The patch without what lies inside together with a small neighborhood, so that rounding does not tear holes.
+/// The patch without points whose small neighborhood is inside too, so that rounding does not tear holes.
 pub fn outside_of(patch: Patch, holds: impl Fn(DVec3) -> bool + 'static) -> Patch {
     let e = 1e-7;
     let deep = move |p: DVec3| holds(p) && DVec3::AXES.iter().all(|a| holds(p + *a * e) && holds(p - *a * e));
@@ -320,8 +320,8 @@ pub fn mapped(patch: Patch, map: impl Fn(DVec3) -> DVec3 + 'static) -> Patch {
     Box::new(move |u, v| patch(u, v).map(&map))
 }
 
-/// The least of distance minus radius over the balls between two balls: a convex function of the place
-/// between them, searched by thirds.
+/// The minimum of distance minus radius over the balls between two balls: a convex function of the position between
+/// them, minimized by ternary search.
 fn ball_between(centers: [DVec3; 2], radii: [f64; 2], p: DVec3) -> f64 {
     let at = |t: f64| p.distance(centers[0].lerp(centers[1], t)) - (radii[0] + (radii[1] - radii[0]) * t);
     let (mut low, mut high) = (0.0, 1.0);

@@ -1,5 +1,5 @@
-//! How near fields come to the distance: of shapes, of what operators join, of what modifiers make. The tables of it in
-//! `shaders/README.md` are held to what is measured here; with `ISOLITH_ACCEPT_TIGHTNESS=1` they are written anew.
+//! Tightness of fields, relative to the distance: of shapes, operators and modifiers. The test compares the tables in
+//! `shaders/README.md` with its measurements; with `ISOLITH_ACCEPT_TIGHTNESS=1` it rewrites them.
 
 use std::fmt::Write as _;
 
@@ -19,12 +19,12 @@ use super::surfaces::{Patch, brute_distance, patches};
 
 const README: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/README.md");
 const MARKS: [&str; 2] = ["<!-- tightness:begin -->", "<!-- tightness:end -->"];
-/// Points outside of each shape.
+/// Sample points outside of each shape.
 const POINTS: usize = 200;
-/// Points outside of each scene, where the distance is searched along rays.
+/// Sample points outside of each scene, whose distance is searched along rays.
 const SCENE_POINTS: usize = 60;
 
-/// The distance from outside by brute force.
+/// The distance from outside, by brute force.
 fn exact(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
     match *shape {
         Shape::MengerSponge { size, iterations } => {
@@ -39,7 +39,7 @@ fn exact(shape: &Shape, surface: &[Patch], p: DVec3) -> f64 {
     }
 }
 
-/// The distance along the best of many rays, which is turned ever less from there on. Not less than the distance.
+/// The distance along the best of many random rays, refined by ever smaller rotations. An upper bound of the distance.
 fn ray_distance(field: &dyn Fn(DVec3) -> f64, p: DVec3) -> f64 {
     let mut random = Random::new(1);
     let (mut best, mut ahead) = (f64::INFINITY, DVec3::ZERO);
@@ -59,7 +59,7 @@ fn ray_distance(field: &dyn Fn(DVec3) -> f64, p: DVec3) -> f64 {
     best
 }
 
-/// The mean and the least of field over distance, at so many random points outside, around a box.
+/// The mean and the minimum of field over distance at random points outside, in and around a box.
 fn measure(
     field: &dyn Fn(DVec3) -> f64,
     exact: &dyn Fn(DVec3) -> f64,
@@ -84,7 +84,7 @@ fn measure(
     format!("{:.3} | {least:.3}", sum / points as f64)
 }
 
-/// Of a shape with its default parameters.
+/// Tightness of a shape with its default parameters.
 fn of_shape(kind: ShapeKind) -> String {
     let shape = kind.default_shape();
     let (surface, prepared) = (patches(&shape), PreparedShape::new(&shape));
@@ -97,7 +97,7 @@ fn of_shape(kind: ShapeKind) -> String {
     measure(&field, &|p| exact(&shape, &surface, p), bounds, 17 + kind as u64, POINTS)
 }
 
-/// Of a scene.
+/// Tightness of a scene.
 fn of_scene(scene: &Scene, seed: u64) -> String {
     let flat = flatten(scene, 0.0).unwrap();
     let bounds = flat.components.iter().map(|c| c.bounds.translated(c.origin)).reduce(|a, b| a.union(&b)).unwrap();
@@ -105,7 +105,7 @@ fn of_scene(scene: &Scene, seed: u64) -> String {
     measure(&least, &|p| ray_distance(&least, p), bounds, seed, SCENE_POINTS)
 }
 
-/// A box and a ball that reaches out of it.
+/// A box and a ball that protrudes from it.
 fn joined(group: Group) -> Scene {
     let mut scene = Scene::new();
     let parent = scene.insert(None, 0, Node::new("Blend", NodeKind::Group(group))).unwrap();

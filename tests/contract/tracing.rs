@@ -29,14 +29,14 @@ fn ray(origin: DVec3, target: DVec3) -> Ray {
 
 #[test]
 fn a_sphere_is_hit_where_algebra_says() {
-    // A radius that f32 holds exactly.
+    // A radius that f32 represents exactly.
     let (flat, _) = scene_of([object(Shape::Sphere { radius: 0.75 })]);
     let mut tracer = Tracer::new(&flat);
     let mut random = Random::new(1);
     let (mut hits, mut misses) = (0, 0);
     for i in 0..4_000 {
         let origin = random.direction() * 4.0;
-        // Every other ray grazes: it passes the center at the radius, more or less.
+        // Every other ray grazes: it passes the center at about the radius.
         let offset = if i % 2 == 0 { random.range(0.0, 3.0) } else { 0.75 + random.range(-1.0, 1.0) * 1e-6 };
         let side = origin.cross(random.direction()).normalize();
         let direction = (side * offset - origin).normalize();
@@ -66,7 +66,7 @@ fn the_margin_says_how_near_a_ray_passed() {
     let mut tracer = Tracer::new(&flat);
     let origin = DVec3::new(0.0, 0.0, 4.0);
     for offset in [1e-9, 1e-7, 1e-6, 1e-5] {
-        // The tangent cone's half angle, and a little more.
+        // Slightly more than the half angle of the tangent cone.
         let angle = (0.75_f64 / 4.0).asin();
         let at = |angle: f64| Ray { origin, direction: DVec3::new(angle.sin(), 0.0, -angle.cos()) };
         for side in [-1.0, 1.0] {

@@ -14,7 +14,7 @@ use super::surfaces::inside;
 
 const TREES: u64 = 80;
 
-/// What random trees are made of.
+/// The ingredients of a random tree.
 #[derive(Clone, Copy)]
 pub struct Recipe {
     pub blends: bool,
@@ -22,7 +22,7 @@ pub struct Recipe {
     pub kinds: &'static [ShapeKind],
 }
 
-/// A tree of a few levels, with negative nodes, hidden ones and every operator.
+/// A tree of a few levels, with negative and hidden nodes and every operator.
 pub fn tree(seed: u64, recipe: Recipe) -> Scene {
     let mut random = Random::new(seed);
     let mut scene = Scene::new();
@@ -42,8 +42,8 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
         let unit = random.pick(&[RadiusUnit::Meters, RadiusUnit::Meters, RadiusUnit::Size]);
         let steps = 1 + random.index(5) as u32;
         let blend = Blend { unit, steps, ..Blend::new(random.pick(&BlendKernel::ALL), radius) };
-        // Without blends every operator is one on sets, so that a point is inside or outside by its meaning. The
-        // others are rarer: what is cut and only that is often nothing.
+        // Without blends, every operator is a set operator, so that the tree defines inside and outside. The other
+        // operators are rarer, because what they cut is often empty.
         let operator = match () {
             () if !recipe.blends => random.pick(&[Operator::SETS.as_slice(), &[Operator::Paint]].concat()),
             () if random.chance(0.5) => random.pick(&Operator::SETS),
@@ -79,7 +79,7 @@ fn grow(scene: &mut Scene, random: &mut Random, parent: Option<NodeId>, depth: u
     }
 }
 
-/// All recipes, with the arrays; every component once.
+/// Visits every component of a tree of each recipe once, with the arrays.
 fn for_each_component(mut visit: impl FnMut(&Scene, &FlatScene, &Component, &mut Random)) {
     let mut count = 0;
     for seed in 0..TREES {
@@ -94,7 +94,7 @@ fn for_each_component(mut visit: impl FnMut(&Scene, &FlatScene, &Component, &mut
     assert!(count > TREES);
 }
 
-/// A sphere, as center and radius, around everything that is bounded.
+/// A bounding sphere as center and radius; for unbounded components one of a fixed size.
 fn surroundings(component: &Component) -> (DVec3, f64) {
     if component.bounds.is_finite() {
         (component.bounds.center(), 0.2 + component.bounds.half().length())
@@ -103,8 +103,8 @@ fn surroundings(component: &Component) -> (DVec3, f64) {
     }
 }
 
-/// Whether the point is inside the node, by the meaning of the tree; `None` where it is hidden. A group in which nothing
-/// is visible is the empty set.
+/// Whether the point is inside the node, by definition of the tree; `None` if the node is hidden. A group without
+/// visible nodes is the empty set.
 fn solid(scene: &Scene, node: &Node, world: &DAffine3, p: DVec3) -> Option<bool> {
     if !node.visible {
         return None;
@@ -121,14 +121,14 @@ fn fold(scene: &Scene, parent: Option<NodeId>, operator: Operator, world: &DAffi
     let mut so_far = None;
     for child in scene.children(parent) {
         let Some(holds) = solid(scene, child, world, p) else {
-            // The others would work on it.
+            // Otherwise the remaining children would apply to each other.
             if so_far.is_none() && !child.negative && operator.needs_first() {
                 so_far = Some(false);
             }
             continue;
         };
         so_far = match (so_far, child.negative, operator) {
-            // What is cut from nothing is nothing.
+            // A cut from the empty set is empty.
             (None, true, _) => None,
             (None, false, _) => Some(holds),
             (Some(before), true, _) | (Some(before), false, Operator::Difference) => Some(before && !holds),
@@ -152,7 +152,7 @@ fn hard_trees_hold_the_points_that_their_meaning_says() {
         for _ in 0..150 {
             let p = random.point(2.5);
             let f = flat.components.iter().map(|c| field(&flat, c, p - c.origin)).fold(f64::INFINITY, f64::min);
-            // Where the field is about zero, rounding the arrays to f32 may decide.
+            // Near zero, the rounding of the arrays to f32 may decide the sign.
             if f.abs() < 1e-5 {
                 continue;
             }
@@ -169,7 +169,7 @@ fn hard_trees_hold_the_points_that_their_meaning_says() {
 fn steps_are_safe_in_every_tree() {
     for_each_component(|_, flat, component, _| {
         let (center, reach) = surroundings(component);
-        // f32 rounds the rotations and scales of the arrays.
+        // The arrays round rotations and scales to f32.
         steps_are_safe(&|p| field(flat, component, p), center, reach, 300, 2e-6 * reach).unwrap();
     });
 }

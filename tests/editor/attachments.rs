@@ -1,4 +1,4 @@
-//! Files that shapes keep: chosen, refused, done without.
+//! Attachments of shapes: chosen, refused, or absent.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ fn file_of(harness: &Harness<'_, Editor>, id: NodeId) -> String {
     file.expect("a file").label().to_owned()
 }
 
-/// Clicks the field of the file and types a path; to be ended by Enter.
+/// Clicks the file's field and types a path, without the final Enter.
 fn name(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
     harness.get_by_label(field).click();
     harness.run();
@@ -29,7 +29,7 @@ fn name(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
     harness.run();
 }
 
-/// Chooses a file, and waits until it has been read.
+/// Chooses a file and waits until the editor has read it.
 pub fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
     name(harness, field, path);
     harness.key_press(Key::Enter);
@@ -37,7 +37,7 @@ pub fn choose(harness: &mut Harness<'_, Editor>, field: &str, path: &Path) {
     read_to_the_end(harness);
 }
 
-/// Draws frames until no file is being read. Not by `run`: the thread that reads asks for frames when it likes.
+/// Draws frames until no file is being read. Does not use `run`, because the reader thread requests frames at any time.
 fn read_to_the_end(harness: &mut Harness<'_, Editor>) {
     let since = Instant::now();
     while harness.state().files_being_read().next().is_some() {
@@ -48,7 +48,7 @@ fn read_to_the_end(harness: &mut Harness<'_, Editor>) {
     harness.run_steps(8);
 }
 
-/// Two heightmaps, selected.
+/// Two heightmaps, both selected.
 fn with_landscapes() -> (Harness<'static, Editor>, [NodeId; 2]) {
     let (mut scene, [_, ball, cube, _]) = scene();
     for id in [ball, cube] {
@@ -73,7 +73,7 @@ fn an_image_is_chosen_refused_and_done_without() {
     let (mut harness, [ball, cube]) = with_landscapes();
     choose(&mut harness, "Image: A hill", &image);
     assert_eq!([ball, cube].map(|id| file_of(&harness, id)), ["alps.png"; 2]);
-    // What is no image is told, and changes nothing.
+    // A file that is not an image gives a message and changes nothing.
     choose(&mut harness, "Image: alps.png", &text);
     let message = harness.state().messages().last().unwrap().text.clone();
     let place = format!("Cube {cube}: Heightmap: image: ");
@@ -92,7 +92,7 @@ fn an_image_is_chosen_refused_and_done_without() {
 fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
     let folder = tempfile::tempdir().unwrap();
     let image = folder.path().join("alps.png");
-    // So large that it is not read within a frame or two.
+    // So large that reading it takes more than a frame or two.
     image::GrayImage::new(8192, 8192).save(&image).unwrap();
     let (mut harness, [ball, _]) = with_landscapes();
     let scene = harness.state().document().scene().clone();
@@ -100,7 +100,7 @@ fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
         name(harness, "Image: A hill", &image);
         harness.key_press(Key::Enter);
         harness.step();
-        // It is looked for in the next frame at the earliest, after that has told of it.
+        // The editor looks for it in the next frame at the earliest, after reporting the job.
         assert_eq!(harness.state().files_being_read().collect::<Vec<_>>(), ["alps.png"]);
         assert_eq!(*harness.state().document().scene(), scene);
     };

@@ -1,4 +1,4 @@
-//! Fields of the inspector: what may be typed, what is said about it, what several nodes show.
+//! Fields of the inspector: accepted input, messages, and the display of several nodes.
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers};
@@ -9,7 +9,7 @@ use isolith::scene::{Material, MaterialId, Modifier, Node, NodeId, NodeKind, Obj
 
 use super::{click, field, open_tall, press, scene, select, shape, undo_all};
 
-/// Types into a field what is behind the name; ends by Enter.
+/// Types text into the field with this name and presses Enter.
 fn type_into(harness: &mut Harness<'_, Editor>, name: &str, text: &str) {
     let pos = field(harness, name).rect().center();
     click(harness, pos);
@@ -132,12 +132,12 @@ fn going_through_fields_changes_nothing() {
     assert_eq!(said(&harness), [""; 0]);
 }
 
-/// What the list of materials shows.
+/// The current text of the material list.
 fn list_shows(harness: &Harness<'_, Editor>) -> Option<String> {
     super::list_box(harness, "Material").accesskit_node().value()
 }
 
-/// Two objects of a kind that have different materials and differ in what `change` does by their index.
+/// Two objects of a kind with different materials; `change` makes them differ by their index.
 fn two(change: impl Fn(&mut Node, usize), kind: ShapeKind) -> (Scene, [NodeId; 2]) {
     let mut scene = Scene::new();
     let first = scene.materials()[0].id;

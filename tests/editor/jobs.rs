@@ -1,4 +1,4 @@
-//! What takes longer than a frame runs beside the frames: it is shown, can be canceled, and cannot take the editor down.
+//! Jobs run beside the frames: they are visible, can be canceled, and cannot crash the editor.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -15,7 +15,7 @@ use isolith::scene::{Group, Node, NodeKind, Scene};
 use super::{click, no_picture, pointer, press, scene};
 use crate::settle::Settle;
 
-/// What a slow reader does next.
+/// The next step of a slow reader.
 enum Order {
     Progress(f32),
     Reply(Box<Result<Document, String>>),
@@ -34,7 +34,7 @@ fn read(orders: &Mutex<Receiver<Order>>, task: &Task) -> Result<Document, String
     panic!("a broken reader")
 }
 
-/// An editor that offers the example "Slow", whose reader does what it is told when it is told.
+/// An editor with the example "Slow", whose reader follows the test's orders.
 fn with_slow_example() -> (Harness<'static, Editor>, Sender<Order>) {
     let (orders, received) = channel();
     let received = Mutex::new(received);
@@ -104,7 +104,7 @@ fn while_a_scene_opens_frames_go_on_and_the_old_one_stays_until_the_new_one_is_w
     assert!(started.elapsed() < Duration::from_secs(20), "the reader holds the frames up");
     assert!(harness.query_by_label(OPENING).is_some() && harness.query_by_label(CANCEL).is_some());
     assert_eq!(*harness.state().document().scene(), old);
-    // What is open can be looked at meanwhile.
+    // The open scene stays usable meanwhile.
     harness.key_press(Key::Num1);
     harness.run_steps(3);
     assert!(harness.query_by_label(OPENING).is_some());
@@ -126,13 +126,13 @@ fn canceling_leaves_the_old_scene_at_once() {
             harness.get_by_label(CANCEL).click();
         }
         harness.run_steps(4);
-        // The reader has not heard of it yet: nobody waits for it.
+        // The reader does not know about the cancel yet; nothing waits for it.
         assert!(harness.query_by_label(OPENING).is_none(), "by key: {by_key}");
         assert_eq!(last(&harness), "Opening Slow was canceled.");
         assert!(orders.send(Order::Reply(Box::new(Ok(another())))).is_ok(), "it reads on");
         harness.settle();
         assert_eq!(*harness.state().document().scene(), old);
-        // Nothing runs: Escape means what it meant before, and another scene can be opened.
+        // No job runs: Escape has its normal meaning, and another scene can be opened.
         order_example(&mut harness);
         orders.send(Order::Reply(Box::new(Ok(another())))).expect("it listens");
         harness.settle();
@@ -153,7 +153,7 @@ fn a_reader_that_panics_or_refuses_is_a_message() {
     harness.settle();
     assert_eq!(last(&harness), "Slow cannot be opened: an internal error: a broken reader");
     assert_eq!(*harness.state().document().scene(), old);
-    // The editor is as good as before.
+    // The editor still works.
     harness.get_by_label("Add sphere").click();
     harness.settle();
     assert_eq!(harness.state().document().scene().nodes().len(), old.nodes().len() + 1);
@@ -207,7 +207,7 @@ fn edits_made_while_a_document_is_saved_stay_changes() {
     assert_eq!(Document::open(&path).unwrap().scene().nodes().len(), 2);
     document.undo();
     assert!(!document.is_changed(), "this is what was written");
-    // A reader that is told to stop before it begins.
+    // A reader canceled before it starts.
     let task = Task::new("Opening");
     task.cancel();
     let error = Document::open_by(&path, &task).unwrap_err().to_string();

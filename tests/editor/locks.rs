@@ -1,4 +1,4 @@
-//! Locked nodes stay where they are; after a deletion nothing is selected.
+//! Locked nodes stay where they are; a deletion clears the selection.
 
 use egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -27,7 +27,7 @@ fn told(harness: &Harness<'_, Editor>) -> String {
 fn locked_nodes_cannot_be_deleted() {
     let (mut scene, [group, ball, cube, ring]) = scene();
     lock(&mut scene, ball);
-    // Itself, by either key; and what it stands in, which would take it along.
+    // The node itself, with either key, and its parent, whose deletion would include it.
     for (id, key) in [(ball, Key::X), (ball, Key::Delete), (group, Key::X)] {
         let mut harness = open(scene.clone());
         choose(&mut harness, &[id]);
@@ -36,7 +36,7 @@ fn locked_nodes_cannot_be_deleted() {
         assert_eq!(told(&harness), "“Ball” is locked and cannot be deleted. Unlock it first.");
         assert_eq!(harness.state().document().selection(), [id], "what is not deleted stays selected");
     }
-    // What stands in a locked group.
+    // Children of a locked group.
     let (mut below, _) = super::scene();
     lock(&mut below, group);
     let mut harness = open(below.clone());
@@ -44,7 +44,7 @@ fn locked_nodes_cannot_be_deleted() {
     press(&mut harness, Modifiers::NONE, Key::X);
     assert_eq!(*harness.state().document().scene(), below);
     assert!(told(&harness).starts_with("“Body” is locked"));
-    // The others go.
+    // The other nodes are deleted.
     let mut harness = open(scene);
     choose(&mut harness, &[ball, cube, ring]);
     press(&mut harness, Modifiers::NONE, Key::X);
@@ -62,7 +62,7 @@ fn after_a_deletion_nothing_is_selected() {
         press(&mut harness, Modifiers::NONE, Key::Delete);
         assert!(harness.state().document().scene().nodes().len() < 4);
         assert!(harness.state().document().selection().is_empty(), "{ids:?}");
-        // So a second press deletes nothing more.
+        // A second press therefore deletes nothing more.
         let left = harness.state().document().scene().nodes().len();
         press(&mut harness, Modifiers::NONE, Key::Delete);
         assert_eq!(harness.state().document().scene().nodes().len(), left);
@@ -89,7 +89,7 @@ fn locked_nodes_are_not_grouped_cut_or_reordered() {
         assert_eq!(*harness.state().document().scene(), scene, "{key:?}");
         assert!(told(&harness).starts_with("“Ball” is locked"), "{key:?}: {}", told(&harness));
     }
-    // Its group is not dissolved either.
+    // Its group cannot be dissolved either.
     let mut harness = open(scene.clone());
     let group = scene.node(ball).unwrap().parent.unwrap();
     choose(&mut harness, &[group]);
@@ -108,7 +108,7 @@ fn locked_nodes_are_not_moved() {
     drag(&mut harness, from, onto);
     assert_eq!(*harness.state().document().scene(), scene);
     assert!(told(&harness).starts_with("“Ring” is locked and cannot be moved"));
-    // By the arrows in the picture.
+    // With the gizmo's arrows.
     choose(&mut harness, &[ring]);
     press(&mut harness, Modifiers::NONE, Key::Num1);
     let rect = harness.get_by_label("Viewport").rect();
@@ -117,7 +117,7 @@ fn locked_nodes_are_not_moved() {
     let start = rect.min + vec2(pixel.x as f32 + 50.0, pixel.y as f32);
     drag(&mut harness, start, start + vec2(80.0, 0.0));
     assert_eq!(*harness.state().document().scene(), scene);
-    // By its numbers.
+    // With its fields.
     let x = super::field(&harness, "Position X").rect().center();
     drag(&mut harness, x, x + vec2(80.0, 0.0));
     super::click(&mut harness, x);
@@ -125,7 +125,7 @@ fn locked_nodes_are_not_moved() {
     harness.run();
     assert_eq!(*harness.state().document().scene(), scene);
     assert!(harness.query_by_label_contains("locked and not moved").is_some());
-    // Of several, those that are free.
+    // In a multi-selection, the unlocked nodes move.
     choose(&mut harness, &[ring, ball, cube]);
     super::field(&harness, "Position X").set_value_accesskit(2.0);
     harness.run();
@@ -162,7 +162,7 @@ fn a_row_dropped_below_the_others_goes_to_the_top_level() {
         harness.state().document().scene().children(None).map(|node| node.id).collect::<Vec<_>>()
     };
     assert_eq!(order(&harness), [group, ring, ball]);
-    // What is there already goes to its end; several together, in their order.
+    // A drop onto its own parent moves a node to the end; several nodes keep their order.
     let from = row(&harness, "Body");
     drag(&mut harness, from, empty);
     assert_eq!(order(&harness), [ring, ball, group]);
@@ -170,7 +170,7 @@ fn a_row_dropped_below_the_others_goes_to_the_top_level() {
     let from = row(&harness, "Ring");
     drag(&mut harness, from, empty);
     assert_eq!(order(&harness), [ball, group, ring, cube]);
-    // Onto the picture it goes nowhere.
+    // A drop onto the picture has no effect.
     let before = harness.state().document().scene().clone();
     let (from, picture) = (row(&harness, "Ball"), harness.get_by_label("Viewport").rect().center());
     drag(&mut harness, from, picture);

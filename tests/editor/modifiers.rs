@@ -1,4 +1,4 @@
-//! The card of modifiers: each kind added, its values changed, reordered, switched off, removed; files refused.
+//! The modifier card: add each kind, change its values, reorder, disable, remove; refused files.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -9,7 +9,7 @@ use isolith::scene::{MAX_MODIFIERS, ModifierKind, ModifierSlot, NodeId, ParamVal
 use super::attachments::choose;
 use super::{open_tall, scene, undo_all};
 
-/// The editor with the torus selected, high enough for all of its cards.
+/// The editor with the torus selected, tall enough for all of its cards.
 fn with_ring() -> (Harness<'static, Editor>, NodeId) {
     let (scene, [.., ring]) = scene();
     let mut harness = open_tall(scene);
@@ -26,7 +26,7 @@ fn kinds(harness: &Harness<'_, Editor>, id: NodeId) -> Vec<ModifierKind> {
     modifiers(harness, id).iter().map(|slot| slot.modifier.kind()).collect()
 }
 
-/// The last widget of this name: the card of modifiers stands below the others.
+/// The last widget of this name: the modifier card is below the others.
 fn widget<'h>(harness: &'h Harness<'_, Editor>, name: &'h str, role: Role) -> egui_kittest::Node<'h> {
     let found = harness.get_all_by_label(name).rfind(|n| n.accesskit_node().role() == role);
     found.unwrap_or_else(|| panic!("no {role:?} {name}"))
@@ -49,7 +49,7 @@ fn field_name(name: &str) -> String {
     format!("{}{}", spaced[..1].to_uppercase(), &spaced[1..])
 }
 
-/// Changes a value in the inspector; the one that must follow, or none for a file.
+/// Changes a value in the inspector. Returns the expected result, or `None` for a file.
 fn change(harness: &mut Harness<'_, Editor>, name: &str, value: &ParamValue) -> Option<ParamValue> {
     let mut number = |name: &str, v: f64| {
         widget(harness, name, Role::SpinButton).set_value_accesskit(v);
@@ -123,7 +123,7 @@ fn modifiers_are_reordered_switched_off_and_removed() {
     assert_eq!(kinds(&harness, ring), [Round, Twist, Waves]);
     press(&mut harness, "Move up", 2);
     assert_eq!(kinds(&harness, ring), [Round, Waves, Twist]);
-    // The first cannot come earlier, nor the last later.
+    // The first cannot move up, nor the last down.
     press(&mut harness, "Move up", 0);
     press(&mut harness, "Move down", 2);
     assert_eq!(kinds(&harness, ring), [Round, Waves, Twist]);

@@ -1,4 +1,4 @@
-//! Long names and narrow windows: nothing grows, nothing is pushed out of sight, the full name can be read.
+//! Long names and narrow windows: no widget grows or leaves the window, and the full name is readable.
 
 use egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::Harness;
@@ -31,7 +31,7 @@ fn long_names_are_elided_in_the_tree() {
     let harness = open(scene);
     let left = viewport(&harness).left();
     for name in [long('x'), long('y')] {
-        // Its switches stay in sight, and its name stops before them.
+        // Its switches stay visible, and its name ends before them.
         let eye = harness.get_by_label(&format!("Hide {name}")).rect();
         assert!(eye.right() <= left, "{eye} {left}");
         let label = harness.get_all_by_label(&name).find(|node| node.rect().right() < left).unwrap().rect();
@@ -98,7 +98,7 @@ fn long_names_are_elided_in_the_title_and_in_questions() {
     let question = harness.get_by_label_contains("Save the changes to").rect();
     assert!(question.width() < 420.0 && question.height() < 60.0, "{question}");
     press(&mut harness, Modifiers::NONE, Key::Escape);
-    // A path that is refused wraps.
+    // A refused path wraps.
     press(&mut harness, Modifiers::COMMAND, Key::O);
     press(&mut harness, Modifiers::COMMAND, Key::A);
     harness.event(Event::Text(format!("{}/{}", folder.path().display(), long('n'))));

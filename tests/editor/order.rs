@@ -1,4 +1,4 @@
-//! Many events in one frame, as on a slow machine: each does what it would have done alone.
+//! Many events in one frame, as on a slow machine: each has the same effect as alone.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
@@ -7,10 +7,10 @@ use isolith::scene::{NodeId, Shape, ShapeKind};
 
 use super::{field, open_tall, row, scene, select, shape, undo_all};
 
-/// All of this happens in one frame.
+/// Sends all events in one frame.
 fn at_once(harness: &mut Harness<'_, Editor>, events: Vec<Event>) {
     harness.input_mut().events.extend(events);
-    // A pass for each of them, and some to settle.
+    // One pass per event, and a few to settle.
     harness.run_steps(60);
 }
 
@@ -83,7 +83,7 @@ fn a_row_that_appears_above_a_field_does_not_take_its_keyboard() {
     select(&mut harness, "Ball");
     let radius = field(&harness, "Radius").rect().center();
     at_once(&mut harness, click(radius));
-    // The row of the blend radius comes in two cards higher.
+    // A row for the blend radius appears two cards higher.
     let mut node = harness.state().document().scene().node(ball).unwrap().as_ref().clone();
     node.blend_override = isolith::scene::BlendOverride::Radius(0.2);
     harness.state_mut().document_mut().apply(isolith::document::Edit::Replace(node)).unwrap();

@@ -1,4 +1,4 @@
-//! Looking, picking and moving in the picture; and what holds for the editor as a whole.
+//! Navigation, picking and moving in the viewport; and general properties of the editor.
 
 use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
@@ -44,7 +44,7 @@ fn an_arrow_moves_the_selection_in_one_step() {
     let camera = harness.state().view().camera;
     let size = harness.state().view().size_px.map(f64::from);
     let (pixel, _) = camera.project(glam::DVec3::ZERO, size.into()).unwrap();
-    // On the arrow along X: to the right, seen from the front.
+    // On the arrow along X, which points right in the front view.
     let start = rect.min + vec2(pixel.x as f32 + 50.0, pixel.y as f32);
     pointer(&mut harness, start, true);
     harness.step();
@@ -98,7 +98,7 @@ fn a_monkey_finds_no_panic_and_undo_leads_back() {
                 harness.key_press_modifiers(modifiers, key);
             }
             which => {
-                // Below the menus: those could open files.
+                // Below the menus, because those could open files.
                 let pos = Pos2::new(random(1280) as f32, 40.0 + random(740) as f32);
                 pointer(&mut harness, pos, which == 1 && random(4) > 0);
             }

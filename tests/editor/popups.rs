@@ -1,4 +1,4 @@
-//! Menus, lists, pickers and dialogs: how they close, what does not happen then, and that they fit the window.
+//! Menus, lists, pickers and dialogs: how they close, that closing has no other effect, and that they fit the window.
 
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Popup, Pos2, Rect, TouchPhase, vec2,
@@ -11,7 +11,7 @@ use isolith::scene::Shape;
 
 use super::{click, field, open, open_in, open_tall, pointer, press, row, scene, select, shape, undo_all};
 
-/// The buttons that open something.
+/// The buttons that open a popup.
 const OPENERS: [&str; 9] =
     ["File", "Edit", "Add", "View", "Viewport shading", "Primitive", "Blend", "Base color", "Material"];
 
@@ -19,7 +19,7 @@ fn is_open(harness: &Harness<'_, Editor>) -> bool {
     Popup::is_any_open(&harness.ctx)
 }
 
-/// The place of a button that opens something.
+/// The position of a button that opens a popup.
 fn opener(harness: &Harness<'_, Editor>, name: &str) -> Pos2 {
     let bar = ["File", "Edit", "Add", "View"].contains(&name);
     let mut found = harness.get_all_by_label(name).map(|node| node.rect().center());
@@ -199,7 +199,7 @@ fn a_click_beside_a_popup_only_closes_it() {
                 continue;
             }
             tried += 1;
-            // A drag, too, does nothing.
+            // A drag has no effect either.
             pointer(&mut harness, pos, true);
             harness.event(Event::PointerMoved(pos + vec2(-30.0, 20.0)));
             pointer(&mut harness, pos + vec2(-30.0, 20.0), false);
@@ -270,7 +270,7 @@ fn a_click_on_an_open_menus_button_closes_it() {
     assert_eq!(harness.state().document().selection(), [ball]);
 }
 
-/// What is shown in front of the panels.
+/// Rectangles of everything in front of the panels.
 fn popup_rects(harness: &Harness<'_, Editor>) -> Vec<Rect> {
     harness.ctx.memory(|memory| {
         let layers = memory.areas().visible_layer_ids().into_iter().filter(|l| l.order == egui::Order::Foreground);
@@ -299,7 +299,7 @@ fn menus_fit_the_window_and_scroll() {
             assert!(screen.contains_rect(rect), "palette in {size}: {rect}");
         }
     }
-    // The last entry is reached with the wheel.
+    // The wheel reaches the last entry.
     let mut harness = open_in(Document::new(scene), vec2(800.0, 500.0));
     let pos = open_popup(&mut harness, "Add");
     harness.event(Event::PointerMoved(pos + vec2(20.0, 200.0)));

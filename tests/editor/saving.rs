@@ -1,4 +1,4 @@
-//! Saving and opening: every order is answered, nothing is overwritten without a question.
+//! Saving and opening: every command gets a response, and the editor asks before it overwrites anything.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::settle::Settle;
 
 const CTRL: Modifiers = Modifiers::COMMAND;
 
-/// Ctrl S or Ctrl O, and a path, ended by Enter.
+/// Presses Ctrl S or Ctrl O and types a path, ended by Enter.
 fn give_path(harness: &mut Harness<'_, Editor>, key: Key, path: &str) {
     press(harness, if key == Key::S { CTRL.plus(Modifiers::SHIFT) } else { CTRL }, key);
     retype(harness, path);
@@ -57,7 +57,7 @@ fn ctrl_s_always_answers() {
     let (mut harness, _folder, path) = with_file();
     press(&mut harness, CTRL, Key::S);
     assert!(last(&harness).starts_with("Saved"), "though nothing has changed");
-    // While a number is typed: it is taken first.
+    // While the user types a number: the editor commits it first.
     select(&mut harness, "Ball");
     let radius = field(&harness, "Radius").rect().center();
     click(&mut harness, radius);
@@ -68,20 +68,20 @@ fn ctrl_s_always_answers() {
     assert_eq!(shape(&harness, ball), Shape::Sphere { radius: 3.0 });
     assert_eq!(saved(&path), *harness.state().document().scene());
     assert!(!harness.state().document().is_changed());
-    // While a name is typed in the tree.
+    // While the user types a name in the tree.
     press(&mut harness, Modifiers::NONE, Key::F2);
     harness.event(Event::Text("Xenon".into()));
     harness.settle();
     press(&mut harness, CTRL, Key::S);
     assert_eq!(saved(&path).node(ball).unwrap().name, "Xenon");
-    // With a menu open, which closes.
+    // With an open menu, which closes.
     harness.state_mut().document_mut().undo();
     let menu = harness.get_all_by_label("Edit").next().unwrap().rect().center();
     click(&mut harness, menu);
     press(&mut harness, CTRL, Key::S);
     assert!(!egui::Popup::is_any_open(&harness.ctx));
     assert_eq!(saved(&path).node(ball).unwrap().name, "Ball");
-    // With the palette open, which closes, too.
+    // With the open palette, which closes too.
     press(&mut harness, Modifiers::NONE, Key::F3);
     std::fs::remove_file(&path).unwrap();
     press(&mut harness, CTRL, Key::S);
@@ -106,12 +106,12 @@ fn saving_over_a_file_asks() {
     let other = folder.path().join("other.json");
     std::fs::write(&other, "precious").unwrap();
     let precious = || std::fs::read_to_string(&other).unwrap() == "precious";
-    // By its name, and by a name that gets its ending.
+    // Under its name, and under a name that gets the extension.
     for name in [other.display().to_string(), other.with_extension("").display().to_string()] {
         give_path(&mut harness, Key::S, &name);
         assert!(harness.query_by_label("Replace").is_some());
         assert!(precious());
-        // Neither a second Enter nor Escape agrees.
+        // Neither a second Enter nor Escape confirms.
         press(&mut harness, Modifiers::NONE, Key::Enter);
         assert!(precious());
         press(&mut harness, Modifiers::NONE, Key::Escape);
@@ -162,7 +162,7 @@ fn a_folder_is_no_file() {
     for (name, reason) in [(below(""), "is a folder"), (below("none.json"), "There is no file")] {
         give_path(&mut harness, Key::O, &name);
         assert!(harness.query_by_label_contains(reason).is_some(), "{name}: {reason}");
-        // What is typed next can be right.
+        // The next input may be right.
         retype(&mut harness, &path.display().to_string());
         assert!(!harness.state().has_dialog());
     }
@@ -181,7 +181,7 @@ fn a_broken_file_is_refused_before_the_question_about_unsaved_work() {
     assert!(harness.query_by_label("Discard").is_none());
     assert!(last(&harness).contains("broken.json"), "{}", last(&harness));
     assert_eq!(*harness.state().document().scene(), scene);
-    // A good one asks, and is shown when that is agreed.
+    // For a good path the editor asks, and shows the scene after confirmation.
     give_path(&mut harness, Key::O, &path.display().to_string());
     harness.get_by_label("Discard").click();
     harness.settle();

@@ -1,4 +1,4 @@
-//! The model that is shipped.
+//! The shipped model.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,7 +31,7 @@ fn the_shipped_model_is_sound() {
     for normal in &mesh.normals {
         assert!((DVec3::from(normal.map(f64::from)).length() - 1.0).abs() < 1e-5);
     }
-    // Faces and normals agree on what is outside.
+    // Face orientation and normals agree on the outside.
     let agreeing = (0..mesh.triangle_count() as u32).filter(|t| {
         let [a, b, c] = mesh.corners(*t);
         let normal = mesh.normals[mesh.indices[*t as usize * 3] as usize];

@@ -1,4 +1,4 @@
-//! Files broken by hand, one fault each: the refusal names the place and says why.
+//! Files broken by hand, one fault each: the error names the place and the reason.
 
 use std::path::Path;
 
@@ -19,7 +19,7 @@ fn refused(tiny: &Tiny, place: &str, reason: &str) {
     assert!(shown.starts_with("broken.gltf: ") && shown.contains(place) && shown.contains(reason), "{shown}");
 }
 
-/// Sets a value in the triangle's JSON, and expects the refusal.
+/// Sets a value in the triangle's JSON and expects the error.
 #[track_caller]
 fn set(pointer: &str, value: Value, place: &str, reason: &str) {
     let mut tiny = triangle();
@@ -27,7 +27,7 @@ fn set(pointer: &str, value: Value, place: &str, reason: &str) {
     refused(&tiny, place, reason);
 }
 
-/// The same in the file that has everything.
+/// Like the one above, in the file with all features.
 #[track_caller]
 fn set_rich(pointer: &str, value: Value, place: &str, reason: &str) {
     let mut tiny = everything();
@@ -164,7 +164,7 @@ fn materials_and_images() {
     set_rich("/textures/0/source", json!(5), "textures[0].source", "missing");
 }
 
-/// Sets a value in the file that has everything; it is drawn without its texture, and says why.
+/// Sets a value in the file with all features; it reads without its texture, with a reason.
 #[track_caller]
 fn without_texture(tiny: &Tiny, reason: &str) {
     let mesh = parse(&tiny.gltf(), Path::new("x.gltf"), None).expect(reason);
@@ -191,7 +191,7 @@ fn an_image_that_cannot_be_used_leaves_the_surface_plain() {
     without_texture(&tiny, "cannot be decoded");
 }
 
-/// The file that has everything, its image said to be of this size; the check sum of the header is right.
+/// The file with all features, with this image size in its header and a valid checksum.
 fn with_image_size(width: u32, height: u32) -> Tiny {
     let mut tiny = everything();
     let view = tiny.json["images"][0]["bufferView"].as_u64().unwrap() as usize;
@@ -206,13 +206,13 @@ fn with_image_size(width: u32, height: u32) -> Tiny {
 #[test]
 fn an_image_of_too_many_pixels_is_left_out_before_it_is_decoded() {
     without_texture(&with_image_size(60_000, 2), "60000 × 2 pixels");
-    // 768 MiB as RGBA: more than all textures of a scene may take.
+    // 768 MiB as RGBA: more than the budget for all textures of a scene.
     without_texture(&with_image_size(16_384, 12_288), "together would take more than");
-    // Too much for the decoder.
+    // Too large for the decoder.
     without_texture(&with_image_size(16_384, 16_384), "more than");
 }
 
-/// The check sum of PNG chunks (ISO 3309).
+/// The checksum of PNG chunks (ISO 3309).
 fn crc32(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0_u32, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 0 { c >> 1 } else { c >> 1 ^ 0xedb8_8320 })

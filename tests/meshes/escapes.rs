@@ -1,4 +1,4 @@
-//! No file outside the folder is opened.
+//! The reader opens no file outside the folder.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::tiny::triangle;
 
-/// Writes a glTF whose buffer is at `uri`, and a good buffer beside it and one outside its folder.
+/// Writes a glTF whose buffer is at `uri`, a good buffer beside it, and one outside its folder.
 fn folder_with(uri: &str) -> tempfile::TempDir {
     let outside = tempfile::tempdir().unwrap();
     let inside = outside.path().join("inside");

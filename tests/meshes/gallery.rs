@@ -1,4 +1,4 @@
-//! The shipped scenes: what the generator makes, and fit to be shown.
+//! The shipped scenes: they match the generator, and are presentable.
 
 use std::fs;
 

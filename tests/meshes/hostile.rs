@@ -1,4 +1,4 @@
-//! Files made to hang, to fill the memory or to write into a terminal.
+//! Files made to hang, to exhaust memory or to write into a terminal.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/hostile/mesh")
 }
 
-/// What is said about the meshes of a scene in this folder.
+/// Messages about the meshes of a scene in this folder.
 fn said(folder: &Path, scene: &str) -> Vec<String> {
     let scene = file::load(&folder.join(scene)).unwrap_or_else(|error| panic!("{error}"));
     let flat = flatten(&scene, 0.0).unwrap();
@@ -99,7 +99,7 @@ fn json_that_would_fill_the_memory_is_refused_before_it_is_read() {
     assert!(started.elapsed() < Duration::from_secs(20));
 }
 
-/// A file of a kilobyte that asks for millions of vertices again and again.
+/// A file of one kilobyte that reads millions of vertices again and again.
 #[test]
 fn what_is_read_again_and_again_is_counted() {
     let started = Instant::now();
@@ -120,7 +120,7 @@ fn what_is_read_again_and_again_is_counted() {
     assert!(started.elapsed() < Duration::from_secs(20), "{:?}", started.elapsed());
 }
 
-/// Files of some hundred kilobytes in which everything is named by everything.
+/// Files of a few hundred kilobytes in which everything refers to everything.
 #[test]
 fn what_many_nodes_name_is_counted() {
     let nodes = |tiny: &mut Tiny, count: usize, node: Value| {
@@ -173,7 +173,7 @@ fn textures_are_counted_for_the_scene_and_not_for_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let mut tiny = everything();
     let mut bytes = std::io::Cursor::new(Vec::new());
-    // 11 KB that are 256 MiB when they are decoded.
+    // 11 KB that decode to 256 MiB.
     image::GrayImage::new(8192, 8192).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
     let view = tiny.view(bytes.get_ref());
     tiny.json["images"] = json!([{ "bufferView": view }]);
@@ -184,7 +184,7 @@ fn textures_are_counted_for_the_scene_and_not_for_the_file() {
     let [a, b, c] = ["a.glb", "b.glb", "c.glb"].map(|name| library.get(name).unwrap());
     assert!(a.warnings.is_empty() && b.warnings.is_empty());
     assert!(c.textures.is_empty() && c.warnings[0].contains("textures of the scene together"), "{:?}", c.warnings);
-    // Read again, a file may take what it took.
+    // A reloaded file may use its previous share of the budget again.
     let source = library.sources().into_iter().find(|source| source.path() == "a.glb").unwrap();
     assert!(matches!(library.replace(source.read()), ReloadOutcome::Fresh(mesh) if mesh.textures.len() == 1));
 }

@@ -1,4 +1,4 @@
-//! A thousand files broken at random: each is read or refused, none panics or hangs.
+//! A thousand randomly broken files: the reader reads or refuses each and never panics or hangs.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use isolith::mesh::{TriangleMesh, load, parse};
 use super::asset::scenes;
 use super::tiny::{Random, everything, posed};
 
-/// Numbers that break arithmetic which trusts its input.
+/// Numbers that break arithmetic without checks.
 const NASTY: [&str; 12] = [
     "0",
     "1",
@@ -26,7 +26,7 @@ const NASTY: [&str; 12] = [
     "[]",
 ];
 
-/// One to three changes: bytes flipped, cut, doubled; numbers replaced.
+/// One to three changes: bytes flipped, removed or duplicated; numbers replaced.
 fn mutate(bytes: &[u8], text: std::ops::Range<usize>, random: &mut Random) -> Vec<u8> {
     let mut out = bytes.to_vec();
     for _ in 0..1 + random.below(2) * random.below(3) {
@@ -115,6 +115,6 @@ fn a_thousand_mutated_files_are_read_or_refused() {
     ];
     let (read, refused) = results.iter().fold((0, 0), |(r, f), (read, refused)| (r + read, f + refused));
     assert_eq!(read + refused, 1_000);
-    // Both ends are reached: harmless changes, and harmful ones.
+    // Both outcomes occur: harmless changes and harmful ones.
     assert!(read > 100 && refused > 500, "{read} read, {refused} refused");
 }

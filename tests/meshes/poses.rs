@@ -1,4 +1,4 @@
-//! Where vertices stand: nodes far away, matrices of rounded numbers, skins, morph targets, shared vertices.
+//! Positions of vertices: distant nodes, rounded matrices, skins, morph targets, shared vertices.
 
 use std::path::Path;
 
@@ -33,7 +33,7 @@ fn the_last_number_of_a_matrix_scales_everything() {
         close(read(&tiny).corners(0)[1], [x, 0.0, 0.0], 1e-6);
     }
     let mut tiny = triangle();
-    // Rounded by an exporter that computes in f32.
+    // Rounded by an exporter that uses f32.
     tiny.json["nodes"][0]["matrix"] = json!([1, 0, 0, 1e-8, 0, 1, 0, -3e-8, 0, 0, 1, 0, 5, 0, 0, 1]);
     close(read(&tiny).corners(0)[0], [5.0, 0.0, 0.0], 1e-9);
 }
@@ -51,7 +51,7 @@ fn triangles_keep_their_shape_wherever_they_stand() {
     for (i, place) in places.into_iter().enumerate() {
         let place = DVec3::from(place);
         let [a, b, c] = mesh.corners(i as u32);
-        // What is left is the rounding of the place itself in f64.
+        // The remaining error is the rounding of the position itself in f64.
         let rounding = place.abs().max_element() * 1e-15 + 1e-7;
         assert!((b - a - DVec3::X).length() < rounding && (c - a - DVec3::Y).length() < rounding, "{i}: {a} {b} {c}");
         assert!((a - place).length() < rounding);
@@ -76,7 +76,7 @@ fn a_node_that_undoes_what_its_parent_does_leaves_the_origin_alone() {
     close(mesh.corners(0)[1], [1.0, 0.0, 0.0], 1e-9);
 }
 
-/// A triangle whose corners follow two joints: the first its first, the others half of each.
+/// A triangle with two joints and these weights at its corners.
 fn skinned(weights: [[f32; 4]; 3]) -> Tiny {
     let mut tiny = triangle();
     let joints = tiny.accessor(&[0, 1, 99, 99].repeat(3), U8, "VEC4", 3);
@@ -100,12 +100,12 @@ fn skinned(weights: [[f32; 4]; 3]) -> Tiny {
 fn vertices_follow_the_joints_by_their_weights() {
     let half = [0.5, 0.5, 0.0, 0.0];
     let mesh = read(&skinned([[1.0, 0.0, 0.0, 0.0], half, half]));
-    // The joints carry by (0, 0, 7) and (0, 4, 7); the mesh's own node counts for nothing.
+    // The joints move by (0, 0, 7) and (0, 4, 7); the mesh's own node has no effect.
     let want = [[0.0, 0.0, 7.0], [1.0, 2.0, 7.0], [0.0, 3.0, 7.0]];
     for (have, want) in mesh.corners(0).into_iter().zip(want) {
         close(have, want, 1e-6);
     }
-    // Weights that do not sum to 1 are taken as shares; without any the first joint carries.
+    // Weights that do not sum to 1 are normalized; without weights the first joint applies.
     let mesh = read(&skinned([[0.1, 0.1, 0.0, 0.0], [0.0, 0.3, 0.0, 0.0], [0.0; 4]]));
     let want = [[0.0, 2.0, 7.0], [1.0, 4.0, 7.0], [0.0, 1.0, 7.0]];
     for (have, want) in mesh.corners(0).into_iter().zip(want) {
@@ -141,10 +141,10 @@ fn morph_targets_are_applied_by_their_weights_at_rest() {
     close(read(&tiny).corners(0)[0], [0.0; 3], 0.0);
     tiny.json["meshes"][0]["weights"] = json!([0.5, 2]);
     close(read(&tiny).corners(0)[0], [0.5, 2.0, 0.0], 0.0);
-    // Those of the node count before those of the mesh; what is not given is 0.
+    // Weights of the node override those of the mesh; missing ones are 0.
     tiny.json["nodes"][0]["weights"] = json!([-1]);
     close(read(&tiny).corners(0)[0], [-1.0, 0.0, 0.0], 0.0);
-    // A target without data moves nothing.
+    // A target without data has no effect.
     tiny.json["accessors"][2].as_object_mut().unwrap().remove("bufferView");
     close(read(&tiny).corners(0)[0], [0.0; 3], 0.0);
     tiny.json["accessors"][2]["count"] = json!(4);
@@ -152,7 +152,7 @@ fn morph_targets_are_applied_by_their_weights_at_rest() {
     refused(&tiny, "meshes[0].primitives[0].targets[0].POSITION", "4 entries for 3 vertices");
 }
 
-/// Pieces of one large accessor, by primitives of one mesh or by meshes of their own.
+/// Slices of one large accessor, as primitives of one mesh or as separate meshes.
 fn pieces(count: usize, meshes: bool) -> TriangleMesh {
     let mut tiny = Tiny::new();
     let vertices: Vec<[f32; 3]> =

@@ -1,4 +1,4 @@
-//! The ray query against every triangle in turn.
+//! Compares the ray query with a loop over all triangles.
 
 use glam::{DMat3, DVec3};
 use isolith::geometry::Ray;
@@ -8,7 +8,7 @@ use serde_json::json;
 use super::asset::scenes;
 use super::tiny::{Random, Tiny};
 
-/// The nearest hit by solving for each triangle: origin + t · direction = a + u (b − a) + v (c − a).
+/// The nearest hit over all triangles: solves origin + t · direction = a + u (b − a) + v (c − a).
 fn nearest_of_all(mesh: &TriangleMesh, ray: &Ray) -> Option<f64> {
     let hits = (0..mesh.triangle_count() as u32).filter_map(|triangle| {
         let [a, b, c] = mesh.corners(triangle);
@@ -31,7 +31,7 @@ fn check(mesh: &TriangleMesh, count: usize, seed: u64) -> usize {
             mesh.bounds.center() + mesh.bounds.half() * DVec3::from(p)
         };
         let (origin, target) = (point(3.0), point(1.0));
-        // Neither unit nor of one length: `t` is in units of the direction.
+        // Directions of different lengths: `t` is in units of the direction.
         let ray = Ray { origin, direction: (target - origin) * (0.5 + i as f64 / 1000.0) };
         let (have, want) = (mesh.hit(&ray, f64::INFINITY), nearest_of_all(mesh, &ray));
         match (have, want) {

@@ -1,4 +1,4 @@
-//! What is read from good files.
+//! The content read from good files.
 
 use std::path::Path;
 
@@ -73,7 +73,7 @@ fn transforms_are_inherited_down_the_tree() {
         { "scale": [2.0, 3.0, 1.0], "mesh": 0 },
     ]);
     let mesh = read(&tiny);
-    // Scaled to (2, 0) and (0, 3), turned a quarter to (0, 2) and (−3, 0), moved by 10.
+    // Scaled to (2, 0) and (0, 3), rotated by 90° to (0, 2) and (−3, 0), moved by 10.
     let expected = [[10.0, 0.0, 0.0], [10.0, 2.0, 0.0], [7.0, 0.0, 0.0]].map(DVec3::from);
     for (have, want) in mesh.corners(0).into_iter().zip(expected) {
         assert!((have - want).length() < 1e-5, "{have} {want}");
@@ -91,7 +91,7 @@ fn a_matrix_is_a_transform_too() {
 fn mirrored_and_skewed_nodes_keep_normals_outside_and_upright() {
     for scale in [[-1.0, 1.0, 1.0], [1.0, 3.0, 0.2], [-2.0, -1.0, -0.5]] {
         let mut tiny = Tiny::new();
-        // A slope, so that a wrong treatment of scale shows.
+        // A slope, so that an error in the scaling of normals shows.
         let positions = tiny.floats(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 1.0]]);
         let slope = std::f32::consts::FRAC_1_SQRT_2;
         let normals = tiny.floats(&[[0.0, -slope, slope]; 3]);
@@ -116,7 +116,7 @@ fn colors_textures_and_sparse_accessors() {
     assert_eq!(mesh.parts[0].surface.color, [0.5, 1.0, 1.0, 1.0]);
     assert!(mesh.warnings.is_empty(), "{:?}", mesh.warnings);
     assert!((g - 128.0 / 255.0).abs() < 1e-6);
-    // The sparse corner, twice as high by its node's scale, one farther by the parent's place.
+    // The sparse corner: its node's scale doubles the height, and the parent's position moves it by one.
     assert_eq!(mesh.bounds.max, DVec3::new(2.0, 4.0, 1.5));
 }
 

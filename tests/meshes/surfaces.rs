@@ -1,4 +1,4 @@
-//! What surfaces look like, and what of a file is said not to be drawn.
+//! Appearance of surfaces, and warnings about features of a file that are not drawn.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ fn samplers_are_kept() {
     }
 }
 
-/// Where the texture is looked up for (1, 0) and (0, 1).
+/// Texture coordinates for (1, 0) and (0, 1) after the transform.
 fn transformed(transform: Value) -> [DVec2; 2] {
     let mut tiny = everything();
     tiny.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["extensions"] =
@@ -49,7 +49,7 @@ fn texture_coordinates_are_scaled_then_turned_then_moved() {
         (json!({}), [[1.0, 0.0], [0.0, 1.0]]),
         (json!({ "scale": [2, 3] }), [[2.0, 0.0], [0.0, 3.0]]),
         (json!({ "offset": [0.5, -1] }), [[1.5, -1.0], [0.5, 0.0]]),
-        // Counter-clockwise where V points down: U turns to −V.
+        // Counter-clockwise with V pointing down: U turns to −V.
         (json!({ "rotation": turn }), [[0.0, -1.0], [1.0, 0.0]]),
         (json!({ "rotation": turn, "scale": [2, 3], "offset": [10, 20] }), [[10.0, 18.0], [13.0, 20.0]]),
     ] {
@@ -73,7 +73,7 @@ fn a_texture_may_take_another_set_of_coordinates() {
     }
 }
 
-/// A triangle whose corners have these opacities, of a material with a cutoff.
+/// A triangle with these opacities at its corners and a material with a cutoff.
 fn masked(opacities: [f32; 3], material: Value) -> TriangleMesh {
     let mut tiny = triangle();
     let colors = tiny.floats(&opacities.map(|a| [1.0, 1.0, 1.0, a]));
@@ -114,7 +114,7 @@ fn older_materials_show_their_diffuse_color() {
     assert_eq!(mesh.warnings, ["KHR_materials_pbrSpecularGlossiness: only its diffuse color is drawn"]);
 }
 
-/// The warnings of a triangle with these changes.
+/// The warnings for a triangle after this change.
 fn warnings(change: impl Fn(&mut Value)) -> Vec<String> {
     let mut tiny = triangle();
     change(&mut tiny.json);

@@ -6,7 +6,7 @@ pub const U8: u32 = 5121;
 pub const U16: u32 = 5123;
 pub const FLOAT: u32 = 5126;
 
-/// A glTF file in the making: one buffer, one view per accessor.
+/// A glTF file under construction: one buffer, one view per accessor.
 pub struct Tiny {
     pub bytes: Vec<u8>,
     pub json: Value,
@@ -27,7 +27,7 @@ impl Tiny {
         Self { bytes: Vec::new(), json }
     }
 
-    /// Appends bytes as a view of their own.
+    /// Appends bytes as a separate view.
     pub fn view(&mut self, bytes: &[u8]) -> usize {
         while !self.bytes.len().is_multiple_of(4) {
             self.bytes.push(0);
@@ -61,12 +61,12 @@ impl Tiny {
         self.accessor(&bytes, U16, "SCALAR", values.len())
     }
 
-    /// Adds a mesh of one primitive.
+    /// Adds a mesh with one primitive.
     pub fn mesh(&mut self, primitive: Value) -> usize {
         push(&mut self.json["meshes"], json!({ "primitives": [primitive] }))
     }
 
-    /// As a .gltf file with its buffer inside.
+    /// The bytes of a .gltf file with an embedded buffer.
     pub fn gltf(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         if json["buffers"] == json!([]) {
@@ -76,7 +76,7 @@ impl Tiny {
         serde_json::to_vec(&json).unwrap()
     }
 
-    /// As a .glb file.
+    /// The bytes of a .glb file.
     pub fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
         json["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
@@ -93,8 +93,8 @@ pub fn triangle() -> Tiny {
     tiny
 }
 
-/// A quad with everything that the reader knows: normals, colors, a texture, a sparse accessor, a
-/// second mesh as a strip, a tree of nodes.
+/// A quad with all features of the reader: normals, colors, a texture, a sparse accessor, a second mesh as a strip, a
+/// tree of nodes.
 pub fn everything() -> Tiny {
     let mut tiny = Tiny::new();
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
@@ -126,7 +126,7 @@ pub fn everything() -> Tiny {
     tiny
 }
 
-/// The same with a skin, morph targets, a sampler, a transformed texture that is masked, and what is not drawn.
+/// The same with a skin, morph targets, a sampler, a transformed masked texture, and features that are not drawn.
 pub fn posed() -> Tiny {
     let mut tiny = everything();
     let joints = tiny.accessor(&[0, 1, 0, 0].repeat(4), U8, "VEC4", 4);
@@ -154,7 +154,7 @@ pub fn posed() -> Tiny {
     tiny
 }
 
-/// A picture of one color.
+/// A PNG of one color.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
     let mut out = std::io::Cursor::new(Vec::new());
     image::RgbaImage::from_pixel(width, height, image::Rgba([200, 100, 50, 255]))

@@ -1,4 +1,4 @@
-//! Files that change while they are shown.
+//! Files that change while the editor shows them.
 
 use std::fs;
 use std::path::Path;
@@ -15,10 +15,10 @@ use serde_json::json;
 use super::tiny::{Tiny, triangle};
 use crate::settle::Settle;
 
-/// Longer than a change ever takes to be seen: it is looked for once a second.
+/// Longer than any change takes to be noticed: the watcher looks once a second.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A model beside its buffer, as large as said.
+/// Writes a model of this size and its buffer.
 fn write(folder: &Path, size: f32) {
     let mut tiny = Tiny::new();
     let positions = tiny.floats(&[[0.0, 0.0, 0.0], [size, 0.0, 0.0], [0.0, size, 0.0]]);
@@ -28,7 +28,7 @@ fn write(folder: &Path, size: f32) {
     fs::write(folder.join("model.gltf"), tiny.gltf()).unwrap();
 }
 
-/// Waits until `done` answers.
+/// Waits until `done` returns a value.
 fn wait<T>(what: &str, mut done: impl FnMut() -> Option<T>) -> T {
     let started = Instant::now();
     loop {
@@ -52,7 +52,7 @@ fn a_file_that_changes_is_read_again() {
     })
     .unwrap();
     watcher.watch(library.sources());
-    // Its buffer alone has changed.
+    // Only its buffer has changed.
     let mut bytes = fs::read(folder.path().join("model.bin")).unwrap();
     bytes[12..16].copy_from_slice(&3.0_f32.to_le_bytes());
     std::thread::sleep(Duration::from_millis(20));
@@ -61,7 +61,7 @@ fn a_file_that_changes_is_read_again() {
     assert!(wakes.try_recv().is_ok());
     assert!(matches!(library.replace(fresh), ReloadOutcome::Fresh(mesh) if mesh.bounds.max.x == 3.0));
     assert_eq!(library.get("model.gltf").unwrap().bounds.max.x, 3.0);
-    // Broken, the old one stays; mended, it is read.
+    // While the file is broken, the old model stays; once it is repaired, the watcher reads it.
     fs::write(folder.path().join("model.gltf"), "{").unwrap();
     let fresh = wait("a broken file", || watcher.news().next());
     assert!(matches!(library.replace(fresh), ReloadOutcome::Kept(error) if error.reason.contains("not glTF JSON")));
@@ -69,7 +69,7 @@ fn a_file_that_changes_is_read_again() {
     write(folder.path(), 5.0);
     let fresh = wait("a mended file", || watcher.news().next());
     assert!(matches!(library.replace(fresh), ReloadOutcome::Fresh(mesh) if mesh.bounds.max.x == 5.0));
-    // In another folder nobody waits for it.
+    // Nothing waits for it in another folder.
     watcher.read_all();
     let fresh = wait("a file that was asked for", || watcher.news().next());
     library.set_folder(None);
@@ -95,7 +95,7 @@ fn a_file_that_appears_is_read() {
     assert!(library.get("later.glb").is_ok());
 }
 
-/// An editor with a scene that shows the model of this folder.
+/// An editor with a scene that uses the model of this folder.
 fn open(folder: &Path) -> Harness<'static, Editor> {
     let mut scene = Scene::new();
     let mesh = NodeKind::Mesh(MeshNode { path: "model.gltf".into(), material: None });
@@ -128,7 +128,7 @@ fn the_editor_follows_a_model_on_disk_and_reads_it_again_when_asked() {
     let last =
         |harness: &Harness<'_, Editor>| harness.state().messages().last().map(|m| m.text.clone()).unwrap_or_default();
     assert_eq!(last(&harness), "model.gltf was read again");
-    // Broken, it is told, and the model stays.
+    // While the file is broken, the editor reports it and keeps the model.
     fs::write(folder.path().join("model.gltf"), "no glTF").unwrap();
     wait("a message", || {
         harness.step();
@@ -161,16 +161,16 @@ fn the_editor_reads_a_model_beside_its_frames_and_leaves_it_out_when_that_is_can
     write(folder.path(), 4.0);
     let mut harness = open(folder.path());
     assert_eq!(width(&harness), 4.0);
-    // It is taken over by a frame, and there was none yet.
+    // A frame takes the model over, and no frame has been drawn yet.
     let document = Document::open(&folder.path().join("scene.json")).unwrap();
     let editor = Editor::new(document);
     assert!(editor.meshes().known("model.gltf").is_none() && editor.is_busy());
-    // The first view has waited for the model: it is as large as that.
+    // The first view waited for the model and fits its size.
     let distance = |harness: &Harness<'_, Editor>| harness.state().view().camera.position.length();
     let far = distance(&harness);
     write(folder.path(), 1.0);
     assert!(far > 1.5 * distance(&open(folder.path())), "{far}");
-    // What is canceled is said of the node, and read when it is asked for.
+    // A canceled read gives a message for the node; a request reads the model again.
     let mesh = NodeKind::Mesh(MeshNode { path: "other.gltf".into(), material: None });
     fs::copy(folder.path().join("model.gltf"), folder.path().join("other.gltf")).unwrap();
     let insert = Edit::Insert { parent: None, position: 0, node: Node::new("Other", mesh) };
@@ -180,7 +180,7 @@ fn the_editor_reads_a_model_beside_its_frames_and_leaves_it_out_when_that_is_can
     harness.settle();
     let refused =
         harness.state().meshes().known("other.gltf").unwrap().as_ref().err().map(|error| error.reason.clone());
-    // The job may have been faster than the canceling.
+    // The job may have finished before the cancel.
     if let Some(reason) = refused {
         assert!(reason.contains("canceled"), "{reason}");
         let ctx = harness.ctx.clone();

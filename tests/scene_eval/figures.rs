@@ -1,4 +1,4 @@
-//! What it takes to ask a scene, against asking every component: the figures of `benches/README.md`.
+//! Cost of a scene query, compared with a query of every component: the figures of `benches/README.md`.
 
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
@@ -30,7 +30,7 @@ fn per_ray(counts: SceneCounts, rays: usize) -> PerRay {
     PerRay { evaluations: counts.evaluations as f64 / rays as f64, boxes: counts.boxes as f64 / rays as f64 }
 }
 
-/// The rays of a picture, and rays from random places in all directions.
+/// The rays of a picture, and rays from random points in random directions.
 fn rays(camera: &Camera, flat: &FlatScene) -> [Vec<Ray>; 2] {
     let bounds = flat.content(&[]);
     let mut random = Random::new(3);
@@ -62,7 +62,7 @@ fn a_hierarchy_spares_boxes_and_evaluations() {
         println!("{name}: each component by itself {before:?}, by the hierarchy {after:?}");
         assert!(after.evaluations <= before.evaluations);
         assert!(after.boxes * 40.0 < before.boxes, "{name}: {after:?}");
-        // Points on them, as a march of the least field of all would ask.
+        // Points on them, as in a march by the minimum of all fields.
         let mut evaluator = SceneEvaluator::new(&flat);
         rays.iter().for_each(|ray| _ = evaluator.distance(ray.at(1.0), f64::INFINITY));
         let exact = per_ray(evaluator.counts, rays.len());

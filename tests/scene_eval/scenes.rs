@@ -1,4 +1,4 @@
-//! Scenes to ask.
+//! Scenes for the queries.
 
 use std::collections::BTreeSet;
 
@@ -13,10 +13,10 @@ use isolith::wgsl::{Extended, OpSet};
 use crate::contract::samples::Random;
 use crate::contract::trees::{Recipe, tree};
 
-/// How many random scenes.
+/// Number of random scenes.
 pub const SCENES: u64 = 200;
 
-/// What they are made of: with and without an end, exact and not. One pipeline serves all of them.
+/// Their shapes: bounded and unbounded, exact and not. One pipeline serves all of them.
 const KINDS: &[ShapeKind] = &[
     ShapeKind::Sphere,
     ShapeKind::Ellipsoid,
@@ -29,7 +29,7 @@ const KINDS: &[ShapeKind] = &[
     ShapeKind::Octahedron,
 ];
 
-/// A scene, seen from somewhere within it.
+/// A scene, seen from a point within it.
 pub struct TestScene {
     pub seed: u64,
     pub flat: FlatScene,
@@ -41,13 +41,13 @@ pub fn camera_at(position: DVec3) -> Camera {
     Camera::looking_at(position, position + DVec3::NEG_Z, 0.8)
 }
 
-/// A tree of groups with up to forty objects around it; every tenth scene stands a thousand kilometers from the origin.
+/// A random tree with up to forty objects around it; every tenth scene is a thousand kilometers from the origin.
 pub fn random_scene(seed: u64) -> TestScene {
     let mut random = Random::new(seed + 5_000);
     let mut scene = tree(seed, Recipe { blends: !seed.is_multiple_of(3), stretching: seed % 2 == 1, kinds: KINDS });
     for _ in 0..random.index(40) {
         let size = random.range(0.1, 1.0);
-        // Few are endless, or nothing else would be seen.
+        // Few shapes are unbounded, else they would hide everything.
         let kinds = if random.chance(0.02) { KINDS } else { &KINDS[..6] };
         let shape = random.pick(kinds).default_shape();
         let node = Node::new("Object", NodeKind::Object(Object { shape, material: MaterialId(2) }));
@@ -82,7 +82,7 @@ pub fn crowds() -> TestScene {
     TestScene { seed: 1, flat: flatten(&scene, 0.0).unwrap(), camera: camera_at(DVec3::new(2.0, 1.0, 3.0)) }
 }
 
-/// What all of them use.
+/// The operators and shapes of all scenes.
 pub fn op_set(tests: &[TestScene]) -> OpSet {
     let all: Vec<OpSet> = tests.iter().map(|test| OpSet::of(&test.flat)).collect();
     OpSet {

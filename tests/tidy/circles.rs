@@ -1,24 +1,24 @@
 //! Finds circles of files: files of one module that use each other, directly or through others.
 //!
-//! A path counts as a use of the file that defines what it names; a re-export is followed to that file. `mod` lines and
-//! re-exports are no use, nor is what only tests name.
+//! A path is a use of the file that defines its item; the search follows re-exports to that file. `mod` lines,
+//! re-exports and tests are not uses.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::rules::{PROGRAM, test_ranges};
 use super::source::{Token, tokens};
 
-/// A path in segments, as it is written: `super::node::Node`.
+/// A path in segments, as written: `super::node::Node`.
 type Path = Vec<String>;
 
-/// What a file uses, and what it re-exports by which name.
+/// Uses of a file, and its re-exports by name.
 #[derive(Default)]
 struct Uses {
     paths: Vec<Path>,
     exports: BTreeMap<String, Path>,
 }
 
-/// Every circle among `files` (path below `src/`, text): the paths of its files, sorted.
+/// Every circle among `files` (path below `src/`, text), as sorted paths.
 pub fn circles(files: &[(String, String)]) -> Vec<Vec<String>> {
     let modules: BTreeMap<Path, Uses> = files.iter().map(|(path, text)| (module(path), uses(path, text))).collect();
     let names: BTreeMap<Path, &String> = files.iter().map(|(path, _)| (module(path), path)).collect();
@@ -42,7 +42,7 @@ pub fn circles(files: &[(String, String)]) -> Vec<Vec<String>> {
     found
 }
 
-/// All that can be reached from `start` by at least one edge.
+/// All nodes reachable from `start` by at least one edge.
 fn reached<'a>(edges: &BTreeMap<&'a Path, BTreeSet<&'a Path>>, start: &Path) -> BTreeSet<&'a Path> {
     let (mut open, mut seen) = (vec![start], BTreeSet::new());
     while let Some(at) = open.pop() {
@@ -61,7 +61,7 @@ fn module(path: &str) -> Path {
     path.split('/').filter(|part| *part != "lib").map(str::to_owned).collect()
 }
 
-/// The file that `path`, written in `from`, leads to; none for other crates and local names.
+/// The file that `path`, written in `from`, refers to; `None` for other crates and local names.
 fn resolve<'a>(modules: &'a BTreeMap<Path, Uses>, from: &Path, path: &[String], depth: usize) -> Option<&'a Path> {
     let absolute = absolute(modules, from, path).filter(|_| depth < 8)?;
     let length = (0..=absolute.len()).rev().find(|n| modules.contains_key(&absolute[..*n]))?;
@@ -133,7 +133,7 @@ fn is_public(before: &[Token<'_>]) -> bool {
     last(1) == "pub" || (last(1) == ")" && (last(4) == "pub" || last(5) == "pub"))
 }
 
-/// The path that `words` begin with, and how many words it takes.
+/// The path at the start of `words`, and its length in words.
 fn path_at(words: &[Token<'_>]) -> (Path, usize) {
     let is_name = |w: &Token<'_>| w.text.starts_with(|c: char| c.is_alphabetic() || c == '_');
     let is_colon = |i: usize| words.get(i).is_some_and(|w| w.text == ":");
@@ -149,7 +149,7 @@ fn path_at(words: &[Token<'_>]) -> (Path, usize) {
     (path, i)
 }
 
-/// Every path of a `use`, with the name that it gets.
+/// Every path of a `use`, with the name that it introduces.
 fn tree(words: &[Token<'_>], before: &[String]) -> Vec<(Path, String)> {
     let (path, taken) = path_at(words);
     let path = [before, &path[..]].concat();
@@ -173,7 +173,7 @@ fn tree(words: &[Token<'_>], before: &[String]) -> Vec<(Path, String)> {
             out
         }
         _ => {
-            // `a as b` has the words `a`, `as`, `b`.
+            // `a as b` is the three words `a`, `as`, `b`.
             let renamed = words.iter().position(|w| w.text == "as").and_then(|i| words.get(i + 1));
             let Some(last) = path.iter().rev().find(|part| *part != "self") else { return Vec::new() };
             vec![(path.clone(), renamed.map_or(last.clone(), |w| w.text.to_owned()))]

@@ -1,12 +1,11 @@
-//! Names: a public type is defined once in the project, and words that were retired do not come back.
+//! Names: the project defines a public type once, and retired words do not come back.
 
 use std::collections::BTreeMap;
 
 use super::rules::test_ranges;
 use super::source::tokens;
 
-/// Every word that was replaced, and the one that stands for it now. Identifiers only: in sentences many of them are
-/// ordinary words.
+/// Every retired word with its replacement. Applies to identifiers only: in sentences many of them are ordinary words.
 pub const RETIRED: &[(&str, &str)] = &[
     ("twin", "eval"),
     ("Truth", "ReferenceImage"),
@@ -63,7 +62,7 @@ pub const RETIRED: &[(&str, &str)] = &[
     ("Took", "TraceCounts"),
     ("KERNEL_WINDOW", "PIPELINE_WINDOW"),
 ];
-/// British stems: no identifier has them as a part.
+/// British stems that no identifier may contain.
 const BRITISH: &[(&str, &str)] = &[
     ("colour", "color"),
     ("centre", "center"),

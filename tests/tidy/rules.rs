@@ -1,9 +1,9 @@
-//! The rules of the house, as one function over a file's path and text.
+//! The rules of the house, as a function of a file's path and text.
 
 use super::source::{Token, closing, tokens};
 
-/// What each module may use, besides itself. Nothing else is allowed. All but [`PROGRAM`] are members of the workspace, whose
-/// manifests must say the same.
+/// Allowed dependencies of each module, besides itself. All modules except [`PROGRAM`] are members of the workspace,
+/// and their manifests must agree.
 pub const MODULES: &[(&str, &[&str])] = &[
     ("geometry", &[]),
     ("guard", &[]),
@@ -38,7 +38,7 @@ pub const MODULES: &[(&str, &[&str])] = &[
 /// The modules of the program itself.
 pub const PROGRAM: &[&str] = &["app", "bench", "cli"];
 
-/// Crates that only some modules may name. A crate also stands for those whose name it starts.
+/// Crates that only some modules may name. An entry also covers crates whose names start with it.
 const CRATES: &[(&str, &[&str])] = &[
     ("wgpu", &["render", "app"]),
     ("eframe", &["editor", "app"]),
@@ -56,7 +56,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("ctrlc", &["cli"]),
 ];
 
-/// Starts of the paths of the files that own files; nothing else touches the file system.
+/// Path prefixes of the files that may access the file system.
 const FILE_OWNERS: &[&str] = &[
     "src/scene/file",
     "src/mesh/",
@@ -67,26 +67,27 @@ const FILE_OWNERS: &[&str] = &[
     "src/wgsl/disk",
 ];
 
-/// What the renderer must not know of `scene`; the plain data of shapes, lights and materials it may.
+/// Items of `scene` hidden from the renderer, which may use the plain data of shapes, lights and materials.
 const HIDDEN_FROM_RENDER: &[&str] = &["Scene", "Node", "NodeKind"];
 
-/// Parts of `flat` that evaluate. The renderer uses none of them: then a comparison of both compares two programs that share
-/// data only.
+/// Modules of the field crate that evaluate. The renderer uses none of them, so that a comparison of both compares two
+/// programs that share data only.
 const EVALUATORS: &[&str] = &["eval", "reference", "unflattened", "pick"];
 
-/// Words behind which a name is given.
+/// Keywords before a new name.
 const NAMING: &[&str] = &["mod", "struct", "enum", "trait", "type", "fn", "const", "static", "let"];
 
-/// The one file that may be unsafe: wgpu does not pass on what Vulkan says of pipelines, and its package is for tests only.
+/// The only file with `unsafe`: wgpu does not expose Vulkan's statistics of pipelines, and this package is for tests
+/// only.
 const UNSAFE_FILE: &str = "tests/gpu_static/src/vulkan.rs";
 
-/// The build script stands beside what it serves, but is a program of its own.
+/// The build script is beside the code that it serves, but is a separate program.
 const BUILD_SCRIPT: &str = "src/wgsl/embed_shaders.rs";
 
-/// Most lines of a Rust file, of a shader, of a Rust function, and of a WGSL function.
+/// Maximum lines of a Rust file, a shader, a Rust function and a WGSL function.
 pub const MAX_LINES: [usize; 4] = [500, 250, 70, 80];
 
-/// Everything that is wrong with a file, as `path:line: what`. `path` is relative to the repository.
+/// All problems of a file, as `path:line: what`. `path` is relative to the repository.
 pub fn problems(path: &str, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     for (i, line) in text.lines().enumerate() {
@@ -107,7 +108,7 @@ pub fn problems(path: &str, text: &str) -> Vec<String> {
     found
 }
 
-/// Put together, so that this file does not hold them itself.
+/// Assembled at run time, so that this file does not contain them.
 fn machine_paths() -> [String; 4] {
     [["/ho", "me/"], ["/wo", "rk/"], ["/ro", "ot/"], ["/tmp", "/"]].map(|parts| parts.concat())
 }
@@ -127,7 +128,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
     if !text.starts_with("//!") {
         report(1, "the file does not say what it is for (`//!`)".into());
     }
-    // Tests may hold tables of samples.
+    // Tests may contain tables of samples.
     let longest = if path.starts_with("tests/") { MAX_LINES[2] + 10 } else { MAX_LINES[2] };
     for (line, length) in functions(&words) {
         if length > longest {
@@ -137,7 +138,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
     let module = module_of(path);
     let mut tests = test_ranges(&words);
     if path.ends_with("/tests.rs") || path.contains("/tests/") {
-        // A file of tests beside what it tests.
+        // A file of tests.
         tests.push(0..words.len());
     }
     for (i, word) in words.iter().enumerate() {
@@ -182,7 +183,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
     }
     if let Some(module) = module.filter(|module| PROGRAM.contains(module)) {
         for (at, used) in edges(path, &words) {
-            // Tests stand above everything.
+            // Tests may use every module.
             if tests.iter().any(|range| range.contains(&at)) {
                 continue;
             }
@@ -199,7 +200,7 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Refuses what evaluates fields in the renderer, but for its tests.
+/// Refuses evaluators in the renderer, except in its tests.
 fn evaluators(path: &str, text: &str, found: &mut Vec<String>) {
     if module_of(path) != Some("render") || path.ends_with("/tests.rs") || path.contains("/tests/") {
         return;
@@ -214,12 +215,12 @@ fn evaluators(path: &str, text: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Whether `name` is the crate, or one whose name it starts (`egui_ltreeview` for `egui`).
+/// Whether `name` is the crate, or starts with its name (`egui_ltreeview` for `egui`).
 fn of_crate(name: &str, owned: &str) -> bool {
     name.strip_prefix(owned).is_some_and(|rest| rest.is_empty() || rest.starts_with('_'))
 }
 
-/// The top-level module that the file belongs to; none for the roots, the build script and files outside `src`.
+/// The file's top-level module; `None` for the roots, the build script and files outside `src`.
 pub fn module_of(path: &str) -> Option<&str> {
     if path == BUILD_SCRIPT {
         return None;
@@ -241,8 +242,8 @@ fn functions(words: &[Token<'_>]) -> Vec<(usize, usize)> {
         .collect()
 }
 
-/// The brace that opens the body of the function at `start`; none where it is only declared. The `;` of an array type
-/// stands in brackets and ends no declaration.
+/// The brace that opens the body of the function at `start`; `None` for a declaration. The `;` of an array type is in
+/// brackets and does not end a declaration.
 fn body_of(words: &[Token<'_>], start: usize) -> Option<usize> {
     let mut brackets = 0_usize;
     for (i, word) in words.iter().enumerate().skip(start) {
@@ -257,7 +258,7 @@ fn body_of(words: &[Token<'_>], start: usize) -> Option<usize> {
     None
 }
 
-/// The parts of the file that are tests: the bodies of modules behind `cfg(test)`.
+/// Ranges of the file that are tests: the bodies of modules behind `cfg(test)`.
 pub fn test_ranges(words: &[Token<'_>]) -> Vec<std::ops::Range<usize>> {
     let is = |i: usize, text: &str| words.get(i).is_some_and(|w| w.text == text);
     (0..words.len())
@@ -269,8 +270,7 @@ pub fn test_ranges(words: &[Token<'_>]) -> Vec<std::ops::Range<usize>> {
         .collect()
 }
 
-/// Every top-level module that the file names through `crate` or by climbing with `super`, with the index of
-/// its word.
+/// Every top-level module that the file names through `crate` or through `super`, with the index of its word.
 pub fn edges<'a>(path: &str, words: &[Token<'a>]) -> Vec<(usize, &'a str)> {
     let segments = path.trim_start_matches("src/").trim_end_matches(".rs").trim_end_matches("/mod").split('/').count();
     let (mut out, mut brace_depth, mut inline) = (Vec::new(), 0_usize, Vec::new());
@@ -306,7 +306,7 @@ pub fn edges<'a>(path: &str, words: &[Token<'a>]) -> Vec<(usize, &'a str)> {
     out
 }
 
-/// The names that follow the `::` at `at`: one, or all at the top of a brace.
+/// The names after the `::` at `at`: one, or those at the top level of a brace.
 fn named<'a>(words: &[Token<'a>], at: usize) -> Vec<(usize, &'a str)> {
     if words.get(at).is_none_or(|w| w.text != ":") {
         return Vec::new();
@@ -342,7 +342,7 @@ fn wgsl(path: &str, text: &str, found: &mut Vec<String>) {
     if !text.starts_with("//") {
         found.push(format!("{path}:1: the file does not say what it is for"));
     }
-    // A function's name holds a word of its file's or of its folder's: `sdf_sphere`, `shade_encode`.
+    // A function's name contains a word from its file's or folder's name: `sdf_sphere`, `shade_encode`.
     let inside = path.strip_prefix("shaders/").unwrap_or(path).trim_end_matches(".wgsl");
     let words = tokens(text);
     for (line, length) in functions(&words).into_iter().filter(|(_, length)| *length > MAX_LINES[3]) {

@@ -1,4 +1,4 @@
-//! Cuts Rust and WGSL text into words and signs, without comments, strings and numbers' insides.
+//! Splits Rust and WGSL text into words and signs, without comments and the content of strings and numbers.
 
 /// One word or sign of a source text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -9,9 +9,9 @@ pub struct Token<'a> {
     pub line: usize,
 }
 
-/// The words and signs of `source` in order. Comments are left out; a string or a character literal
-/// becomes an empty token. Knows just enough of both languages: nested block comments, raw strings, and
-/// lifetimes that look like the start of a character literal.
+/// The words and signs of `source` in order, without comments. A string or a character literal becomes an empty token.
+/// Handles just enough of both languages: nested block comments, raw strings, and lifetimes that look like the start of
+/// a character literal.
 pub fn tokens(source: &str) -> Vec<Token<'_>> {
     let bytes = source.as_bytes();
     let (mut out, mut at, mut line) = (Vec::new(), 0, 1);
@@ -44,7 +44,7 @@ pub fn tokens(source: &str) -> Vec<Token<'_>> {
     out
 }
 
-/// Bytes of the block comment that `rest` begins with.
+/// Length in bytes of the block comment at the start of `rest`.
 fn block_comment(rest: &str) -> usize {
     let (mut depth, mut at) = (0_usize, 0);
     while at < rest.len() {
@@ -60,7 +60,7 @@ fn block_comment(rest: &str) -> usize {
     at
 }
 
-/// Bytes of the string literal that `rest` begins with, if any.
+/// Length in bytes of the string literal at the start of `rest`, if any.
 fn string(rest: &str) -> Option<usize> {
     let unprefixed = rest.trim_start_matches(['b', 'c']);
     let prefix = rest.len() - unprefixed.len();
@@ -83,7 +83,7 @@ fn string(rest: &str) -> Option<usize> {
     Some(rest.len())
 }
 
-/// Bytes of the character literal that `rest` begins with, if any; a lifetime is none.
+/// Length in bytes of the character literal at the start of `rest`, if any; `None` for a lifetime.
 fn character(rest: &str) -> Option<usize> {
     let body = rest.strip_prefix('\'')?;
     if let Some(escape) = body.strip_prefix('\\') {
@@ -94,7 +94,7 @@ fn character(rest: &str) -> Option<usize> {
     body[first.len_utf8()..].starts_with('\'').then(|| first.len_utf8() + 2)
 }
 
-/// The index behind the brace that closes the one at `open`.
+/// The index after the brace that closes the one at `open`.
 pub fn closing(tokens: &[Token<'_>], open: usize) -> usize {
     let mut depth = 0_usize;
     for (i, token) in tokens.iter().enumerate().skip(open) {

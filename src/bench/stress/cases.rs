@@ -1,4 +1,4 @@
-//! Nodes by circumstances. Those of one node stand together, so that its pipeline is built once.
+//! The stress cases: nodes by circumstances. Cases of one node stand together, so that its pipeline is built once.
 
 use glam::DVec3;
 
@@ -10,23 +10,23 @@ use crate::scene::{
     ShapeKind, limits,
 };
 
-/// A thing to draw, and how.
+/// A node to draw and the circumstances of the picture.
 #[derive(Clone, Debug)]
 pub struct StressCase {
     pub(super) node: StressNode,
-    /// What is difficult, in words.
+    /// The difficulty as text.
     pub circumstance: String,
     pub(super) place: StressPlacement,
     pub(super) view: StressView,
 }
 
 impl StressCase {
-    /// What is drawn.
+    /// The name of the node.
     pub fn name(&self) -> String {
         self.node.name()
     }
 
-    /// How much of it may be wrong.
+    /// The allowance of the case.
     pub(super) fn allowed(&self) -> Allowed {
         match (&self.node, self.view) {
             (StressNode::Shape(Shape::Kleinian { .. }), _) => Allowed::DUST,
@@ -39,7 +39,7 @@ impl StressCase {
     }
 }
 
-/// Every case.
+/// All cases.
 pub fn cases() -> Vec<StressCase> {
     let mut all = Vec::new();
     for &kind in ShapeKind::ALL {
@@ -57,7 +57,7 @@ pub fn cases() -> Vec<StressCase> {
     all
 }
 
-/// The node as it is, at the ends of the scales, far away, and from where rays are difficult.
+/// Adds the node as it is, at extreme scales, far from the origin, and from difficult views.
 fn everywhere(node: &StressNode, all: &mut Vec<StressCase>) {
     let scaled = |scale| StressPlacement { scale, ..StressPlacement::PLAIN };
     let far = StressPlacement { at: DVec3::new(6e5, -6e5, 5.3e5), ..StressPlacement::PLAIN };
@@ -83,7 +83,7 @@ fn plain(node: StressNode, circumstance: String) -> StressCase {
     StressCase { node, circumstance, place: StressPlacement::PLAIN, view: StressView::Whole }
 }
 
-/// Numbers at which a parameter is tried, with their names: nothing, thin as 1e-4 of `size`, the limits.
+/// Extreme values of a parameter with their names: 0, 1e-4 of `size`, and the limits.
 fn extremes(limits: &Limits, size: f64) -> Vec<(&'static str, f64)> {
     let mut all = Vec::new();
     if limits.accept(0.0) {
@@ -113,7 +113,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<StressCase>) {
             let changed = match value {
                 ParamValue::Scalar(_) => vec![("", ParamValue::Scalar(number))],
                 ParamValue::Vector(v) => along_axes(v.to_array(), number, |v| ParamValue::Vector(v.into())),
-                // What is no number has no extremes.
+                // Only numbers have extremes.
                 _ => continue,
             };
             for (axis, value) in changed {
@@ -127,7 +127,7 @@ fn shape(kind: ShapeKind, all: &mut Vec<StressCase>) {
     }
 }
 
-/// Three numbers, one of them replaced by another, each in its turn, with the name of the axis.
+/// The vector with one component replaced by `number`, for each axis, with the name of the axis.
 fn along_axes<N: Copy, V>(usual: [N; 3], number: N, value: impl Fn([N; 3]) -> V) -> Vec<(&'static str, V)> {
     let replaced = |axis: usize| {
         let mut numbers = usual;
@@ -139,7 +139,7 @@ fn along_axes<N: Copy, V>(usual: [N; 3], number: N, value: impl Fn([N; 3]) -> V)
 
 fn blend_cases(operator: Operator, kernel: BlendKernel, all: &mut Vec<StressCase>) {
     let usual = Group::new(operator, usual_blend(kernel));
-    // Far off and close by, blends of all kernels are the same code.
+    // The circumstances exercise the same code for all kernels.
     if operator == Operator::Union || kernel == BlendKernel::ALL[0] {
         everywhere(&StressNode::Blend(usual), all);
     }
@@ -173,7 +173,7 @@ fn blend_cases(operator: Operator, kernel: BlendKernel, all: &mut Vec<StressCase
     }
 }
 
-/// With an image of bumps where it needs one.
+/// The modifier with an image of bumps if it needs an image.
 fn with_image(mut modifier: Modifier) -> Modifier {
     const SIDE: u32 = 16;
     let rise = |x: u32| x * (SIDE - 1 - x);

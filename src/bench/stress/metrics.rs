@@ -1,4 +1,4 @@
-//! A picture against its reference, in numbers.
+//! The metrics of a picture against its reference.
 
 use std::collections::HashSet;
 use std::fmt::Write as _;
@@ -17,54 +17,54 @@ use crate::render::{EvalStrategy, Renderer};
 /// Width and height of the pictures, in pixels.
 pub const PICTURE: [u32; 2] = [48, 36];
 
-/// What a case came to.
+/// The result of a case.
 #[derive(Clone, Debug)]
 pub struct Metrics {
-    /// What was drawn.
+    /// The name of the node.
     pub node: String,
-    /// What is difficult about it.
+    /// The difficulty as text.
     pub circumstance: String,
     /// Pixels in the picture.
     pub pixels: usize,
     /// Pixels where the reference hits something.
     pub hits: usize,
-    /// By which of the methods it is drawn worst; the metrics that follow are of that picture.
+    /// The worst strategy; the following metrics are those of its picture.
     pub strategy: EvalStrategy,
-    /// Pixels that are wrong, see [`crate::field::reference::accuracy`].
+    /// Wrong pixels, see [`crate::field::reference::accuracy`].
     pub wrong: usize,
     /// Pixels that differ from the reference because their rays graze.
     pub grazing: usize,
-    /// Pixels whose depth or normal is no number.
+    /// Pixels whose depth or normal is NaN.
     pub nan: usize,
-    /// Components whose rays had not all ended.
+    /// Components with unfinished rays.
     pub unfinished: usize,
-    /// Pixels of pictures by other methods that hit something where the interpreter's picture does not, or the other way
-    /// round; not where the ray passes an edge so closely that rounding decides.
+    /// Pixels in which the pictures of other strategies differ in hit or miss from that of the interpreter, except
+    /// where the ray passes an edge so closely that rounding decides.
     pub differ: usize,
-    /// Error of the depth in pixel footprints: 99th percentile.
+    /// 99th percentile of the depth error, in pixel footprints.
     pub depth_p99: f64,
-    /// The same, maximum.
+    /// Maximum of the depth error, in pixel footprints.
     pub depth_max: f64,
-    /// What is allowed.
+    /// The allowance of the case.
     pub allowed: Allowed,
-    /// Picture, reference and difference beside each other.
+    /// Picture, reference and difference side by side.
     pub(super) strip: RgbImage,
 }
 
-/// Whether a number of the pixel is none.
+/// Whether depth or normal of the pixel is NaN.
 fn is_nan(buffers: &GBuffer, i: usize) -> bool {
     buffers.depth[i].is_nan() || buffers.normal[i].iter().any(|v| v.is_nan())
 }
 
 impl StressCase {
-    /// Draws it by each of these methods and compares with the reference, and all with the first; none where the view needs a
-    /// surface that is not there.
+    /// Draws the case by each of these strategies and compares each picture with the reference and with the first one.
+    /// `None` if the view needs a surface and there is none.
     ///
     /// # Errors
-    /// The scene is beyond a limit, the ray that finds the view has no end, or the device fails.
+    /// The scene is beyond a limit, the ray that determines the view does not end, or the device fails.
     ///
     /// # Panics
-    /// There is no method.
+    /// `strategies` is empty.
     pub fn measure(&self, renderer: &mut Renderer, strategies: &[EvalStrategy]) -> Result<Option<Metrics>, BenchError> {
         let flat = flatten(&self.node.scene(self.place), 0.0)?;
         let aspect = f64::from(PICTURE[0]) / f64::from(PICTURE[1]);
@@ -118,7 +118,7 @@ impl Metrics {
         }
     }
 
-    /// What is beyond what is allowed, in words; nothing where all is well.
+    /// The metrics beyond the allowance, as text; empty for a good picture.
     pub fn faults(&self) -> Vec<String> {
         let checks = [
             ("pixels that are no number", self.nan as f64, 0.0),
@@ -133,7 +133,7 @@ impl Metrics {
     }
 }
 
-/// The worst first: no number, then wrong pixels, then the error of the depth.
+/// Sorts the worst first: by NaN, differences between strategies, wrong pixels, unfinished rays, depth error.
 pub fn worst_first(metrics: &mut [Metrics]) {
     metrics.sort_by(|a, b| {
         let badness = |one: &Metrics| (one.nan, one.differ, one.wrong, one.unfinished);
@@ -147,7 +147,7 @@ pub fn first_of_each(metrics: &[Metrics]) -> Vec<Metrics> {
     metrics.iter().filter(|one| seen.insert(one.node.as_str())).cloned().collect()
 }
 
-/// Totals, and one line for each of the first `lines`, as Markdown.
+/// Totals and one row for each of the first `lines` cases, as Markdown.
 pub fn stress_table(metrics: &[Metrics], lines: usize) -> String {
     let sum = |of: fn(&Metrics) -> usize| metrics.iter().map(of).sum::<usize>();
     let beyond = metrics.iter().filter(|one| !one.faults().is_empty()).count();

@@ -1,13 +1,14 @@
-//! Numerical stress: every shape, operator and modifier where numbers get difficult, against the reference.
+//! Numerical stress: every shape, operator and modifier under numerically difficult circumstances, against the
+//! reference.
 //!
 //! | file | what it does |
 //! |---|---|
-//! | `node` | what is stressed, as a scene |
+//! | `node` | the node of a case as a scene |
 //! | `cases` | nodes by circumstances |
-//! | `place` | where the eye is |
+//! | `place` | the view |
 //! | `metrics` | a picture against its reference |
-//! | `allowed` | how much of it may be wrong |
-//! | `strip` | both and their difference as one picture |
+//! | `allowed` | how much of a picture may be wrong |
+//! | `strip` | picture, reference and difference side by side |
 //! | `sheet` | the worst cases as pictures |
 
 mod allowed;

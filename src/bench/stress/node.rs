@@ -1,4 +1,4 @@
-//! What is stressed: a shape, a blend or a modifier with certain numbers, as a scene.
+//! The node of a stress case as a scene: a shape, a blend or a modifier with certain parameters.
 
 use glam::{DQuat, DVec3};
 
@@ -8,43 +8,43 @@ use crate::scene::{
     Scene, Shape,
 };
 
-/// What is stressed.
+/// The node of a stress case.
 #[derive(Clone, Debug)]
 pub(super) enum StressNode {
     /// A shape alone.
     Shape(Shape),
     /// A group of a box and a ball that reaches out of it.
     Blend(Group),
-    /// A lopsided thing, modified.
+    /// A modifier over asymmetric content.
     Modified(Modifier),
 }
 
-/// Its place in the world.
+/// The placement of the node in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StressPlacement {
-    /// Where its origin is.
+    /// The position of its origin.
     pub at: DVec3,
     /// Its scale.
     pub scale: f64,
 }
 
 impl StressPlacement {
-    /// At the origin, at its own size.
+    /// At the origin, at scale 1.
     pub const PLAIN: Self = Self { at: DVec3::ZERO, scale: 1.0 };
 
-    /// How it is turned everywhere: a rotation that no number of 32 bits holds exactly.
+    /// The rotation of every node, which 32-bit numbers cannot represent exactly.
     pub fn turn() -> DQuat {
         DQuat::from_axis_angle(DVec3::new(1.0, 2.0, 0.5).normalize(), 0.7)
     }
 }
 
-/// A blend of a share of the operands' size, so that it is scaled with them.
+/// A blend whose radius is relative to the size of the operands, so that it scales with them.
 pub(super) fn usual_blend(kernel: BlendKernel) -> Blend {
     Blend { unit: RadiusUnit::Size, ..Blend::new(kernel, 0.3) }
 }
 
 impl StressNode {
-    /// Its name.
+    /// The name of the node.
     pub fn name(&self) -> String {
         match self {
             Self::Shape(shape) => shape.kind().label().into(),
@@ -56,7 +56,7 @@ impl StressNode {
         }
     }
 
-    /// It in a scene with a light.
+    /// A scene of this node and a light.
     pub fn scene(&self, place: StressPlacement) -> Scene {
         let mut scene = Scene::new();
         let from = DVec3::new(-0.5, 0.8, 0.6);

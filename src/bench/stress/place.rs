@@ -1,4 +1,4 @@
-//! Where the eye is: far enough to see all, or where rays are difficult.
+//! Views of a stress case: the whole node, or a view with difficult rays.
 
 use glam::{DVec2, DVec3};
 
@@ -8,31 +8,32 @@ use crate::field::reference::trace::{TraceError, trace};
 use crate::field::{FlatScene, view::THREE_QUARTER};
 use crate::geometry::{Aabb, Camera};
 
-/// Where the eye is.
+/// The view of a stress case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum StressView {
-    /// It sees all.
+    /// Shows the whole node.
     Whole,
-    /// It looks along the surface, at an angle of about one degree.
+    /// Looks along the surface, at an angle of about one degree.
     Grazing,
-    /// It is in the middle of the bounds.
+    /// From the middle of the bounds.
     Inside,
-    /// It is a thousandth of a unit from the surface and looks at it askew.
+    /// Oblique, from a thousandth of a unit above the surface.
     Near,
-    /// It looks at what is there, in the node's own space, from as far as it would at the origin.
+    /// Shows the surroundings of this point of the node's own space, from the same distance as at the origin.
     At(DVec3),
 }
 
-/// How far `StressView::Near` is from the surface, in meters.
+/// Distance of `StressView::Near` from the surface, in meters.
 const CLOSE: f64 = 1e-3;
-/// Height over the surface of `StressView::Grazing`, as a share of the distance to the point it looks at.
+/// Height of `StressView::Grazing` above the surface, as a fraction of the distance to its target.
 const LOW: f64 = 0.02;
 
 impl StressView {
-    /// The camera of this view; none where it needs a point of the surface, and the middle of the whole view has none.
+    /// The camera of this view. `None` if the view needs a point of the surface and the center ray of the whole view
+    /// misses it.
     ///
     /// # Errors
-    /// A ray has no end.
+    /// A ray does not end.
     pub fn camera(self, flat: &FlatScene, place: StressPlacement, aspect: f64) -> Result<Option<Camera>, TraceError> {
         let endless = || flat.components.iter().any(|component| !component.bounds.is_finite());
         let around = |at| Aabb::from_center_half(at, DVec3::splat(place.scale));
@@ -42,7 +43,7 @@ impl StressView {
             _ => flat.content(&[]),
         };
         let mut whole = Camera::framing(&content, THREE_QUARTER, Camera::DEFAULT_FOV_Y, aspect);
-        // Bounds of what is turned are larger than it.
+        // The bounds of a rotated node are larger than the node.
         whole.fov_y *= 0.6;
         if matches!(self, Self::Whole | Self::At(_)) {
             return Ok(Some(whole));

@@ -1,4 +1,4 @@
-//! The worst cases as pictures: what is drawn, the reference, and what differs.
+//! The worst cases as one picture: drawn picture, reference and difference of each.
 
 use image::RgbImage;
 use image::imageops::{self, FilterType};
@@ -7,16 +7,16 @@ use plotters::style::RGBColor;
 use super::metrics::{Metrics, PICTURE};
 use crate::bench::canvas::{LEFT, canvas};
 
-/// A pixel of a picture is shown so many pixels wide.
+/// Width of an enlarged pixel, in pixels.
 const ENLARGED: u32 = 4;
-/// Between pictures, in pixels.
+/// Gap between pictures, in pixels.
 const GAP: u32 = 8;
 /// Height of a line of text, in pixels.
 const LINE: u32 = 22;
-/// Size of the letters, in pixels.
+/// Font size, in pixels.
 const EM: f64 = 13.0;
 
-/// The first `count` cases below each other, each with its name.
+/// The first `count` cases in one column, each with its name.
 pub fn stress_sheet(metrics: &[Metrics], count: usize) -> RgbImage {
     let [width, height] = [3 * PICTURE[0] * ENLARGED, PICTURE[1] * ENLARGED];
     let shown = &metrics[..count.min(metrics.len())];

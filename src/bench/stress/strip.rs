@@ -1,11 +1,11 @@
-//! A picture, its reference and what differs, beside each other.
+//! A picture, its reference and their difference, side by side.
 
 use image::{Rgb, RgbImage};
 
 use crate::field::GBuffer;
 
-/// Picture, reference and difference beside each other. Red is wrong, gray the error of the depth: white from a tenth of
-/// a footprint on.
+/// Picture, reference and difference side by side. In the difference, wrong pixels are red and gray shows the depth
+/// error: white from a tenth of a footprint on.
 pub(super) fn strip(measured: &GBuffer, reference: &GBuffer, footprint: f64, wrong: &[bool]) -> RgbImage {
     RgbImage::from_fn(3 * measured.width, measured.height, |x, y| {
         let i = measured.index(x % measured.width, y);

@@ -1,14 +1,14 @@
-//! Work that was not saved, got back after a crash, a kill or a power loss.
+//! Recovery of unsaved work after a crash, a kill or a power loss.
 //!
-//! While a document has changes, a worker writes snapshots of it into a folder of its own below the state folder. The
-//! folder goes when the document is saved or given up, and at no other time. A lock in it, which dies with the process,
-//! tells other windows that its owner lives.
+//! While a document has changes, a worker writes snapshots of it into the document's folder below the state folder. The
+//! folder is removed when the document is saved or discarded, and at no other time. A lock in the folder, which dies
+//! with the process, tells other windows that its owner is alive.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `place` | the folder of one document: what lies in it, its lock, who may take it |
-//! | `worker` | the thread that writes, and what it shares with the window |
-//! | `thumbnail` | small pictures, to know a document by |
+//! | `place` | the folder of one document: its contents, its lock, its owner |
+//! | `worker` | the thread that writes, and the state shared with the window |
+//! | `thumbnail` | small pictures to recognize a document by |
 
 mod place;
 mod thumbnail;
@@ -29,41 +29,41 @@ use isolith_scene::file::FileError;
 use place::About;
 use worker::{Order, Shared, Snapshot};
 
-/// While a value is dragged, snapshots are taken this far apart: each makes the next edit copy the table of nodes.
+/// Interval of snapshots while a value is dragged: each snapshot makes the next edit copy the table of nodes.
 const BETWEEN_SNAPSHOTS: Duration = Duration::from_millis(500);
 
-/// A document that was lost.
+/// A recovered document.
 #[derive(Debug)]
 pub struct Recovered {
-    /// It counts as changed.
+    /// The document; it counts as changed.
     pub document: Document,
-    /// What is wrong with its latest snapshot, where an older one had to be taken.
+    /// The error in its latest snapshot, if an older one had to be used.
     pub problem: Option<FileError>,
 }
 
-/// A document none of whose snapshots can be read.
+/// A lost document without any readable snapshot.
 #[derive(Debug)]
 pub struct Unreadable {
-    /// It stays where it is.
+    /// The lost document; its folder stays.
     pub lost: Lost,
-    /// What is wrong with the latest.
+    /// The error in the latest snapshot.
     pub error: FileError,
 }
 
-/// Keeps what a window changes, and finds what others lost.
+/// Keeps snapshots of the document in a window, and finds lost documents of others.
 pub struct Recovery {
     root: PathBuf,
     shared: Arc<Shared>,
     worker: Option<JoinHandle<()>>,
-    /// The number of the document followed; another one after each saving, opening or giving up.
+    /// The number of the current document; it changes with each save, open or discard.
     document: u64,
-    /// Its revision at the last snapshot; none when nothing of it has been kept.
+    /// The document's revision at the last snapshot; `None` without a snapshot.
     kept: Option<u64>,
     last: Instant,
 }
 
 impl Recovery {
-    /// Keeps things below this folder, which is made when it is needed.
+    /// Starts keeping snapshots below this folder, which is created on first use.
     pub fn start(root: &Path) -> io::Result<Self> {
         let shared = Arc::new(Shared::new(root));
         let at_work = Arc::clone(&shared);
@@ -72,14 +72,13 @@ impl Recovery {
         Ok(Self { root: root.to_path_buf(), shared, worker: Some(worker), document, kept: None, last: Instant::now() })
     }
 
-    /// What processes that have died left behind, the latest first. As long as a [`Lost`] is kept, no other window is
-    /// offered it.
+    /// The lost documents of dead processes, latest first. While a [`Lost`] is alive, no other window is offered it.
     pub fn lost(&self) -> Vec<Lost> {
         place::claim_all(&self.root)
     }
 
-    /// Takes a snapshot of the document where it has changed: a copy of a pointer. Once a frame. Returns when it wants to
-    /// be called again although nothing happens.
+    /// Takes a snapshot of the document if it has changed: a copy of a pointer. Called once a frame. Returns the time
+    /// after which it wants a call even without events.
     pub fn follow(&mut self, document: &Document, is_changing: bool) -> Option<Duration> {
         let revision = document.revision();
         let is_known = match self.kept {
@@ -99,31 +98,31 @@ impl Recovery {
         None
     }
 
-    /// Whether something of this document is kept.
+    /// Whether a snapshot of this document exists.
     pub fn is_keeping(&self) -> bool {
         self.kept.is_some()
     }
 
-    /// Gives a picture of the document, from any thread.
+    /// A function that stores a picture of the document, callable from any thread.
     pub fn picture_taker(&self) -> impl Fn(Thumbnail) + Send + Sync + 'static {
         let (shared, document) = (Arc::clone(&self.shared), self.document);
         move |picture| shared.take_picture(document, picture)
     }
 
-    /// The document is saved, or the artist has given it up: what was kept of it goes.
+    /// Removes the snapshots of the document after it was saved or discarded.
     pub fn forget(&mut self) {
         self.shared.order(Order::Forget(self.document));
         self.document += 1;
         self.kept = None;
     }
 
-    /// Opens a lost document. What was kept of it stays until it is saved or given up.
+    /// Opens a lost document. Its snapshots stay until it is saved or discarded.
     pub fn recover(&mut self, lost: Lost) -> Result<Recovered, Box<Unreadable>> {
         let read = lost.read();
         self.recover_read(lost, read)
     }
 
-    /// The same after [`Lost::read`], which can take long: on another thread.
+    /// Like [`Self::recover`], after [`Lost::read`], which can take long and may run on another thread.
     pub fn recover_read(&mut self, lost: Lost, read: ReadSnapshot) -> Result<Recovered, Box<Unreadable>> {
         let (scene, problem) = match read {
             Ok(read) => read,
@@ -135,28 +134,28 @@ impl Recovery {
         Ok(Recovered { document, problem })
     }
 
-    /// Removes what was kept of a lost document.
+    /// Removes the snapshots of a lost document.
     pub fn discard(&self, lost: Lost) {
         self.shared.order(Order::Discard(lost));
     }
 
-    /// What has happened on other threads since the last call.
+    /// The notes from other threads since the last call.
     pub fn take_notes(&self) -> Vec<Note> {
         self.shared.take_notes()
     }
 
-    /// For the hook that every panic runs through.
+    /// The rescuer for the panic hook.
     pub fn rescuer(&self) -> Rescuer {
         Rescuer::new(Arc::clone(&self.shared))
     }
 }
 
 impl Drop for Recovery {
-    /// Has the last snapshot written, and forgets nothing.
+    /// Lets the worker write the last snapshot, and removes nothing.
     fn drop(&mut self) {
         self.shared.stop();
         if let Some(worker) = self.worker.take() {
-            // A panic there has been told.
+            // The hook has reported a panic of the worker already.
             let _ = worker.join();
         }
     }

@@ -1,4 +1,4 @@
-//! The folder of one document that is not saved.
+//! The folder of one unsaved document.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
@@ -12,33 +12,33 @@ use crate::Document;
 use isolith_scene::file::{self, FileError, Stamp};
 use isolith_scene::{Scene, limits};
 
-/// Whoever holds the lock of this file owns the folder.
+/// The lock file; its holder owns the folder.
 const LOCK: &str = "lock";
 const ABOUT: &str = "about.json";
 const SNAPSHOT: &str = "scene.json";
 const PICTURE: &str = "picture.png";
-/// Older snapshots kept beside the latest: for when a scene brings the program down each time it is opened.
+/// Older snapshots kept beside the latest, in case a scene crashes the program each time it is opened.
 const OLDER_SNAPSHOTS: usize = 2;
-/// How often a folder is made anew that another window has removed.
+/// Attempts to create a folder that another window keeps removing.
 const TRIES: usize = 4;
-/// Longest description and picture.
+/// Greatest size of a description or picture, in bytes.
 const MAX_SMALL_FILE: u64 = 1 << 20;
 
-/// What is known about a document besides its scene. It stays the same as long as the document is not saved.
+/// The description of a document, without its scene. Constant until the document is saved.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub(super) struct About {
-    /// The file that it was read from or saved to last.
+    /// The file that the document was read from or saved to last.
     path: Option<PathBuf>,
-    /// How that was.
+    /// The stamp of that file.
     stamp: Option<Stamp>,
-    /// Its name, for people.
+    /// The document's display name.
     name: String,
 }
 
 impl About {
     pub fn of(document: &Document) -> Self {
-        // A path that is not Unicode cannot stand in JSON: such a document comes back without a file.
+        // JSON cannot hold a path that is not Unicode: such a document is recovered without a file.
         let path = document.path().filter(|path| path.to_str().is_some());
         let path = path.map(|path| std::path::absolute(path).unwrap_or_else(|_| path.to_path_buf()));
         let name = document.title().trim_end_matches(" *").to_owned();
@@ -46,22 +46,22 @@ impl About {
     }
 }
 
-/// A scene that was kept, and what is wrong with a later snapshot of it; or what is wrong with all of them.
+/// The scene of the latest readable snapshot, with the error of a later one; or the error if none is readable.
 pub type ReadSnapshot = Result<(Scene, Option<FileError>), FileError>;
 
 /// A folder that this process owns.
 #[derive(Debug)]
 pub(super) struct Place {
     folder: PathBuf,
-    /// Held as long as the folder is ours.
+    /// Held while this process owns the folder.
     lock: File,
 }
 
 impl Place {
-    /// Makes a folder for a document.
+    /// Creates a folder for a document.
     pub fn new(root: &Path, about: &About) -> io::Result<Self> {
-        // Another window that looks through the folders can be faster: it takes this one for one whose owner has died
-        // before it had anything to keep, and removes it.
+        // Another window that scans the folders can interfere: it takes this one for that of a process that died before
+        // its first snapshot, and removes it.
         let is_taken = |error: &io::Error| matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::NotFound);
         for _ in 0..TRIES {
             match Self::make(root, about) {
@@ -99,10 +99,10 @@ impl Place {
             .map_err(|e| io::Error::new(e.error.kind(), format!("{}: {e}", path.display())))
     }
 
-    /// Removes the folder with all that is in it. The lock goes last, so that nobody takes a part.
+    /// Removes the folder with its contents. The lock goes last, so that no other window takes a part of it.
     pub fn remove(self) -> io::Result<()> {
         let entries = match fs::read_dir(&self.folder) {
-            // Somebody else has removed it.
+            // Another process has removed it.
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
             entries => entries?,
         };
@@ -114,13 +114,13 @@ impl Place {
         }
         let Self { folder, lock } = self;
         fs::remove_file(folder.join(LOCK))?;
-        // Some systems keep a folder as long as a file of it is open.
+        // Some systems keep a folder while one of its files is open.
         drop(lock);
         fs::remove_dir(&folder)
     }
 }
 
-/// A document whose process has died before it was saved. Nobody else is offered it as long as this lives.
+/// A document whose process died before it was saved. No other window is offered it while this value lives.
 #[derive(Debug)]
 pub struct Lost {
     place: Place,
@@ -130,27 +130,27 @@ pub struct Lost {
 }
 
 impl Lost {
-    /// The name of its folder, which no other has.
+    /// The unique name of its folder.
     pub fn id(&self) -> String {
         self.place.folder.file_name().unwrap_or_default().to_string_lossy().into_owned()
     }
 
-    /// The name of its file.
+    /// The document's display name.
     pub fn name(&self) -> &str {
         if self.about.name.is_empty() { "Untitled" } else { &self.about.name }
     }
 
-    /// The file that it was to be saved to.
+    /// The document's file.
     pub fn path(&self) -> Option<PathBuf> {
         self.about.path.clone()
     }
 
-    /// When it was kept last.
+    /// The time of its last snapshot.
     pub fn changed(&self) -> SystemTime {
         self.changed
     }
 
-    /// What it looked like.
+    /// Its picture.
     pub fn picture(&self) -> Option<&Thumbnail> {
         self.picture.as_ref()
     }
@@ -163,7 +163,7 @@ impl Lost {
         self.place
     }
 
-    /// The latest snapshot that can be read, and what is wrong with a later one.
+    /// Reads the latest readable snapshot; returns the error of a later one with it.
     pub fn read(&self) -> ReadSnapshot {
         let mut problem = None;
         for path in snapshots(&self.place.folder) {
@@ -176,7 +176,7 @@ impl Lost {
     }
 }
 
-/// The snapshots in a folder, the latest first.
+/// The snapshots in a folder, latest first.
 fn snapshots(folder: &Path) -> impl Iterator<Item = PathBuf> {
     let latest = folder.join(SNAPSHOT);
     let older = (1..=OLDER_SNAPSHOTS).map({
@@ -186,7 +186,7 @@ fn snapshots(folder: &Path) -> impl Iterator<Item = PathBuf> {
     std::iter::once(latest).chain(older).filter(|path| path.is_file())
 }
 
-/// Takes every folder below `root` whose owner has died, the latest first.
+/// Claims every folder below `root` whose owner has died, latest first.
 pub(super) fn claim_all(root: &Path) -> Vec<Lost> {
     let Ok(entries) = fs::read_dir(root) else { return Vec::new() };
     let mut found: Vec<Lost> = entries.flatten().filter_map(|entry| claim(&entry.path())).collect();
@@ -200,7 +200,7 @@ fn claim(folder: &Path) -> Option<Lost> {
     }
     let lock = match OpenOptions::new().write(true).open(folder.join(LOCK)) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
-            // Only an empty one goes.
+            // Removes the folder only if it is empty.
             let _ = fs::remove_dir(folder);
             return None;
         }
@@ -212,7 +212,7 @@ fn claim(folder: &Path) -> Option<Lost> {
     let about: About = small_file(folder, ABOUT).and_then(|b| serde_json::from_slice(&b).ok()).unwrap_or_default();
     let is_saved = |latest: &Path| about.path.as_deref().is_some_and(|path| is_same_file(latest, path));
     let Some(latest) = latest.filter(|latest| !is_saved(latest)) else {
-        // Its owner died before it had anything to keep, or between saving and clearing away.
+        // Its owner died before the first snapshot, or between saving and removing the folder.
         let _ = place.remove();
         return None;
     };
@@ -221,7 +221,7 @@ fn claim(folder: &Path) -> Option<Lost> {
     Some(Lost { place, about, changed, picture })
 }
 
-/// Whether both files hold the same, and so nothing is lost.
+/// Whether both files have the same contents, so that nothing is lost.
 fn is_same_file(snapshot: &Path, saved: &Path) -> bool {
     let length = |path: &Path| fs::metadata(path).ok().filter(|m| m.is_file()).map(|m| m.len());
     let both = (length(snapshot), length(saved));

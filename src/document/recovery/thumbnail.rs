@@ -1,4 +1,4 @@
-//! Small pictures.
+//! Thumbnails of documents.
 
 use std::io::Cursor;
 
@@ -12,7 +12,8 @@ pub const THUMBNAIL_PX: [u32; 2] = [192, 120];
 pub struct Thumbnail(RgbImage);
 
 impl Thumbnail {
-    /// Of a picture of this size, whose pixels are asked for by column and row. None where there is nothing in it.
+    /// A thumbnail of a picture of this size; `pixel` returns its pixels by column and row. `None` if the picture is
+    /// empty.
     pub fn of(size_px: [u32; 2], pixel: impl Fn(u32, u32) -> [u8; 3]) -> Option<Self> {
         let [width, height] = size_px;
         if width == 0 || height == 0 {
@@ -21,7 +22,7 @@ impl Thumbnail {
         let shrink = |axis: usize| f64::from(THUMBNAIL_PX[axis]) / f64::from(size_px[axis]);
         let scale = shrink(0).min(shrink(1)).min(1.0);
         let small = size_px.map(|side| ((f64::from(side) * scale).round() as u32).max(1));
-        // The middle of each small pixel: exact enough to know a scene by, and fast.
+        // Samples the middle of each small pixel: fast, and exact enough to recognize a scene.
         let at = |i: u32, axis: usize| {
             let place = (f64::from(i) + 0.5) / f64::from(small[axis]) * f64::from(size_px[axis]);
             (place as u32).min(size_px[axis] - 1)
@@ -29,14 +30,14 @@ impl Thumbnail {
         Some(Self(RgbImage::from_fn(small[0], small[1], |x, y| image::Rgb(pixel(at(x, 0), at(y, 1))))))
     }
 
-    /// As a PNG file.
+    /// Encodes it as a PNG file.
     pub(super) fn to_png(&self) -> Option<Vec<u8>> {
         let mut bytes = Cursor::new(Vec::new());
         self.0.write_to(&mut bytes, ImageFormat::Png).ok()?;
         Some(bytes.into_inner())
     }
 
-    /// From a PNG file of ours; none where it is not one.
+    /// Decodes a PNG file of ours; `None` if it is another file.
     pub(super) fn from_png(bytes: &[u8]) -> Option<Self> {
         let mut reader = image::ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
         let mut limits = image::Limits::default();
@@ -50,7 +51,7 @@ impl Thumbnail {
         [self.0.width(), self.0.height()]
     }
 
-    /// Rows from above, three bytes a pixel.
+    /// Rows from the top, three bytes per pixel.
     pub fn bytes(&self) -> &[u8] {
         self.0.as_raw()
     }

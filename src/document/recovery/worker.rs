@@ -1,4 +1,4 @@
-//! The thread that writes snapshots, and what it shares with the window.
+//! The thread that writes snapshots, and the state that it shares with the window.
 
 use std::collections::VecDeque;
 use std::io;
@@ -13,18 +13,18 @@ use isolith_scene::Scene;
 
 /// The name of the thread.
 pub const AUTOSAVE_THREAD: &str = "autosave";
-/// Shortest and longest pause after a snapshot has been written; it is as long as the writing took, within these. With
-/// [`super::BETWEEN_SNAPSHOTS`] and two times the writing this stays below five seconds where a snapshot is written within
-/// one. 10 000 nodes take 0.05 s in a debug build.
+/// Shortest and longest pause after a snapshot; within these, the pause is as long as the write took. With
+/// [`super::BETWEEN_SNAPSHOTS`] and two writes this stays below five seconds if a write takes up to one second. 10 000
+/// nodes take 0.05 s in a debug build.
 const PAUSE: [Duration; 2] = [Duration::from_millis(1_000), Duration::from_millis(2_500)];
 /// Pause after a failure.
 const BEFORE_NEXT_TRY: Duration = Duration::from_secs(5);
-/// How long a panic waits for a snapshot that is just being written.
+/// How long a panic waits for a snapshot that is being written.
 const RESCUE_WAITS: Duration = Duration::from_secs(2);
-/// Most notes that wait for the window.
+/// Most notes that can wait for the window.
 const MAX_NOTES: usize = 32;
 
-/// A document at one moment.
+/// The state of a document at one moment.
 #[derive(Clone, Debug)]
 pub(super) struct Snapshot {
     pub document: u64,
@@ -33,37 +33,37 @@ pub(super) struct Snapshot {
     pub about: About,
 }
 
-/// What the worker is to do besides writing.
+/// An order to the worker.
 pub(super) enum Order {
-    /// The document of this number is saved or given up.
+    /// The document of this number was saved or discarded: remove its folder.
     Forget(u64),
-    /// The document of this number is this one.
+    /// The document of this number continues this lost one: take over its folder.
     Adopt(u64, Lost),
-    /// Nobody wants it.
+    /// The artist discarded this lost document: remove its folder.
     Discard(Lost),
 }
 
-/// What the artist should know.
+/// A warning for the artist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Note {
-    /// Nothing can be kept at present, and why.
+    /// Snapshots fail at present, for this reason.
     Failed(String),
-    /// A thread has ended in a panic: what it said, and what became of the work.
+    /// A thread has panicked: its message, and the fate of the unsaved work.
     Panicked(String, Rescued),
 }
 
-/// What a panic left of the work.
+/// The fate of unsaved work after a panic.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Rescued {
-    /// Nothing was changed that is not saved.
+    /// There were no unsaved changes.
     Nothing,
-    /// It is kept.
+    /// The work is in a snapshot.
     Kept,
-    /// It could not be kept, and why.
+    /// The work could not be written, for this reason.
     Failed(String),
 }
 
-/// What window, worker and panics share.
+/// The state shared by window, worker and panic hook.
 pub(super) struct Shared {
     root: PathBuf,
     desk: Mutex<Desk>,
@@ -71,7 +71,7 @@ pub(super) struct Shared {
     disk: Mutex<Disk>,
 }
 
-/// What waits for the worker. Locked for moments only.
+/// Requests waiting for the worker. Locked for moments only.
 #[derive(Default)]
 struct Desk {
     latest: Option<Snapshot>,
@@ -81,12 +81,12 @@ struct Desk {
     stopped: bool,
 }
 
-/// What has been written. Locked while something is.
+/// The state of the files. Locked during a write.
 #[derive(Default)]
 struct Disk {
-    /// The folder of the document of this number.
+    /// The document's number and its folder.
     place: Option<(u64, Place)>,
-    /// Document and revision of the last snapshot.
+    /// Number and revision of the last snapshot.
     written: Option<(u64, u64)>,
 }
 
@@ -96,7 +96,7 @@ impl Shared {
         Self { root: root.to_path_buf(), desk, wake: Condvar::new(), disk }
     }
 
-    /// A panic while it was held left nothing half done: each field is set in one step.
+    /// A panic that poisoned the lock left the fields consistent: each is set in one step.
     fn desk(&self) -> MutexGuard<'_, Desk> {
         self.desk.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -141,13 +141,13 @@ impl Shared {
         }
     }
 
-    /// Writes and obeys until it is stopped; what waits then is done first.
+    /// Writes snapshots and executes orders until it is stopped; finishes waiting requests first.
     pub fn work(&self) {
         let (mut next, mut failure) = (Instant::now(), None);
         while let Some(task) = self.wait(next) {
             let started = Instant::now();
             let done = catch_unwind(AssertUnwindSafe(|| self.perform(task)));
-            // The hook has told of a panic.
+            // The hook has reported a panic already.
             let result = done.unwrap_or_else(|_| Err(io::Error::other("writing failed unexpectedly")));
             let pause = match result {
                 Ok(()) => {
@@ -167,7 +167,7 @@ impl Shared {
         }
     }
 
-    /// Waits until there is something to do; none when it is time to end. Orders come first and at once.
+    /// Waits for the next task; `None` at the end. Orders come first and without a pause.
     fn wait(&self, next: Instant) -> Option<Task> {
         let mut written = self.disk().written;
         let mut tried_at_the_end = false;
@@ -185,7 +185,7 @@ impl Shared {
                     if !desk.stopped {
                         return Some(Task::Write(snapshot, picture));
                     }
-                    // The last words; what cannot be written now is not written later.
+                    // The final snapshot; after a failure there is no further attempt.
                     tried_at_the_end = true;
                     drop(desk);
                     if let Err(error) = self.perform(Task::Write(snapshot, picture)) {
@@ -238,7 +238,7 @@ enum Task {
 }
 
 impl Disk {
-    /// Writes a snapshot, unless it has been written.
+    /// Writes a snapshot unless it is written already.
     fn keep(&mut self, root: &Path, snapshot: &Snapshot) -> io::Result<()> {
         let this = (snapshot.document, snapshot.revision);
         if self.written == Some(this) {
@@ -250,7 +250,7 @@ impl Disk {
                 _ => Place::new(root, &snapshot.about)?,
             };
             match place.write_snapshot(&snapshot.scene) {
-                // Somebody has cleared the folder away: another one is made.
+                // Another process has removed the folder: create a new one.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && !is_last_try => {}
                 result => {
                     self.place = Some((snapshot.document, place));
@@ -262,7 +262,7 @@ impl Disk {
     }
 }
 
-/// Keeps the work when a thread panics.
+/// Writes the unsaved work when a thread panics.
 pub struct Rescuer(Arc<Shared>);
 
 impl Rescuer {
@@ -270,8 +270,8 @@ impl Rescuer {
         Self(shared)
     }
 
-    /// From now on, whatever thread panics, and whether or not that is caught: first of all the work is kept. `tell` is
-    /// given a line about it, after the hook of before has said what the panic is.
+    /// Installs a panic hook: on every panic of any thread, caught or not, it writes the unsaved work. It passes a line
+    /// about it to `tell`, after the previous hook has reported the panic.
     pub fn rescue_at_panics(self, tell: impl Fn(&str) + Send + Sync + 'static) {
         let before = std::panic::take_hook();
         std::panic::set_hook(Box::new(move |info| {
@@ -286,8 +286,8 @@ impl Rescuer {
         }));
     }
 
-    /// Writes the last snapshot now, and leaves a note with what the panic said. For the panic hook, on the thread that
-    /// panics: it waits for nothing that could wait for that thread.
+    /// Writes the last snapshot now, and leaves a note with the panic's message. It runs in the panic hook, on the
+    /// panicking thread, and takes locks with a time limit only, because that thread may hold them.
     pub fn rescue(&self, what: &str) -> Rescued {
         let rescued = self.keep();
         if let Some(mut desk) = patiently(&self.0.desk)
@@ -302,7 +302,7 @@ impl Rescuer {
         let latest = patiently(&self.0.desk).map(|desk| desk.latest.clone());
         let Some(latest) = latest else { return Rescued::Failed("its memory is in use".into()) };
         let Some(snapshot) = latest else { return Rescued::Nothing };
-        // The worker itself would wait for itself; it tries again.
+        // The worker would wait for itself; it tries again later.
         if std::thread::current().name() == Some(AUTOSAVE_THREAD) {
             return Rescued::Nothing;
         }
@@ -316,7 +316,7 @@ impl Rescuer {
     }
 }
 
-/// The lock, if it can be had in bounded time.
+/// The lock, unless it stays taken for [`RESCUE_WAITS`].
 fn patiently<T>(mutex: &Mutex<T>) -> Option<MutexGuard<'_, T>> {
     let until = Instant::now() + RESCUE_WAITS;
     loop {

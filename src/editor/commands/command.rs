@@ -1,92 +1,92 @@
-//! The commands by name, without what they need and do.
+//! The names of the commands, without their conditions and effects.
 
 use crate::navigation::Side;
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{Operator, ShapeKind};
 
-/// Something that the artist can order. What it is called, where it stands and when it can be run is in the table.
+/// A command of the artist. The table holds its label, menu and condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// An empty scene with a light.
+    /// Start an empty scene with a light.
     New,
     /// Ask for a scene and open it.
     Open,
-    /// Write the scene to its file.
+    /// Save the scene to its file.
     Save,
-    /// Write the scene to another file.
+    /// Save the scene to another file.
     SaveAs,
-    /// Read the scene's file again.
+    /// Reload the scene from its file.
     Reload,
-    /// Read the models of the scene again.
+    /// Reload the models of the scene.
     ReloadModels,
-    /// List what was not saved.
+    /// List recoverable work.
     Recover,
     /// Close the window.
     Quit,
-    /// Take back the last change.
+    /// Undo the last change.
     Undo,
-    /// Do again what was taken back.
+    /// Redo the last undone change.
     Redo,
-    /// Change the active node's name in the tree.
+    /// Rename the active node in the outliner.
     Rename,
-    /// Copy the selection.
+    /// Duplicate the selection.
     Duplicate,
-    /// Remove the selection.
+    /// Delete the selection.
     Delete,
-    /// Put the selection into a group.
+    /// Group the selection.
     Group,
-    /// Take the children out of the selected groups.
+    /// Ungroup the selected groups.
     Ungroup,
-    /// One place up among the siblings.
+    /// Move one place up among the siblings.
     MoveUp,
-    /// One place down among the siblings.
+    /// Move one place down among the siblings.
     MoveDown,
-    /// Join the selection by an operator.
+    /// Combine the selection by an operator.
     Join(Operator),
-    /// Cut away, or join again.
+    /// Switch the selection between subtracted and joined.
     ToggleNegative,
     /// Select every node.
     SelectAll,
     /// Clear the selection.
     SelectNothing,
-    /// Hide the selection, or show it again.
+    /// Hide or show the selection.
     ToggleVisible,
-    /// Show everything that is hidden.
+    /// Show all hidden nodes.
     ShowAll,
-    /// Lock the selection, or unlock it.
+    /// Lock or unlock the selection.
     ToggleLock,
-    /// Remove materials that nothing has.
+    /// Remove unused materials.
     RemoveUnusedMaterials,
     /// Add an object of this shape.
     AddShape(ShapeKind),
-    /// Add a group without children.
+    /// Add an empty group.
     AddGroup,
     /// Ask for a model and add it.
     AddMesh,
-    /// Add parallel light.
+    /// Add a sun.
     AddSun,
-    /// Add light from a point into every direction.
+    /// Add a point light.
     AddPointLight,
-    /// Add light from a point into a cone.
+    /// Add a spot light.
     AddSpotLight,
-    /// Add a camera that sees what the picture shows.
+    /// Add a camera with the current view.
     AddCamera,
-    /// Show all of the selection.
+    /// Frame the selection.
     FrameSelected,
-    /// Show the whole scene.
+    /// Frame the whole scene.
     FrameAll,
-    /// Take over the view of the scene's camera, or of the next one.
+    /// Look through the scene's camera, or through the next one.
     LookThroughCamera,
-    /// Look along an axis of the world.
+    /// Look along a world axis.
     LookFrom(Side),
-    /// Show or hide the ground grid.
+    /// Toggle the ground grid.
     ToggleGrid,
-    /// Show or hide what marks the selection.
+    /// Toggle the outline of the selection.
     ToggleOutline,
-    /// Open the palette.
+    /// Open the command palette.
     FindCommand,
-    /// Open or close the log.
+    /// Toggle the log.
     ShowMessages,
-    /// Have the picture show this.
+    /// Switch to this view mode.
     ShowLook(ViewMode),
 }

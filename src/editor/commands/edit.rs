@@ -35,7 +35,7 @@ fn any(state: &EditorState) -> bool {
     !state.session.document.selection().is_empty()
 }
 
-/// A command on what is selected.
+/// A command that needs a selection.
 fn on_selection(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
     row(command, icon, label, help).when(any)
 }
@@ -91,7 +91,7 @@ fn roles() -> Vec<CommandInfo> {
     ]
 }
 
-/// Operators without a key; the command palette finds them.
+/// Operators without a shortcut; the command palette finds them.
 fn extended_operators() -> Vec<CommandInfo> {
     let [exclude, pipe, groove] = [
         "Keeps what is in one of the selection but not in the next",

@@ -1,4 +1,4 @@
-//! Commands as entries of menus.
+//! Menu entries of commands.
 
 use egui::{Button, Response, RichText, Ui};
 
@@ -10,12 +10,12 @@ use crate::theme;
 /// Room for an icon in front of a label.
 pub const ICON_ROOM: &str = "      ";
 
-/// Where the help of the hovered menu entry waits for the status bar.
+/// Key of the help text of the hovered menu entry, for the status bar.
 pub fn hovered_help() -> egui::Id {
     egui::Id::unique("help of the hovered command")
 }
 
-/// The entries of one menu; returns the command chosen.
+/// Shows the entries of one menu; returns the chosen command.
 pub fn menu_entries(ui: &mut Ui, state: &EditorState, menu: Menu) -> Option<Command> {
     let mut chosen = None;
     for (index, command) in Command::all().filter(|command| command.info().menu == menu).enumerate() {
@@ -29,7 +29,7 @@ pub fn menu_entries(ui: &mut Ui, state: &EditorState, menu: Menu) -> Option<Comm
     chosen
 }
 
-/// The entries of the context menu of the selection; returns the command chosen.
+/// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{
         Delete, Duplicate, FrameSelected, Group, MoveDown, MoveUp, Rename, ToggleLock, ToggleNegative, ToggleVisible,
@@ -55,7 +55,7 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     chosen
 }
 
-/// An entry of a menu; one that switches something has a mark of whether it is on instead of its icon.
+/// A menu entry. A switch shows its state in place of the icon.
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
@@ -71,7 +71,7 @@ fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Resp
     });
     info.paint_icon(ui, response.rect, enabled, on);
     if response.hovered() {
-        // Not as a tooltip: it would hide the next entries. The status bar shows it.
+        // The status bar shows the help text: a tooltip would hide the next entries.
         ui.ctx().data_mut(|d| d.insert_temp(hovered_help(), info.help.clone()));
     }
     response

@@ -1,4 +1,4 @@
-//! What is known about a command besides what it does.
+//! The description of a command: label, icon, menu, keys and condition.
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 use egui_material_icons::MaterialIcon;
@@ -11,27 +11,27 @@ use crate::state::EditorState;
 use crate::{icons, theme};
 use isolith_scene::ShapeKind;
 
-/// Where a command stands.
+/// The menu of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Menu {
-    /// Documents.
+    /// Open, save, close.
     File,
-    /// What changes the selection.
+    /// Changes of the selection.
     Edit,
     /// New nodes.
     Add,
-    /// The camera and what is shown.
+    /// The camera and the picture.
     View,
-    /// What the picture shows; a part of the menu View.
+    /// View modes; a submenu of View.
     ViewMode,
-    /// What the picture shows to whoever looks for a fault; a part of the menu of [`Menu::ViewMode`].
+    /// View modes for debugging; a submenu of [`Menu::ViewMode`].
     Debug,
 }
 
-/// A picture of a command.
+/// An icon of a command.
 #[derive(Clone, Copy, Debug)]
 pub enum Icon {
-    /// A sign of the icon font.
+    /// A glyph of the icon font.
     Material(MaterialIcon),
     /// The silhouette of a shape.
     Shape(ShapeKind),
@@ -43,31 +43,31 @@ impl From<MaterialIcon> for Icon {
     }
 }
 
-/// Whether a command can be run.
+/// Whether a command is enabled.
 pub type Condition = fn(&EditorState) -> bool;
 
-/// Whether what a command switches is on.
+/// Whether the switch of a command is on.
 pub type SwitchState = fn(&EditorState, Command) -> bool;
 
 /// A row of the table.
 pub struct CommandInfo {
-    /// Which command.
+    /// The command.
     pub command: Command,
-    /// What it is called, everywhere.
+    /// Its name, everywhere.
     pub label: String,
     /// Its menu.
     pub menu: Menu,
-    /// Whether a line stands before it in its menu.
+    /// Whether a separator precedes it in its menu.
     pub starts_group: bool,
-    /// Its picture.
+    /// Its icon.
     pub icon: Option<Icon>,
-    /// One sentence about what it does.
+    /// One sentence about its effect.
     pub help: String,
-    /// Its keys; the first is shown.
+    /// Its shortcuts; menus show the first.
     pub keys: Vec<KeyboardShortcut>,
-    /// Whether it can be run.
+    /// Whether it is enabled.
     pub is_enabled: Condition,
-    /// Whether what it switches is on; none where it switches nothing.
+    /// Whether its switch is on; `None` for a command that is not a switch.
     pub is_on: Option<SwitchState>,
 }
 
@@ -112,7 +112,7 @@ impl CommandInfo {
         self
     }
 
-    /// Name, what it does and its keys.
+    /// Name, shortcuts and help.
     pub fn tooltip(&self, ctx: &Context) -> String {
         let keys: Vec<_> = self.keys.iter().map(|k| ctx.format_shortcut(k)).collect();
         let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
@@ -129,7 +129,7 @@ impl CommandInfo {
         }
     }
 
-    /// Paints the icon at the left end of a menu entry; where it switches something, a mark of whether that is on.
+    /// Paints the icon at the left end of a menu entry, or the state of a switch.
     pub fn paint_icon(&self, ui: &egui::Ui, entry: egui::Rect, enabled: bool, on: Option<bool>) {
         let icon = on.map(|on| Icon::Material(self.mark(on))).or(self.icon);
         let square = egui::Rect::from_center_size(

@@ -1,10 +1,10 @@
-//! Everything that the artist can order: it feeds the menus, the toolbar, the shortcuts and the palette.
+//! All commands of the artist. They feed the menus, the toolbar, the shortcuts and the command palette.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `command` | the commands by name |
+//! | `command` | the names of the commands |
 //! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `add` and `view` |
-//! | `run` | what they do |
+//! | `run` | their effects |
 //! | `entries`, `shortcuts` | commands in menus and by keys |
 
 mod add;

@@ -1,4 +1,4 @@
-//! What commands do.
+//! The effects of commands.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use isolith_document::Edit;
 use isolith_scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
 impl Editor {
-    /// Runs a command, where it can be run.
+    /// Runs a command if it is enabled.
     pub fn run(&mut self, command: Command, ctx: &Context) {
         if !command.is_enabled(&self.state) {
             return;
@@ -110,7 +110,7 @@ fn add_spot_light(state: &mut EditorState) {
     add_lamp(state, "Spot light", LightKind::Spot { attenuation, inner: 20.0, outer: 30.0 });
 }
 
-/// A lamp two meters above where the view looks, shining down.
+/// A spot light two meters above the view's target, shining down.
 fn add_lamp(state: &mut EditorState, name: &str, light: LightKind) {
     let down = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
     let light = Light { color: [1.0; 3], intensity: 4.0, light };

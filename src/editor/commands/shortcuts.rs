@@ -1,4 +1,4 @@
-//! Commands by their keys.
+//! Runs commands by their shortcuts.
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
 
@@ -8,9 +8,9 @@ use crate::command_palette::CommandPalette;
 use crate::root::Editor;
 
 impl Editor {
-    /// Runs the commands whose keys were pressed. Not while text is being typed, something is being
-    /// dragged, or a menu is open: there the keys mean other things. Only documents are saved, opened and closed at any time:
-    /// after what is being typed has been taken, so at the end of the frame.
+    /// Runs the commands of the pressed shortcuts, except during text input or a drag or while a menu is open: there
+    /// the keys have other meanings. Commands that save, open or close documents run at any time, but at the end of the
+    /// frame, when the fields have taken the typed text.
     pub(crate) fn run_shortcuts(&mut self, ctx: &Context) {
         if self.dialogs.is_open() {
             return;
@@ -24,7 +24,7 @@ impl Editor {
             return;
         }
         let dragging = ctx.input(|i| i.pointer.any_down());
-        // Not what `Context::any_popup_open` says: that knows only of popups shown in this pass already.
+        // Not `Context::any_popup_open`: it knows only the popups shown so far in this pass.
         if self.has_dialog() || self.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
             return;
         }
@@ -32,7 +32,7 @@ impl Editor {
         if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
             *log = false;
         }
-        // Escape cancels what runs before it means anything else.
+        // Escape first cancels the current action.
         let jobs = self.state.derived.jobs();
         if jobs.foremost().is_some_and(|task| task.can_cancel())
             && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape))
@@ -45,7 +45,7 @@ impl Editor {
     }
 }
 
-/// Takes the first key press out of the input that belongs to one of these commands.
+/// Consumes the first key press that belongs to one of these commands.
 fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(Command) -> bool) -> Option<Command> {
     let mut found = None;
     input.events.retain(|event| {
@@ -53,7 +53,7 @@ fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(Command) -> bo
         if found.is_some() {
             return true;
         }
-        // Exactly these modifiers: Ctrl Z is not Shift Ctrl Z.
+        // Compare modifiers exactly: Ctrl Z is not Shift Ctrl Z.
         let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
         found = Command::all().find(|command| is_wanted(*command) && command.info().keys.iter().any(fits));
         found.is_none()

@@ -1,4 +1,4 @@
-//! The table of all commands: label, keys, menu, and when each can be run. It feeds menus, toolbar, shortcuts and palette.
+//! The table of all commands: label, keys, menu and condition of each. It feeds menus, toolbar, shortcuts and palette.
 
 use std::sync::LazyLock;
 
@@ -13,22 +13,22 @@ static TABLE: LazyLock<Vec<CommandInfo>> = LazyLock::new(|| {
 });
 
 impl Command {
-    /// All commands, in the order of the menus.
+    /// All commands, in menu order.
     pub fn all() -> impl Iterator<Item = Self> {
         TABLE.iter().map(|info| info.command)
     }
 
-    /// Its row of the table.
+    /// The row of this command.
     pub fn info(self) -> &'static CommandInfo {
         TABLE.iter().find(|info| info.command == self).expect("every command that is named stands in the table")
     }
 
-    /// Whether it can be run now.
+    /// Whether it is enabled now.
     pub fn is_enabled(self, state: &EditorState) -> bool {
         (self.info().is_enabled)(state)
     }
 
-    /// Whether what it switches is on.
+    /// Whether its switch is on.
     pub fn is_on(self, state: &EditorState) -> Option<bool> {
         self.info().is_on.map(|is_on| is_on(state, self))
     }

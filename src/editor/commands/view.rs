@@ -1,4 +1,4 @@
-//! Commands on what the picture shows.
+//! Commands on the view.
 
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
@@ -65,7 +65,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     all
 }
 
-/// Whether it shows how the renderer works rather than the scene.
+/// Whether the view mode shows the renderer's work rather than the scene.
 fn is_diagnostic(view_mode: ViewMode) -> bool {
     view_mode.counts() || view_mode == ViewMode::Slope
 }

@@ -17,39 +17,40 @@ pub fn field(flat: &FlatScene, component: &Component, p: DVec3) -> f64 {
     fold(flat, component, entries(component), at(p))
 }
 
-/// The field and its gradient at `p`. The gradient is exact where the field is smooth, one of the
-/// one-sided ones on a ridge, and may vanish on an axis or at a center.
+/// The field and its gradient at `p`. The gradient is exact where the field is smooth. On a ridge it is one of the
+/// one-sided gradients; on an axis or at a center it may vanish.
 pub fn gradient(flat: &FlatScene, component: &Component, p: DVec3) -> (f64, DVec3) {
     let Dual { v, d } = fold(flat, component, entries(component), at(p));
     (v, d)
 }
 
-/// The field of one entry at `p`, which is relative to the space that the entry stands in.
+/// The field of one entry at `p`, which is relative to the space of the entry.
 pub fn entry_field(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> f64 {
     operand(flat, component, index, at(p))
 }
 
-/// What 32-bit numbers may make of the weight of an operand: by how much it may be off one half where both weigh the same.
+/// The rounding of 32-bit numbers in the weight of an operand: the largest deviation from one half where both
+/// operands weigh the same.
 pub const TIE: f64 = 16.0 * f32::EPSILON as f64;
 
-/// What the surface near a point is like.
+/// The surface near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The field.
     pub distance: f64,
     /// Its gradient.
     pub gradient: DVec3,
-    /// The leaf that outweighs the others at each blend: index into [`FlatScene::nodes`].
+    /// The leaf with the largest weight at each blend: index into [`FlatScene::nodes`].
     pub leaf: u32,
-    /// Whether at a blend another one weighs as much, within [`TIE`].
+    /// Whether another operand of a blend has the same weight, within [`TIE`].
     pub tied: bool,
     /// The materials, by the weights of the blends.
     pub materials: Mixture,
-    /// What they are, mixed.
+    /// The mixture of the materials.
     pub material: SurfaceMaterial,
 }
 
-/// The field at `p` with everything that the surface there needs.
+/// The field at `p` with all properties of the surface there.
 pub fn surface(flat: &FlatScene, component: &Component, p: DVec3) -> SurfacePoint {
     let Surface { distance, leaf, tied, materials } = fold(flat, component, entries(component), at(p));
     let material = mixture_material(&materials, &flat.materials);
@@ -60,19 +61,19 @@ fn entries(component: &Component) -> Range<usize> {
     component.first as usize..(component.first + component.count) as usize
 }
 
-/// The point that derivatives are taken for.
+/// The point as the variable of differentiation.
 fn at<T: Real>(p: DVec3) -> [T; 3] {
     [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| T::coordinate(axis, 0.0, p))
 }
 
-/// What the fold carries along: a number, or more.
+/// The value that the fold carries: a number, or more.
 trait Operand: Copy {
     type Number: Real;
     fn leaf(flat: &FlatScene, index: usize, distance: Self::Number) -> Self;
     fn distance(&self) -> Self::Number;
-    /// The same with another distance.
+    /// The same operand with another distance.
     fn with_distance(self, distance: Self::Number) -> Self;
-    /// `self` and `operand` joined, with the result at hand.
+    /// Joins `operand` to `self`, given the result of the blend.
     fn joined(self, operand: Self, result: BlendResult<Self::Number>) -> Self;
 }
 
@@ -123,7 +124,7 @@ impl Operand for Surface {
     }
 }
 
-/// Folds the siblings in `range`. Recursion is as deep as groups are nested after flattening, at most
+/// Folds the siblings in `range`. The recursion depth is the nesting of groups after flattening, at most
 /// [`crate::MAX_STACK`].
 fn fold<O: Operand>(flat: &FlatScene, component: &Component, range: Range<usize>, p: [O::Number; 3]) -> O {
     let mut so_far: O = operand(flat, component, range.start, p);
@@ -131,7 +132,7 @@ fn fold<O: Operand>(flat: &FlatScene, component: &Component, range: Range<usize>
     while at < range.end {
         let node = &flat.nodes[at];
         if node.is_run() {
-            // Only says what may be skipped; the reference skips nothing.
+            // Runs only say what may be skipped; the CPU evaluator skips nothing.
             at += 1;
             continue;
         }
@@ -156,7 +157,8 @@ fn operand<O: Operand>(flat: &FlatScene, component: &Component, index: usize, p:
     }
 }
 
-/// The field at `p` of a modifier whose rows `params` begins with; `content` is the field of what it holds, in its space.
+/// The field at `p` of a modifier whose rows `params` begins with; `content` is the field of its content, in its
+/// space.
 pub fn modified_field(kind: ModifierKind, params: &[ParamRow], p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
     modified(kind, params, placed(&params[3..6], p.to_array()), &|q| content(q.into()))
 }
@@ -182,7 +184,7 @@ fn modified<O: Operand>(
             nearest = Some(copy);
         }
     }
-    // Where no copy is near, something must still say what the surface would be.
+    // Without a copy nearby the first one supplies the surface properties.
     let (carrier, found) = match nearest {
         Some(copy) => (copy, start.min(copy.distance())),
         None => (content(modifier_point(kind, local, 0, rows)), start),

@@ -1,23 +1,23 @@
-//! The ellipsoid: its distance is the root of an equation that has no closed form.
+//! The ellipsoid. Its distance is the root of an equation without a closed form.
 
 use super::Real;
 
-/// Most steps of Newton's method. Four are enough for f32 (the GPU's count); after eight the error over
-/// random half axes, thin and zero ones included, is that of f64's rounding.
+/// The limit on steps of Newton's method. Four are enough for f32 (the GPU's count). After eight the error over
+/// random half axes, including thin and zero ones, is the rounding of f64.
 const STEPS: usize = 8;
-/// A residual at which another step would change nothing: the value follows the square of the error.
+/// A residual at which another step changes nothing: the error of the value is the square of this error.
 const CONVERGED: f64 = 1e-12;
-/// How far points on the planes of symmetry are moved off them, relative to the size.
+/// The offset of points on the planes of symmetry away from them, relative to the size.
 const OFF: f64 = 1e-12;
 
 /// A ball stretched along its axes.
 ///
-/// The closest point is r² p / (t + r²) for the root t of |r p / (t + r²)| = 1. Newton's method on the
-/// reciprocal of that length, nearly a straight line in t, climbs to the root from the left (Moré and
-/// Sorensen, "Computing a trust region step", 1983). The unknown is s = t + (least r)², so that no two
-/// large numbers are subtracted. From the normal n at the point so found, n·p − |r n| is the distance
-/// to the tangent plane of that normal: wrong only by the square of the error in n, for zero half axes
-/// too. At the best n its gradient is n itself, so n takes no part in differentiation.
+/// The closest point is r² p / (t + r²) for the root t of |r p / (t + r²)| = 1. The reciprocal of that length is
+/// nearly linear in t, and Newton's method on it climbs to the root from the left (Moré and Sorensen, "Computing a
+/// trust region step", 1983). The unknown is s = t + (least r)², which avoids the subtraction of two large numbers.
+/// With the normal n at that point, n·p − |r n| is the distance to the tangent plane of that normal: its error is
+/// only the square of the error in n, for zero half axes too. At the best n its gradient is n itself, so n takes no
+/// part in differentiation.
 pub fn sdf_ellipsoid<T: Real>(p: [T; 3], parameters: &[f64; 8]) -> T {
     // Sorted, so that the least half axis comes first.
     let mut r = [parameters[0], parameters[1], parameters[2]];
@@ -54,14 +54,14 @@ fn normal(p: [f64; 3], r: [f64; 3]) -> [f64; 3] {
         s = (s + (square.sqrt() - 1.0) * square / fall.max(1e-300)).max(least);
     }
     let n: [f64; 3] = std::array::from_fn(|i| p[i] / (s + gap[i]));
-    // Divided by the greatest first: the squares of the quotients could overflow.
+    // Divide by the greatest first: the squares of the quotients could overflow.
     let most = greatest(n);
     let n = n.map(|v| v / most);
     n.map(|v| v / length(n))
 }
 
-/// A lower bound of the root, near it where the term `w` / s is steep: the others are replaced by their
-/// tangents at 0, which gives a cubic equation, and that by its larger summand.
+/// A lower bound of the root, near it where the term `w` / s is steep: tangents at 0 replace the other terms, which
+/// gives a cubic equation, and its larger summand replaces that.
 fn start(w: f64, others: [f64; 2], gaps: [f64; 2]) -> f64 {
     let (mut rest, mut fall) = (1.0, 0.0);
     for (other, gap) in others.into_iter().zip(gaps) {

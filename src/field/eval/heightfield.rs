@@ -1,4 +1,4 @@
-//! Heights over a rectangle, made solid. The rows are those of `flat::prepare::heightfield`.
+//! Heightfields: solids below heights over a rectangle. `crate::prepare::heightfield` defines their payload rows.
 
 use std::f64::consts::TAU;
 
@@ -20,8 +20,8 @@ pub fn sdf_heightmap<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     heightfield(p, q, heightmap_height(p[0], p[2], q, rows))
 }
 
-/// What is below the height and in the box: the height above the surface, over √(1 + L²) for the steepest slope L, is
-/// nowhere more than the distance to it.
+/// The solid below the heights and within the box. The height above the surface, over √(1 + L²) for the steepest
+/// slope L, never exceeds the distance to the surface.
 fn heightfield<T: Real>(p: [T; 3], q: &[f64; 8], height: T) -> T {
     let above = (p[1] - height) * q[4];
     let (middle, half) = (0.5 * (q[3] - q[1]), 0.5 * (q[3] + q[1]));
@@ -41,8 +41,8 @@ pub fn terrain_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     sum
 }
 
-/// Smooth noise between -1 and 1: random numbers at whole coordinates, between them t² (3 - 2 t) (value noise, Perlin,
-/// "An image synthesizer", 1985).
+/// Smooth noise between -1 and 1: random values at integer coordinates, interpolated by t² (3 - 2 t) (value noise,
+/// Perlin, "An image synthesizer", 1985).
 fn noise<T: Real>(x: T, z: T, seed: u32, salt: u32) -> T {
     let (cx, cz) = (x.value().floor(), z.value().floor());
     let (tx, tz) = (x - cx, z - cz);
@@ -78,14 +78,14 @@ pub fn ocean_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     sum
 }
 
-/// The cosine of so many turns, by its value and its derivative.
+/// The cosine of an angle in turns, with its derivative.
 fn cosine<T: Real>(turns: T) -> T {
     let angle = TAU * turns.value().fract();
     (turns - turns.value()) * (-TAU * angle.sin()) + angle.cos()
 }
 
-/// The height of an image's surface at (x, z), in meters: a quadratic B-spline over its cells; beyond the border that of
-/// the border.
+/// The height of an image's surface at (x, z), in meters: a quadratic B-spline over its cells. Beyond the border the
+/// height of the border continues.
 pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T {
     let (columns, lines) = (q[5], q[6]);
     let cells = |v: T, half: f64, count: f64| {
@@ -94,9 +94,9 @@ pub fn heightmap_height<T: Real>(x: T, z: T, q: &[f64; 8], rows: Data<'_>) -> T 
     sdf_heights([cells(x, q[0], columns), cells(z, q[2], lines)], [columns, lines], &|row| rows(1 + row))
 }
 
-/// The height of a grid at a place, in cells from its first corner: a quadratic B-spline.
+/// The height of a grid at a position, in cells from its first corner: a quadratic B-spline.
 pub fn sdf_heights<T: Real>(place: [T; 2], [columns, lines]: [f64; 2], rows: Data<'_>) -> T {
-    // From the middle of the cell, in cells.
+    // The position relative to the middle of the cell, in cells.
     let within = |cells: T, count: f64| {
         let cell = cells.value().floor().min(count - 1.0);
         (cell, cells - (cell + 0.5))

@@ -1,9 +1,9 @@
-//! The CPU evaluator: the field of the flat scene in f64, from the same numbers and by the same formulas as
-//! the GPU. It visits every node and skips nothing, so it is the reference that the renderer is held to.
+//! The CPU evaluator: the field of the flat scene in f64, with the same parameters and formulas as the GPU. It visits
+//! every node and skips nothing, so the renderer is tested against it.
 //!
-//! | file | what it holds | its counterpart on the GPU |
+//! | file | content | GPU counterpart |
 //! |---|---|---|
-//! | `real` | numbers: f64, and dual numbers that carry their gradient | – |
+//! | `real` | number types: f64, and dual numbers that carry their gradient | – |
 //! | `sdf` and its folder, `ellipsoid`, `tube`, `profile`, `heightfield` | the shapes | `shaders/sdf/<shape>.wgsl` |
 //! | `op` | the operators | `shaders/sdf/op.wgsl` |
 //! | `modifier` | the modifiers | `shaders/mod/<modifier>.wgsl` |

@@ -1,6 +1,6 @@
-//! The modifiers: where a point stands in what they modify, and what they make of its field. Each function is the
-//! counterpart of the one of the same name in `shaders/mod/`; what the rows hold is said there. `flat/modifier_table.rs` says which
-//! kind has which.
+//! The modifiers: how they map a point into the space of their content, and how they change its field. Each function
+//! is the counterpart of the function of the same name in `shaders/mod/`, which documents the rows.
+//! `field/modifier_table.rs` lists the functions of each kind.
 
 use super::Real;
 use super::heightfield::sdf_heights;
@@ -31,7 +31,7 @@ fn repeat_base(x: f64, axis: usize, rows: &[ParamRow]) -> f64 {
     ((x - at(3)) / at(0)).round_ties_even().clamp(at(1), at(2))
 }
 
-/// The n-th neighbor: itself, the nearer one, the one across, and so on.
+/// The offset of the n-th neighbor: the cell itself, the nearer neighbor, the one across, and so on.
 fn repeat_step(n: u32, side: f64) -> f64 {
     let away = f64::from(n.div_ceil(2));
     if n & 1 == 1 { away * side } else { -away * side }
@@ -50,12 +50,12 @@ fn repeat_index<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> [f64; 3] {
     [neighbor(p[0].value() - f64::from(rows[5][0]) * y, 0, k % n[0]), y, z]
 }
 
-/// How many copies are evaluated for one point.
+/// The number of copies to evaluate for one point.
 pub fn mod_repeat_count(rows: &[ParamRow]) -> u32 {
     candidates(rows).iter().product()
 }
 
-/// Whether the k-th copy is there.
+/// Whether the k-th copy exists.
 pub fn mod_repeat_exists<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> bool {
     let index = repeat_index(p, k, rows);
     let all = |test: &dyn Fn(usize, f64) -> bool| (0..3).all(|i| test(i, index[i]));
@@ -64,7 +64,7 @@ pub fn mod_repeat_exists<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> boo
     all(&|i, x| x >= at(1, i) && x <= at(2, i)) && !carved
 }
 
-/// How far the nearest cell that is not looked at is away along one axis; `None` where there is none.
+/// The distance along one axis to the nearest cell that is not evaluated; `None` without such a cell.
 fn repeat_beyond<T: Real>(x: T, axis: usize, rows: &[ParamRow]) -> Option<T> {
     let at = |row: usize| f64::from(rows[row][axis]);
     let (spacing, half, n) = (at(0), at(4), candidates(rows)[axis]);
@@ -81,7 +81,7 @@ fn repeat_beyond<T: Real>(x: T, axis: usize, rows: &[ParamRow]) -> Option<T> {
     }
 }
 
-/// The distance to all that is not looked at.
+/// The distance to the cells that are not evaluated.
 pub fn mod_repeat_start<T: Real>(p: Point<T>, rows: &[ParamRow]) -> T {
     let outside: [T; 3] = std::array::from_fn(|i| {
         let (low, high) = (f64::from(rows[8][i]), f64::from(rows[9][i]));
@@ -104,7 +104,7 @@ pub fn mod_repeat_start<T: Real>(p: Point<T>, rows: &[ParamRow]) -> T {
     least
 }
 
-/// Where the point stands in the k-th copy.
+/// Maps the point into the k-th copy.
 pub fn mod_repeat_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> Point<T> {
     let index = repeat_index(p, k, rows);
     let (spacing, offset) = (row(rows, 0), row(rows, 5));
@@ -121,7 +121,7 @@ pub fn mod_repeat_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> Poin
     })
 }
 
-/// Where the point stands in the k-th copy.
+/// Maps the point into the k-th copy.
 pub fn mod_recursion_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> Point<T> {
     let (offset, flags) = (row(rows, 0), rows[2][3] as u32);
     let mut q = p;
@@ -138,12 +138,12 @@ pub fn mod_recursion_point<T: Real>(p: Point<T>, k: u32, rows: &[ParamRow]) -> P
     q
 }
 
-/// Counterpart of the shader's; see there.
+/// Counterpart of the shader function, which documents it.
 pub fn mod_enclosed<T: Real>(value: T, away: T, margin: f64) -> T {
     away.max(value.min(-away + 2.0 * margin))
 }
 
-/// Where the point stands in what is twisted.
+/// Maps the point into the twisted content.
 pub fn mod_twist_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
     let (a, b) = (row(rows, 0), row(rows, 1));
     let reach = b[1] + a[3];
@@ -152,14 +152,14 @@ pub fn mod_twist_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
     [c * p[0] - s * p[2], p[1], s * p[0] + c * p[2]]
 }
 
-/// The field of what is twisted.
+/// The field of the twisted content.
 pub fn mod_twist_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     let (a, b) = (row(rows, 0), row(rows, 1));
     let away = (length([p[0], p[2]]) - a[2]).max((p[1] - b[0]).abs() - b[1]);
     mod_enclosed(f * a[1], away, a[3])
 }
 
-/// Along the arc, and from it toward the center.
+/// The position along the arc, and from the arc toward the center.
 fn bend_place<T: Real>(p: Point<T>, rows: &[ParamRow]) -> [T; 2] {
     let a = row(rows, 0);
     let height = p[1] * a[3];
@@ -168,14 +168,14 @@ fn bend_place<T: Real>(p: Point<T>, rows: &[ParamRow]) -> [T; 2] {
     [p[0].atan2(down), (height * (2.0 * a[0]) - p[0].squared() - height.squared()) / (r + a[0])]
 }
 
-/// Where the point stands in what is bent.
+/// Maps the point into the bent content.
 pub fn mod_bend_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
     let a = row(rows, 0);
     let [angle, height] = bend_place(p, rows);
     [angle * a[0], height * a[3], p[2]]
 }
 
-/// The field of what is bent.
+/// The field of the bent content.
 pub fn mod_bend_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     let (a, b) = (row(rows, 0), row(rows, 1));
     let [angle, height] = bend_place(p, rows);
@@ -185,31 +185,31 @@ pub fn mod_bend_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     mod_enclosed(f * a[1], of_arc.max(chebyshev(p, row(rows, 2), row(rows, 3))), a[2])
 }
 
-/// The largest of a point's distances to the sides of a box; negative within.
+/// The largest of a point's distances to the sides of a box; negative inside.
 fn chebyshev<T: Real>(p: Point<T>, center: [f64; 4], half: [f64; 4]) -> T {
     let [x, y, z]: Point<T> = std::array::from_fn(|i| (p[i] - center[i]).abs() - half[i]);
     x.max(y).max(z)
 }
 
-/// Where the point stands in what is tapered.
+/// Maps the point into the tapered content.
 pub fn mod_taper_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
     let width = clamp(p[1], row(rows, 1)[3], row(rows, 2)[3]) * row(rows, 0)[0] + 1.0;
     [p[0] / width, p[1], p[2] / width]
 }
 
-/// The field of what is tapered.
+/// The field of the tapered content.
 pub fn mod_taper_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     let a = row(rows, 0);
     mod_enclosed(f * a[1], chebyshev(p, row(rows, 1), row(rows, 2)), a[2])
 }
 
-/// Where the point stands in what is drawn apart.
+/// Maps the point into the elongated content.
 pub fn mod_elongate_point<T: Real>(p: Point<T>, rows: &[ParamRow]) -> Point<T> {
     let half = row(rows, 0);
     std::array::from_fn(|i| p[i] - clamp(p[i], -half[i], half[i]))
 }
 
-/// The field of walls.
+/// The field of the onion's walls.
 pub fn mod_onion_value<T: Real>(f: T, rows: &[ParamRow]) -> T {
     let [half, walls, spacing, _] = row(rows, 0);
     let wall = (-f.value() / spacing).round_ties_even().clamp(0.0, walls - 1.0);
@@ -224,7 +224,7 @@ pub fn mod_waves_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     (displaced * slope).max(f - amplitude).min(f + amplitude)
 }
 
-/// A number between −1 and 1 for a corner of the grid.
+/// A random value between −1 and 1 for a corner of the grid.
 fn noise_corner(at: [i32; 3], seed: u32) -> f64 {
     let [x, y, z] = at.map(|v| v as u32);
     let mut h = x.wrapping_mul(0x8da6_b343) ^ y.wrapping_mul(0xd816_3841) ^ z.wrapping_mul(0xcb1a_b31f);
@@ -243,7 +243,7 @@ pub fn noise_value<T: Real>(p: Point<T>, seed: u32) -> T {
         u * u * (u * -2.0 + 3.0)
     });
     let corner = |i: usize| {
-        // Far away all cells are the last one.
+        // Far away the cast saturates: all points share the last cell.
         let at = std::array::from_fn(|axis| (cell[axis] as i32).wrapping_add((i >> axis & 1) as i32));
         T::constant(noise_corner(at, seed))
     };
@@ -264,7 +264,7 @@ pub fn mod_noise_value<T: Real>(f: T, p: Point<T>, rows: &[ParamRow]) -> T {
     (moved * b[0]).max(f - b[1]).min(f + b[1])
 }
 
-/// Where the point stands in the image, in tiles, mirrored at their borders.
+/// The position of the point in the image, in tiles, mirrored at their borders.
 fn displacement_place<T: Real>([x, y, z]: Point<T>, [width, length, ..]: [f64; 4], axis: f64) -> [T; 2] {
     let (across, down) = match axis as u32 {
         0 => (-z, -y),

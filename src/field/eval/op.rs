@@ -1,14 +1,15 @@
 //! The operators.
 //!
-//! Beyond |a − b| ≥ support union, intersection and difference are exactly hard; support 0 is hard everywhere.
-//! No operator has derivatives whose sizes sum to more than 1: where its operands are safe to step by, it is.
+//! Beyond |a − b| ≥ support, union, intersection and difference are exactly hard; support 0 is hard everywhere. The
+//! absolute derivatives of every operator sum to at most 1: where its operands are safe to step by, its result is
+//! too.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::Real;
 use crate::{Join, ParamRow};
 
-/// Two operands joined.
+/// The result of joining two operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlendResult<T> {
     /// The value.
@@ -17,18 +18,18 @@ pub struct BlendResult<T> {
     pub by_a: f64,
     /// Its derivative by the second operand.
     pub by_b: f64,
-    /// The second operand's weight in the material, 0 to 1. The first has the rest.
+    /// The second operand's weight in the material, 0 to 1; the first has the remainder.
     pub weight: f64,
 }
 
-/// The numbers of a blend: what stands in the first [`ParamRow`] of the operand that joins.
+/// The parameters of a blend: the content of the first [`ParamRow`] of the joining operand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlendParams {
     /// Support of the blend in meters; for paint, half the width of the soft edge.
     pub support: f64,
-    /// How many steps the kernel has; for pipes, grooves and tongues half their width in meters.
+    /// The number of steps of the kernel; for pipes, grooves and tongues half their width in meters.
     pub size: f64,
-    /// Depth or height in meters; for a morph the second operand's share.
+    /// Depth or height in meters; for a morph the second operand's fraction.
     pub depth: f64,
 }
 
@@ -38,13 +39,13 @@ impl BlendParams {
         Self { support, size: 1.0, depth: 0.0 }
     }
 
-    /// From the first row of an operand.
+    /// Reads the parameters from the first row of an operand.
     pub fn read(row: &ParamRow) -> Self {
         Self { support: row[0].into(), size: row[2].into(), depth: row[3].into() }
     }
 }
 
-/// The operand `b` joins what stands so far, `a`, by a [`Join`] given as its number.
+/// Joins the operand `b` to the accumulator `a` by a [`Join`] given as its number.
 pub fn op_join<T: Real>(join: u32, a: T, b: T, blend_params: &BlendParams, kernel: u32) -> BlendResult<T> {
     match Join::ALL[join as usize] {
         Join::First => BlendResult { value: b, by_a: 0.0, by_b: 1.0, weight: 1.0 },
@@ -70,7 +71,7 @@ pub fn op_join<T: Real>(join: u32, a: T, b: T, blend_params: &BlendParams, kerne
     }
 }
 
-/// What is in `a` or in `b`.
+/// The union of `a` and `b`.
 pub fn op_union<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) -> BlendResult<T> {
     let b_is_less = b.value() < a.value();
     let (less, greater) = if b_is_less { (b, a) } else { (a, b) };
@@ -79,19 +80,19 @@ pub fn op_union<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) ->
     BlendResult { value: less - blend, by_a: 1.0 - weight, by_b: weight, weight }
 }
 
-/// What is in `a` and in `b`.
+/// The intersection of `a` and `b`.
 pub fn op_intersection<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) -> BlendResult<T> {
     let joined = op_union(-a, -b, blend_params, kernel);
     BlendResult { value: -joined.value, ..joined }
 }
 
-/// What is in `a` and not in `b`.
+/// The difference of `a` and `b`.
 pub fn op_difference<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) -> BlendResult<T> {
     let joined = op_union(-a, b, blend_params, kernel);
     BlendResult { value: -joined.value, by_b: -joined.by_b, ..joined }
 }
 
-/// What is in one but not in both.
+/// The symmetric difference of `a` and `b`.
 pub fn op_xor<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) -> BlendResult<T> {
     let outer = op_union(a, b, blend_params, kernel);
     let inner = op_intersection(a, b, blend_params, kernel);
@@ -101,9 +102,9 @@ pub fn op_xor<T: Real>(a: T, b: T, blend_params: &BlendParams, kernel: u32) -> B
     outer
 }
 
-/// A round tube along the curve where both are 0, in the material of `b`. Both terms are bounds of the distance: the
-/// first has the surface (Mercury's hg_sdf, 2015), and is divided by √2, the greatest slope that it has where both
-/// surfaces are nearly one; the second is the greater far away.
+/// A round tube along the curve where both are 0, in the material of `b`. Both terms are bounds of the distance. The
+/// first has the surface (Mercury's hg_sdf, 2015); dividing it by √2 bounds its slope, which is greatest where both
+/// surfaces nearly coincide. The second term is greater far away.
 pub fn op_pipe<T: Real>(a: T, b: T, radius: f64) -> BlendResult<T> {
     let b_is_greater = b.value().abs() > a.value().abs();
     let (greater, less) = if b_is_greater { (b.abs(), a.abs()) } else { (a.abs(), b.abs()) };
@@ -150,9 +151,9 @@ pub fn op_paint(b: f64, radius: f64) -> f64 {
     h * h * (3.0 - 2.0 * h)
 }
 
-/// What a blend takes from the lesser of two operands that differ by `difference`, and the weight of
-/// the greater. Kernels: Quilez, "smooth minimum", scaled by their supports to one thickening; steps and columns: the
-/// coordinates of Mercury's hg_sdf, with columns of 90° so that no derivative exceeds 1.
+/// The amount that a blend subtracts from the lesser of two operands that differ by `difference`, and the weight of
+/// the greater. Kernels: Quilez, "smooth minimum", scaled by their supports to the same thickening. Steps and
+/// columns: the coordinates of Mercury's hg_sdf, with columns of 90° so that no derivative exceeds 1.
 fn op_blend<T: Real>(difference: T, blend_params: &BlendParams, kernel: u32) -> (T, f64) {
     let support = blend_params.support;
     if difference.value() >= support {
@@ -170,7 +171,7 @@ fn op_blend<T: Real>(difference: T, blend_params: &BlendParams, kernel: u32) -> 
         3 => (h.squared() * (0.5 * support), h.value()),
         4 => (h * (0.5 * support), 0.5),
         _ => {
-            // Each step is two `half` wide; t is where in its step the point is, from 1 to −1.
+            // Each step is two `half` wide; t is the position of the point in its step, from 1 to −1.
             let half = support / blend_params.size;
             let step = (0.5 * h.value() * blend_params.size).floor();
             let t = T::constant(1.0 + 2.0 * step) - h * blend_params.size;

@@ -1,9 +1,9 @@
-//! Profiles in the plane, made solid. The rows are those of `flat::prepare::profile`.
+//! Extruded and revolved profiles. `crate::prepare::profile` defines their payload rows.
 
 use super::Real;
 use super::sdf::{Data, extruded, length2};
 
-/// A profile between two faces, its edges rounded. Exact where nothing is rounded and the face is nearer than the edge.
+/// A profile between two faces, with rounded edges. Exact without rounding where the face is nearer than the edge.
 pub fn sdf_extrusion<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     let (half, rounding) = (q[2], q[3]);
     let d = sdf_profile([p[0], p[1]], q[0] as usize, q[1] != 0.0, rows);
@@ -20,8 +20,8 @@ pub fn sdf_revolution<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     sdf_profile([length2([p[0], p[2]]), p[1]], q[0] as usize, q[1] != 0.0, rows)
 }
 
-/// The signed distance in the plane to closed curves in so many groups; exact. What lies inside is what the curves go
-/// around: an odd number of times, or where `any` any number but zero.
+/// The signed distance in the plane to closed curves in `groups` groups; exact. A point is inside if the curves wind
+/// around it an odd number of times, or, with `any`, any number of times but zero.
 pub fn sdf_profile<T: Real>(p: [T; 2], groups: usize, any: bool, rows: Data<'_>) -> T {
     let at = p.map(T::value);
     let first = 1 + 2 * groups;
@@ -47,7 +47,7 @@ pub fn sdf_profile<T: Real>(p: [T; 2], groups: usize, any: bool, rows: Data<'_>)
     if inside { -d } else { d }
 }
 
-/// Where a point stands to a piece: along it and to its left, from its middle.
+/// The position of a point relative to a piece: along it and to its left, from its middle.
 struct Place<T> {
     x: T,
     y: T,
@@ -77,14 +77,14 @@ impl<T: Real> Place<T> {
         self.foot.abs() < self.reach
     }
 
-    /// How far to the right of the piece, for a foot between the ends.
+    /// The distance to the right of the piece, for a foot between the ends.
     fn aside(&self) -> T {
         let u = self.y * -self.bend + 1.0_f64;
         let m = (u.squared() + (self.x * self.bend).squared()).sqrt();
         ((self.x.squared() + self.y.squared()) * self.bend - self.y * 2.0_f64) / (m + 1.0_f64)
     }
 
-    /// From the nearer end.
+    /// The vector from the nearer end.
     fn way_from_end(&self) -> [T; 2] {
         let lambda = self.foot.clamp(-self.reach, self.reach);
         let share = 2.0 * lambda / (1.0 + self.bend * self.bend * lambda * lambda);
@@ -95,8 +95,8 @@ impl<T: Real> Place<T> {
         if self.is_between() { self.aside().value().abs() } else { length2(self.way_from_end()).value() }
     }
 
-    /// Whether a point between the piece's heights is left of it. What bends to the left is the right side of a circle:
-    /// left of it is what is left of the center, or in the circle.
+    /// Whether a point between the piece's heights is left of it. A piece that bends to the left is the right side of
+    /// a circle: points left of the center or in the circle are left of the piece.
     fn is_left(&self) -> bool {
         let (x, y) = (self.x.value(), self.y.value());
         let from_circle = self.bend * (x * x + y * y) - 2.0 * y;

@@ -1,10 +1,10 @@
-//! The numbers that a field can be computed with.
+//! The number types that evaluate a field.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use glam::DVec3;
 
-/// A number: a plain f64, or one that carries its derivatives. Comparisons look at the value only.
+/// A number: a plain f64, or one that carries its derivatives. Comparisons use the value only.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -20,8 +20,8 @@ pub trait Real:
     fn value(self) -> f64;
     /// A constant.
     fn constant(v: f64) -> Self;
-    /// The dot product with `row`, plus `shift`: one coordinate of an affine map of `p`, the point
-    /// that derivatives are taken for.
+    /// The dot product with `row`, plus `shift`: one coordinate of an affine map of `p`, the variable of
+    /// differentiation.
     fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self;
     /// The square root; its derivative at 0 is taken to be 0.
     fn sqrt(self) -> Self;

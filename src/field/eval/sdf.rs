@@ -1,6 +1,6 @@
-//! The shapes: exact signed distances in local space, except where said otherwise. Each takes the
-//! point and the packed parameters ([`isolith_scene::Shape::packed`]), and is finite for every finite
-//! point and every parameter within its hard limits.
+//! The shapes: exact signed distances in local space, unless a function says otherwise. Each function takes the point
+//! and the packed parameters ([`isolith_scene::Shape::packed`]). Its value is finite for every finite point and every
+//! parameter within its hard limits.
 
 mod ball;
 mod cone;
@@ -27,7 +27,7 @@ use isolith_scene::{ShapeKind, for_each_shape};
 use planar::{clamp, from_segment, trapezoid};
 pub(super) use planar::{extruded, length2, length3};
 
-/// Calls the function of a shape, with the data if it takes any.
+/// Calls the function of a shape, with the payload if it takes one.
 macro_rules! call {
     ($function:ident, $p:ident, $q:ident, $rows:ident) => {
         $function($p, $q)
@@ -39,7 +39,8 @@ macro_rules! call {
 
 macro_rules! dispatch {
     ($( $name:ident = $function:ident $(with $data:ident)?, )+) => {
-        /// The field of a shape, by its kind. `rows` are its data, see [`crate::PreparedShape`]; most have none.
+        /// The field of a shape, by its kind. `rows` is its payload, see [`crate::PreparedShape`]; most shapes have
+        /// none.
         pub fn shape_distance<T: Real>(kind: ShapeKind, p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
             match kind { $( ShapeKind::$name => call!($function, p, q, rows $(, $data)?), )+ }
         }
@@ -68,9 +69,9 @@ pub fn sdf_box<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 
 /// The twelve edges of a cuboid, as bars.
 ///
-/// By symmetry in the octant of positive coordinates. `inner` is how deep the point lies within the
-/// bars' width along each axis; where the bars reach the middle they have no inner side at all. A
-/// point is in the solid where it is deep along two axes.
+/// Symmetry maps the point into the octant of positive coordinates. `inner` is the depth of the point within the
+/// bars' width along each axis; bars that reach the middle have no inner side. A point that is deep along two axes
+/// lies in the solid.
 pub fn sdf_box_frame<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (half, thickness) = ([0.5 * q[0], 0.5 * q[1], 0.5 * q[2]], q[3]);
     let outer = [0, 1, 2].map(|i| p[i].abs() - half[i]);
@@ -90,7 +91,7 @@ pub fn sdf_box_frame<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     outer[0].max(outer[1]).max(outer[2]).max(-length2([least.positive(), middle.positive()]))
 }
 
-/// A ring around the Y axis. Inside a ring that closes over its hole the value is a lower bound.
+/// A ring around the Y axis. Inside a ring that closes its hole the value is a lower bound.
 pub fn sdf_torus<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     length2([length2([p[0], p[2]]) - q[0], p[1]]) - q[1]
 }
@@ -132,7 +133,7 @@ pub fn sdf_round_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     }
 }
 
-/// Everything within a distance of a segment.
+/// All points within a distance of a segment.
 pub fn sdf_capsule<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let from_start = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let axis = [q[3] - q[0], q[4] - q[1], q[5] - q[2]];
@@ -142,7 +143,7 @@ pub fn sdf_capsule<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 /// A hexagonal prism along the Y axis; two sides face along X.
 pub fn sdf_hexagonal_prism<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (radius, half_height) = (q[0], 0.5 * q[1]);
-    // Fold the plane at its mirror lines until only the side that faces X is left.
+    // Fold the plane at its mirror lines until only the side that faces X remains.
     let (x, z) = (p[0].abs(), p[2].abs());
     let mirror = [-0.5, 0.75_f64.sqrt()];
     let behind = (x * mirror[0] + z * mirror[1]).positive() * 2.0_f64;
@@ -155,8 +156,8 @@ pub fn sdf_hexagonal_prism<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
 
 /// A regular octahedron with its corners on the axes.
 ///
-/// In the positive octant: on the face where the plane's foot lies within it, else on the nearest edge
-/// (idea: Quilez, "octahedron distance").
+/// In the positive octant the nearest point lies on the face if the foot on the plane lies within it, else on the
+/// nearest edge (idea: Quilez, "octahedron distance").
 pub fn sdf_octahedron<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let radius = q[0];
     let [x, y, z] = p.map(T::abs);
@@ -165,7 +166,7 @@ pub fn sdf_octahedron<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     if 3.0 * least.value() >= excess.value() {
         return excess * (1.0 / 3.0_f64.sqrt());
     }
-    // The foot on the plane falls behind the least coordinate: the edge spanned by the two others.
+    // The foot on the plane has a negative least coordinate: the nearest edge is that of the two other axes.
     let edge = if x.value() == least.value() {
         [y, z]
     } else if y.value() == least.value() {

@@ -1,14 +1,14 @@
-//! A tube: everything within balls along arcs. The rows are those of `flat::prepare::tube`.
+//! A tube: balls along arcs. `crate::prepare::tube` defines its payload rows.
 
 use glam::DVec3;
 
 use super::Real;
 use super::sdf::{Data, length3};
 
-/// A round tube along a smooth curve: exact outside; inside a lower bound where it meets itself.
+/// A round tube along a smooth curve. Exact outside; inside, a lower bound where it meets itself.
 ///
-/// The field is the least of |p − c| − r over its balls. Around the nearest one it changes by the square of a change of
-/// the ball, so its gradient is that of the ball alone.
+/// The field is the minimum of |p − c| − r over its balls. Moving the ball away from the nearest one changes the
+/// value only by the square of the move, so the gradient is that of the nearest ball.
 pub fn sdf_tube<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
     let at = DVec3::from_array(p.map(T::value));
     let (pieces, first) = (q[0] as usize, 1 + q[1] as usize);
@@ -28,9 +28,9 @@ pub fn sdf_tube<T: Real>(p: [T; 3], q: &[f64; 8], rows: Data<'_>) -> T {
 
 /// The balls of a piece that can be the nearest: the one at its start, and the best elsewhere.
 ///
-/// Of the circle, the point nearest to p is the foot; over the way s from there the distance is √(D² + m χ²), with χ the
-/// chord. Where the radius grows by k s as well, the least of distance minus radius is at χ² = 2 k² D² / (B + √(B² −
-/// m² κ² k² D²)) with B = m (m − k²): a quadratic equation in χ².
+/// The foot is the point of the circle nearest to p. At arc length s from the foot the distance is √(D² + m χ²), with
+/// χ the chord. Where the radius grows by k s as well, the minimum of distance minus radius is at χ² = 2 k² D² / (B +
+/// √(B² − m² κ² k² D²)) with B = m (m − k²): a quadratic equation in χ².
 fn balls(p: DVec3, first: [f64; 4], second: [f64; 4], third: [f64; 4]) -> [(DVec3, f64); 2] {
     let [middle, tangent, bend] = [first, second, third].map(|row| DVec3::from_slice(&row));
     let (reach, radius, growth) = (first[3], second[3], third[3]);

@@ -1,20 +1,20 @@
 //! Heightfields: heights over a rectangle, solid down to a flat bottom.
 //!
 //! Parameters: half the width, depth of the ground, half the length, greatest height; then one over √(1 + L²) for the
-//! greatest slope L, how many rows there are, seed or sharpness. Rows: frequency, height and salt of a layer of noise; or
-//! waves for each meter along X and along Z, height and phase of a wave (in turns); or, of an image, each height with
-//! its neighbors along X, line by line, and then the numbers are columns and lines.
+//! greatest slope L, the number of rows, seed or sharpness. Rows: frequency, height and salt of each layer of noise;
+//! or the waves per meter along X and along Z, height and phase (in turns) of each wave; or each height of an image
+//! with its neighbors along X, line by line, in which case the counts are columns and lines.
 
 use std::f64::consts::{PI, TAU};
 
 use super::prepared_params::PreparedParams;
 use isolith_scene::Heights;
 
-/// The steepest slope of one layer of noise with heights and cells of 1: heights differ by at most 2 between two
-/// corners, and the curve between them is nowhere steeper than 3/2.
+/// The steepest slope of one layer of noise with heights and cells of 1: the heights of two corners differ by at most
+/// 2, and the slope of the curve between them is at most 3/2.
 pub const NOISE_SLOPE: f64 = 3.0;
 
-/// Thinner cells of an image are no cells, in meters.
+/// The least side of an image cell, in meters; thinner cells count as this.
 const LEAST_CELL: f64 = 1e-9;
 
 fn prepared([width, depth, length]: [f64; 3], top: f64, slope: f64, last: f64, rows: Vec<[f64; 4]>) -> PreparedParams {
@@ -23,7 +23,7 @@ fn prepared([width, depth, length]: [f64; 3], top: f64, slope: f64, last: f64, r
     PreparedParams::new([0.5 * width, depth, 0.5 * length, top], [scale, count, last, 0.0], rows)
 }
 
-/// Fractal noise: each layer is half as wide as the one before it.
+/// Fractal noise: the cells of each layer are half as wide as those of the layer before.
 pub fn terrain(
     size: [f64; 3],
     amplitude: f64,
@@ -40,9 +40,9 @@ pub fn terrain(
     prepared(size, amplitude, slope, seed.floor(), rows)
 }
 
-/// Waves with crests as in the second order of Stokes' theory (1847): cos x + s/2 cos 2x, which is nowhere steeper than
-/// 1 + s and nowhere farther from 0 than 1 + s/2. In `run` direction, spread and phase, in radians. Shorter waves
-/// run slower, as in deep water.
+/// Waves with crests to the second order of Stokes' theory (1847): cos x + s/2 cos 2x, with a slope of at most 1 + s
+/// and an absolute value of at most 1 + s/2. `run` holds direction, spread and phase, in radians. Shorter waves are
+/// slower, as in deep water.
 pub fn ocean(
     size: [f64; 3],
     amplitude: f64,
@@ -52,10 +52,10 @@ pub fn ocean(
     sharpness: f64,
 ) -> PreparedParams {
     const SHORTER: f64 = 0.68;
-    /// The golden angle spreads directions and phases evenly, however many there are.
+    /// The golden angle spreads directions and phases evenly for any count.
     const GOLDEN: f64 = 2.399_963_229_728_653;
     let count = waves.floor() as i32;
-    // Long waves are high.
+    // Long waves are higher.
     let sum: f64 = (0..count).map(|i| SHORTER.powi(i)).sum();
     let sharp = 0.5 * sharpness;
     let row = |i: i32| {
@@ -79,9 +79,9 @@ pub fn heightmap(image: &Heights, size: [f64; 3], height: f64) -> PreparedParams
     out
 }
 
-/// Heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): it stays among the
-/// heights around it, and its slope along an axis among their differences. Its rows, and its steepest slope where a cell
-/// has these sides, in meters, and white is `height` meters above black.
+/// The heights of an image as a quadratic B-spline (de Boor, "A practical guide to splines", 1978): its values stay
+/// within the surrounding heights, and its slope along an axis within their differences. Returns its rows, and its
+/// steepest slope for cells with these sides, in meters, where white is `height` meters above black.
 pub fn spline(image: &Heights, cell: [f64; 2], height: f64) -> (Vec<[f64; 4]>, f64) {
     let [columns, lines] = image.size.map(|n| n as isize);
     let cell = cell.map(|side| side.max(LEAST_CELL));

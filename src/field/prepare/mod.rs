@@ -1,11 +1,11 @@
-//! Shapes as evaluators see them: numbers, and rows of data behind them.
+//! Shapes in the form that evaluators read: parameters, and payload rows after them.
 //!
-//! | file | what it makes |
+//! | file | output |
 //! |---|---|
 //! | `tube` | arcs of a curve with radii |
 //! | `profile` | arcs of a profile, cut so that each only rises |
 //! | `heightfield` | layers of noise, waves, heights of an image |
-//! | `prepared_params` | the numbers that each of them makes |
+//! | `prepared_params` | the parameters of each of them |
 
 mod heightfield;
 mod prepared_params;
@@ -18,21 +18,21 @@ use prepared_params::{PreparedParams, bounding_sphere};
 use isolith_geometry::Aabb;
 use isolith_scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
 
-/// A shape, ready to be evaluated.
+/// A shape, ready for evaluation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PreparedShape {
-    /// Which function evaluates it.
+    /// The kind, which selects the function.
     pub kind: ShapeKind,
-    /// Its parameters; of a shape with data what was made of them.
+    /// Its parameters; for a shape with a payload, those derived from it.
     pub parameters: [f64; SHAPE_FLOATS],
-    /// Its data, with a sphere around the shape first (center, radius); nothing for a shape without.
+    /// Its payload, which begins with a bounding sphere (center, radius); empty for a shape without.
     pub payload: Vec<[f64; 4]>,
     /// A box around the surface, in local space.
     pub bounds: Aabb,
 }
 
 impl PreparedShape {
-    /// What a shape is evaluated with.
+    /// Prepares a shape for evaluation.
     pub fn new(shape: &Shape) -> Self {
         let (kind, bounds) = (shape.kind(), shape.bounds());
         let PreparedParams { parameters, payload } = match shape {

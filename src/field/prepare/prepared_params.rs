@@ -1,4 +1,4 @@
-//! The numbers of a prepared shape.
+//! The parameters of a prepared shape.
 
 use glam::DVec3;
 
@@ -11,7 +11,7 @@ pub(super) struct PreparedParams {
 }
 
 impl PreparedParams {
-    /// The parameters as they stand in their first rows.
+    /// Parameters from their first two rows.
     pub fn new(first: [f64; 4], second: [f64; 4], payload: Vec<[f64; 4]>) -> Self {
         let mut parameters = [0.0; SHAPE_FLOATS];
         parameters[..4].copy_from_slice(&first);
@@ -20,7 +20,7 @@ impl PreparedParams {
     }
 }
 
-/// A row with a sphere, a little larger so that f32 may round.
+/// A row with a sphere, slightly enlarged as slack for rounding in f32.
 pub(super) fn bounding_sphere(center: DVec3, radius: f64) -> [f64; 4] {
     let room = 1e-6 * (radius + center.abs().max_element());
     [center.x, center.y, center.z, radius + room]

@@ -1,8 +1,9 @@
-//! Profiles: closed curves in the plane as arcs of which each only rises, so that what is inside can be counted.
+//! Profiles: closed curves in the plane as arcs that each only rise, so that evaluators can count the crossings
+//! around a point.
 //!
-//! Rows: two for each group (its box; then the heights where its chain starts and ends, its first piece, how many), then
-//! two for each piece: middle and tangent; bend to the left, λ at the end, lower and upper end. All pieces are written
-//! rising; where the chain runs the other way λ is negative.
+//! Rows: two for each group (its box; then the heights of its chain's start and end, its first piece, the number of
+//! pieces), then two for each piece: middle and tangent; bend to the left, λ at the end, lower and upper end. All
+//! pieces are written rising; λ is negative where the chain runs the other way.
 
 use glam::DVec3;
 
@@ -10,17 +11,17 @@ use super::prepared_params::PreparedParams;
 use isolith_geometry::{Aabb, ArcPiece};
 use isolith_scene::profile_curve;
 
-/// Most pieces that are skipped together.
+/// The largest number of pieces in a group, which evaluators skip together.
 const PROFILE_GROUP: usize = 8;
 
-/// The numbers of a profile between two faces.
+/// The parameters of an extruded profile.
 pub fn extrusion(corners: &[[f64; 2]], smooth: bool, depth: f64, rounding: f64) -> PreparedParams {
     let (rows, groups) = profile(&profile_curve(corners, smooth));
     let half = 0.5 * depth;
     PreparedParams::new([groups as f64, 0.0, half, rounding.min(half)], [0.0; 4], rows)
 }
 
-/// The numbers of letters between two faces. Where profiles overlap it is solid.
+/// The parameters of extruded letters. Overlapping profiles are solid.
 pub fn text(arcs: &[ArcPiece], depth: f64, rounding: f64) -> PreparedParams {
     let nothing = [ArcPiece::straight(DVec3::ZERO, DVec3::ZERO)];
     let (rows, groups) = profile(if arcs.is_empty() { &nothing } else { arcs });
@@ -28,16 +29,16 @@ pub fn text(arcs: &[ArcPiece], depth: f64, rounding: f64) -> PreparedParams {
     PreparedParams::new([groups as f64, 1.0, half, rounding.min(half)], [0.0; 4], rows)
 }
 
-/// The numbers of a profile turned around the Y axis.
+/// The parameters of a revolved profile.
 pub fn revolution(corners: &[[f64; 2]], smooth: bool, offset: f64) -> PreparedParams {
     let mut kept = Vec::new();
     for arc in profile_curve(corners, smooth) {
         let arc = ArcPiece { middle: arc.middle + DVec3::X * offset, ..arc };
-        // Behind the axis nothing is turned, and on the axis is no surface.
+        // Revolution ignores the part behind the axis, and there is no surface on the axis.
         kept.extend(cut(arc, &arc.crossings(0, 0.0)).into_iter().filter(|piece| piece.middle.x > 0.0));
     }
     if kept.is_empty() {
-        // Nothing is left but a point, so that the field is that of something.
+        // Nothing is left: keep a point, so that the shape has a field.
         let low = profile_curve(corners, smooth).iter().fold(Aabb::EMPTY, |all, arc| all.union(&arc.bounds())).min.y;
         kept.push(ArcPiece::straight(DVec3::Y * low, DVec3::Y * low));
     }
@@ -45,7 +46,7 @@ pub fn revolution(corners: &[[f64; 2]], smooth: bool, offset: f64) -> PreparedPa
     PreparedParams::new([groups as f64, 0.0, 0.0, 0.0], [0.0; 4], rows)
 }
 
-/// The pieces of an arc between places on it.
+/// The pieces of an arc between positions on it.
 fn cut(arc: ArcPiece, places: &[f64]) -> Vec<ArcPiece> {
     if places.is_empty() {
         return vec![arc];
@@ -54,7 +55,7 @@ fn cut(arc: ArcPiece, places: &[f64]) -> Vec<ArcPiece> {
     ends.windows(2).map(|pair| arc.between(pair[0], pair[1])).collect()
 }
 
-/// A piece that rises, in the numbers that evaluators read: f32 decides what joins what.
+/// A rising piece, in the values that evaluators read: which pieces connect is decided in f32.
 struct Rising {
     middle: DVec3,
     tangent: DVec3,
@@ -62,7 +63,7 @@ struct Rising {
     reach: f64,
     /// Lower and upper end.
     span: [f64; 2],
-    /// Start and end of the chain's way.
+    /// Start and end in the direction of the chain.
     heights: [f64; 2],
     bounds: Aabb,
 }
@@ -83,14 +84,15 @@ fn rising((arc, [from, to]): &(ArcPiece, [f64; 2])) -> Rising {
     }
 }
 
-/// The heights in f32 where each piece starts and ends. Where two meet they have one height, to the last bit: between two
-/// different ones there would be points that are counted to neither. A chain ends where its start is as near as that of
-/// what follows: curves may be so large beside their details that all of these lie within the rounding.
+/// The heights in f32 of each piece's start and end. Where two pieces meet they have the same height, to the last
+/// bit: points between two different heights would count to neither. A chain closes if its start is as near to its
+/// end as the start of the next piece: curves may be so large compared to their details that all of these lie within
+/// the rounding.
 fn with_heights(arcs: Vec<ArcPiece>) -> Vec<(ArcPiece, [f64; 2])> {
     let size = arcs.iter().fold(0.0_f64, |most, arc| most.max(arc.middle.abs().max_element() + arc.length()));
     let height = |p: DVec3| f64::from(p.y as f32);
     let mut out: Vec<(ArcPiece, [f64; 2])> = Vec::with_capacity(arcs.len());
-    // Where the chain under way starts, and the height of its last end.
+    // The start of the current chain, and the height of its last end.
     let mut chain: Option<(DVec3, f64, f64)> = None;
     for (i, arc) in arcs.iter().enumerate() {
         let (first, first_height, start) =
@@ -106,7 +108,7 @@ fn with_heights(arcs: Vec<ArcPiece>) -> Vec<(ArcPiece, [f64; 2])> {
     out
 }
 
-/// The rows of closed curves, and how many groups there are. Neighbors in `arcs` that meet are one chain.
+/// The rows of closed curves, and the number of groups. Neighbors in `arcs` that meet form one chain.
 pub fn profile(arcs: &[ArcPiece]) -> (Vec<[f64; 4]>, usize) {
     let pieces: Vec<ArcPiece> = arcs.iter().flat_map(|arc| cut(*arc, &arc.turns(1))).collect();
     let pieces: Vec<Rising> = with_heights(pieces).iter().map(rising).collect();

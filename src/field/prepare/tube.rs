@@ -1,7 +1,7 @@
-//! A tube: balls along arcs, their radius changing evenly with the way.
+//! A tube: balls along arcs, with a radius that changes linearly along the arc.
 //!
-//! Rows: a ball around each group of pieces (with all of their balls), then three for each piece: middle and λ at the end,
-//! see [`ArcPiece`]; tangent and radius in the middle; bend and growth of the radius along the way.
+//! Rows: a bounding ball for each group of pieces (with all of their balls), then three for each piece: middle and λ
+//! at the end, see [`ArcPiece`]; tangent and radius in the middle; bend and growth of the radius per length.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use super::prepared_params::{PreparedParams, bounding_sphere};
 use isolith_geometry::{Aabb, ArcPiece};
 use isolith_scene::tube_curve;
 
-/// Pieces that are skipped together.
+/// The number of pieces in a group, which evaluators skip together.
 pub const TUBE_GROUP: usize = 8;
 
 /// A piece with its balls.
@@ -23,7 +23,7 @@ impl Piece {
     fn between(arc: ArcPiece, [from, to]: [f64; 2]) -> Self {
         let length = arc.length();
         let growth = if length > 0.0 { (to - from) / length } else { 0.0 };
-        // A radius that grows faster than the way belongs to balls one inside the other.
+        // A radius that grows faster than the length belongs to balls that contain each other.
         Self { arc, radius: 0.5 * (from + to), growth: if growth.is_finite() { growth } else { 0.0 } }
     }
 
@@ -38,7 +38,7 @@ impl Piece {
     }
 }
 
-/// The numbers of a tube.
+/// The parameters of a tube.
 pub fn tube(points: &[[f64; 4]], radius: f64, closed: bool) -> PreparedParams {
     let mut pieces = Vec::new();
     for (i, span) in tube_curve(points, closed).into_iter().enumerate() {
@@ -51,14 +51,14 @@ pub fn tube(points: &[[f64; 4]], radius: f64, closed: bool) -> PreparedParams {
             pieces.push(Piece::between(arc, [from, to]));
             from = to;
         }
-        // A piece without length: two balls in one place.
+        // A piece without length: two balls at the same place.
         if whole == 0.0 {
             let place = DVec3::from_slice(&points[i][..3]);
             pieces.push(Piece::between(ArcPiece::straight(place, place), [ends[0].max(ends[1]); 2]));
         }
     }
     if !closed && let Some([x, y, z, r]) = points.last() {
-        // Every piece stands for the ball at its start; this one for the last.
+        // Every piece represents the ball at its start; this one represents the last ball.
         let place = DVec3::new(*x, *y, *z);
         pieces.push(Piece::between(ArcPiece::straight(place, place), [radius + r; 2]));
     }

@@ -1,37 +1,37 @@
-//! How wrong a picture is, measured against the reference on the same rays.
+//! The error of an image against the reference on the same rays.
 //!
-//! A pixel is wrong where it shows something and the reference nothing, or the other way round; where it shows another node than
-//! the reference; or the same one at a depth that is off by more than a footprint. There are two exceptions, and no others:
+//! A pixel is wrong where it shows a hit and the reference a miss, or the reverse; where it shows another node than
+//! the reference; or the same node at a depth that is off by more than a footprint. There are only two exceptions:
 //!
-//! - *Where two nodes meet*, rounding decides which one is shown: the depth is right within [`MEETING`] footprints, and either
-//!   the reference shows that node in one of the eight pixels around, or both weigh the same in a blend, within
-//!   [`TIE`](crate::eval::TIE).
-//! - *Where the ray grazes*, rounding decides what it meets: a ray that is turned by
-//!   [`GRAZING_ANGLE`](super::tolerance::GRAZING_ANGLE), which is what 32-bit numbers can tell apart, truly shows what the
-//!   picture shows. Such pixels are counted apart.
+//! - *Where two nodes meet*, rounding decides which one is visible: the depth is right within [`MEETING`] footprints,
+//!   and either the reference shows that node in one of the eight pixels around, or both have the same weight in a
+//!   blend, within [`TIE`](crate::eval::TIE).
+//! - *Where the ray grazes*, rounding decides its hit: a ray turned by
+//!   [`GRAZING_ANGLE`](super::tolerance::GRAZING_ANGLE), the resolution of 32-bit numbers, sees what the image shows.
+//!   Such pixels are counted separately.
 //!
-//! What the ray passes face on shows the same from every side: a sheet of no thickness that is drawn is wrong.
+//! A surface that faces the ray shows the same from every side: drawing a sheet of no thickness is wrong.
 
 use super::image::{ReferenceImage, node_of};
 use super::tolerance::{MEETING, WRONG_DEPTH};
 use crate::{FlatScene, GBuffer};
 use isolith_scene::NodeId;
 
-/// Most pixels that may be wrong, as a share of all.
+/// The largest fraction of wrong pixels.
 pub const MAX_WRONG_SHARE: f64 = 1e-4;
 /// Largest error of the depth at the 99th percentile, in pixel footprints.
 pub const MAX_DEPTH_P99: f64 = 0.05;
 /// Largest median error of the normal, in degrees.
 pub const MAX_NORMAL_P50: f64 = 0.1;
 
-/// What is to be said of a pixel.
+/// The verdict on a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// It shows what the reference shows.
     Right,
-    /// It does not, but a ray turned within rounding would.
+    /// It differs, but a ray turned within rounding would show the same.
     Grazing,
-    /// It shows something and the reference nothing, or the other way round.
+    /// It shows a hit and the reference a miss, or the reverse.
     HitOrMiss,
     /// It shows another node.
     OtherNode,
@@ -48,20 +48,20 @@ impl Verdict {
     }
 }
 
-/// The errors of a picture. Depth and normal are compared where both pictures hit something.
+/// The errors of an image. Depth and normal are compared where both images have a hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
-    /// Pixels in the picture.
+    /// Pixels in the image.
     pub pixels: usize,
-    /// Pixels that are wrong, of any kind; those in `grazing` are not among them.
+    /// Wrong pixels of any kind, without those in `grazing`.
     pub wrong: usize,
-    /// Those of them where one picture hits something and the other does not, or where the depth is NaN.
+    /// Wrong pixels where only one of the images has a hit, or where the depth is NaN.
     pub hit_miss_differs: usize,
-    /// Those of them that show another node.
+    /// Wrong pixels that show another node.
     pub node_differs: usize,
-    /// Those of them that show the right node at a wrong depth.
+    /// Wrong pixels that show the right node at a wrong depth.
     pub depth_differs: usize,
-    /// Pixels that differ like that, but whose ray grazes.
+    /// Pixels that differ in one of these ways, but whose ray grazes.
     pub grazing: usize,
     /// Median error of the depth, in footprints of the pixel at the true depth.
     pub depth_p50: f64,
@@ -75,21 +75,21 @@ pub struct Accuracy {
     pub normal_p99: f64,
 }
 
-/// Which node a number in [`GBuffer::leaf`] stands for.
+/// Maps a value in [`GBuffer::leaf`] to its node.
 type Nodes<'a> = Option<&'a dyn Fn(u32) -> Option<NodeId>>;
 
 impl Accuracy {
-    /// The errors of a picture of the arrays `shown` against the reference.
+    /// The errors of an image of the arrays `shown` against the reference.
     pub fn against(measured: &GBuffer, shown: &FlatScene, reference: &ReferenceImage) -> Self {
         Self::of(measured, reference, &verdicts(measured, shown, reference))
     }
 
-    /// The errors of a picture that does not know of nodes.
+    /// The errors of an image without nodes.
     pub fn of_depths(measured: &GBuffer, reference: &ReferenceImage) -> Self {
         Self::of(measured, reference, &judge_all(measured, reference, None))
     }
 
-    /// Sums up what was found pixel by pixel.
+    /// Summarizes the verdicts on all pixels.
     pub fn of(measured: &GBuffer, reference: &ReferenceImage, verdicts: &[Verdict]) -> Self {
         let count = |verdict: Verdict| verdicts.iter().filter(|found| **found == verdict).count();
         let mut found = Self {
@@ -118,17 +118,17 @@ impl Accuracy {
         found
     }
 
-    /// Share of the pixels that are wrong.
+    /// The fraction of wrong pixels.
     pub fn wrong_share(&self) -> f64 {
         self.wrong as f64 / self.pixels.max(1) as f64
     }
 
-    /// Share of the pixels whose ray grazes and that show another thing than the reference.
+    /// The fraction of pixels that differ from the reference but whose ray grazes.
     pub fn grazing_share(&self) -> f64 {
         self.grazing as f64 / self.pixels.max(1) as f64
     }
 
-    /// What is beyond the limits above, in words; nothing where all is well.
+    /// The exceeded limits, in words; empty if there are none.
     pub fn faults(&self) -> Vec<String> {
         let checks = [
             ("share of pixels that are wrong", self.wrong_share(), MAX_WRONG_SHARE),
@@ -141,7 +141,7 @@ impl Accuracy {
     }
 }
 
-/// What is to be said of each pixel of a picture of the arrays `shown`.
+/// The verdict on each pixel of an image of the arrays `shown`.
 pub fn verdicts(measured: &GBuffer, shown: &FlatScene, reference: &ReferenceImage) -> Vec<Verdict> {
     judge_all(measured, reference, Some(&|code| node_of(shown, code)))
 }
@@ -150,7 +150,7 @@ fn same_size(measured: &GBuffer, reference: &ReferenceImage) -> bool {
     (measured.width, measured.height) == (reference.buffers.width, reference.buffers.height)
 }
 
-/// Pictures of different sizes differ in every pixel.
+/// Images of different sizes differ in every pixel.
 fn judge_all(measured: &GBuffer, reference: &ReferenceImage, nodes: Nodes<'_>) -> Vec<Verdict> {
     let pixels = reference.buffers.depth.len();
     if !same_size(measured, reference) {
@@ -159,7 +159,7 @@ fn judge_all(measured: &GBuffer, reference: &ReferenceImage, nodes: Nodes<'_>) -
     (0..pixels).map(|i| judge(measured, reference, nodes, i)).collect()
 }
 
-/// In footprints of the pixel at the true depth.
+/// The depth error in footprints of the pixel at the true depth.
 fn depth_error(measured: &GBuffer, reference: &ReferenceImage, i: usize) -> f64 {
     let (m, t) = (f64::from(measured.depth[i]), f64::from(reference.buffers.depth[i]));
     (m - t).abs() / (reference.footprint * t)
@@ -181,7 +181,7 @@ fn judge(measured: &GBuffer, reference: &ReferenceImage, nodes: Nodes<'_>, i: us
     if found.is_wrong() && reference.may_show(i, m, node) { Verdict::Grazing } else { found }
 }
 
-/// Whether the node that is shown meets the true one in the pixel, see above.
+/// Whether the shown node meets the true one in the pixel, see above.
 fn meets(measured: &GBuffer, reference: &ReferenceImage, node: Option<NodeId>, i: usize) -> bool {
     let [width, height] = [measured.width, measured.height].map(i64::from);
     let [x, y] = [i as i64 % width, i as i64 / width];
@@ -191,15 +191,15 @@ fn meets(measured: &GBuffer, reference: &ReferenceImage, node: Option<NodeId>, i
     depth_error(measured, reference, i) <= MEETING && (reference.tied[i] || is_beside())
 }
 
-/// The angle between two directions in radians, accurate for small ones, where the arc cosine is not.
-/// π where one of them is no direction.
+/// The angle between two directions in radians, accurate for small angles, where the arc cosine is not. π if one of
+/// them is not a direction.
 fn angle(a: [f32; 3], b: [f32; 3]) -> f64 {
     let [a, b] = [a, b].map(|v| glam::Vec3::from(v).as_dvec3());
     let (sine, cosine) = (a.cross(b).length(), a.dot(b));
     if sine + cosine.abs() > 0.0 { sine.atan2(cosine) } else { std::f64::consts::PI }
 }
 
-/// The value that a share `q` of the sorted values does not exceed; 0 for none.
+/// The value that a fraction `q` of the sorted values does not exceed; 0 for an empty list.
 fn quantile(sorted: &[f64], q: f64) -> f64 {
     let rank = (q * sorted.len() as f64).ceil() as usize;
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
@@ -219,7 +219,7 @@ mod tests {
     const WALL: u32 = 2;
     const WIRE: u32 = 3;
 
-    /// A number in the buffers, as the node of an imagined scene.
+    /// Maps a value in the buffers to the node of an imagined scene.
     fn node(code: u32) -> Option<NodeId> {
         (code != NO_LEAF).then_some(NodeId(u64::from(code)))
     }
@@ -230,7 +230,7 @@ mod tests {
         ReferenceImage { buffers, margin, footprint: FOOTPRINT, nodes, tied, turned: HashMap::new() }
     }
 
-    /// A 10 by 20 picture: its upper half shows a block that faces the eye at distance 4.
+    /// A 10 by 20 image: its upper half shows a block that faces the eye at distance 4.
     fn block() -> GBuffer {
         let hit = |i: usize| i < 100;
         GBuffer {
@@ -243,8 +243,8 @@ mod tests {
         }
     }
 
-    /// The same before a wall at distance 9, with a pocket in the block, 0.6 deep, and a wire at distance 3 that crosses
-    /// the lower half.
+    /// The same block before a wall at distance 9, with a pocket in the block, 0.6 deep, and a wire at distance 3
+    /// that crosses the lower half.
     fn scene_before_a_wall() -> GBuffer {
         let mut all = block();
         let mut put = |i: usize, depth: f32, leaf: u32| (all.depth[i], all.leaf[i]) = (depth, leaf);
@@ -288,7 +288,7 @@ mod tests {
     fn a_pocket_drawn_closed_and_a_missing_wire_before_a_wall_are_refused() {
         let reference = reference_of(scene_before_a_wall());
         for is_known in [false, true] {
-            // By its node, and where a face has the pocket's own node by its depth alone.
+            // The node reveals it; where a face has the pocket's own node, the depth alone does.
             let mut closed = scene_before_a_wall();
             for i in [33, 34, 43, 44] {
                 (closed.depth[i], closed.leaf[i]) = (4.0, if is_known { FLOOR } else { BLOCK });
@@ -304,7 +304,7 @@ mod tests {
         let found = measure(&cut, &reference);
         assert_eq!((found.wrong, found.node_differs), (10, 10));
         assert!(!found.faults().is_empty());
-        // Whoever knows of no nodes sees it by the depth.
+        // A comparison without nodes detects it by the depth.
         assert_eq!(Accuracy::of(&cut, &reference, &judge_all(&cut, &reference, None)).depth_differs, 10);
     }
 
@@ -317,11 +317,11 @@ mod tests {
             measured.depth[i] += away;
             measure(&measured, &reference).node_differs
         };
-        // Beside the pocket, and beside the wall.
+        // Next to the pocket, and next to the wall.
         assert_eq!((shown(32, FLOOR, 0.0), shown(95, WALL, 0.001)), (0, 0));
-        // At another depth, away from it, and what is nowhere near.
+        // At another depth, away from the pocket, and a node that is not nearby.
         assert_eq!((shown(32, FLOOR, 0.01), shown(30, FLOOR, 0.0), shown(32, WIRE, 0.0)), (1, 1, 1));
-        // Where both weigh the same, at the same depth.
+        // Two nodes of the same weight, at the same depth.
         let mut blended = reference_of(block());
         blended.tied[55] = true;
         let other = |i: usize, away: f32| {
@@ -337,7 +337,8 @@ mod tests {
         let miss = Glimpse { depth: f32::INFINITY, node: None };
         let hit = |depth: f32| Glimpse { depth, node: node(BLOCK) };
         let mut reference = reference_of(block());
-        // Edges: what is behind them is seen from beside. The third shows the same from all sides, as a sheet does.
+        // Edges: from beside, the surface behind them is visible. The third pixel shows the same from all sides, as a
+        // sheet does.
         reference.turned =
             HashMap::from([(7, vec![miss, hit(4.0)]), (9, vec![hit(4.0), hit(4.5)]), (11, vec![hit(4.0)])]);
         let judged = |i: usize, depth: f32| {

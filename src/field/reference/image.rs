@@ -1,4 +1,4 @@
-//! The whole picture as it should be: every pixel traced by the CPU evaluator.
+//! The reference image: the CPU evaluator traces every pixel.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -18,35 +18,34 @@ use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, TriangleMesh};
 use isolith_scene::NodeId;
 
-/// A picture, and how sure each pixel of it is.
+/// An image with the certainty of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReferenceImage {
-    /// The picture.
+    /// The image.
     pub buffers: GBuffer,
-    /// Per pixel, in pixel footprints: how far its ray is from hitting something else, see
-    /// [`super::trace::March::margin`].
+    /// Per pixel, in pixel footprints: the margin of its ray, see [`super::trace::March::margin`].
     pub margin: Vec<f32>,
     /// The width of a pixel at distance 1, see [`Camera::footprint`].
     pub footprint: f64,
-    /// Per pixel the node that is seen.
+    /// Per pixel the visible node.
     pub nodes: Vec<Option<NodeId>>,
-    /// Per pixel whether another node weighs as much in a blend, see [`crate::eval::SurfacePoint::tied`].
+    /// Per pixel whether another node has the same weight in a blend, see [`crate::eval::SurfacePoint::tied`].
     pub tied: Vec<bool>,
-    /// Of pixels whose ray passes an edge, or runs along a surface, so closely that rounding may matter: what is seen by rays
-    /// turned to all sides by [`GRAZING_ANGLE`].
+    /// For pixels whose ray passes an edge, or runs along a surface, so closely that rounding may matter: the hits of
+    /// rays turned to all sides by [`GRAZING_ANGLE`].
     pub turned: HashMap<usize, Vec<Glimpse>>,
 }
 
-/// What a ray sees.
+/// What a ray shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glimpse {
-    /// Distance along the ray; infinite where nothing is hit.
+    /// Distance along the ray; infinite without a hit.
     pub depth: f32,
     /// The node.
     pub node: Option<NodeId>,
 }
 
-/// The node that a number in [`GBuffer::leaf`] stands for; nothing for the background.
+/// The node for a value in [`GBuffer::leaf`]; `None` for the background.
 pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
     match HitTarget::from_code(code) {
         HitTarget::Background => None,
@@ -55,21 +54,21 @@ pub fn node_of(flat: &FlatScene, code: u32) -> Option<NodeId> {
     }
 }
 
-/// Rays that are turned, evenly around the one of the pixel.
+/// The number of turned rays, evenly around the ray of the pixel.
 const TURNS: u32 = 8;
-/// Pixels whose margin is less than so many times [`GRAZING_ANGLE`] are looked at by turned rays: margins are known within a
+/// Pixels whose margin is less than this many times [`GRAZING_ANGLE`] get turned rays: margins are known within a
 /// factor of two.
 const NEAR_AN_EDGE: f64 = 2.0;
 
 impl ReferenceImage {
-    /// Whether rays turned within rounding see both something and nothing.
+    /// Whether some of the rays turned within rounding hit and others miss.
     pub fn is_undecided(&self, pixel: usize) -> bool {
         let own = self.buffers.depth[pixel].is_finite();
         self.turned.get(&pixel).is_some_and(|seen| seen.iter().any(|seen| seen.depth.is_finite() != own))
     }
 
-    /// Whether a ray turned within rounding sees this depth, and this node if that is known: depths between those that are
-    /// seen of the node are seen too, and a footprint more.
+    /// Whether a ray turned within rounding sees this depth, and this node if it is known. The depths between those
+    /// of the node's hits count as seen too, with a footprint of tolerance.
     pub fn may_show(&self, pixel: usize, depth: f32, node: Option<Option<NodeId>>) -> bool {
         let Some(seen) = self.turned.get(&pixel) else { return false };
         let own = Glimpse { depth: self.buffers.depth[pixel], node: self.nodes[pixel] };
@@ -85,13 +84,12 @@ impl ReferenceImage {
         if node.is_some() {
             return (least / room..=most * room).contains(&depth);
         }
-        // Whose depths these are is not known: only what is seen counts, not what is between.
+        // The node is unknown: only the depths of hits count, not those between.
         finite().any(|seen| (seen / room..=seen * room).contains(&depth))
     }
 }
 
-/// Renders the scene through the centers of the pixels. `progress` hears the share that is done, from
-/// any thread.
+/// Renders the scene through the centers of the pixels. Any thread may call `progress` with the completed fraction.
 pub fn render_reference(
     flat: &FlatScene,
     meshes: &Meshes,
@@ -148,7 +146,7 @@ struct Pixel {
     turned: Vec<Glimpse>,
 }
 
-/// What a ray met: a field, if any, and a mesh that is not behind it, if any.
+/// The nearest hits of a ray: on a field, if any, and on a mesh that is not behind it, if any.
 type Met = (March, Option<(usize, MeshHit)>);
 
 impl View<'_> {
@@ -175,7 +173,7 @@ impl View<'_> {
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
         };
-        // Turned by the angle, the depth along a surface at this angle moves by more than a footprint.
+        // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
         let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
         let color = self.shade(&ray, t, normal, &material);
@@ -188,7 +186,7 @@ impl View<'_> {
         Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
     }
 
-    /// What rays turned by [`GRAZING_ANGLE`] to all sides see.
+    /// What rays turned by [`GRAZING_ANGLE`] to all sides show.
     fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Vec<Glimpse>, TraceError> {
         let (right, up) = ray.direction.any_orthonormal_pair();
         let glimpse = |i: u32| {
@@ -213,8 +211,8 @@ impl View<'_> {
         let placed = &self.flat.meshes[index];
         let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
         let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
-        // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal
-        // may point away though the triangle faces the eye.
+        // Both sides are visible. The triangle decides which side the ray sees: near a silhouette the interpolated
+        // normal may point away though the triangle faces the eye.
         let face = self.meshes[index].as_ref().map_or(hit.normal, |mesh| mesh.face_normal(hit.triangle));
         let normal = if (normal_from_local * face).dot(direction) > 0.0 { -normal } else { normal };
         let material = match (placed.material, &self.meshes[index]) {
@@ -230,7 +228,7 @@ impl View<'_> {
 pub const FILE_MATERIAL: SurfaceMaterial =
     SurfaceMaterial { albedo: DVec3::ONE, specular: FILE_SPECULAR, emission: DVec3::ZERO, shininess: FILE_SHININESS };
 
-/// The mesh's own color: that of vertices, part and texture.
+/// The mesh's own color: the product of vertex, part and texture colors.
 fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
     let linear = |[r, g, b, a]: [u8; 4]| {
         let [r, g, b, a] = [r, g, b, a].map(|c| f64::from(c) / 255.0);

@@ -1,12 +1,12 @@
-//! The reference renderer: a picture traced on the processor in f64, and how wrong another picture is against it.
+//! The reference renderer: traces an image on the CPU in f64, and measures the error of another image against it.
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
-//! | `trace` | rays against the CPU evaluator, with certainty instead of a step limit |
-//! | `shade` | light on surfaces, counterpart of `shaders/light` |
-//! | `image` | the whole picture by `eval`, `trace` and `shade` |
-//! | `accuracy` | how wrong a picture is, against the reference |
-//! | `tolerance` | which differences are left to rounding |
+//! | `trace` | ray tracing by the CPU evaluator, with certainty instead of a step limit |
+//! | `shade` | lighting of surfaces, counterpart of `shaders/light` |
+//! | `image` | the whole image, by `eval`, `trace` and `shade` |
+//! | `accuracy` | the error of an image against the reference |
+//! | `tolerance` | the differences that rounding explains |
 
 pub mod accuracy;
 pub mod image;

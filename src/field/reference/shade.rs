@@ -1,13 +1,13 @@
-//! Light on surfaces, in f64, from the same numbers and by the same formulas as
-//! `shaders/light/shade.wgsl`. Colors are linear until [`shade_encode`].
+//! Lighting of surfaces, in f64, with the same parameters and formulas as `shaders/light/shade.wgsl`. Colors are
+//! linear until [`shade_encode`].
 
 use glam::DVec3;
 
 use crate::eval::SurfaceMaterial;
 use crate::lights::GpuLight;
 
-/// Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from
-/// everywhere. `position` is relative to the eye; `normal` and `to_eye` have unit length.
+/// Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, ambient light. `position` is
+/// relative to the eye; `normal` and `to_eye` have unit length.
 pub fn shade_surface(
     material: &SurfaceMaterial,
     position: DVec3,
@@ -28,7 +28,7 @@ pub fn shade_surface(
     color
 }
 
-/// Unit vector toward the light, and the share of the light that arrives, shadows aside.
+/// Unit vector toward the light, and the fraction of the light that arrives without shadows.
 pub fn shade_incoming(light: &GpuLight, position: DVec3) -> (DVec3, f64) {
     if light.kind == GpuLight::DIRECTIONAL {
         return (-vector(light.direction), 1.0);
@@ -45,7 +45,7 @@ pub fn shade_incoming(light: &GpuLight, position: DVec3) -> (DVec3, f64) {
     (to_light, share)
 }
 
-/// Weakening with distance; fades to nothing at the light's range.
+/// Attenuation by distance; fades to zero at the light's range.
 pub fn shade_attenuation(light: &GpuLight, distance: f64) -> f64 {
     let ratio = (distance / f64::from(light.range)).min(1.0);
     let window = 1.0 - ratio.powi(4);
@@ -53,25 +53,25 @@ pub fn shade_attenuation(light: &GpuLight, distance: f64) -> f64 {
     window * window / (constant + (linear + quadratic * distance) * distance).max(1e-4)
 }
 
-/// Light from everywhere: full from above, half from below.
+/// Ambient light: full from above, half from below.
 pub fn shade_ambient(normal_y: f64, ambient: DVec3) -> DVec3 {
     ambient * (0.75 + 0.25 * normal_y)
 }
 
-/// What a ray sees that hits nothing; `direction_y` is the height of its unit direction.
+/// Color of a ray without a hit; `direction_y` is the height of its unit direction.
 pub fn shade_background(direction_y: f64, sky: DVec3, horizon: DVec3) -> DVec3 {
     let height = direction_y.clamp(0.0, 1.0);
     horizon.lerp(sky, height * (2.0 - height))
 }
 
-/// Linear light to what a screen expects (IEC 61966-2-1), clamped to 0..1.
+/// Encodes linear light for a screen (IEC 61966-2-1), clamped to 0..1.
 pub fn shade_encode(linear: DVec3) -> DVec3 {
     linear
         .clamp(DVec3::ZERO, DVec3::ONE)
         .map(|c| if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 })
 }
 
-/// Back from [`shade_encode`]: what a byte of a texture means.
+/// The inverse of [`shade_encode`]: decodes a byte of a texture.
 pub fn shade_decode(encoded: DVec3) -> DVec3 {
     encoded.map(|c| if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
 }
@@ -97,7 +97,7 @@ mod tests {
         GpuLight::new(&flat, DVec3::Y)
     }
 
-    /// A floor 2 below the light's height over the eye, seen from the side.
+    /// A floor 2 below the light's height over the eye, viewed from the side.
     fn floor(lights: &[GpuLight], x: f64) -> DVec3 {
         shade_surface(&GRAY, DVec3::new(x, 1.0, -2.0), DVec3::Y, DVec3::Z, DVec3::ZERO, lights)
     }

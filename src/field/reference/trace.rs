@@ -1,14 +1,14 @@
-//! Rays against the CPU evaluator, with certainty instead of a step limit.
+//! Ray tracing by the CPU evaluator, with certainty instead of a step limit.
 //!
-//! A ray advances by the field, which is a safe step, until the field's sign changes; secants and
-//! bisection then close in on the surface. Close to the surface it steps to where the field's slope along the ray says that
-//! it is 0, and a rounding beyond: so a sheet is entered however thin it is, and a ray that only comes near goes on and is
-//! never taken for a hit.
+//! A ray advances by the field, which is a safe step, until the field's sign changes; secants and bisection then
+//! close in on the surface. Close to the surface the ray steps to the zero that the field's slope along the ray
+//! predicts, plus the rounding: so it enters a sheet however thin, and a ray that only comes near continues and never
+//! counts as a hit.
 //!
-//! Conventions that the renderer shares: what a ray hits is the first point where the field is
-//! negative, so a shape without volume is invisible; a ray that starts inside a solid hits at `near`. The arrays are
-//! rounded to f32. Where a cut ends flush with a face, or two faces coincide, that rounding may leave a skin: between
-//! parallel faces of two shapes what is thinner than the rounding is nothing.
+//! Conventions shared with the renderer: a hit is the first point where the field is negative, so a shape without
+//! volume is invisible; a ray that starts inside a solid hits at `near`. The arrays are rounded to f32. Where a cut
+//! ends flush with a face, or two faces coincide, that rounding may leave a skin: between parallel faces of two
+//! shapes, anything thinner than the rounding is not a hit.
 
 use std::cell::Cell;
 
@@ -20,7 +20,7 @@ use crate::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
 use isolith_scene::NodeId;
 
-/// Where a ray meets the first component.
+/// The hit of a ray on the first component.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray.
@@ -31,19 +31,18 @@ pub struct Hit {
     pub leaf: u32,
 }
 
-/// What a ray met.
+/// The result of following a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct March {
-    /// What it hit.
+    /// The hit, if any.
     pub hit: Option<Hit>,
-    /// How far, as an angle in radians, the ray could be turned before it might hit something else: the
-    /// least field over distance of every surface that it passed, and the depth over distance to which
-    /// it enters what it hits. The first is a lower bound within a factor of two, the second is not
-    /// followed beyond [`CLEAR`].
+    /// The angle in radians by which the ray could turn before it might hit something else: the minimum of field over
+    /// distance at every surface that it passed, and of depth over distance in the solid that it enters. The first is
+    /// a lower bound within a factor of two; the second is not measured beyond [`CLEAR`].
     pub margin: f64,
 }
 
-/// A ray that could not be followed to its end.
+/// The ray reached the limit of evaluations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("a ray was not at its end after {MAX_EVALUATIONS} evaluations of what node {node} is part of")]
 pub struct TraceError {
@@ -51,35 +50,34 @@ pub struct TraceError {
     pub node: NodeId,
 }
 
-/// A ray gives up after so many evaluations of one component, rather than never end.
+/// The limit on evaluations of one component for one ray, so that every ray ends.
 pub const MAX_EVALUATIONS: u32 = 10_000_000;
-/// Margins beyond this angle are not measured further; a hundredth of a pixel and more.
+/// Margins beyond this angle are not measured further; it is a hundredth of a pixel or more.
 pub const CLEAR: f64 = 1e-4;
 
-/// Below this share of the distance from the eye the field counts as touching.
+/// Below this fraction of the distance from the eye the field counts as touching.
 const TOUCHING: f64 = 1e-7;
-/// Longest step where the field touches, as a share of the distance from the eye: a shorter chord may be missed, where the
-/// field's slope does not tell of it.
+/// The longest step where the field touches, as a fraction of the distance from the eye. The ray may miss a shorter
+/// chord if the field's slope does not predict it.
 const LONGEST_CREEP: f64 = 1e-5;
-/// What evaluating a field may round, relative to the numbers that it is evaluated with: some steps of f64.
+/// The rounding of an evaluation relative to its inputs: some units in the last place of f64.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// The depth of a skin that rounding to f32 may leave between two faces that should coincide, relative to the distance from
-/// the component's origin. Placing a face rounds three coefficients, a shift and a size, each by half a step, and a skin is
-/// twice as thick as it is deep.
+/// The depth of a skin that rounding to f32 may leave between two faces that should coincide, relative to the
+/// distance from the component's origin. Placing a face rounds three coefficients, a shift and a size, each by half a
+/// unit, and a skin is twice as thick as it is deep.
 const SKIN: f64 = 2.0 * f32::EPSILON as f64;
-/// A ray that comes nearer to a face by less than this, per distance, follows it.
+/// A ray that approaches a face by less than this, per distance, follows it.
 const FOLLOWING: f64 = 1e-3;
-/// How far from opposite the normals of such faces may be: 1 + cos of the angle, a thousandth of a radian.
+/// The tolerance for opposite normals of such faces: 1 + cos of the angle, a thousandth of a radian.
 const PARALLEL: f64 = 5e-7;
 
-/// The first surface on the ray between `near` and `far`. One ray at a time; [`Tracer`] is quicker for
-/// many.
+/// The first surface on the ray between `near` and `far`. For one ray at a time; [`Tracer`] is faster for many.
 pub fn trace(flat: &FlatScene, ray: &Ray, near: f64, far: f64) -> Result<Option<Hit>, TraceError> {
     Tracer::new(flat).march(ray, near, far).map(|march| march.hit)
 }
 
-/// The first surface of one component on the ray between `near` and `far`. Adds to `evaluations` how often the field was
-/// evaluated.
+/// The first surface of one component on the ray between `near` and `far`. Adds the number of evaluations to
+/// `evaluations`.
 pub fn trace_component(
     flat: &FlatScene,
     index: u32,
@@ -103,11 +101,11 @@ pub fn leaf_at(flat: &FlatScene, component: u32, ray: &Ray, t: f64) -> u32 {
 #[derive(Clone)]
 pub struct Tracer<'a> {
     flat: &'a FlatScene,
-    /// Bounds of the components, grown a little: the arrays are rounded to f32, their bounds are not.
+    /// Bounds of the components, slightly expanded: the arrays are rounded to f32, the bounds are not.
     bounds: Vec<Aabb>,
-    /// Entry, exit and index of the components on the present ray.
+    /// Entry, exit and index of the components on the current ray.
     order: Vec<(f64, f64, u32)>,
-    /// How often the field of a component was evaluated so far.
+    /// The number of evaluations of components so far.
     pub evaluations: u64,
 }
 
@@ -166,7 +164,7 @@ struct Line<'a> {
     origin: DVec3,
     direction: DVec3,
     evaluations: u32,
-    /// How often the field was evaluated, by `field` and `slope`.
+    /// The number of evaluations by `field` and `slope`.
     fields: Cell<u64>,
     margin: f64,
 }
@@ -201,7 +199,7 @@ impl<'a> Line<'a> {
         gradient(self.flat, self.component, self.at(t)).1.dot(self.direction)
     }
 
-    /// What the field's value at `t` may be off by rounding.
+    /// The rounding of the field's value at `t`.
     fn rounding(&self, t: f64) -> f64 {
         ROUNDING * (self.origin.length() + t)
     }
@@ -212,7 +210,7 @@ impl<'a> Line<'a> {
             return Ok(Some(t));
         }
         let mut min_step = 0.0;
-        // How the field fell in the last step, per distance.
+        // The decrease of the field in the last step, per distance.
         let mut fell = 1.0;
         while t < exit {
             self.evaluations += 1;
@@ -227,7 +225,7 @@ impl<'a> Line<'a> {
                 (t, f, min_step, fell) = (behind, self.field(behind).max(0.0), 0.0, 1.0);
                 continue;
             }
-            // Where the field, seen from the eye, begins to widen again, the ray has passed something.
+            // Where the field, seen from the eye, begins to grow again, the ray has passed a surface.
             if g * t > f * next {
                 self.pass(f, t);
             }
@@ -238,12 +236,13 @@ impl<'a> Line<'a> {
         Ok(None)
     }
 
-    /// The next step from `t`, where the field is `f`: the field itself, or where that touches to a rounding beyond the
-    /// place where it should be 0. Steps at least double as long as it touches, so that a ray along a surface gets on.
+    /// The next step from `t`, where the field is `f`: the field itself, or, where the field touches, a step to the
+    /// predicted zero plus the rounding. The least step doubles as long as the field touches, so that a ray along a
+    /// surface advances.
     fn step(&self, t: f64, f: f64, fell: f64, min_step: &mut f64) -> f64 {
         let rounding = self.rounding(t);
         let touches = f < (TOUCHING * t).max(rounding);
-        // Along a face, the field is what the face was rounded by, all the way.
+        // Along a face, the field equals the rounding of the face all the way.
         let follows = fell < FOLLOWING && f < SKIN * self.at(t).length();
         if !touches && !follows {
             *min_step = 0.0;
@@ -256,7 +255,7 @@ impl<'a> Line<'a> {
         f.max(straight.min(longest)).max(*min_step)
     }
 
-    /// Where what the ray enters at `t` ends, if it is a skin that rounding left, see [`SKIN`].
+    /// The end of the solid that the ray enters at `t`, if it is a skin that rounding left, see [`SKIN`].
     fn skin_end(&self, t: f64) -> Option<f64> {
         let thin = SKIN * self.at(t).length();
         let is_deep = |f: f64| f < -thin;
@@ -285,8 +284,8 @@ impl<'a> Line<'a> {
         self.margin = self.margin.min(f / t.max(f64::MIN_POSITIVE));
     }
 
-    /// The sign change between a point outside and one inside, each with its field: secants, and the
-    /// middle wherever a secant has not halved what is left.
+    /// The sign change between a point outside and one inside, each with its field: secants, or the middle if a
+    /// secant has not halved the interval.
     fn close_in(&self, mut outside: [f64; 2], mut inside: [f64; 2]) -> f64 {
         let precision = 0.25 * self.rounding(inside[0]);
         let mut use_secant = true;
@@ -295,7 +294,7 @@ impl<'a> Line<'a> {
             if width <= precision {
                 return inside[0];
             }
-            // A little to either side of the secant's root, so that both ends move.
+            // Evaluate slightly to either side of the secant's root, so that both ends move.
             let share = if use_secant { (outside[1] / (outside[1] - inside[1])).clamp(1e-3, 0.999) } else { 0.5 };
             for t in [share * (1.0 - 1e-6), share * (1.0 + 1e-6)].map(|share| outside[0] + width * share) {
                 let f = self.field(t);
@@ -309,15 +308,15 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// How deep the ray enters behind `t`, over the distance; at most about [`CLEAR`]. Probes at growing
-    /// distances: one of them is close to the middle of the chord, however short that is.
+    /// The depth of the solid behind `t` over the distance; at most about [`CLEAR`]. Probes at growing distances: one
+    /// of them is close to the middle of the chord, however short that is.
     fn depth(&self, t: f64) -> f64 {
         let mut deepest = 0.0;
         let first = (1e-10 * t).max(self.rounding(t));
         let mut ahead = first;
         while ahead < t && deepest < CLEAR {
             let depth = -self.field(t + ahead) / (t + ahead);
-            // The first probes are no farther from the surface than rounding.
+            // The first probes are closer to the surface than the rounding.
             if depth < 0.0 && ahead > 100.0 * first {
                 break;
             }

@@ -1,4 +1,4 @@
-//! The top cells of a component as one array.
+//! Builds the top cells of a component into one array.
 
 use std::sync::Arc;
 
@@ -13,17 +13,17 @@ use super::program::full_tape;
 use super::top_cell::{CellContext, CellTreeBuilder, TapeStats, TopCell, moved};
 use crate::{Component, FlatScene};
 
-/// Components of fewer entries have no cells of the finest kind: they would cost more than they save.
+/// Components of fewer entries have no cells of the finest level: these would cost more than they save.
 const LEAST_FOR_ALL_LEVELS: u32 = 48;
 
 impl CellTree {
-    /// The tapes of a component, which must be one that may have some, however small it is.
+    /// The tapes of a component. It must be able to have tapes, however small it is.
     pub fn build(flat: &FlatScene, component: &Component) -> Self {
         Build::new(flat, component).fresh().0
     }
 }
 
-/// All that is needed to make a component's tree.
+/// The inputs of a component's tree.
 pub(super) struct Build<'a> {
     entries: Entries<'a>,
     pub domains: Vec<Domain>,
@@ -33,25 +33,24 @@ pub(super) struct Build<'a> {
 pub(super) type TopCells = Vec<Vec<Arc<TopCell>>>;
 
 impl<'a> Build<'a> {
-    /// Of a component that has tapes.
+    /// For a component that has tapes.
     pub fn new(flat: &'a FlatScene, component: &'a Component) -> Self {
         let domains = domains_of(flat, component).expect("only components that have tapes get here");
         Self { entries: Entries::new(flat, component), domains }
     }
 
-    /// The size that rounding is relative to; where it changes, every cell does.
+    /// The size that rounding is relative to; a change of it changes every cell.
     pub fn size(&self) -> f64 {
         self.entries.size
     }
 
-    /// The tree from nothing, with its top cells.
+    /// A new tree, with its top cells.
     pub fn fresh(&self) -> (CellTree, TopCells) {
         let changed = vec![false; self.entries.leaves.len()];
         self.top_cells(&changed, None)
     }
 
-    /// The tree from the top cells that it had on the same grids, with the same size, before the entries told by
-    /// `changed` did.
+    /// The tree, from its top cells on the same grids and with the same size before the entries in `changed` changed.
     pub fn again(&self, changed: &[bool], old: &TopCells) -> (CellTree, TopCells) {
         self.top_cells(changed, Some(old))
     }
@@ -102,7 +101,7 @@ impl<'a> Build<'a> {
     }
 }
 
-/// Top cells, then all blocks, then all tape entries, to be put behind `before` words.
+/// Top cells, then all blocks, then all tape entries; `before` words precede them.
 fn assembled(top_cells: &[Arc<TopCell>], before: usize) -> Vec<[u32; 2]> {
     let cells: usize = top_cells.len() + top_cells.iter().map(|top_cell| top_cell.cells.len()).sum::<usize>();
     let tape_entries: usize = top_cells.iter().map(|top_cell| top_cell.tape_entries.len()).sum();

@@ -1,4 +1,4 @@
-//! The tree of one component with what it was made from, so that it is made anew only where an edit reached.
+//! The tree of one component with its inputs, so that an edit rebuilds only what it changed.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -12,7 +12,7 @@ use crate::{
 };
 use isolith_scene::ShapeKind;
 
-/// A component's tree, and the component as it was then.
+/// A component's tree, and the state of the component that it was built from.
 #[derive(Debug)]
 pub(super) struct CachedTree {
     of: FlatScene,
@@ -20,24 +20,24 @@ pub(super) struct CachedTree {
     size: f64,
     pub tree: Arc<CellTree>,
     top_cells: TopCells,
-    /// How long it took to make.
+    /// The build time.
     pub took: Duration,
 }
 
 /// What an edit did to a component.
 enum Change {
-    /// Nothing that the tapes depend on.
+    /// Nothing that the tapes depend on has changed.
     None,
-    /// Only these entries have other numbers or join in another way.
+    /// Only these entries have other parameters or join in another way.
     Some(Vec<bool>),
-    /// The component has another form, or more has changed than is worth looking for.
+    /// The component has another structure, or the changes are too many to be worth finding.
     All,
 }
 
-/// Where more than this share of the entries has changed, all is made anew.
+/// If more than this fraction of the entries has changed, the cache rebuilds all cells.
 const MOST_CHANGED: f64 = 0.25;
 
-/// A component by itself: all that tapes are made from, with rows counted from its first, without materials.
+/// A component by itself: all inputs of its tapes, with rows counted from its first, without materials.
 pub(super) fn isolate(flat: &FlatScene, component: &Component) -> FlatScene {
     FlatScene {
         nodes: nodes(flat, component).collect(),
@@ -48,7 +48,7 @@ pub(super) fn isolate(flat: &FlatScene, component: &Component) -> FlatScene {
 }
 
 impl CachedTree {
-    /// The tree of a component that stands by itself, see [`isolate`], from the one that it had before, if it had one.
+    /// The tree of an isolated component, see [`isolate`], from its previous tree if it had one.
     pub fn new(of: FlatScene, old: Option<Self>) -> Self {
         let start = Instant::now();
         let component = &of.components[0];
@@ -66,9 +66,9 @@ impl CachedTree {
         Self { of, domains, size, tree: Arc::new(tree), top_cells, took: start.elapsed() }
     }
 
-    /// Whether nothing has changed that the tapes depend on.
+    /// Whether nothing that the tapes depend on has changed.
     pub fn is_current(&self, flat: &FlatScene, component: &Component) -> bool {
-        // What the domains follow from is not all in the numbers.
+        // The domains depend on more than the parameters.
         matches!(self.change(flat, component), Change::None)
             && domains_of(flat, component).is_some_and(|domains| domains == self.domains)
     }
@@ -86,8 +86,8 @@ impl CachedTree {
                 return Change::All;
             }
             let first = is.params as usize;
-            // Tapes do not depend on a run at all, and of a group's numbers only on its blend: bounds
-            // merely tell sooner what the leaves would.
+            // Tapes do not depend on a run at all, and of a group's parameters only on its blend: bounds merely say
+            // sooner what the leaves would.
             let same = match () {
                 () if is.is_run() => true,
                 () if is.is_group() => {
@@ -102,7 +102,7 @@ impl CachedTree {
             changed[index] = !same;
             count += usize::from(!same);
         }
-        // A modifier is one operand with all that it holds.
+        // A modifier and its content are one operand.
         for (index, node) in old.nodes.iter().enumerate().filter(|(_, node)| node.modifier().is_some()) {
             changed[index] = changed[index..][..node.extent as usize].contains(&true);
         }
@@ -114,13 +114,13 @@ impl CachedTree {
     }
 }
 
-/// The rows and the data of a leaf whose rows `params` begins with.
+/// The rows and the payload of a leaf whose rows `params` begins with.
 fn leaf<'a>(node: &FlatNode, params: &'a [ParamRow]) -> [&'a [ParamRow]; 2] {
     let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
     [&params[..LEAF_ROWS + kind.rows()], leaf_payload(kind, params)]
 }
 
-/// The same of a modifier.
+/// The rows and the payload of a modifier.
 fn modifier<'a>(node: &FlatNode, params: &'a [ParamRow]) -> Option<[&'a [ParamRow]; 2]> {
     let kind = node.modifier()?;
     Some([&params[..MODIFIER_ROWS + modifier_rows(kind)], modifier_payload(kind, &params[MODIFIER_ROWS..])])

@@ -1,4 +1,4 @@
-//! The cells of one component with their tapes, and which of them a point is in.
+//! The cells of one component with their tapes, and the lookup of a point's cell.
 
 use glam::DVec3;
 
@@ -9,20 +9,21 @@ use super::top_cell::TapeStats;
 /// The cells of one component with their tapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellTree {
-    /// The grid of the component's own space, relative to its origin; then those of what its modifiers hold, each in its
-    /// own space, as [`Component::modifier_domains`](crate::Component::modifier_domains) names them.
+    /// The grid of the component's own space, relative to its origin; then those of its modifiers' contents, each in
+    /// its own space, in the order of [`Component::modifier_domains`](crate::Component::modifier_domains).
     pub grids: Vec<Grid>,
-    /// A header of [`HEADER_WORDS`](super::HEADER_WORDS) for each content, the last one first: lower corner (3 floats),
-    /// side of a top cell, counts (8 bits each), where its top cells stand, [`Grid::clear`]. Then for each grid the top
-    /// cells (x fastest), blocks of children, and tape entries. Offsets count from behind the headers.
+    /// A header of [`HEADER_WORDS`](super::HEADER_WORDS) for each modifier content, the last one first: lower corner
+    /// (3 floats), side of a top cell, counts (8 bits each), offset of its top cells, [`Grid::clear`]. Then for each
+    /// grid the top cells (x fastest), blocks of children, and tape entries. Offsets count from the end of the
+    /// headers.
     pub words: Vec<[u32; 2]>,
-    /// Where the words begin from which offsets count: the component's own top cells.
+    /// The index of the word that offsets count from: the component's first top cell.
     pub start: usize,
     pub(super) starts: Vec<u32>,
     pub(super) lengths: Lengths,
 }
 
-/// How many tape entries are walked.
+/// The number of tape entries that an evaluation processes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lengths {
     mean: f64,
@@ -30,7 +31,7 @@ pub(super) struct Lengths {
 }
 
 impl Lengths {
-    /// Adds what is walked in a space that is visited up to `copies` times.
+    /// Adds the entries of a space that is evaluated up to `copies` times.
     pub fn add(&mut self, stats: &TapeStats, copies: u32) {
         let mean = if stats.faces > 0.0 { stats.sum / stats.faces } else { 0.0 };
         self.mean += mean * f64::from(copies).sqrt();
@@ -38,14 +39,14 @@ impl Lengths {
     }
 }
 
-/// What the tapes say about a point.
+/// The result of looking up a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell<'a> {
     /// The point is outside of the grid.
     Outside,
-    /// No surface is near: from here a step of `bound` meters reaches none. Negative in the inside.
+    /// No surface is near: a step of `bound` meters from here reaches none. Negative inside.
     Empty {
-        /// Never farther from 0 than the field.
+        /// Its absolute value never exceeds that of the field.
         bound: f64,
     },
     /// These tape entries have the value of the whole component here.
@@ -53,18 +54,18 @@ pub enum Cell<'a> {
 }
 
 impl CellTree {
-    /// Tape entries that a point in a cell with a tape meets, about: the mean, weighted by the area that the
-    /// cells show to rays.
+    /// The mean number of tape entries for a point in a cell with a tape, weighted by the area that the cells expose
+    /// to rays.
     pub fn mean_length(&self) -> f64 {
         self.lengths.mean
     }
 
-    /// Tape entries that are walked for a point at most.
+    /// The largest number of tape entries for a point.
     pub fn longest(&self) -> u32 {
         self.lengths.longest
     }
 
-    /// What the tapes say about `p` in the space of a grid: 0 for the component's own, relative to its origin.
+    /// Looks up `p` in the space of a grid: 0 for the component's own, relative to its origin.
     pub fn tape_at(&self, number: usize, p: DVec3) -> Cell<'_> {
         let grid = &self.grids[number];
         if grid.distance(p) > 0.0 {

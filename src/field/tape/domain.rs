@@ -1,9 +1,10 @@
-//! The spaces of a component that have tapes of their own: that of the component, and that of what each modifier holds.
+//! The spaces of a component that have tapes of their own: that of the component, and that of each modifier's
+//! content.
 //!
-//! A modifier is one operand where it stands; what it holds has tapes in its own space, so they stay right whatever it
-//! does to that space. But there more than the surface matters: a shell of 0.1 m needs the field up to 0.1 m to the last
-//! bit, a blend as far as it reaches. So a domain says up to which value its field must be exact; only cells beyond that
-//! are without a tape.
+//! Outside, a modifier is one operand; its content has tapes in its own space, so they stay valid however the
+//! modifier deforms that space. But inside, more than the surface matters: a shell of 0.1 m needs the field up to 0.1
+//! m to the last bit, a blend needs it as far as its support. So a domain states up to which value its field must be
+//! exact; only cells beyond that value have no tape.
 
 use std::ops::Range;
 
@@ -14,31 +15,33 @@ use crate::modifier_table::content_exactness;
 use crate::{Component, FlatNode, FlatScene, Join, MODIFIER_ROWS, ModifierDomain, ParamRow};
 use isolith_scene::ModifierKind;
 
-/// Components of at least so many entries have tapes: those of fewer are walked as fast without.
+/// The least number of entries of a component with tapes; smaller ones evaluate as fast without.
 const LEAST_TAPE_ENTRIES: u32 = 5;
-/// The same with modifiers, whose kernel has more to do for a tape.
+/// The same for components with modifiers, whose shader does more work per tape.
 const LEAST_MODIFIED_ENTRIES: u32 = 24;
 
 /// A space that has tapes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Domain {
-    /// Its entries, counted from the component's first; with those of modifiers in it, which are no operands here.
+    /// Its entries, counted from the component's first. The entries inside its modifiers are included, but are not
+    /// operands here.
     pub entries: Range<usize>,
-    /// Where its cells lie.
+    /// The grid of its cells.
     pub grid: Grid,
-    /// Its field must be exact wherever it is no farther from 0 than this, in meters.
+    /// Its field must be exact where its absolute value is at most this, in meters.
     pub exact: f64,
-    /// How often it may be evaluated for one point of the component.
+    /// The largest number of evaluations for one point of the component.
     pub copies: u32,
 }
 
-/// Whether a component has tapes: it, or what a modifier in it holds, must be bounded and large enough for them to pay.
+/// Whether a component has tapes: it, or the content of a modifier in it, must be bounded and large enough for them
+/// to pay.
 pub fn has_tape(flat: &FlatScene, component: &Component) -> bool {
     let least = least_entries(component);
     component.count >= least && has_domains(flat, component, least)
 }
 
-/// So many entries of its own space, or of what a modifier holds, have tapes.
+/// The least number of entries, of its own space or of a modifier's content, for tapes.
 fn least_entries(component: &Component) -> u32 {
     if component.is_modified() { LEAST_MODIFIED_ENTRIES } else { LEAST_TAPE_ENTRIES }
 }
@@ -54,18 +57,18 @@ fn has_domains(flat: &FlatScene, component: &Component, least: u32) -> bool {
         && domains(flat, component, least).is_some()
 }
 
-/// The domains of a component that has tapes, because it is large or because all should have some.
+/// The domains of a component that has tapes, because it is large or because all components shall have tapes.
 pub(super) fn domains_of(flat: &FlatScene, component: &Component) -> Option<Vec<Domain>> {
     domains(flat, component, least_entries(component)).or_else(|| domains(flat, component, 1))
 }
 
-/// The domains of a component: its own, then those of its contents; those of `least` entries have a grid. Nothing where
-/// none has.
+/// The domains of a component: its own, then those of its modifiers' contents. Those with at least `least` entries
+/// have a grid. `None` if no domain has one.
 fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Domain>> {
     let nodes = &flat.nodes[component.first as usize..][..component.count as usize];
     let rows = |node: &FlatNode| &flat.params[node.params as usize..];
     let mut exact = vec![0.0; component.modifier_domains.len()];
-    // Asked of every large component in each frame that changes anything; few hold modifiers.
+    // Every change of the scene asks this of each large component; few hold modifiers.
     if component.is_modified() {
         fill_exact(
             &Entries { nodes, rows: &rows, modifier_domains: &component.modifier_domains },
@@ -94,7 +97,7 @@ fn domains(flat: &FlatScene, component: &Component, least: u32) -> Option<Vec<Do
     all.iter().any(|domain| domain.grid != Grid::ONE_CELL).then_some(all)
 }
 
-/// How many entries of a range do not stand within a modifier that does.
+/// The number of entries of a range that are not inside a modifier of that range.
 fn own_entries(nodes: &[FlatNode], range: Range<usize>) -> usize {
     let (mut at, mut count) = (range.start, 0);
     while at < range.end {
@@ -110,7 +113,8 @@ struct Entries<'a> {
     modifier_domains: &'a [ModifierDomain],
 }
 
-/// Finds how exact the contents of modifiers in the fold `range` must be, where that fold must be up to `exact`.
+/// Computes how exact the contents of modifiers in the fold `range` must be, if that fold must be exact up to
+/// `exact`.
 fn fill_exact(entries: &Entries<'_>, range: Range<usize>, exact: f64, out: &mut [f64]) {
     let mut operands = Vec::new();
     let mut at = range.start;
@@ -123,7 +127,7 @@ fn fill_exact(entries: &Entries<'_>, range: Range<usize>, exact: f64, out: &mut 
         operands.push(at);
         at += node.extent as usize;
     }
-    // From the last to the first, since each blend after an operand needs more of it.
+    // From the last to the first, since each blend after an operand raises the exactness that it needs.
     let mut needed = exact;
     for (i, index) in operands.iter().enumerate().rev() {
         let node = &entries.nodes[*index];
@@ -145,9 +149,9 @@ fn fill_exact(entries: &Entries<'_>, range: Range<usize>, exact: f64, out: &mut 
     }
 }
 
-/// How much farther than its result the operands of a blend must be exact: where they differ by the support of the blend
-/// the blend is hard, and beyond twice the support it stays beyond whatever the far one is. Nothing is known of the
-/// extended operators.
+/// The additional exactness that the operands of a blend need over its result. Operands that differ by the support of
+/// the blend join hard; beyond twice the support they stay hard whatever the value of the far operand. For the
+/// extended operators no bound is known.
 fn before_blend(node: &FlatNode, rows: &[ParamRow]) -> f64 {
     match Join::ALL[node.join() as usize] {
         Join::Union | Join::Intersection | Join::Difference | Join::ReverseDifference => {
@@ -157,9 +161,9 @@ fn before_blend(node: &FlatNode, rows: &[ParamRow]) -> f64 {
     }
 }
 
-/// How exact the content must be for a modifier's field to be exact up to `exact`.
+/// The exactness of the content for a modifier's field to be exact up to `exact`.
 fn of_content(kind: ModifierKind, rows: &[ParamRow], exact: f64) -> f64 {
-    // What follows from a distance scale of 0 is not evaluated.
+    // The evaluators do not evaluate the result of a distance scale of 0.
     let local = exact / f64::from(rows[1][3]).max(f64::MIN_POSITIVE);
     let own = |row: usize, column: usize| f64::from(rows[MODIFIER_ROWS + row][column]);
     content_exactness(kind, local, &own)

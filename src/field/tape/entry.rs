@@ -1,4 +1,4 @@
-//! A component's entries as numbers to evaluate with: in f64, ready to use, one beside the other.
+//! A component's entries in f64, ready to evaluate, in contiguous arrays.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -7,7 +7,7 @@ use crate::{Component, FlatNode, FlatScene, LEAF_ROWS, ParamRow, leaf_payload};
 use isolith_geometry::{Aabb, singular_values};
 use isolith_scene::{ModifierKind, SHAPE_FLOATS, ShapeKind};
 
-/// A leaf, evaluated exactly as the CPU evaluator does it.
+/// A leaf, evaluated exactly as the CPU evaluator evaluates it.
 #[derive(Clone)]
 pub(super) struct Leaf {
     kind: ShapeKind,
@@ -39,7 +39,7 @@ impl Leaf {
         shape_distance(self.kind, local, &self.parameters, &|row| self.data[row]) * self.scale
     }
 
-    /// How large its coordinates get, in meters: what rounding in f32 is relative to.
+    /// The magnitude of its coordinates in meters, which rounding in f32 is relative to.
     fn size(&self) -> f64 {
         let greatest = match self.around() {
             Some((center, radius)) => center.abs().max_element() + radius,
@@ -48,7 +48,7 @@ impl Leaf {
         (self.rows.iter().fold(greatest, |most, (_, shift)| most.max(shift.abs()))) * self.scale
     }
 
-    /// The bounding sphere around a shape with data, in its own space.
+    /// The bounding sphere of a shape with a payload, in its own space.
     fn around(&self) -> Option<(DVec3, f64)> {
         self.data.first().map(|row| (DVec3::from_slice(row), row[3]))
     }
@@ -58,7 +58,7 @@ impl Leaf {
             let bounds = self.kind.unpacked(&self.parameters)?.bounds();
             Some((bounds.center(), bounds.half().length()))
         });
-        // What has data begins them with its bounding sphere.
+        // A payload begins with its bounding sphere.
         let Some((middle, radius)) = around else { return BoundingSphere::NONE };
         let local_from_component = DAffine3 {
             matrix3: DMat3::from_cols(self.rows[0].0, self.rows[1].0, self.rows[2].0).transpose(),
@@ -70,7 +70,7 @@ impl Leaf {
     }
 }
 
-/// Around an entry: its field at p is at least `slope` |p − `center`| − `reach`.
+/// A lower bound of an entry's field: at p it is at least `slope` |p − `center`| − `reach`.
 #[derive(Clone, Copy)]
 pub(super) struct BoundingSphere {
     center: DVec3,
@@ -79,9 +79,9 @@ pub(super) struct BoundingSphere {
 }
 
 impl BoundingSphere {
-    /// Says nothing.
+    /// The trivial bound.
     const NONE: Self = Self { center: DVec3::ZERO, slope_squared: 0.0, reach: f64::INFINITY };
-    /// What is given away so that rounding never makes the bound too large.
+    /// The slack that keeps rounding from making the bound too large.
     const SLACK: f64 = 1e-6;
 
     fn new(center: DVec3, slope: f64, reach: f64) -> Self {
@@ -93,8 +93,8 @@ impl BoundingSphere {
         Self { center, slope_squared: slope * slope, reach }
     }
 
-    /// Whether the field at `p` is certainly at least `value`; without a square root, since this is
-    /// asked far more often than any distance is computed.
+    /// Whether the field at `p` is at least `value` for certain. Without a square root, since calls are far more
+    /// frequent than evaluations of a distance.
     #[inline]
     pub fn is_beyond(&self, p: DVec3, value: f64) -> bool {
         let way = value + self.reach;
@@ -102,28 +102,28 @@ impl BoundingSphere {
     }
 }
 
-/// All entries of a component; what does not apply to an entry is filled with something harmless.
+/// All entries of a component; each array holds a harmless value for entries that it does not apply to.
 pub(super) struct Entries<'a> {
     flat: &'a FlatScene,
     component: &'a Component,
     first: usize,
-    /// Rows of the component begin here.
+    /// The first row of the component.
     pub params: u32,
-    /// The leaves; a plane where there is none.
+    /// The leaves; a plane for other entries.
     pub leaves: Vec<Leaf>,
-    /// Modifiers whose field may jump: copies are seen only where they can matter.
+    /// Modifiers whose field may jump, because they evaluate copies only where these can matter.
     pub jumps: Vec<bool>,
-    /// Around leaves, groups and modifiers.
+    /// The bounding spheres of leaves, groups and modifiers.
     pub spheres: Vec<BoundingSphere>,
-    /// The numbers of the blends.
+    /// The parameters of the blends.
     pub blend_params: Vec<BlendParams>,
-    /// How large coordinates get in the component, in meters, rounded up to a power of two so that
-    /// edits rarely change it.
+    /// The magnitude of coordinates in the component, in meters, rounded up to a power of two so that edits rarely
+    /// change it.
     pub size: f64,
 }
 
 impl<'a> Entries<'a> {
-    /// Those of `component`.
+    /// The entries of `component`.
     pub fn new(flat: &'a FlatScene, component: &'a Component) -> Self {
         let (first, count) = (component.first as usize, component.count as usize);
         let (parameters, data) = ([0.0; SHAPE_FLOATS], Vec::new());
@@ -159,7 +159,7 @@ impl<'a> Entries<'a> {
         entries
     }
 
-    /// The entry itself.
+    /// The node of an entry.
     pub fn node(&self, entry: usize) -> &'a FlatNode {
         &self.flat.nodes[self.first + entry]
     }
@@ -173,7 +173,7 @@ impl<'a> Entries<'a> {
     }
 }
 
-/// From the bounds that stand in a group's rows, see [`ParamRow`].
+/// The sphere around the bounds in a group's rows, see [`ParamRow`].
 fn group_sphere(params: &[ParamRow]) -> BoundingSphere {
     let slope = f64::from(params[0][1]);
     let [center, half] = [1, 2].map(|row| DVec3::from_slice(&params[row].map(f64::from)));

@@ -1,4 +1,4 @@
-//! The field by the tapes, in f64: what the shader computes.
+//! Evaluation of the field by the tapes, in f64, as in the shader.
 
 use glam::DVec3;
 
@@ -10,13 +10,13 @@ use crate::{Component, FlatScene, Join};
 
 /// The field of `component` at `p` by its tapes, in meters; `p` is relative to the component's origin.
 ///
-/// Where a cell has a tape this is the field. Elsewhere it is a bound: of the field in cells without a
-/// surface, of the distance to the surface outside of the grid.
+/// In a cell with a tape this is the field. Elsewhere it is a bound: of the field in cells without a surface, of the
+/// distance to the surface outside of the grid.
 pub fn tape_field(flat: &FlatScene, component: &Component, tree: &CellTree, p: DVec3) -> f64 {
     in_space(flat, component, tree, 0, p)
 }
 
-/// The field in the space of the tree's grid of this number.
+/// The field in the space of the tree's grid `number`.
 fn in_space(flat: &FlatScene, component: &Component, tree: &CellTree, number: usize, p: DVec3) -> f64 {
     let grid = &tree.grids[number];
     match tree.tape_at(number, p) {
@@ -28,7 +28,7 @@ fn in_space(flat: &FlatScene, component: &Component, tree: &CellTree, number: us
     }
 }
 
-/// The value of a tape at `p`; `content` is the field of what a modifier holds, by its number, in its space.
+/// The value of a tape at `p`; `content` is the field of a modifier's content, by its number, in its space.
 pub(super) fn fold(
     flat: &FlatScene,
     component: &Component,

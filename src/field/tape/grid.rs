@@ -1,4 +1,4 @@
-//! Where the top cells of a space lie.
+//! The grid of a space's top cells.
 
 use glam::DVec3;
 
@@ -6,12 +6,12 @@ use super::cell_encoding::{BRANCHES, HEADER_WORDS};
 use crate::ModifierDomain;
 use isolith_geometry::Aabb;
 
-/// What the grid keeps clear around the component's bounds on each side, as a share of their largest extent.
+/// The margin of the grid around the component's bounds on each side, as a fraction of their largest extent.
 pub const MARGIN_SHARE: f64 = 0.05;
-/// Of the size of coordinates, for rounding in f32.
+/// The slack for rounding in f32, relative to the size of coordinates.
 pub(super) const SIZE_SLACK: f64 = 1e-6;
 
-/// Where the top cells of a space lie.
+/// The grid of a space's top cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// The lower corner, in meters.
@@ -20,12 +20,12 @@ pub struct Grid {
     pub side: f64,
     /// Top cells along each axis, 1 to [`BRANCHES`].
     pub counts: [u32; 3],
-    /// How far from the surface everything outside is at least, in meters.
+    /// The least distance from outside of the grid to the surface, in meters.
     pub clear: f64,
 }
 
 impl Grid {
-    /// Of a space that has no grid: one cell without end, in which all matters.
+    /// A space without a grid: one infinite cell in which all entries matter.
     pub const ONE_CELL: Self = Self { low: DVec3::splat(-1e18), side: 2e18, counts: [1; 3], clear: 0.0 };
 
     /// The distance from `p` in meters, 0 inside.
@@ -34,7 +34,8 @@ impl Grid {
         (self.low - p).max(p - high).max(DVec3::ZERO).length()
     }
 
-    /// Around what is in a domain whose field must be exact up to `exact` meters; one cell where that has no end.
+    /// The grid around the content of a domain whose field must be exact up to `exact` meters; one cell for an
+    /// infinite content.
     pub(super) fn around(content: &ModifierDomain, exact: f64) -> Self {
         let bounds = match content.bound_slope {
             _ if exact == 0.0 => content.bounds,
@@ -47,7 +48,7 @@ impl Grid {
         }
         let margin = MARGIN_SHARE * largest;
         let side = (largest + 2.0 * margin) / f64::from(BRANCHES);
-        // The largest extent falls into as many cells exactly, whatever is rounded.
+        // The cells divide the largest extent exactly, whatever the rounding.
         let counts = (2.0 * (bounds.half() + margin) / side).to_array().map(|n| (n.ceil() as u32).clamp(1, BRANCHES));
         Self { low: bounds.min - margin, side, counts, clear: exact + margin }
     }
@@ -62,11 +63,11 @@ impl Grid {
         Cube { low: self.low + at * self.side, side: self.side }
     }
 
-    /// How the GPU reads it: its numbers as bits of f32, and where its top cells stand.
+    /// The GPU's form of the grid: its values as bits of f32, and the offset of its top cells.
     pub(super) fn header(&self, at: u32) -> [[u32; 2]; HEADER_WORDS] {
         let [x, y, z] = self.low.as_vec3().to_array().map(f32::to_bits);
         let [nx, ny, nz] = self.counts;
-        // A little less, so that f32 may round.
+        // Slightly less, as slack for rounding in f32.
         let clear = (self.clear * (1.0 - 1e-4)) as f32;
         [[x, y], [z, (self.side as f32).to_bits()], [nx | ny << 8 | nz << 16, at], [clear.to_bits(), 0]]
     }
@@ -84,7 +85,7 @@ impl Cube {
         self.low + 0.5 * self.side
     }
 
-    /// The piece at `index` (x fastest) of those that it falls into when each edge is cut into `pieces`.
+    /// The piece at `index` (x fastest) of the cube after cutting each edge into `pieces`.
     pub fn piece(&self, index: usize, pieces: u32) -> Self {
         let (side, n) = (self.side / f64::from(pieces), pieces as usize);
         let at = DVec3::new((index % n) as f64, (index / n % n) as f64, (index / n / n) as f64);

@@ -1,27 +1,27 @@
-//! Tapes: where in space which entries of a large component matter.
+//! Tapes: which entries of a large component matter where in space.
 //!
-//! Space is cut into cells, and each cell keeps only the entries that can matter in it. All fields are
-//! 1-Lipschitz: over a cell of half diagonal R two operands come closer to each other than at its center
-//! by at most 2R. Where they differ there by the support of their blend plus 2R, the blend is exactly
-//! the hard operator in the whole cell, one operand has no part in it, and what is left has the same
-//! value to the last bit. The same argument says where no surface is. (Barbier et al., "Lipschitz
-//! Pruning: Hierarchical Simplification of Primitive-Based SDFs", 2025.)
+//! Space is divided into cells, and each cell keeps only the entries that can matter in it. All fields are
+//! 1-Lipschitz: over a cell of half diagonal R the difference of two operands shrinks by at most 2R from its value at
+//! the center. Where it is at least the support of their blend plus 2R there, the blend is exactly the hard operator
+//! in the whole cell, one operand has no influence, and the simplified tape has the same value to the last bit. The
+//! same argument finds the cells without a surface. (Barbier et al., "Lipschitz Pruning: Hierarchical Simplification
+//! of Primitive-Based SDFs", 2025.)
 //!
-//! | file | what it does |
+//! | file | content |
 //! |---|---|
 //! | `tape_entry` | the words of a tape |
 //! | `cell_encoding` | cells as words |
-//! | `grid` | where the top cells of a space lie |
+//! | `grid` | the grid of a space's top cells |
 //! | `domain` | the spaces of a component that have tapes: its own, and that of each modifier's content |
-//! | `entry` | a component's entries as numbers to evaluate with |
-//! | `program` | a tape at one point: its value, and the shorter tape that is enough around the point |
-//! | `top_cell` | everything in one top cell |
+//! | `entry` | a component's entries in f64, ready to evaluate |
+//! | `program` | a tape at one point: its value, and the simplified tape for the surroundings of the point |
+//! | `top_cell` | the blocks and tapes below one top cell |
 //! | `build` | the top cells of a component as one array |
-//! | `cell_tree` | the cells of one component, and which of them a point is in |
-//! | `field` | the field by the tapes: counterpart of the shader |
-//! | `cached_tree` | one component's tree and what it was made from: made anew only where an edit reached |
-//! | `tape_cache` | trees kept between frames |
-//! | `worker` | makes them beside the frames |
+//! | `cell_tree` | the cells of one component, and the lookup of a point |
+//! | `field` | evaluation by the tapes: counterpart of the shader |
+//! | `cached_tree` | one component's tree with its inputs; an edit rebuilds only what it changed |
+//! | `tape_cache` | the cache of trees between frames |
+//! | `worker` | the thread that builds trees while frames are drawn |
 
 mod build;
 mod cached_tree;

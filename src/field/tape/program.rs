@@ -1,4 +1,4 @@
-//! A tape at one point: its value there, and the shorter tape that has the same value around the point.
+//! A tape at one point: its value there, and the simplified tape with the same value around the point.
 
 use std::ops::Range;
 
@@ -10,18 +10,18 @@ use super::tape_entry::{TapeEntry, TapeOp};
 use crate::Join;
 use crate::eval::{BlendParams, op_join};
 
-/// A tape entry on its way from a cell to its children.
+/// A tape entry while it passes from a cell to its children.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Step {
     pub tape_entry: TapeEntry,
-    /// Where a group begins: how many steps after this one it ends. It stays when tapes are moved.
+    /// For the begin of a group: the number of steps to its end. It stays valid when tapes are moved.
     pub span: u32,
 }
 
-/// The entries in `range` as they stand, without their runs; a modifier with all that it holds is one step.
+/// The entries in `range` in their order, without their runs; a modifier and its content are one step.
 pub(super) fn full_tape(entries: &Entries<'_>, domains: &[Domain], range: Range<usize>) -> Vec<Step> {
     let mut steps = Vec::with_capacity(range.len() * 2);
-    // Groups that are open: the entry behind them, where they begin, and how they end.
+    // Open groups: the entry after them, the step of their begin, and their end.
     let mut open: Vec<(usize, usize, TapeEntry)> = Vec::new();
     let mut index = range.start;
     loop {
@@ -64,14 +64,15 @@ enum Keep {
 }
 
 impl Keep {
-    /// `reach` is how much closer to each other than here the operands, or their sizes, may come around the point.
+    /// `reach` is the bound on how much the difference of the operands, or of their magnitudes, shrinks around the
+    /// point.
     fn of(tape_entry: TapeEntry, entries: &Entries<'_>, a: Value, b: Value, reach: f64) -> Self {
         if a.jumps || b.jumps {
             return Self::Both;
         }
         let (a, b) = (a.at, b.at);
         let BlendParams { support, size, depth } = entries.blend_params[tape_entry.entry()];
-        // By how much the first, or the second, is alone.
+        // By how much the first, or the second, is the only one that matters.
         let [first, second] = match Join::ALL[tape_entry.join() as usize] {
             Join::First => [f64::NEG_INFINITY, f64::INFINITY],
             Join::Union => [b - a - support, a - b - support],
@@ -97,26 +98,26 @@ impl Keep {
 #[derive(Clone, Copy)]
 struct Value {
     at: f64,
-    /// Whether nothing is known of it beside the point.
+    /// Whether the value says nothing about points beside this one.
     jumps: bool,
 }
 
-/// An accumulator that was put aside: its value, where it and the group begin in the new tape.
+/// A saved accumulator: its value, and where it and the group begin in the new tape.
 struct GroupFrame {
     value: Value,
     start: usize,
     begin: usize,
 }
 
-/// What [`Simplifier::run`] works with; kept so that nothing is allocated for a cell.
+/// The buffers of [`Simplifier::run`], kept to avoid allocations per cell.
 #[derive(Default)]
 pub(super) struct Simplifier {
     frames: Vec<GroupFrame>,
 }
 
 impl Simplifier {
-    /// The value of `steps` at `p`, and in `out` those of them that matter where no operand's field
-    /// differs from its value at `p` by more than `reach` / 2.
+    /// The value of `steps` at `p`. `out` receives the steps that matter where no operand's field differs from its
+    /// value at `p` by more than `reach` / 2.
     pub fn run(&mut self, steps: &[Step], entries: &Entries<'_>, p: DVec3, reach: f64, out: &mut Vec<Step>) -> f64 {
         out.clear();
         self.frames.clear();
@@ -158,7 +159,7 @@ impl Simplifier {
     }
 }
 
-/// Whether an operand is certainly too far off to join what stands so far, told by the bounding sphere around it.
+/// Whether an operand's bounding sphere proves that it is too far away to join the accumulator.
 #[inline]
 fn is_out_of_reach(tape_entry: TapeEntry, entries: &Entries<'_>, p: DVec3, so_far: Value, reach: f64) -> bool {
     const UNION: u32 = Join::Union as u32;
@@ -202,7 +203,7 @@ fn join_leaf(
     joined(tape_entry, entries, a, b)
 }
 
-/// Joins the group that ends, whose value is `b`, to what was put aside when it began.
+/// Joins the group that ends, whose value is `b`, to the accumulator saved at its begin.
 fn join_group(
     tape_entry: TapeEntry,
     entries: &Entries<'_>,
@@ -230,8 +231,7 @@ fn join_group(
         }
         Keep::Both => {}
     }
-    // One leaf is all that is left of the group: it can be joined itself, where its own numbers for the
-    // blend are the group's.
+    // Only one leaf of the group is left: it can join directly if its own blend parameters are the group's.
     match out[frame.begin + 1..] {
         [leaf] if entries.blend_params[leaf.tape_entry.entry()] == entries.blend_params[tape_entry.entry()] => {
             out.truncate(frame.begin);
@@ -247,7 +247,7 @@ fn joined(tape_entry: TapeEntry, entries: &Entries<'_>, a: Value, b: Value) -> V
     Value { at: joined.value, jumps: a.jumps || b.jumps }
 }
 
-/// Changes the sign of the accumulator that begins at `start`; twice is not at all.
+/// Negates the accumulator that begins at `start`; two negations cancel.
 fn negate(tape_entry: TapeEntry, start: usize, out: &mut Vec<Step>) {
     if out.len() > start && out.last().is_some_and(|last| last.tape_entry.op() == TapeOp::Negate) {
         out.pop();

@@ -1,4 +1,4 @@
-//! Trees kept between frames, made anew only where an edit reached, and beside the frames where that takes long.
+//! A cache of trees between frames. It rebuilds only what an edit changed, on a worker thread where that takes long.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
@@ -12,45 +12,46 @@ use crate::{Cancel, Component, FlatScene, MAX_CACHED_ENTRIES};
 use isolith_guard::guarded;
 use isolith_scene::NodeId;
 
-/// Keeps the trees of the last scene, and makes those of the next one from them.
+/// Keeps the trees of the last scene, and builds those of the next scene from them.
 #[derive(Debug, Default)]
 pub struct TapeCache {
     cached: HashMap<ComponentKey, CachedTree>,
-    /// What the worker is at, with how long it is expected to take.
+    /// The orders of the worker, each with its expected duration.
     away: HashMap<ComponentKey, Duration>,
     worker: Option<Worker>,
     builds_all: bool,
     cancel: Cancel,
-    /// Components whose tapes cannot be made, and why, until somebody asks.
+    /// Components whose tapes could not be built.
     failed: HashSet<ComponentKey>,
     failures: Vec<String>,
 }
 
-/// What an entry is expected to take where nothing is known of its component yet. Measured: 186 boxes 40 to 80 ms,
-/// a blend of 2 000 leaves 200 to 400 ms.
+/// The expected time per entry for a component without a measured time. Measured: 186 boxes 40 to 80 ms, a blend of 2
+/// 000 leaves 200 to 400 ms.
 const FRESH_ENTRY: Duration = Duration::from_micros(200);
-/// What has taken longer than expected is not waited for again.
+/// The expected duration of an order that took longer than expected: the cache does not wait for it again.
 const TOO_LONG: Duration = Duration::from_secs(3600);
 
 impl TapeCache {
-    /// Makes tapes of small components too from now on: they gain nothing, but the tapes can be tried.
+    /// Builds tapes of small components too from now on. They gain nothing by tapes, but tests can exercise them.
     pub fn build_all(&mut self) {
         self.builds_all = true;
     }
 
-    /// [`TapeCache::trees`] stops waiting where this says so.
+    /// [`TapeCache::trees`] stops waiting when `cancel` says so.
     pub fn set_cancel(&mut self, cancel: &Cancel) {
         self.cancel = cancel.clone();
     }
 
-    /// Why tapes could not be made since the last call; those components are walked without.
+    /// The reasons of builds that failed since the last call; the interpreter evaluates those components without
+    /// tapes.
     pub fn take_failures(&mut self) -> Vec<String> {
         std::mem::take(&mut self.failures)
     }
 
-    /// The trees of those components that are `wanted` and have tapes, beside [`FlatScene::components`]. One that
-    /// has not changed keeps its tree: the same [`Arc`] as the last time. Waits until all are made, or until it is
-    /// canceled; then some are missing.
+    /// The trees of those components that are `wanted` and have tapes, in the order of [`FlatScene::components`]. An
+    /// unchanged component keeps its tree: the same [`Arc`] as the last time. Waits until all trees are ready or the
+    /// caller cancels; then some are missing.
     pub fn trees(&mut self, flat: &FlatScene, wanted: &[bool]) -> Vec<Option<Arc<CellTree>>> {
         while !self.away.is_empty() && !self.cancel.is_canceled() && self.take_next(None) {}
         self.away.clear();
@@ -71,14 +72,14 @@ impl TapeCache {
         trees
     }
 
-    /// The same, of those trees that are there: the others are made by a thread of their own and come with a later
-    /// call. Waits only where all that is missing is expected within `most`, and no longer. What an edit has made
-    /// wrong is never given out.
+    /// Like [`TapeCache::trees`], but returns only the trees that are ready: the worker builds the others for a later
+    /// call. Waits only if it expects all missing trees within `most`, and no longer than that. Never returns a tree
+    /// that an edit has invalidated.
     pub fn ready_trees(&mut self, flat: &FlatScene, wanted: &[bool], most: Duration) -> Vec<Option<Arc<CellTree>>> {
         let end = Instant::now() + most;
         self.collect();
         let with_tapes = self.with_tapes(flat, wanted);
-        // Twice: what was begun before the last edit comes back as it was, and is ordered anew.
+        // Twice: an order begun before the last edit returns in its old state, and needs a new order.
         for _ in 0..2 {
             with_tapes.iter().for_each(|(index, key)| self.order_if_changed(flat, &flat.components[*index], *key));
             if self.away.values().sum::<Duration>() <= end.saturating_duration_since(Instant::now()) {
@@ -94,7 +95,7 @@ impl TapeCache {
         trees
     }
 
-    /// Takes over what has been made beside the frames. True if there was anything.
+    /// Takes over the trees that the worker has finished. True if there were any.
     pub fn collect(&mut self) -> bool {
         let Some(worker) = &self.worker else { return false };
         let finished: Vec<_> = worker.finished().collect();
@@ -103,12 +104,12 @@ impl TapeCache {
         any
     }
 
-    /// Components whose tapes are being made beside the frames.
+    /// The number of components whose tapes the worker is building.
     pub fn building(&self) -> usize {
         self.away.len()
     }
 
-    /// Waits for the next tree; false where none came before `end`.
+    /// Waits for the next tree; false if none came before `end`.
     fn take_next(&mut self, end: Option<Instant>) -> bool {
         let Some((key, cached)) = self.worker.as_ref().and_then(|worker| worker.wait(end)) else { return false };
         self.requeue(key, cached);
@@ -128,8 +129,8 @@ impl TapeCache {
         }
     }
 
-    /// Which components are wanted and have tapes: the largest, as many as [`MAX_CACHED_ENTRIES`] allows. What is kept of
-    /// others is forgotten.
+    /// The components that are wanted and have tapes: the largest, as many as [`MAX_CACHED_ENTRIES`] allows. Drops
+    /// the trees of all others.
     fn with_tapes(&mut self, flat: &FlatScene, wanted: &[bool]) -> Vec<(usize, ComponentKey)> {
         let mut met: HashMap<NodeId, u32> = HashMap::new();
         let components = flat.components.iter().zip(wanted).enumerate();
@@ -155,7 +156,7 @@ impl TapeCache {
             return;
         }
         if self.away.contains_key(&key) {
-            // What is begun comes back as it is, and is ordered anew then.
+            // An order in progress returns in its old state; the next call orders it again.
             if let Some(worker) = &self.worker {
                 worker.correct(key, || isolate(flat, component));
             }
@@ -173,13 +174,13 @@ impl TapeCache {
     }
 }
 
-/// Leaves out the smallest components where all together have too many entries: they gain least by tapes.
+/// Leaves out the smallest components if all together have too many entries: they gain least by tapes.
 pub(super) fn within_room(flat: &FlatScene, found: &mut Vec<(usize, ComponentKey)>) {
     let count = |index: usize| flat.components[index].count as usize;
     if found.iter().map(|(index, _)| count(*index)).sum::<usize>() <= MAX_CACHED_ENTRIES {
         return;
     }
-    // The sort is stable: of components alike those stay that come first.
+    // The sort is stable: among components of equal size the first ones stay.
     found.sort_by_key(|(index, _)| std::cmp::Reverse(count(*index)));
     let mut sum = 0;
     let is_too_much = |(index, _): &(usize, ComponentKey)| {

@@ -1,44 +1,44 @@
-//! The words of a tape. An interpreter holds an accumulator and walks them in order.
+//! The words of a tape. An interpreter processes them in order with an accumulator.
 
 use crate::{FlatNode, Join, MAX_FLAT_ROWS};
 use isolith_scene::{BlendKernel, ModifierKind, ShapeKind};
 
-/// What a tape entry tells the interpreter to do.
+/// The operation of a tape entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum TapeOp {
-    /// Join the distance of a leaf, or of a modifier with all that it holds, to the accumulator; [`Join::First`] replaces
+    /// Join the distance of a leaf, or of a modifier with its content, to the accumulator; [`Join::First`] replaces
     /// it.
     Leaf,
-    /// A group begins: put the accumulator aside.
+    /// Begin a group: save the accumulator.
     Begin,
-    /// It ends: join what was put aside (as a) with the accumulator (as b), as the group joins.
+    /// End a group: join the saved accumulator (as a) with the current one (as b), by the group's join.
     End,
-    /// Change the accumulator's sign: of a difference only what is cut away is left.
+    /// Negate the accumulator: only the subtracted operand of a difference is left.
     Negate,
 }
 
 /// A tape entry: two words.
 ///
-/// First word: bits 0–7 the shape's code, or `MODIFIED` and a modifier's (of no meaning unless a leaf), 8–9 the [`TapeOp`], 10–13 the [`Join`]
-/// (the group's for both of its ends), 14–16 the blend kernel, 17–31 the entry, counted from the
-/// component's first. Second word: bits 0–23 the entry's first row, counted from the component's first; the
-/// numbers of the blend stand there. Bits 24–31 which of [`Component::modifier_domains`](crate::Component::modifier_domains) a
-/// modifier holds, counted from 1.
+/// First word: bits 0–7 the shape code, or `MODIFIED` plus a modifier code (leaves only, otherwise meaningless), 8–9
+/// the [`TapeOp`], 10–13 the [`Join`] (the group's for both of its ends), 14–16 the blend kernel, 17–31 the entry,
+/// counted from the component's first. Second word: bits 0–23 the entry's first row, counted from the component's
+/// first, which holds the parameters of the blend; bits 24–31 the index of a modifier's content in
+/// [`Component::modifier_domains`](crate::Component::modifier_domains), counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TapeEntry(pub [u32; 2]);
 
-/// Most entries of a component that has tapes: what a tape entry can name.
+/// The limit on entries of a component that has tapes: what a tape entry can address.
 pub const MAX_TAPE_ENTRIES: u32 = 1 << (32 - ENTRY_SHIFT);
 
-/// Most contents of a component that has tapes: what a tape entry can name.
+/// The limit on modifier contents of a component that has tapes: what a tape entry can address.
 pub const MAX_TAPE_DOMAINS: usize = 255;
 
-/// The first of the shape codes that stand for modifiers.
+/// The first shape code that stands for a modifier.
 pub const MODIFIED: u32 = 0xc0;
 const _: () = assert!(ShapeKind::ALL.len() <= MODIFIED as usize && ModifierKind::ALL.len() <= 256 - MODIFIED as usize);
 
-/// Where the number of a modifier's content stands.
+/// The bit position of the index of a modifier's content.
 const CONTENT_SHIFT: u32 = 24;
 const _: () = assert!(MAX_FLAT_ROWS <= 1 << CONTENT_SHIFT && MAX_TAPE_DOMAINS < 1 << (32 - CONTENT_SHIFT));
 
@@ -51,30 +51,30 @@ const KERNEL_MASK: u32 = (1 << (ENTRY_SHIFT - KERNEL_SHIFT)) - 1;
 const _: () = assert!(Join::ALL.len() <= JOIN_MASK as usize + 1 && BlendKernel::ALL.len() <= KERNEL_MASK as usize + 1);
 
 impl TapeEntry {
-    /// The tape entry of `node`, which is the component's entry `entry` with its first row at `row`.
+    /// The tape entry of `node`, the component's entry `entry` with its first row at `row`.
     pub(super) fn new(op: TapeOp, node: &FlatNode, entry: u32, row: u32) -> Self {
         let blend_params = (node.join() << JOIN_SHIFT) | (node.kernel() << KERNEL_SHIFT);
         Self([(node.code & 0xff) | ((op as u32) << OP_SHIFT) | blend_params | (entry << ENTRY_SHIFT), row])
     }
 
-    /// The tape entry of a modifier whose content is the one of this number.
+    /// The tape entry of a modifier with the content of index `content`.
     pub(super) fn modified(node: &FlatNode, entry: u32, row: u32, content: usize) -> Self {
         let [first, second] = Self::new(TapeOp::Leaf, node, entry, row).0;
         Self([first | MODIFIED, second | ((content as u32) << CONTENT_SHIFT)])
     }
 
-    /// The modifier and the number of its content; `None` for anything else.
+    /// The modifier and the index of its content; `None` for anything else.
     pub fn content(self) -> Option<(ModifierKind, usize)> {
         let kind = self.shape().checked_sub(MODIFIED).filter(|_| self.op() == TapeOp::Leaf)?;
         Some((ModifierKind::ALL[kind as usize], (self.0[1] >> CONTENT_SHIFT) as usize))
     }
 
-    /// The same tape entry for another thing to do.
+    /// The same tape entry with another operation.
     pub(super) fn with_op(self, op: TapeOp) -> Self {
         Self([(self.0[0] & !(3 << OP_SHIFT)) | ((op as u32) << OP_SHIFT), self.0[1]])
     }
 
-    /// The same leaf as the start of an accumulator.
+    /// The same leaf as the first operand of an accumulator.
     pub(super) fn as_first(self) -> Self {
         const _: () = assert!(Join::First as u32 == 0);
         Self([self.0[0] & !(JOIN_MASK << JOIN_SHIFT), self.0[1]])
@@ -86,7 +86,7 @@ impl TapeEntry {
         Self([(self.0[0] & !blend_params) | (other.0[0] & blend_params), self.0[1]])
     }
 
-    /// What to do.
+    /// The operation.
     pub fn op(self) -> TapeOp {
         match (self.0[0] >> OP_SHIFT) & 3 {
             0 => TapeOp::Leaf,
@@ -96,7 +96,7 @@ impl TapeEntry {
         }
     }
 
-    /// The shape's code; leaves only.
+    /// The shape code; leaves only.
     pub fn shape(self) -> u32 {
         self.0[0] & 0xff
     }

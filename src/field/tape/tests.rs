@@ -1,4 +1,4 @@
-//! The tapes against the CPU evaluator, which skips nothing.
+//! Tests of the tapes against the CPU evaluator, which skips nothing.
 
 mod modified;
 
@@ -45,7 +45,7 @@ impl Random {
         ShapeKind::ALL[self.below(ShapeKind::ALL.len())].default_shape()
     }
 
-    /// A half space or what has no end would leave nothing bounded, or nothing.
+    /// A half space or another infinite shape would leave nothing bounded, or nothing.
     fn bounded_shape(&mut self) -> Shape {
         let shape = self.shape();
         if shape.bounds().is_finite() { shape } else { Shape::Sphere { radius: 0.6 } }
@@ -113,7 +113,7 @@ fn random_tree(seed: u64, count: usize) -> Scene {
     scene
 }
 
-/// The same kind of leaf over and over in one blended union, `spread` meters wide.
+/// One blended union of leaves of the same kind, `spread` meters wide.
 fn crowd(seed: u64, count: usize, spread: f64, radius: f64) -> Scene {
     let random = &mut Random(seed);
     let mut scene = empty_scene();
@@ -126,7 +126,7 @@ fn crowd(seed: u64, count: usize, spread: f64, radius: f64) -> Scene {
     scene
 }
 
-/// How often the tapes were right and wrong about random points: as the field, as bounds.
+/// Counts of right and wrong tapes at random points: as the field, as bounds.
 #[derive(Debug, Default)]
 struct Verdict {
     tapes: usize,
@@ -152,7 +152,7 @@ fn verdict(flat: &FlatScene, tree: &CellTree, points: usize) -> Verdict {
                 verdict.bounds += 1;
                 by_tape * reference > 0.0 && by_tape.abs() <= reference.abs()
             }
-            // A bound of the way to the bounds, which fields of intersections know nothing of.
+            // The tape bounds the distance to the bounds, which fields of intersections do not contain.
             Cell::Outside => reference > 0.0 && by_tape > 0.0 && by_tape <= component.bounds.distance(p) + 1e-12,
         };
         verdict.wrong += usize::from(!right);
@@ -189,14 +189,14 @@ fn runs_are_passed_over_and_tapes_are_short() {
     assert!(longest <= 24, "{longest}");
 }
 
-/// Longer than any tree takes.
+/// More than any tree takes.
 const TOO_LONG: Duration = Duration::from_secs(100);
 
 fn trees(tape_cache: &mut TapeCache, flat: &FlatScene) -> Vec<Option<Arc<CellTree>>> {
     tape_cache.trees(flat, &vec![true; flat.components.len()])
 }
 
-/// Every tape of a tree.
+/// All tapes of a tree.
 fn tapes(tree: &CellTree) -> Vec<&[[u32; 2]]> {
     let mut found = Vec::new();
     let words = &tree.words[tree.start..];
@@ -275,7 +275,7 @@ fn what_an_edit_reached_is_made_anew_and_all_else_is_as_in_a_fresh_tree() {
 #[test]
 fn an_unchanged_component_keeps_its_tree() {
     let mut scene = crowd(1, 60, 2.0, 0.1);
-    // Far from the first, so that neither is moved by what happens to the other.
+    // Far from the first, so that an edit of one does not move the other.
     let blend = Blend::new(BlendKernel::Cubic, 0.1);
     let other = Node::new("", NodeKind::Group(Group::new(Operator::Union, blend))).at(DVec3::splat(9.0));
     let other = add(&mut scene, None, other);
@@ -310,7 +310,7 @@ fn trees_made_beside_the_frames_are_never_those_of_an_older_scene() {
             edit(&mut scene, &mut random);
         }
         let flat = flatten(&scene, 0.0).unwrap();
-        // Now at once, now after a while in which the worker may have come to any point.
+        // Call at once or after a while, so that the worker may be at any point.
         std::thread::sleep(Duration::from_millis(step % 7));
         let most = if step % 5 == 4 { TOO_LONG } else { Duration::ZERO };
         for tree in tape_cache.ready_trees(&flat, &all, most).into_iter().flatten() {
@@ -336,8 +336,8 @@ fn tapes_for_a_narrower_blend_are_caught() {
     assert!(verdict(&wide, &wrong, 2000).wrong > 20);
 }
 
-/// How many random points in random cubes have another value by the tape made for the cube, if it is made
-/// for `share` of how far operands can come closer to each other there.
+/// The number of random points in random cubes where the tape made for the cube gives another value, if it is made
+/// for the fraction `share` of the reach of the cube.
 fn wrong_in_cubes(share: f64) -> usize {
     let flat = flatten(&random_tree(7, 80), 0.0).unwrap();
     let component = &flat.components[0];
@@ -378,14 +378,14 @@ fn a_component_whose_tapes_cannot_be_made_is_walked_without() {
     let mut flat = flatten(&scene, 0.0).unwrap();
     assert_eq!(flat.components.len(), 2);
     let leaf = flat.nodes.iter().position(FlatNode::is_leaf).unwrap();
-    // A shape that nobody knows.
+    // An unknown shape.
     flat.nodes[leaf].code |= 0x0800;
     let mut tape_cache = TapeCache::default();
     let waited = trees(&mut tape_cache, &flat);
     assert_eq!([waited[0].is_some(), waited[1].is_some()], [false, true]);
     let [failure] = &tape_cache.take_failures()[..] else { panic!("one failure") };
     assert!(failure.contains("internal error") && tape_cache.take_failures().is_empty(), "{failure}");
-    // It is not tried again, by the worker neither.
+    // Neither the cache nor the worker tries it again.
     assert!(trees(&mut tape_cache, &flat)[0].is_none() && tape_cache.take_failures().is_empty());
     let mut beside = TapeCache::default();
     let all = [true; 2];

@@ -1,8 +1,8 @@
-//! Everything in one top cell: its blocks of children and their tapes, made by walking down.
+//! The blocks of children and the tapes below one top cell, built from the top down.
 //!
-//! Offsets count from the beginning of the top cell. What a cell becomes follows from the tape that comes
-//! down to it, the numbers of the entries in that tape, and where the cell lies, and from nothing else:
-//! so where the tape is that of the last time and no entry in it has changed, the old cells are copied.
+//! Offsets count from the beginning of the top cell. A cell depends only on the tape that its parent hands down, the
+//! parameters of the entries in that tape, and the position of the cell. So if the tape is that of the last build and
+//! no entry in it has changed, the builder copies the old cells.
 
 use std::ops::Range;
 
@@ -13,31 +13,31 @@ use super::entry::Entries;
 use super::grid::{Cube, SIZE_SLACK};
 use super::program::{Simplifier, Step};
 
-/// Cells with tapes no longer than this are not refined; by level, the top cells first.
+/// Cells with tapes no longer than this are not refined; by level, from the top cells down.
 const LONGEST_UNREFINED: [usize; LEVELS as usize] = [6, 12, usize::MAX];
-/// Children that are not refined share the tape of their octant where it is no longer than this.
+/// Unrefined children share the tape of their octant if it is no longer than this.
 const LONGEST_SHARED: usize = 8;
-/// The tapes of a cell's octants must be at most this share of its own, empty octants counted as
-/// nothing: refining it would be in vain else.
+/// The tapes of a cell's octants must be at most this fraction of its own, with empty octants counted as zero;
+/// otherwise refining gains nothing.
 const MOST_LEFT: [f64; LEVELS as usize] = [0.95, 0.75, 0.0];
-/// Of a radius, for rounding in f32.
+/// The slack for rounding in f32, relative to a radius.
 const RADIUS_SLACK: f64 = 1e-5;
 
-/// What all top cells of a component have in common.
+/// The common inputs of all top cells of a component.
 pub(super) struct CellContext<'a> {
     pub entries: &'a Entries<'a>,
     /// The component's entries as a tape.
     pub full_tape: &'a [Step],
-    /// How many kinds of cells there are above one another; 0 where there is only one cell, in which all matters.
+    /// The number of levels of cells; 0 for a single cell in which all entries matter.
     pub levels: u32,
-    /// The field must be exact wherever it is no farther from 0 than this.
+    /// The field must be exact where its absolute value is at most this.
     pub exact: f64,
-    /// Which entries have changed since the last time; empty where there is none.
+    /// The entries that changed since the last build; empty without a previous build.
     pub changed: &'a [bool],
 }
 
 impl CellContext<'_> {
-    /// How much closer to each other two operands can come in a cube of this edge than at its center.
+    /// By how much the difference of two operands can shrink in a cube of this edge, from its value at the center.
     fn reach(&self, side: f64) -> f64 {
         side * 3.0_f64.sqrt() * (1.0 + RADIUS_SLACK) + self.slack()
     }
@@ -56,25 +56,25 @@ impl CellContext<'_> {
     }
 }
 
-/// Octants of a cell; the children are made octant by octant, since tapes in an octant are much shorter.
+/// Octants of a cell. The builder makes the children octant by octant, since tapes in an octant are much shorter.
 const OCTANTS: usize = 8;
 
-/// The child at `index` within an octant, as a place in the block.
+/// The index in the block of the child at `index` within an octant.
 fn child_of(octant: usize, index: usize) -> usize {
     let axis = |bit: usize| 2 * (octant >> bit & 1) + (index >> bit & 1);
     axis(0) + BRANCHES as usize * (axis(1) + BRANCHES as usize * axis(2))
 }
 
-/// What is remembered of a block.
+/// The record of a block.
 #[derive(Clone, Debug, Default)]
 struct Block {
-    /// The tape of the refined cell, by its hash.
+    /// The hash of the refined cell's tape.
     tape: u64,
-    /// The tapes of its octants, by their hashes.
+    /// The hashes of its octants' tapes.
     octants: [u64; OCTANTS],
-    /// The block behind the last one below this one.
+    /// The index after the last block below this one.
     end: usize,
-    /// The tape entries of this block and of those below.
+    /// The tape entries of this block and of the blocks below it.
     tape_entries: Range<usize>,
 }
 
@@ -83,7 +83,7 @@ struct Block {
 pub(super) struct TopCell {
     /// The top cell itself.
     pub top: [u32; 2],
-    /// Its tape, by its hash.
+    /// The hash of its tape.
     tape: u64,
     /// Blocks of [`BLOCK_CELLS`], parents before children.
     pub cells: Vec<[u32; 2]>,
@@ -93,7 +93,7 @@ pub(super) struct TopCell {
 }
 
 impl TopCell {
-    /// How long its tapes are. Blocks do not know how deep they lie, so this walks down.
+    /// The lengths of its tapes. Blocks do not store their depth, so this descends from the top.
     fn measured(&self) -> TapeStats {
         let mut stats = TapeStats::default();
         let mut cells = vec![(self.top, 1.0)];
@@ -113,14 +113,14 @@ impl TopCell {
     }
 }
 
-/// How long tapes are.
+/// Statistics of the lengths of tapes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct TapeStats {
-    /// The area that cells with tapes show to rays, in faces of a top cell.
+    /// The area that cells with tapes expose to rays, in faces of a top cell.
     pub faces: f64,
-    /// Tape entries, weighted by it.
+    /// Tape entries, weighted by that area.
     pub sum: f64,
-    /// Tape entries of the longest one.
+    /// The length of the longest tape.
     pub longest: u32,
 }
 
@@ -142,27 +142,27 @@ pub(super) fn moved(cell: [u32; 2], blocks: usize, tape_entries: usize) -> [u32;
     [cell[0] + by as u32, cell[1]]
 }
 
-/// Tapes on their way down, one set for each level.
+/// Buffers for the tapes of each level.
 #[derive(Default)]
 struct Tapes {
     octants: [Vec<Step>; OCTANTS],
     cell: Vec<Step>,
 }
 
-/// Makes the trees of top cells; keeps what it works with.
+/// Builds the trees of top cells, and keeps its buffers between them.
 #[derive(Default)]
 pub(super) struct CellTreeBuilder {
     simplifier: Simplifier,
     top: Vec<Step>,
     tapes: [Tapes; LEVELS as usize],
-    /// Tapes already written for blocks that are not complete: hash, offset, length.
+    /// The tapes already written for incomplete blocks: hash, offset, length.
     written: Vec<(u64, usize, usize)>,
-    /// Where those of the innermost block begin. Blocks share no tapes, so that each can be copied alone.
+    /// The index of the innermost block's first tape. Blocks share no tapes, so that each can be copied alone.
     innermost: usize,
 }
 
 impl CellTreeBuilder {
-    /// The top cell in the top cell `cube`; `None` where it is as the `old` one.
+    /// The top cell in `cube`; `None` if it equals the `old` one.
     pub fn top_cell(&mut self, context: &CellContext<'_>, cube: Cube, old: Option<&TopCell>) -> Option<TopCell> {
         let mut top = std::mem::take(&mut self.top);
         let reach = if context.levels == 0 { f64::INFINITY } else { context.reach(cube.side) };
@@ -188,7 +188,7 @@ impl CellTreeBuilder {
     }
 }
 
-/// A top cell that is being made.
+/// A top cell under construction.
 struct TopCellBuilder<'a> {
     builder: &'a mut CellTreeBuilder,
     context: &'a CellContext<'a>,
@@ -197,7 +197,7 @@ struct TopCellBuilder<'a> {
 }
 
 impl TopCellBuilder<'_> {
-    /// The cell whose tape is `tape`, with `value` at its center; `old` is the block that it had.
+    /// The cell whose tape is `tape`, with `value` at its center; `old` is its previous block.
     fn cell(
         &mut self,
         tape: &[Step],
@@ -219,7 +219,7 @@ impl TopCellBuilder<'_> {
         self.tape(tape.iter().map(|step| step.tape_entry.0), tape.len())
     }
 
-    /// The children of the cell whose tape is `tape`, or nothing where they would say no more.
+    /// The children of the cell whose tape is `tape`; `None` if refining gains nothing.
     fn block(
         &mut self,
         tape: &[Step],
@@ -273,7 +273,7 @@ impl TopCellBuilder<'_> {
         Some(block)
     }
 
-    /// The child `cube` of a cell, in the octant whose tape is `steps`, with `value` at its center.
+    /// The child `cube` of a cell, in the octant whose tape is `steps`, with `value` at the octant's center.
     #[allow(clippy::too_many_arguments, reason = "what comes down from the parent")]
     fn child(
         &mut self,
@@ -286,7 +286,7 @@ impl TopCellBuilder<'_> {
         tapes: &mut [Tapes],
     ) -> [u32; 2] {
         if steps.is_empty() {
-            // No surface is in the octant: what is known at its center is enough.
+            // The octant has no surface: the value at its center is enough.
             let away = 0.5 * 3.0_f64.sqrt() * cube.side;
             return empty((value.abs() - away).copysign(value), self.context.slack());
         }
@@ -298,8 +298,8 @@ impl TopCellBuilder<'_> {
         self.cell(tape, value, cube, level, old, tapes)
     }
 
-    /// The tapes of the octants of a cell, emptied where no surface is, and the values at their centers;
-    /// false where they are hardly shorter than its own.
+    /// The tapes of the octants of a cell, empty for octants without a surface, and the values at their centers;
+    /// false if they are hardly shorter than the cell's own.
     fn octants(
         &mut self,
         tape: &[Step],
@@ -323,8 +323,8 @@ impl TopCellBuilder<'_> {
         work as f64 <= (OCTANTS * tape.len()) as f64 * MOST_LEFT[level as usize - 1]
     }
 
-    /// Whether the children in an octant are those that `old` has. Where no surface is they follow from more
-    /// than the tape, and are made anew faster than compared.
+    /// Whether the children in an octant equal those of `old`. Octants without a surface depend on more than the
+    /// tape; rebuilding them is faster than comparing.
     fn same_octant(&self, block: usize, octant: usize, old: Option<usize>, steps: &[Step]) -> bool {
         !steps.is_empty()
             && self.old.zip(old).is_some_and(|(top_cell, old)| {
@@ -333,7 +333,7 @@ impl TopCellBuilder<'_> {
             })
     }
 
-    /// Writes a tape where the block has not got the same already.
+    /// Writes a tape unless the block already has the same one.
     fn tape(&mut self, tape_entries: impl Iterator<Item = [u32; 2]>, count: usize) -> [u32; 2] {
         let first = self.top_cell.tape_entries.len();
         self.top_cell.tape_entries.extend(tape_entries);
@@ -366,12 +366,12 @@ impl TopCellBuilder<'_> {
         }
     }
 
-    /// Copies a block with all below it.
+    /// Copies a block with all blocks below it.
     fn copy(&mut self, old: &TopCell, block: usize) -> usize {
         let Block { end, ref tape_entries, .. } = old.blocks[block];
         let new = self.top_cell.blocks.len();
         let first_tape_entry = self.top_cell.tape_entries.len();
-        // Offsets are moved by differences that may be negative: they wrap around and back.
+        // The offset differences may be negative: they wrap around and back.
         let by_blocks = new.wrapping_sub(block);
         let by_tape_entries = first_tape_entry.wrapping_sub(tape_entries.start);
         self.top_cell.tape_entries.extend_from_slice(&old.tape_entries[tape_entries.clone()]);
@@ -399,7 +399,7 @@ fn block_of(cell: [u32; 2]) -> Option<usize> {
     (cell[0] >> CELL_SHIFT == CELL_REFINED).then_some((cell[0] & OFFSET_MASK) as usize / BLOCK_CELLS)
 }
 
-/// A cell without a surface, with the value at its center rounded toward 0 by more than f32 can be wrong.
+/// A cell without a surface. Rounds the value at its center toward 0 by more than the error of f32.
 fn empty(value: f64, slack: f64) -> [u32; 2] {
     let bound = (value.abs() - slack) as f32;
     [CELL_EMPTY << CELL_SHIFT, bound.next_down().copysign(value as f32).to_bits()]
@@ -409,7 +409,7 @@ fn hash(tape: &[Step]) -> u64 {
     hash_words(tape.iter().map(|step| &step.tape_entry.0))
 }
 
-/// Tells tapes apart: multiply and fold (as in wyhash), no attacker in view.
+/// Hashes a tape by multiply and fold (as in wyhash); not safe against attackers.
 fn hash_words<'a>(words: impl Iterator<Item = &'a [u32; 2]>) -> u64 {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     for word in words {

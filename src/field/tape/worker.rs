@@ -1,4 +1,4 @@
-//! A thread that makes tapes while frames are drawn without them.
+//! A thread that builds tapes while the renderer draws frames without them.
 
 use std::collections::VecDeque;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -10,13 +10,13 @@ use crate::FlatScene;
 use isolith_guard::guarded;
 use isolith_scene::NodeId;
 
-/// The node at the top of a component, and which one of those with this node it is.
+/// The top node of a component, and its index among the components with this node.
 pub(super) type ComponentKey = (NodeId, u32);
 
-/// A tree that was made, or what its making panicked with.
+/// A finished tree, or the message of the panic that ended its build.
 pub(super) type Finished = (ComponentKey, Result<CachedTree, String>);
 
-/// See the module.
+/// The worker; see the module.
 #[derive(Debug)]
 pub(super) struct Worker {
     orders: Arc<Orders>,
@@ -35,7 +35,7 @@ struct State {
     is_unwanted: bool,
 }
 
-/// A component by itself, and its tree from before, if it had one.
+/// An isolated component, and its previous tree if it had one.
 #[derive(Debug)]
 struct Order {
     key: ComponentKey,
@@ -48,19 +48,19 @@ impl Worker {
         let orders = Arc::new(Orders::default());
         let (finish, finished) = channel();
         let of_thread = orders.clone();
-        // Without a thread nothing is ever finished, and components are walked without tapes.
+        // If the thread does not start, no tree is ever finished, and components evaluate without tapes.
         let _ = std::thread::Builder::new().name("tapes".into()).spawn(move || work(&of_thread, &finish));
         Self { orders, finished }
     }
 
-    /// Orders the tree of a component; it comes back under `key`.
+    /// Orders the tree of a component; the worker returns it under `key`.
     pub fn order(&self, key: ComponentKey, of: FlatScene, old: Option<CachedTree>) {
         self.orders.lock().waiting.push_back(Order { key, of, old });
         self.orders.news.notify_one();
     }
 
-    /// Puts another state of the component into an order that is not begun yet; of one that is, `key` comes back
-    /// as it was ordered.
+    /// Updates the state of the component in an order that the worker has not begun. One that it has begun returns
+    /// under `key` as ordered.
     pub fn correct(&self, key: ComponentKey, of: impl FnOnce() -> FlatScene) {
         let mut state = self.orders.lock();
         if let Some(order) = state.waiting.iter_mut().find(|order| order.key == key) {
@@ -68,12 +68,12 @@ impl Worker {
         }
     }
 
-    /// Everything that has been finished.
+    /// All finished trees.
     pub fn finished(&self) -> impl Iterator<Item = Finished> + '_ {
         self.finished.try_iter()
     }
 
-    /// The next that is finished before `end`, or at all where there is no end; `None` also where none will come.
+    /// The next tree that finishes before `end`, or at all without `end`; `None` also if none will come.
     pub fn wait(&self, end: Option<Instant>) -> Option<Finished> {
         match end {
             None => self.finished.recv().ok(),
@@ -82,7 +82,7 @@ impl Worker {
     }
 }
 
-/// The thread ends by itself, after the tree that it is at: nobody has to wait for that.
+/// The thread ends by itself after its current tree: nobody waits for it.
 impl Drop for Worker {
     fn drop(&mut self) {
         self.orders.lock().is_unwanted = true;
@@ -96,7 +96,7 @@ impl Orders {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The next order; `None` once nobody wants one any more.
+    /// The next order; `None` after the worker is dropped.
     fn next(&self) -> Option<Order> {
         let mut state = self.lock();
         loop {

@@ -1,4 +1,4 @@
-//! Nodes → parts.
+//! Builds parts from nodes.
 
 use glam::{DAffine3, DMat3, DVec3};
 use thiserror::Error;
@@ -15,13 +15,13 @@ use isolith_scene::{
     Scene, Shape,
 };
 
-/// Why a scene has no such field.
+/// The reason why a scene cannot be evaluated without flattening.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{node}: {reason}")]
 pub struct Unsupported {
-    /// Which node.
+    /// The node.
     pub node: NodeId,
-    /// What is not evaluated without flattening.
+    /// The unsupported property.
     pub reason: &'static str,
 }
 
@@ -35,10 +35,10 @@ struct Builder<'a> {
     scene: &'a Scene,
 }
 
-/// A part, or nothing where a node is no operand.
+/// A part, or `None` for a node that is not an operand.
 type Found = Result<Option<Part>, Unsupported>;
 
-/// An operand with its node and how it joins; the first of a group joins nothing.
+/// An operand with its node and its link; the first of a group has no link.
 type SiblingOperand<'n> = (&'n Node, Option<Link>, Part);
 
 impl Builder<'_> {
@@ -47,21 +47,21 @@ impl Builder<'_> {
         if !node.visible || !node.has_field() {
             return Ok(None);
         }
-        // What changes nothing has no space of its own either, in which radii of blends would count.
+        // An idle modifier has no space of its own, in which radii of blends would be measured.
         let is_active = |slot: &&ModifierSlot| slot.enabled && !is_idle(&slot.modifier);
         let modifiers: Vec<&Modifier> = node.modifiers.iter().filter(is_active).map(|slot| &slot.modifier).collect();
         let found = self.modified(node, &modifiers, &(*parent * node.transform.to_affine()))?;
-        // A group of nothing is the empty set; one of lights, cameras and meshes takes no part.
+        // An empty group is the empty set; a group of lights, cameras and meshes is not an operand.
         Ok(found.or_else(|| (!self.is_folder(node)).then_some(Part::Nothing)))
     }
 
-    /// Whether a group holds lights, cameras or meshes, and no object.
+    /// Whether a group holds lights, cameras or meshes, but no object.
     fn is_folder(&self, node: &Node) -> bool {
         let [has_object, has_other] = self.holds(node);
         has_other && !has_object
     }
 
-    /// Whether the node is or holds an object, and whether it is or holds what has no field.
+    /// Whether the node is or holds an object, and whether it is or holds a node without a field.
     fn holds(&self, node: &Node) -> [bool; 2] {
         let own = [matches!(node.kind, NodeKind::Object(_)), !node.has_field()];
         self.scene.children(Some(node.id)).fold(own, |[object, other], child| {
@@ -70,7 +70,7 @@ impl Builder<'_> {
         })
     }
 
-    /// The node with these modifiers, the last one outermost; `outer` maps its own space.
+    /// The node with these modifiers, the last one outermost; `outer` maps the node's own space.
     fn modified(&self, node: &Node, modifiers: &[&Modifier], outer: &DAffine3) -> Found {
         let Some((last, rest)) = modifiers.split_last() else { return self.plain(node, outer) };
         match last {
@@ -123,7 +123,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The children of a group, in their order; nothing where there is no operand.
+    /// The children of a group, in their order; `None` without an operand.
     fn fold(&self, parent: Option<NodeId>, group: &Group, outer: &DAffine3) -> Found {
         let mut so_far: Vec<SiblingOperand<'_>> = Vec::new();
         let mut whole: Option<Part> = None;
@@ -131,14 +131,14 @@ impl Builder<'_> {
             let child: &Node = child;
             let Some(part) = self.operand(child, outer)? else { continue };
             let Some(before) = whole.take() else {
-                // What is cut from nothing is nothing.
+                // Subtracting from nothing leaves nothing.
                 if !child.negative {
                     so_far.push((child, None, part.clone()));
                     whole = Some(part);
                 }
                 continue;
             };
-            // At the top nothing blends.
+            // At the top of the scene nothing blends.
             let blend_override = if parent.is_some() { child.blend_override } else { BlendOverride::Hard };
             let link =
                 link(group, child.negative, blend_override).map_err(|reason| Unsupported { node: child.id, reason })?;
@@ -153,8 +153,8 @@ impl Builder<'_> {
     }
 }
 
-/// What stands, and one more operand, the last of those so far: it does not blend with those from which it is kept
-/// apart. With the others it blends alone, and the result joins without a blend.
+/// Joins one more operand, the last of `so_far`, to the result before it. It does not blend with the operands that it
+/// is kept apart from: it blends with the others alone, and the result joins hard.
 fn joined(group: &Group, before: Part, so_far: &[SiblingOperand<'_>], link: Link, part: Part) -> Part {
     let Some(((node, ..), others)) = so_far.split_last() else { return before };
     let is_apart = |other: &Node| node.apart.contains(&other.id) || other.apart.contains(&node.id);
@@ -181,13 +181,13 @@ fn joined(group: &Group, before: Part, so_far: &[SiblingOperand<'_>], link: Link
 /// Why a blend cannot be compared.
 const BLENDED: &str = "it joins by the values of a deformation or repetition, of which only the surface is given";
 
-/// Whether a hard join knows only inside and outside.
+/// Whether a hard join depends on inside and outside only.
 fn is_on_sets(link: Link) -> bool {
     let sets = [Join::Union, Join::Intersection, Join::Difference, Join::Xor, Join::Paint];
     sets.map(|join| join as u32).contains(&link.join)
 }
 
-/// Two operands; the empty set is an operand as any other.
+/// Joins two operands, either of which may be the empty set.
 fn join(group: &Group, a: Part, link: Link, b: Part) -> Part {
     let is = |join: Join| link.join == join as u32;
     match (a, b) {
@@ -205,7 +205,7 @@ fn join(group: &Group, a: Part, link: Link, b: Part) -> Part {
     }
 }
 
-/// Copies in a union with this blend.
+/// Copies in a union with a blend of this radius.
 fn united(parts: Vec<Option<Part>>, radius: f64) -> Found {
     let link = Link {
         join: Join::Union as u32,
@@ -216,7 +216,7 @@ fn united(parts: Vec<Option<Part>>, radius: f64) -> Found {
     Ok(parts.reduce(|all, part| join(&Group::UNION, all, link, part)))
 }
 
-/// How a child joins, by its group and by its own wish.
+/// The link of a child, from its group and its own override.
 fn link(group: &Group, negative: bool, blend_override: BlendOverride) -> Result<Link, &'static str> {
     let join = if negative { Join::Difference } else { Join::of(group.operator) };
     let radius = match blend_override {
@@ -230,7 +230,7 @@ fn link(group: &Group, negative: bool, blend_override: BlendOverride) -> Result<
     }
     let mut kernel = group.blend.kernel;
     if matches!(join, Join::Groove | Join::Tongue) && kernel.has_steps() {
-        // Along grooves and tongues there are plain bevels instead.
+        // Grooves and tongues use plain bevels instead.
         kernel = BlendKernel::Chamfer;
     }
     let steps = f64::from(group.blend.steps);
@@ -251,8 +251,8 @@ fn link(group: &Group, negative: bool, blend_override: BlendOverride) -> Result<
     Ok(Link { join: join as u32, blend_params: BlendParams { support, size, depth }, kernel: kernel as u32 })
 }
 
-/// A shape in its place. A scale along its own axes goes into its numbers where there is such a shape, so that its field is
-/// the distance; else its local distance is taken times the least that space is stretched.
+/// A placed shape. A scale along its own axes is applied to its parameters if such a shape exists, so that its field
+/// is the distance. Otherwise the local distance is multiplied by the least stretch of space.
 fn leaf(shape: &Shape, outer: &DAffine3) -> Leaf {
     let axes = [outer.matrix3.x_axis, outer.matrix3.y_axis, outer.matrix3.z_axis];
     let lengths = DVec3::from_array(axes.map(DVec3::length));

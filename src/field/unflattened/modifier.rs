@@ -1,4 +1,4 @@
-//! What modifiers do to points and values.
+//! The effect of modifiers on points and values.
 
 use glam::{DMat3, DQuat, DVec3, EulerRot};
 
@@ -7,16 +7,17 @@ use crate::prepare::spline;
 use isolith_geometry::Aabb;
 use isolith_scene::{Axis, Modifier};
 
-/// Along an axis without end, and where there are too many cells to look at all, so many cells to either side are looked at.
+/// The number of cells evaluated to either side along an infinite axis, and where there are too many cells to
+/// evaluate all.
 const REACH: i64 = 3;
-/// A cell so far away is the last one: what is farther cannot be counted exactly.
+/// The greatest index of a cell: f64 cannot count farther cells exactly.
 const FARTHEST: f64 = 1e15;
-/// Fewer cells are all looked at.
+/// Fewer cells than this are all evaluated.
 const MOST_CELLS: u64 = 4_096;
-/// A taper narrows to no less than this here; what is so thin is beyond the content.
+/// The least factor of a taper; thinner parts lie beyond the content.
 const NARROWEST: f64 = 1e-3;
 
-/// A modifier with all that its evaluation needs.
+/// A modifier with the inputs of its evaluation.
 #[derive(Clone)]
 pub(super) enum Deformation {
     Elongate { half: DVec3 },
@@ -44,18 +45,18 @@ pub(super) struct Repeat {
     carved: [[u32; 2]; 3],
 }
 
-/// Heights of an image, tile by tile.
+/// Heights of an image, repeated in tiles.
 #[derive(Clone)]
 pub(super) struct Displacement {
     rows: Vec<[f64; 4]>,
     pixels: [f64; 2],
-    /// Tiles for each meter.
+    /// Tiles per meter.
     tiles: [f64; 2],
     axis: Axis,
 }
 
 impl Deformation {
-    /// A modifier that is neither mirror nor ring; `bounds` are those of its content.
+    /// A modifier other than a mirror or a ring; `bounds` are those of its content.
     pub fn new(modifier: &Modifier, bounds: impl FnOnce() -> Aabb) -> Result<Self, &'static str> {
         let radians = f64::to_radians;
         Ok(match modifier {
@@ -87,7 +88,7 @@ impl Deformation {
             }
             Modifier::Repeat { counts, spacing, offset, turn, mirrored, carve_from, carve_to } => {
                 let mut offset = DVec3::from(*offset);
-                // Where an axis has cells of its own, nothing is moved along it, but rows of bricks.
+                // The offset moves nothing along an axis with cells of its own, except rows of bricks.
                 let has_cells = counts.map(|count| count != 1);
                 for axis in [1, 2] {
                     offset[axis] = if !has_cells[axis] && has_cells[0] { offset[axis] } else { 0.0 };
@@ -101,7 +102,7 @@ impl Deformation {
                 let [x, y, z] = rotation.map(radians);
                 let turn = DMat3::from_quat(DQuat::from_euler(EulerRot::ZYX, z, y, x));
                 let offset = DVec3::from(*offset);
-                // Both sides show what stands on the side of the next copy.
+                // Both sides show the content on the side of the next copy.
                 let bounds = bounds();
                 let middle = if bounds.is_finite() { offset + turn * (bounds.center() * *scale) } else { offset };
                 let side = |axis: usize| if middle[axis] < 0.0 { -1.0 } else { 1.0 };
@@ -116,7 +117,7 @@ impl Deformation {
         matches!(self, Self::Elongate { .. } | Self::Round { .. } | Self::Onion { .. } | Self::Idle)
     }
 
-    /// The value at a point, with the values of the content.
+    /// The value at a point, from the values of the content.
     pub fn value(&self, p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
         match self {
             Self::Idle => content(p),
@@ -130,7 +131,7 @@ impl Deformation {
             }
             Self::Twist { angle } => content(DQuat::from_rotation_y(-angle * p.y) * p),
             Self::Bend { radius, sign } => {
-                // From the center of the arc, which lies at `radius` to that side.
+                // From the center of the arc, which lies at distance `radius` on that side.
                 let down = radius - sign * p.y;
                 content(DVec3::new(p.x.atan2(down) * radius, sign * (radius - p.x.hypot(down)), p.z))
             }
@@ -167,7 +168,7 @@ impl Deformation {
 }
 
 impl Displacement {
-    /// The height at a point: the image is seen from where the axis points to, and every other tile is mirrored.
+    /// The height at a point. The image is viewed from the direction of the axis, and every other tile is mirrored.
     fn height(&self, p: DVec3) -> f64 {
         let [across, down] = match self.axis {
             Axis::X => [-p.z, -p.y],
@@ -184,7 +185,7 @@ impl Displacement {
 }
 
 impl Repeat {
-    /// The least of all copies, or of those around the point where there are too many.
+    /// The minimum over all copies, or over those around the point if there are too many.
     fn value(&self, p: DVec3, content: &dyn Fn(DVec3) -> f64) -> f64 {
         let cells = self.counts.map(u64::from).iter().product::<u64>();
         let is_all = cells > 0 && cells <= MOST_CELLS;
@@ -215,7 +216,7 @@ impl Repeat {
         })
     }
 
-    /// Where the point stands in a copy.
+    /// Maps the point into a copy.
     fn point(&self, p: DVec3, index: DVec3) -> DVec3 {
         let shift = DVec3::new(self.offset.x * index.y, self.offset.y * index.x, self.offset.z * index.x);
         let back = DQuat::from_rotation_y(-self.turn * index.element_sum());

@@ -1,4 +1,4 @@
-//! What a node comes to: a shape, a fold, or a part in a deformed space.
+//! A part: a shape, a fold, or a part in a deformed space.
 
 use glam::{DAffine3, DVec3};
 
@@ -7,7 +7,7 @@ use crate::eval::{BlendParams, op_join, shape_distance};
 use crate::prepare::PreparedShape;
 use isolith_geometry::Aabb;
 
-/// What a node comes to.
+/// The evaluable form of a node.
 #[derive(Clone)]
 pub(super) enum Part {
     /// The empty set.
@@ -24,12 +24,12 @@ pub(super) enum Part {
 #[derive(Clone)]
 pub(super) struct Leaf {
     pub local_from_outer: DAffine3,
-    /// Factor on its local distance.
+    /// Factor on the shape's local distance.
     pub scale: f64,
     pub prepared: PreparedShape,
 }
 
-/// How an operand joins what stands before it.
+/// How an operand joins the result of those before it.
 #[derive(Clone, Copy)]
 pub(super) struct Link {
     pub join: u32,
@@ -61,7 +61,7 @@ impl Part {
         }
     }
 
-    /// Around its shapes, cut or not.
+    /// The bounds of its shapes, cut or not.
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::Nothing => Aabb::EMPTY,

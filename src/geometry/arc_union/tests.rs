@@ -1,4 +1,4 @@
-//! Unions of rectangles and disks, against figures known by hand.
+//! Tests of unions of rectangles and disks, against known results.
 
 use super::*;
 use crate::straight_curve;
@@ -25,7 +25,7 @@ fn length(arcs: &[ArcPiece]) -> f64 {
     arcs.iter().map(ArcPiece::length).sum()
 }
 
-/// The enclosed area, by Green's theorem along chords of pieces cut small.
+/// The enclosed area, by Green's theorem along chords of small pieces.
 fn area(arcs: &[ArcPiece]) -> f64 {
     let mut sum = 0.0;
     for arc in arcs {
@@ -46,7 +46,7 @@ fn simple_curves_stay_as_they_are() {
     let ring = [circle(DVec3::ZERO, 1.0), backward(circle(DVec3::ZERO, 0.5))];
     assert_eq!(united(&ring), None);
     assert_eq!(united(&[rectangle([0.0, 0.0], [1.0, 1.0]), rectangle([2.0, 0.0], [3.0, 1.0])]), None);
-    // Of the other orientation, as in the other kind of font.
+    // The other orientation, as in the other kind of font.
     assert_eq!(united(&ring.map(backward)), None);
     assert_eq!(united(&[]), None);
 }
@@ -55,30 +55,30 @@ fn simple_curves_stay_as_they_are() {
 fn what_overlaps_is_one_curve_around_both() {
     let cross = united(&[rectangle([0.0, 1.0], [3.0, 2.0]), rectangle([1.0, 0.0], [2.0, 3.0])]).unwrap();
     assert!((length(&cross) - 12.0).abs() < 1e-9 && (area(&cross) - 5.0).abs() < 1e-9);
-    // A disk in a disk of the same orientation is not seen.
+    // A disk inside a disk of the same orientation vanishes.
     let nested = united(&[circle(DVec3::ZERO, 1.0), circle(DVec3::X * 0.2, 0.3)]).unwrap();
     assert!((length(&nested) - std::f64::consts::TAU).abs() < 1e-6);
-    // Two disks, against the figure of a lens.
+    // Two disks, against the area of a lens.
     let lens = united(&[circle(DVec3::ZERO, 1.0), circle(DVec3::X, 1.0)]).unwrap();
     let overlap = 2.0 * std::f64::consts::PI / 3.0 - 0.75_f64.sqrt();
     assert!((area(&lens) - (std::f64::consts::TAU - overlap)).abs() < 1e-4, "{}", area(&lens));
-    // One of them the other way round.
+    // One of them reversed.
     let mixed = united(&[circle(DVec3::ZERO, 1.0), circle(DVec3::new(5.0, 0.0, 0.0), 1.0)]);
     assert_eq!(mixed, None);
 }
 
 #[test]
 fn what_touches_or_coincides_is_joined() {
-    // Joined letters: their strokes overlap with edges in one line.
+    // Joined letters: their strokes overlap, with edges on one line.
     let stroke = united(&[rectangle([0.0, 0.0], [2.0, 1.0]), rectangle([1.5, 0.0], [4.0, 1.0])]).unwrap();
     assert!((length(&stroke) - 10.0).abs() < 1e-9 && (area(&stroke) - 4.0).abs() < 1e-9);
-    // They share an edge.
+    // Rectangles that share an edge.
     let touching = united(&[rectangle([0.0, 0.0], [2.0, 1.0]), rectangle([2.0, 0.0], [4.0, 1.0])]).unwrap();
     assert!((length(&touching) - 10.0).abs() < 1e-9);
-    // The same twice, of curves too.
+    // The same curve twice, circles too.
     let twice = united(&[circle(DVec3::ZERO, 1.0), circle(DVec3::ZERO, 1.0)]).unwrap();
     assert!((length(&twice) - std::f64::consts::TAU).abs() < 1e-6);
-    // And once in each direction: nothing is left.
+    // Once in each direction: nothing is left.
     let gone = united(&[circle(DVec3::ZERO, 1.0), backward(circle(DVec3::ZERO, 1.0))]).unwrap();
     assert!(gone.is_empty());
     // A stroke that crosses itself.

@@ -1,5 +1,5 @@
-//! Isolith's renderer inside of another wgpu program. That program owns the device. Isolith renders a scene into a texture on
-//! it, and the program goes on with that texture: here it copies it into one of its own and reads it back.
+//! Isolith's renderer inside another wgpu program. That program owns the device. Isolith renders a scene into a texture
+//! on it, and the program uses that texture: here it copies the texture into one of its own and reads that one back.
 //!
 //! `cargo run -p isolith-render --example embed -- picture.png`
 
@@ -14,7 +14,7 @@ use isolith_scene::{
     Blend, BlendKernel, Group, Light, LightKind, Node, NodeKind, Object, Operator, Scene, SceneError, Shape,
 };
 
-/// Width and height of the picture. Rows of 256 pixels need no padding when they are read back.
+/// Width and height of the picture. Rows of 256 pixels need no padding on readback.
 pub const SIZE: [u32; 2] = [256, 192];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,7 +24,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A sphere that melts into a box, and a sun.
+/// A sphere blended into a box, and a sun.
 ///
 /// # Errors
 /// Never, for these values.
@@ -42,25 +42,26 @@ pub fn scene() -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// Where it is looked at from.
+/// The camera of the picture.
 pub fn camera() -> Camera {
     Camera::looking_at(DVec3::new(2.5, 2.0, 3.0), DVec3::Y * 0.3, 40_f64.to_radians())
 }
 
-/// The picture, four bytes a pixel, rendered by Isolith and copied by the program that owns the device.
+/// The picture, four bytes a pixel: Isolith renders it, and the program that owns the device copies it.
 ///
 /// # Errors
-/// There is no adapter, or the device refuses.
+/// No adapter exists, or the device reports an error.
 pub fn render_on_foreign_device() -> Result<Vec<u8>, Box<dyn Error>> {
-    // The program's own device. The renderer asks for the limits of `device_descriptor`; the program may ask for more.
+    // The program opens its own device. The renderer needs the limits of `device_descriptor`; the program may ask for
+    // more.
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))?;
     let (device, queue) = pollster::block_on(adapter.request_device(&device_descriptor(&adapter)))?;
 
-    // Isolith: a scene becomes arrays, the renderer draws them piece by piece.
+    // Isolith: flatten turns the scene into arrays, and the renderer draws them in several dispatches.
     let gpu = Gpu::watch(device.clone(), queue.clone(), adapter.get_info());
     let mut renderer = Renderer::new(&gpu)?;
-    // One picture: not worth a compiled pipeline for each component.
+    // A single picture does not justify compiling a pipeline for each component.
     renderer.set_strategy(EvalStrategy::Tape);
     let flat: FlatScene = flatten(&scene()?, 0.0)?;
     let mut frame = renderer.begin(Slot::Full, &flat, &[], &camera(), SIZE, OverlaySettings::default())?;
@@ -69,7 +70,7 @@ pub fn render_on_foreign_device() -> Result<Vec<u8>, Box<dyn Error>> {
     }
     let (rendered, _) = renderer.picture(Slot::Full).ok_or("a frame that is done has a picture")?;
 
-    // The program again: it uses the texture like any other.
+    // Back in the program, which uses the texture like any other.
     let extent = wgpu::Extent3d { width: SIZE[0], height: SIZE[1], depth_or_array_layers: 1 };
     let own = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("the program's own"),

@@ -1,20 +1,20 @@
-//! How much there is to do, and how fast the device is.
+//! Cost model: the work of a frame, and the speed of the device.
 
 use std::time::Duration;
 
-/// Cost, in evaluations of a leaf, by the kind of pipeline that makes them.
+/// Cost in evaluations of a leaf, by the kind of pipeline that evaluates it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cost {
-    /// By interpreters and tapes, and everything else.
+    /// Evaluations by interpreters and tapes, and everything else.
     pub interpreter: f64,
-    /// By straight-line code.
+    /// Evaluations by straight-line code.
     pub straight_line: f64,
-    /// Dispatches, which take their time however little they do.
+    /// Dispatches. Each has a fixed cost, however little it does.
     pub dispatches: f64,
 }
 
 impl Cost {
-    /// A dispatch of an amount of one kind.
+    /// The cost of one dispatch with `amount` of one kind of work.
     pub fn new(straight_line: bool, amount: f64) -> Self {
         let [interpreter, straight_line] = if straight_line { [0.0, amount] } else { [amount, 0.0] };
         Self { interpreter, straight_line, dispatches: 1.0 }
@@ -33,22 +33,22 @@ impl std::ops::Add for Cost {
     }
 }
 
-/// How fast the device is, learned from what was measured.
+/// The speed of the device, learned from measurements.
 #[derive(Clone, Copy, Debug)]
 pub struct CostModel {
     interpreter: f64,
     straight_line: f64,
-    /// Not learned: measured on lavapipe, which wakes its threads and waits for them; a guess for graphics cards.
+    /// Not learned: measured on lavapipe, which wakes its threads and waits for them. For graphics cards it is a guess.
     dispatch: f64,
-    /// The last whole frame, and how many seconds it took.
+    /// Cost of the last whole frame, and the seconds that it took.
     frame: Option<(Cost, f64)>,
 }
 
-/// Seconds.
+/// Shortest measurable time, in seconds.
 const LEAST_MEASURED: f64 = 0.001;
 
 impl CostModel {
-    /// A first guess.
+    /// An initial guess, before any measurement.
     pub fn new(software: bool) -> Self {
         if software {
             Self { interpreter: 4e-8, straight_line: 2e-9, dispatch: 25e-6, frame: None }
@@ -57,19 +57,20 @@ impl CostModel {
         }
     }
 
-    /// Seconds that the cost is expected to take.
+    /// Expected time of this cost, in seconds.
     pub fn seconds(&self, cost: Cost) -> f64 {
         cost.dispatches * self.dispatch + self.seconds_of_evaluations(cost)
     }
 
-    /// Seconds that a whole frame of this cost is expected to take. What a dispatch is expected to take is wary, a sum of
-    /// that would be several times too much: where a frame has been measured, that is what others are compared with.
+    /// Expected time of a whole frame of this cost, in seconds. The estimate of a single dispatch is cautious, and a
+    /// sum of such estimates is several times too large. So once a frame has been measured, its time scales the
+    /// estimate.
     pub fn seconds_of_frame(&self, cost: Cost) -> f64 {
         let share = self.frame.map_or(1.0, |(measured, elapsed)| elapsed / self.seconds(measured));
         self.seconds(cost) * share
     }
 
-    /// Learns what a whole frame took.
+    /// Learns from the time of a whole frame.
     pub fn learn_frame(&mut self, cost: Cost, elapsed: Duration) {
         if self.seconds(cost) > 0.0 {
             self.frame = Some((cost, elapsed.as_secs_f64()));
@@ -80,21 +81,21 @@ impl CostModel {
         cost.interpreter * self.interpreter + cost.straight_line * self.straight_line
     }
 
-    /// Cost of one kind that is expected to take this long.
+    /// Cost of one kind of work that is expected to take this time.
     pub fn cost_in(&self, time: Duration, straight_line: bool) -> f64 {
         time.as_secs_f64() / if straight_line { self.straight_line } else { self.interpreter }
     }
 
-    /// Learns from a measurement. Slower than expected counts at once, faster bit by bit.
+    /// Learns from a measurement. A slower result counts at once, a faster one gradually.
     pub fn learn(&mut self, cost: Cost, elapsed: Duration) {
         let expected = self.seconds_of_evaluations(cost);
         let elapsed = elapsed.as_secs_f64() - cost.dispatches * self.dispatch;
-        // Of less it is the submission that is measured, not the work: then all that is known is that it took no more.
+        // Below this the submission dominates the measurement. It then gives only an upper bound for the work.
         let elapsed = elapsed.max(LEAST_MEASURED);
         if expected <= 0.0 || (elapsed <= LEAST_MEASURED && expected <= elapsed) {
             return;
         }
-        // A driver that compiles, or a machine that does something else, takes ten times as long once in a while.
+        // A driver that compiles, or a busy machine, occasionally makes a dispatch ten times as slow.
         let ratio = (elapsed / expected).clamp(0.05, 4.0);
         let gain = if ratio > 1.0 { 0.6 } else { 0.3 };
         let of_straight_line = cost.straight_line * self.straight_line / expected;
@@ -103,11 +104,12 @@ impl CostModel {
     }
 }
 
-/// Pixels of a full picture to a side of a coarse pixel, at most.
+/// Largest side of a coarse pixel, in pixels of the full picture.
 const COARSEST: f64 = 8.0;
 
-/// Size of the picture that is to be had in this time where one of `size` takes as long as `full`; never less than an eighth
-/// of a side. Between sizes lies half the time each, so that a drag does not make new targets for each of its pictures.
+/// Size of a picture that fits into `time`, when a picture of `size` takes `full`. Never less than an eighth of each
+/// side. Successive sizes differ by a factor of two in time, so that a drag does not create new targets for each of its
+/// pictures.
 pub fn coarse_size(size: [u32; 2], full: Duration, time: Duration) -> [u32; 2] {
     let halvings = (full.as_secs_f64() / time.as_secs_f64().max(1e-9)).log2().ceil();
     let factor = (0.5 * halvings).exp2().clamp(1.0, COARSEST);
@@ -127,7 +129,7 @@ mod tests {
         }
         let expected = cost_model.seconds(cost);
         assert!((expected - 0.1).abs() < 0.01, "{expected}");
-        // What takes less than can be measured is known to take no more than that.
+        // A time below the measurable minimum only says that the work takes no longer than that.
         for _ in 0..60 {
             cost_model.learn(cost, Duration::from_micros(30));
         }
@@ -141,7 +143,7 @@ mod tests {
         let cost = Cost { interpreter: 1e6, straight_line: 1e7, dispatches: 10.0 };
         assert_eq!(cost_model.seconds_of_frame(cost), cost_model.seconds(cost));
         cost_model.learn_frame(cost, Duration::from_millis(7));
-        // A slow dispatch makes dispatches shorter, and no frame longer.
+        // A slow dispatch shortens the next dispatches, but never lengthens the expected frame.
         cost_model.learn(cost, Duration::from_millis(900));
         assert!((cost_model.seconds_of_frame(cost) - 0.007).abs() < 1e-12 && cost_model.seconds(cost) > 0.1);
         assert!((cost_model.seconds_of_frame(cost + cost) - 0.014).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! What a frame does: its dispatches, what they cost, and the points that its coordinates are relative to.
+//! The frame: its plan of dispatches, and their cost.
 
 pub mod cost_model;
 pub mod plan;

@@ -1,6 +1,6 @@
-//! Cuts a frame into dispatches that are short enough to be waited for.
+//! Cuts a frame into short dispatches.
 //!
-//! No dispatch may run long: it cannot be interrupted, and some systems reset a device that is busy for
+//! No dispatch may run long: the renderer cannot interrupt it, and some systems reset a device that is busy for
 //! seconds. No invocation may loop too often: lavapipe ends every loop after 65 535 iterations.
 
 use std::time::Duration;
@@ -15,43 +15,44 @@ use crate::resources::uniforms::DispatchParams;
 use isolith_field::{Component, FlatScene};
 use isolith_geometry::Camera;
 
-/// Pixels along a side of a tile: what a cone begins with.
+/// Side of a tile, in pixels: the area that a cone starts with.
 pub const TILE: u32 = 8;
-/// Subtiles along a side of a tile: what cones are narrowed down to.
+/// Subtiles along a side of a tile: the areas that cones are narrowed down to.
 pub const SUBTILES: u32 = 2;
-/// A dispatch is cut so that it is expected to take about this long; measured times scatter by a factor
-/// of two or three around that, so nearly all stay below 50 ms.
+/// Expected time of one dispatch. Measured times scatter by a factor of two or three around it, so nearly all stay
+/// below 50 ms.
 pub const DISPATCH_TARGET: Duration = Duration::from_millis(16);
-/// Loop iterations that one invocation may do, with room below lavapipe's 65 535.
+/// Limit of loop iterations of one invocation, with a margin below lavapipe's 65 535.
 pub const MAX_ITERATIONS: u32 = 60_000;
-/// Most steps of a ray through a component with bounds.
+/// Step limit of a ray through a component with bounds.
 pub const MAX_STEPS: u32 = 4_096;
-/// Most steps of a ray through a component without bounds, toward the horizon.
+/// Step limit of a ray through a component without bounds, toward the horizon.
 pub const MAX_STEPS_UNBOUNDED: u32 = 16_384;
 
-/// Where rays have not ended by then, they are traced again with so many times as many steps, and again, before they are given
-/// up. Along the face of a box 1 km long a ray creeps in 80 000 steps.
+/// Factors of the step limit for rays that have not ended: such rays are traced again with 8 times as many steps, then
+/// with 64 times as many, before the renderer gives them up. Along the face of a box 1 km long a ray takes 80 000 small
+/// steps.
 pub const LONGER: [u32; 2] = [8, 64];
 
-/// Most pixels of one dispatch of a component: as many rays may be left.
+/// Pixel limit of one dispatch of a component, and so of the rays that it leaves unfinished.
 const MOST_PIXELS: f64 = 1048576.0;
-/// Steps of a ray in one dispatch over a component without bounds: toward the horizon thousands may be
-/// needed, which in one dispatch took two seconds.
+/// Steps of a ray in one dispatch over a component without bounds. Toward the horizon a ray may need thousands, which
+/// took two seconds in a single dispatch.
 pub const STEPS_UNBOUNDED: u32 = 512;
 
-/// One dispatch.
+/// A dispatch of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dispatch {
-    /// Its pass.
+    /// The pass that it belongs to.
     pub pass: Pass,
-    /// What it does.
+    /// Its parameters.
     pub params: DispatchParams,
     /// Expected cost.
     pub cost: Cost,
 }
 
 impl Dispatch {
-    /// Tiles along x and y.
+    /// Number of tiles along x and y.
     pub fn tiles(&self) -> [u32; 2] {
         [0, 1].map(|i| (self.params.end[i] - self.params.origin[i]).div_ceil(TILE))
     }
@@ -60,56 +61,56 @@ impl Dispatch {
 /// All dispatches of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct FramePlan {
-    /// In order.
+    /// The dispatches, in order.
     pub dispatches: Vec<Dispatch>,
-    /// Lists of subtiles that the cone passes write.
+    /// Number of subtile lists that the cone passes write.
     pub lists: u32,
-    /// Subtiles in all lists together, if none is dropped.
+    /// Upper bound of the subtiles in all lists together.
     pub subtiles: u32,
-    /// Tiles in the longest list, if none is dropped.
+    /// Upper bound of the tiles in the longest list.
     pub longest: u32,
 }
 
-/// Expected evaluations of a component per pixel of its outline: measured on the shipped scenes.
+/// Expected evaluations of a component per pixel of its silhouette, measured on the shipped scenes.
 const CONE_EVALUATIONS: f64 = 0.2;
 const TRACE_EVALUATIONS: f64 = 4.0;
 const SURFACE_EVALUATIONS: f64 = 3.0;
 
-/// What a device can be told of in one frame.
+/// Capacity of a device for one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
-    /// Pieces of work.
+    /// Dispatches.
     pub dispatches: usize,
     /// Subtiles in the lists of all components together.
     pub subtiles: u64,
 }
 
 impl Room {
-    /// Room for everything.
+    /// No limit.
     pub const UNLIMITED: Self = Self { dispatches: usize::MAX, subtiles: u64::MAX };
 }
 
-/// A frame would have too much to do, most of it for this component.
+/// A frame exceeds the capacity of the device, mostly because of this component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TooMuch {
     /// Too many dispatches.
     Pieces {
-        /// Which component.
+        /// The component.
         component: usize,
     },
-    /// Its lists would hold too many subtiles.
+    /// The lists would hold too many subtiles.
     Subtiles {
-        /// Which component.
+        /// The component.
         component: usize,
-        /// How many they would hold.
+        /// Number of subtiles that the lists would hold.
         subtiles: u64,
     },
 }
 
-/// Plans a frame that has room on the device. `evaluations` stand beside the components.
+/// Plans a frame that fits the device. `evaluations` is parallel to the components.
 ///
 /// # Errors
-/// It would take more: known before any dispatch is made, since there may be millions.
+/// The frame would exceed `room`. The check precedes the first dispatch, since there may be millions.
 pub fn plan(
     flat: &FlatScene,
     camera: &Camera,
@@ -145,7 +146,7 @@ pub fn plan(
     let mut plan = FramePlan::default();
     let parts: Vec<Part> =
         seen.into_iter().flat_map(|(index, rect, marching)| plan.parts(index, rect, marching)).collect();
-    // Passes over parts take turns: each part goes through all of them before the next one.
+    // Passes over parts take turns: each part runs through all of them before the next part starts.
     for stages in Pass::ALL.chunk_by(|a, b| a.extent().is_of_parts() && b.extent().is_of_parts()) {
         match stages[0].extent() {
             Extent::Picture => plan.push(stages[0], whole.params(0), Cost::default()),
@@ -157,31 +158,31 @@ pub fn plan(
             Extent::Light => whole.cut(shading, most_shading, |rect| {
                 plan.push(stages[0], rect.params(0), Cost::new(false, rect.pixels() * shading));
             }),
-            // No dispatches: recorded with the last one.
+            // No dispatches of its own: the pass is recorded with the last dispatch of the frame.
             Extent::Finished => {}
         }
     }
     Ok(plan)
 }
 
-/// A part of a component's image, with a list of subtiles of its own.
+/// A part of a component's image, with its own list of subtiles.
 #[derive(Clone, Copy, Debug)]
 struct Part {
     rect: Rect,
     marching: Marching,
-    /// What its dispatches have in common.
+    /// Parameters that its dispatches share.
     params: DispatchParams,
 }
 
-/// How the rays through a component are cut into dispatches.
+/// How the march through a component is split into dispatches.
 #[derive(Clone, Copy, Debug)]
 struct Marching {
     evaluation: EvaluationCost,
     /// Steps of a ray in one dispatch.
     steps: u32,
-    /// Dispatches one after the other, until no ray can be left.
+    /// Number of successive dispatches after which no ray can be left.
     relaunches: u32,
-    /// Cost of a pixel, and most in one dispatch.
+    /// Cost of a pixel, and cost limit of one dispatch.
     per_pixel: f64,
     most: f64,
 }
@@ -197,7 +198,8 @@ impl Marching {
         Self { evaluation, steps, relaunches: max_steps.div_ceil(steps), per_pixel, most }
     }
 
-    /// How many dispatches the component takes whose image is within `rect`: of each part its cones, its relaunches, its surface.
+    /// Number of dispatches of a component whose image lies within `rect`: for each part its cones, relaunches and
+    /// surface.
     fn dispatches(&self, rect: &Rect) -> usize {
         rect.parts(self.per_pixel, self.most) * (self.relaunches as usize + 2)
     }
@@ -209,15 +211,15 @@ impl FramePlan {
         self.dispatches.iter().fold(Cost::default(), |sum, dispatch| sum + dispatch.cost)
     }
 
-    /// Around the pixels that these components may cover, if any: upper left, and the first outside.
+    /// Bounding rectangle of the pixels that these components may cover, if any: upper left pixel, first pixel outside.
     pub fn around(&self, is_meant: impl Fn(u32) -> bool) -> Option<[UVec2; 2]> {
         let meant = self.dispatches.iter().filter(|p| p.pass == Pass::Cone && is_meant(p.params.component));
         let rects = meant.map(|p| [p.params.origin, p.params.end].map(UVec2::from_array));
         rects.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// The dispatches that trace the components that are meant once more, by `times` as many steps of each ray, and what comes
-    /// after that.
+    /// The dispatches that trace the selected components again, with `times` as many steps of each ray, and the surface
+    /// and shade dispatches that follow.
     pub fn again(&self, is_meant: impl Fn(u32) -> bool, times: u32) -> Vec<Dispatch> {
         let is_meant = |dispatch: &&Dispatch| is_meant(dispatch.params.component);
         let marches = self.dispatches.iter().filter(|dispatch| matches!(dispatch.pass, Pass::Cone | Pass::Trace));
@@ -244,7 +246,7 @@ impl FramePlan {
         self.dispatches.push(Dispatch { pass, params, cost });
     }
 
-    /// The parts of a component's image within `rect`; makes room for their lists.
+    /// The parts of a component's image within `rect`. Reserves space for their lists.
     fn parts(&mut self, index: usize, rect: Rect, marching: Marching) -> Vec<Part> {
         let mut parts = Vec::new();
         rect.cut(marching.per_pixel, marching.most, |rect| {
@@ -257,12 +259,12 @@ impl FramePlan {
         parts
     }
 
-    /// The dispatches of a pass over a part.
+    /// Adds the dispatches of a pass over a part.
     fn part(&mut self, pass: Pass, part: &Part) {
         let Marching { evaluation: EvaluationCost { straight, leaves, .. }, relaunches, .. } = part.marching;
         let cost = |evaluations: f64| Cost::new(straight, part.rect.pixels() * leaves * evaluations);
-        // The rays that are left stand behind how many they are; one list after the other uses the same place. Subtiles with
-        // hits stand behind all others.
+        // The unfinished rays follow their count in the buffer; successive lists reuse the same place. Subtiles with
+        // hits follow all other subtiles.
         let params = DispatchParams { rays: self.lists, hits: self.subtiles, ..part.params };
         if pass.extent() != Extent::Rounds {
             let evaluations = if pass.extent() == Extent::Hits { SURFACE_EVALUATIONS } else { CONE_EVALUATIONS };
@@ -275,14 +277,14 @@ impl FramePlan {
                 compacted: u32::from(relaunch > 0),
                 ..params
             };
-            // Most rays have ended long before the last relaunch.
+            // Most rays end long before the last relaunch.
             let later = Cost { dispatches: 0.0, ..cost(0.1) };
             self.push(pass, params, if relaunch == 0 { cost(TRACE_EVALUATIONS) } else { later });
         }
     }
 }
 
-/// Components in the order of their nearest points, so that what is hidden is met last.
+/// Components ordered by their nearest points, so that hidden components come last.
 fn front_to_back(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     let distance = |i: usize| {
         let c = &flat.components[i];
@@ -293,17 +295,18 @@ fn front_to_back(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
-/// From the world to pixels.
+/// Projection from the world to pixels.
 struct ScreenProjection {
     eye: DVec3,
     forward: DVec3,
-    /// Pixels to the right per length at depth 1.
+    /// Pixels to the right per meter at depth 1.
     right: DVec3,
-    /// Pixels downward per length at depth 1.
+    /// Pixels downward per meter at depth 1.
     down: DVec3,
-    /// The middle of the picture.
+    /// Center of the picture.
     center: DVec2,
-    /// What is nearer along the view axis has no place in the picture; in a corner the near limit is less along the axis.
+    /// Depth along the view axis below which points are not visible. In a corner, the near limit along the ray is less
+    /// along the axis.
     near: f64,
 }
 
@@ -330,7 +333,7 @@ struct Rect {
 }
 
 impl Rect {
-    /// The pixels that the component's bounds may cover; `None` where it is out of view.
+    /// The pixels that the component's bounds may cover; `None` if it is out of view.
     fn around(component: &Component, projection: &ScreenProjection, size: [u32; 2]) -> Option<Self> {
         let whole = Self { origin: [0, 0], end: size };
         if !component.bounds.is_finite() {
@@ -352,10 +355,10 @@ impl Rect {
         match behind {
             8 => return None,
             0 => {}
-            // Part of it is beside or behind the eye: its image has no simple outline.
+            // A part of it lies beside or behind the eye, so its projection has no simple outline.
             _ => return Some(whole),
         }
-        // A pixel of room for rounding.
+        // A margin of one pixel for rounding.
         let low = (low - 1.0).floor().max(DVec2::ZERO);
         let high = (high + 1.0).ceil().min(pixels);
         if low.cmpge(high).any() {
@@ -377,7 +380,7 @@ impl Rect {
         DispatchParams { origin: self.origin, end: self.end, component, ..DispatchParams::zeroed() }
     }
 
-    /// Width and height of the parts, of at most `most` cost, or of one tile.
+    /// Width and height of parts that cost at most `most`, but no less than one tile.
     fn part(&self, per_pixel: f64, most: f64) -> [u32; 2] {
         let pixels = (most / per_pixel.max(1e-9)).max(f64::from(TILE * TILE));
         let width = self.end[0] - self.origin[0];
@@ -390,13 +393,13 @@ impl Rect {
         [columns, rows]
     }
 
-    /// How many parts there are.
+    /// Number of parts.
     fn parts(&self, per_pixel: f64, most: f64) -> usize {
         let part = self.part(per_pixel, most);
         [0, 1].map(|i| (self.end[i] - self.origin[i]).div_ceil(part[i]) as usize).iter().product()
     }
 
-    /// Cuts into parts, see [`Rect::part`].
+    /// Cuts the rectangle into parts, see [`Rect::part`].
     fn cut(&self, per_pixel: f64, most: f64, mut each: impl FnMut(Self)) {
         let [columns, rows] = self.part(per_pixel, most);
         let mut y = self.origin[1];

@@ -4,13 +4,13 @@ use std::fmt;
 
 use super::error::GpuError;
 
-/// The environment's name of an adapter, where the command line gives none.
+/// Environment variable that names an adapter, if the command line does not.
 const ADAPTER_VARIABLE: &str = "WGPU_ADAPTER_NAME";
 
-/// What is known of an adapter before it is opened.
+/// Description of an adapter that is not open.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterSummary {
-    /// Name of the card, or of the driver that computes on the processor.
+    /// Name of the graphics card, or of a software driver.
     pub name: String,
     /// Vulkan, Metal or DirectX 12.
     pub backend: String,
@@ -40,20 +40,21 @@ impl fmt::Display for AdapterSummary {
     }
 }
 
-/// Which adapter is to draw: one whose name holds a text, in any case, or the fastest.
+/// Selects an adapter: one whose name contains a text (in any case), or the fastest.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct AdapterChoice {
     wanted: Option<String>,
 }
 
 impl AdapterChoice {
-    /// The adapter of this name; without one that of the environment's `WGPU_ADAPTER_NAME`, or the fastest.
+    /// Selects the adapter of this name, else the one that the environment's `WGPU_ADAPTER_NAME` names, else the
+    /// fastest.
     pub fn new(name: Option<&str>) -> Self {
         let of_environment = || std::env::var(ADAPTER_VARIABLE).ok();
         Self { wanted: name.map(str::to_owned).or_else(of_environment).filter(|name| !name.trim().is_empty()) }
     }
 
-    /// The chosen one of `adapters`, of those that `fits`.
+    /// Picks among those of `adapters` that satisfy `fits`.
     pub fn pick(
         &self,
         adapters: &[wgpu::Adapter],
@@ -71,7 +72,7 @@ impl AdapterChoice {
         })
     }
 
-    /// The choice as a window's setup takes it: among the adapters that can show it.
+    /// The choice in the form that a window's setup needs: it picks among the adapters that can present to the window.
     pub fn selector(
         &self,
     ) -> impl Fn(&[wgpu::Adapter], Option<&wgpu::Surface<'_>>) -> Result<wgpu::Adapter, String> + Send + Sync + use<>
@@ -84,30 +85,31 @@ impl AdapterChoice {
     }
 }
 
-/// Every adapter that can be opened.
+/// All adapters of this machine.
 pub fn adapters() -> Vec<AdapterSummary> {
     all(&instance()).iter().map(|adapter| AdapterSummary::from(&adapter.get_info())).collect()
 }
 
-/// How an instance is made, with or without a window.
+/// Descriptor of an instance, with or without a window.
 pub fn instance_descriptor() -> wgpu::InstanceDescriptor {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
-    // Validation layers are the developer's to ask for, through the environment.
+    // Validation layers are off unless a developer enables them through the environment.
     descriptor.flags = wgpu::InstanceFlags::empty().with_env();
     descriptor
 }
 
-/// An instance with what [`instance_descriptor`] says.
+/// An instance made with [`instance_descriptor`].
 pub fn instance() -> wgpu::Instance {
     wgpu::Instance::new(instance_descriptor())
 }
 
-/// Every adapter of the instance.
+/// All adapters of the instance.
 pub fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()))
 }
 
-/// The fastest kind of those whose name holds `wanted`; of the same kind the first, which is the system's preference.
+/// The fastest kind among those whose name contains `wanted`; within a kind the first, which is the system's
+/// preference.
 fn best<'a>(infos: impl Iterator<Item = (usize, &'a wgpu::AdapterInfo)>, wanted: Option<&str>) -> Option<usize> {
     let rank = |info: &wgpu::AdapterInfo| match info.device_type {
         wgpu::DeviceType::DiscreteGpu => 0,

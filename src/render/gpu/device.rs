@@ -1,4 +1,4 @@
-//! The device: found, opened, watched.
+//! The device: opening it, and watching for errors and loss.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -6,14 +6,14 @@ use std::sync::{Arc, Mutex};
 use super::adapter::{self, AdapterChoice};
 use super::error::GpuError;
 
-/// A device and its queue, and what became of them.
+/// A device and its queue, with their health.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
     pub device: wgpu::Device,
     /// Its queue.
     pub queue: wgpu::Queue,
-    /// Which driver and card.
+    /// The driver and the graphics card.
     pub info: wgpu::AdapterInfo,
     health: Arc<Health>,
 }
@@ -25,18 +25,18 @@ struct Health {
 }
 
 impl Gpu {
-    /// A device without a window, on the adapter that the environment names or on the fastest.
+    /// Opens a device without a window, on the adapter that the environment names or on the fastest.
     pub fn headless() -> Result<Self, GpuError> {
         Self::open(&AdapterChoice::new(None))
     }
 
-    /// A device without a window.
+    /// Opens a device without a window.
     pub fn open(choice: &AdapterChoice) -> Result<Self, GpuError> {
         let instance = adapter::instance();
         Self::on(&choice.pick(&adapter::all(&instance), |_| true)?)
     }
 
-    /// A second device on the same adapter.
+    /// Opens a second device on the same adapter.
     pub fn another(&self) -> Result<Self, GpuError> {
         let instance = adapter::instance();
         let found = adapter::all(&instance).into_iter().find(|adapter| adapter.get_info() == self.info);
@@ -50,8 +50,8 @@ impl Gpu {
         Ok(Self::watch(device, queue, info))
     }
 
-    /// Takes over a device opened elsewhere, and installs the handlers for loss and for errors that
-    /// nobody catches: without them either would end the program.
+    /// Takes over a device that another part of the program opened. Installs handlers for loss and for uncaught errors:
+    /// without them wgpu ends the program in both cases.
     pub fn watch(device: wgpu::Device, queue: wgpu::Queue, info: wgpu::AdapterInfo) -> Self {
         let health = Arc::new(Health::default());
         let of_loss = health.clone();
@@ -64,19 +64,19 @@ impl Gpu {
         Self { device, queue, info, health }
     }
 
-    /// Whether the device is gone; a new one must be opened.
+    /// Whether the device is lost. A lost device must be replaced.
     pub fn is_lost(&self) -> bool {
-        // The loss is told of when the device is polled; an error of that shows in the health, too.
+        // Polling reports the loss. An error of the poll itself also shows in the health.
         let _ = self.device.poll(wgpu::PollType::Poll);
         self.health.lost.load(Ordering::Acquire)
     }
 
-    /// Takes what the device complained about since the last call.
+    /// Takes the errors that the device has reported since the last call.
     pub fn take_messages(&self) -> Vec<String> {
         self.health.messages.lock().map(|mut m| std::mem::take(&mut *m)).unwrap_or_default()
     }
 
-    /// An error if the device is gone or has complained since the last call.
+    /// Fails if the device is lost or has reported an error since the last call.
     pub fn check(&self) -> Result<(), GpuError> {
         let is_lost = self.is_lost();
         let messages = self.take_messages();
@@ -87,13 +87,13 @@ impl Gpu {
         }
     }
 
-    /// Waits until everything submitted so far is done.
+    /// Waits until the device has finished all submitted work.
     pub fn wait(&self) -> Result<(), GpuError> {
         self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|e| GpuError::Lost(e.to_string()))?;
         self.check()
     }
 
-    /// Whether the driver computes on the processor: lavapipe, SwiftShader and their like.
+    /// Whether it is a software driver: lavapipe, SwiftShader and the like.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
@@ -103,7 +103,7 @@ impl Health {
     fn say(&self, message: String) {
         let message = one_line(&message);
         if let Ok(mut messages) = self.messages.lock() {
-            // A broken device may complain without end.
+            // A broken device may report errors without end.
             if messages.len() < 64 {
                 messages.push(message);
             }
@@ -111,15 +111,16 @@ impl Health {
     }
 }
 
-/// A driver's message without its line breaks.
+/// A driver's message in one line.
 fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default is four.
+/// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default limit is four.
 const STORAGE_TEXTURES: u32 = 6;
 
-/// What is asked of a device: WebGPU's defaults, with buffers as large as the adapter allows, and its clock where it has one.
+/// Requirements on a device: WebGPU's defaults, with buffers as large as the adapter allows, and timestamps if it has
+/// them.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let required_limits = wgpu::Limits {
@@ -137,7 +138,8 @@ pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'sta
 mod tests {
     use super::*;
 
-    /// What the driver refuses says what it is, and the device goes on; only a device that is gone is lost.
+    /// The driver's refusal comes back with its reason, and the device remains usable: only a device that is gone is
+    /// lost.
     #[test]
     fn a_refused_command_is_not_a_lost_device() {
         let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));

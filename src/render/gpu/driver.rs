@@ -1,4 +1,4 @@
-//! What is known of the driver only by trying.
+//! Properties of a driver that only a trial shows.
 
 use crate::frame::plan::MAX_ITERATIONS;
 use crate::gpu::readback::read_words;
@@ -7,11 +7,11 @@ use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{bind, compute_pipeline, entry, layout, write_storage};
 use isolith_wgsl::assemble_plain;
 
-/// Iterations that are tried.
+/// Iterations that the trial loop asks for.
 const TRIED: u32 = 100_000;
 
-/// How many iterations of a loop the driver really does, of 100 000: lavapipe 22 ends every loop after
-/// 65 535 without a word. An error if fewer than the renderer needs.
+/// How many iterations of a loop the driver executes, of 100 000: lavapipe 22 ends every loop after 65 535 without an
+/// error. Fails if they are fewer than the renderer needs.
 pub fn loop_iterations(gpu: &Gpu) -> Result<u32, GpuError> {
     let device = &gpu.device;
     let group_layout = layout(device, "driver", &[entry(0, wgpu::ShaderStages::COMPUTE, write_storage())]);

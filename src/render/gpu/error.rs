@@ -1,25 +1,25 @@
-//! Why the GPU does not serve.
+//! Errors of the GPU.
 
 use thiserror::Error;
 
-/// Why there is no device, or no more.
+/// Why a device is missing or unusable.
 #[derive(Clone, Debug, Error)]
 pub enum GpuError {
-    /// No driver answers.
+    /// No driver responds.
     #[error(
         "no graphics driver answers. On Debian or Ubuntu, `apt-get install mesa-vulkan-drivers` installs one that \
          needs no graphics card"
     )]
     NoAdapter,
-    /// No adapter has the name that was asked for.
+    /// No adapter has the requested name.
     #[error("no graphics adapter is called \"{wanted}\"; there is {found}")]
     NoSuchAdapter {
-        /// What was asked for.
+        /// The requested name.
         wanted: String,
-        /// What there is.
+        /// The names of the adapters that exist.
         found: String,
     },
-    /// The driver refuses a device.
+    /// The driver refuses to open a device.
     #[error("the graphics driver {adapter} gives no device: {reason}")]
     NoDevice {
         /// The driver.
@@ -30,7 +30,7 @@ pub enum GpuError {
     /// The device is gone.
     #[error("the graphics device was lost: {0}")]
     Lost(String),
-    /// The device works and refused something: a fault of the program, or too little memory.
+    /// The device works but refused a command, because of a fault of the program or too little memory.
     #[error("the graphics driver refused a command: {0}")]
     Refused(String),
 }

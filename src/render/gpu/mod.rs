@@ -1,4 +1,4 @@
-//! The device: which adapter, its limits, its errors, and what is read back from it.
+//! The GPU: adapters, the device with its limits and errors, and readback.
 
 pub mod adapter;
 mod device;

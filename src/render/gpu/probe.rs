@@ -1,4 +1,4 @@
-//! Fields and surfaces at given points, computed by the GPU: what the agreement tests compare with the CPU evaluator.
+//! Evaluates fields and surfaces at given points on the GPU, for the tests that compare it with the CPU evaluator.
 
 use glam::DVec3;
 use wgpu::ShaderStages;
@@ -18,8 +18,7 @@ use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, FlatScene, ParamRow, ROW_ALIGNMENT};
 use isolith_wgsl::{Evaluator, Options, assemble, template_rows};
 
-/// The field of the component of this index at `points` (relative to its origin), by the same source as
-/// the passes.
+/// The field of the component `index` at `points`, which are relative to its origin, by the same source as the passes.
 ///
 /// # Errors
 /// The device fails.
@@ -35,20 +34,20 @@ pub fn field(
     Ok(probe.run(gpu, flat, index, points)?.into_iter().map(f32::from_bits).collect())
 }
 
-/// What the surface near a point is like.
+/// The surface near a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbedSurface {
     /// The field's gradient.
     pub gradient: DVec3,
     /// The field, in meters.
     pub distance: f64,
-    /// The materials, as they are stored for shading.
+    /// The materials, in the encoding that shading reads.
     pub materials: Mixture,
     /// Linear diffuse reflectance of their mixture.
     pub albedo: DVec3,
 }
 
-/// The same of surfaces: gradients and materials, by the source of the pass that finds normals.
+/// The surface at the same points: gradients and materials, by the source of the surface pass.
 ///
 /// # Errors
 /// The device fails.
@@ -71,9 +70,9 @@ pub fn surface(
     Ok(found.as_chunks().0.iter().map(read).collect())
 }
 
-/// For each two points on a ray, both relative to the origin, the field at the second one, how far beyond it that is
-/// proven to be positive, what it is proven to be at least within four times their distance before the first one, or less where
-/// it is less at the first one, and the field there.
+/// The lookahead for pairs of points on a ray, both relative to the origin. The result holds the field at the second
+/// point; how far beyond it the field is proven positive; the lower bound that is proven within four times their
+/// distance before the first point, or the field there if it is less; and the field at the first point.
 ///
 /// # Errors
 /// The device fails.
@@ -90,11 +89,11 @@ pub fn lookahead(
     Ok(words.as_chunks().0.iter().map(|found| found.map(f32::from_bits)).collect())
 }
 
-/// What is run at each point.
+/// A shader to run at each point.
 struct Probe<'a> {
     file: &'a str,
     entry: &'a str,
-    /// Numbers that it writes for each point.
+    /// Words that it writes for each point.
     words: usize,
     evaluator: &'a Evaluator,
     options: Options,
@@ -164,9 +163,9 @@ impl Probe<'_> {
     }
 }
 
-/// The rows on which the pipeline has its window, and where that begins, in bytes.
+/// The rows that the pipeline's window binds, and the offset of the window in bytes.
 fn window_rows(flat: &FlatScene, index: usize, evaluator: &Evaluator) -> (Vec<ParamRow>, u32) {
-    // A pipeline for a template has rows of its own template.
+    // A pipeline for a template reads its own rows.
     if matches!(evaluator, Evaluator::StraightLine(structure) if structure.is_template()) {
         let mut rows = Vec::new();
         template_rows(flat, &flat.params, &flat.components[index], &mut rows);

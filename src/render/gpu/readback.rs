@@ -1,4 +1,4 @@
-//! Targets and buffers back to the CPU.
+//! Copies targets and buffers back to the CPU.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, GpuError};
 use crate::resources::targets::{BACKGROUND, Target, Targets};
 use isolith_field::{BACKGROUND_DEPTH, GBuffer};
 
-/// How long to wait for word that a buffer can be read, when the device has done all its work.
+/// How long to wait for the map callback once the device has finished all its work.
 const CALL_BACK: Duration = Duration::from_secs(30);
 
 /// The picture with depth, leaf and normal of every pixel.
@@ -31,7 +31,7 @@ pub fn read_color(gpu: &Gpu, target: &Target) -> Result<Vec<[u8; 4]>, GpuError> 
     Ok(bytemuck::pod_collect_to_vec(&read_texture(gpu, target, 4)?))
 }
 
-/// The texels of a target, row by row without gaps.
+/// The texels of a target, row by row without padding.
 fn read_texture(gpu: &Gpu, target: &Target, bytes_per_texel: u32) -> Result<Vec<u8>, GpuError> {
     let size = target.texture.size();
     let row = (size.width * bytes_per_texel) as usize;
@@ -58,7 +58,7 @@ pub fn read_words(gpu: &Gpu, source: &wgpu::Buffer, count: usize) -> Result<Vec<
     read_words_at(gpu, source, 0, count)
 }
 
-/// `count` words of a buffer from the word `first` on.
+/// `count` words of a buffer, from word `first` on.
 pub fn read_words_at(gpu: &Gpu, source: &wgpu::Buffer, first: usize, count: usize) -> Result<Vec<u32>, GpuError> {
     if count == 0 {
         return Ok(Vec::new());
@@ -84,11 +84,11 @@ fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
     let slice = buffer.slice(..);
     let (sender, receiver) = std::sync::mpsc::channel();
     slice.map_async(wgpu::MapMode::Read, move |result| {
-        // The receiver waits below; if it has given up there is nobody to tell.
+        // The receiver waits below. If it has given up, nobody needs the result.
         let _ = sender.send(result);
     });
     gpu.wait()?;
-    // Where several threads wait for one device, another of them may be about to call back.
+    // If several threads wait for one device, another of them may be about to run the callback.
     match receiver.recv_timeout(CALL_BACK) {
         Ok(Ok(())) => {}
         _ => return Err(GpuError::Refused("a buffer could not be read back".into())),
@@ -101,7 +101,7 @@ fn read_mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
 mod tests {
     use super::*;
 
-    /// One thread's wait may end while another, which found the work done, has not called back yet.
+    /// A thread's wait may end before another thread, which saw the work finish, has run the callback.
     #[test]
     fn many_threads_may_read_from_one_device() {
         let gpu = Gpu::headless().unwrap_or_else(|error| panic!("{error}"));

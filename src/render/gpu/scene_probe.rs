@@ -1,4 +1,4 @@
-//! Values and rays of a whole scene, computed by the GPU: what tests compare with the scene evaluator of the CPU.
+//! Evaluates and traces a whole scene on the GPU, for the tests that compare it with the scene evaluator of the CPU.
 
 use glam::DVec3;
 use wgpu::{BindGroup, BindGroupLayout, ComputePipeline, ShaderStages};
@@ -24,28 +24,28 @@ use isolith_wgsl::{Evaluator, OpSet, Options, assemble, shape_loops};
 /// A ray through a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbeRay {
-    /// Where it starts, in the world.
+    /// Its origin, in the world.
     pub origin: DVec3,
     /// Unit direction.
     pub direction: DVec3,
-    /// Where hits begin to count, and where they end: distances from the origin.
+    /// Near and far limit of hits: distances from the origin.
     pub limits: [f64; 2],
-    /// How long the path from the eye to the origin is: footprints grow with it.
+    /// Length of the path from the eye to the origin, which determines the footprint.
     pub gone: f64,
-    /// The unit normal of the surface that it leaves, if it leaves one.
+    /// Unit normal of the surface that the ray leaves, if any.
     pub normal: Option<DVec3>,
 }
 
-/// What a ray met.
+/// Result of a ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbedHit {
     /// Distance from the ray's origin, and the component.
     pub hit: Option<(f64, u32)>,
     /// Evaluations of fields.
     pub evaluations: u32,
-    /// Nodes of the hierarchy that were visited.
+    /// Visited nodes of the hierarchy.
     pub visits: u32,
-    /// Whether it was followed to its end.
+    /// Whether the march reached its end.
     pub ended: bool,
 }
 
@@ -54,24 +54,24 @@ pub struct ProbedHit {
 pub struct ProbedValue {
     /// The value.
     pub value: f64,
-    /// The component that it belongs to; `u32::MAX` for none.
+    /// The component with this value; `u32::MAX` for none.
     pub component: u32,
-    /// Whether the limits of an invocation were enough.
+    /// Whether the evaluation completed within the limits of an invocation.
     pub complete: bool,
     /// Evaluations of fields.
     pub evaluations: u32,
-    /// Nodes of the hierarchy that were visited.
+    /// Visited nodes of the hierarchy.
     pub visits: u32,
 }
 
-/// Words of a value and of a march in the buffer of results.
+/// Words of a value and of a march in the results buffer.
 const VALUE_WORDS: usize = 5;
 const MARCH_WORDS: usize = 10;
-/// The word of a march that says whether it has ended, and what says that it has not begun.
+/// The word of a march that tells whether it has ended, and its value before the march begins.
 const ENDED_WORD: usize = 7;
 const NOT_BEGUN: u32 = 2;
 
-/// The pipelines: by one source for every scene that the evaluator can evaluate.
+/// The pipelines. One source serves every scene within the evaluator's set of operations.
 #[derive(Debug)]
 pub struct SceneProbe {
     evaluator: Evaluator,
@@ -81,12 +81,12 @@ pub struct SceneProbe {
     hierarchy: BindGroupLayout,
     value: ComputePipeline,
     ray: ComputePipeline,
-    /// Evaluations and visits that an invocation may do, where they are to be other than the driver allows.
+    /// Limits of evaluations and visits of an invocation, to override the limits of the driver.
     pub most: Option<[u32; 2]>,
 }
 
 impl SceneProbe {
-    /// Builds them, for the interpreter or for tapes.
+    /// Builds the pipelines, for the interpreter or for tapes.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -108,8 +108,9 @@ impl SceneProbe {
         Ok(Self { evaluator, ops, layouts, own, hierarchy, value, ray, most: None })
     }
 
-    /// Uploads a scene, with a hierarchy over its components. Queries are relative to `origin`, where `camera` stands: it
-    /// says how wide a pixel of a picture of so many rows is. With tapes every component must be one that can have them.
+    /// Uploads a scene with a hierarchy over its components. Queries are relative to the position of `camera`. Its
+    /// angle and the `rows` of a picture determine the footprint. With the tape evaluator, every component must be able
+    /// to have tapes.
     pub fn load<'a>(
         &'a self,
         gpu: &'a Gpu,
@@ -149,7 +150,7 @@ impl SceneProbe {
         let nodes = uploaded(bytemuck::cast_slice(&flat.nodes));
         let params = texture("params", PARAMS_FORMAT, bytemuck::cast_slice(&flat.params));
         let tapes = texture("tapes", TAPES_FORMAT, bytemuck::cast_slice(&tapes));
-        // What is at a dynamic offset for one component is not read.
+        // Components read nothing at their dynamic offsets here.
         let none = uploaded(&[]);
         let bindings = SceneBindings {
             nodes: nodes.binding(),
@@ -166,7 +167,7 @@ impl SceneProbe {
         LoadedScene { probe: self, gpu, origin, groups }
     }
 
-    /// Most loop iterations that an evaluation of a component of `flat` may take.
+    /// Upper bound of the loop iterations of one evaluation of a component of `flat`.
     fn iterations(&self, flat: &FlatScene) -> u32 {
         let trips = self.ops.shapes.iter().map(|kind| shape_loops(*kind)[1]).max().unwrap_or(0);
         let of =
@@ -185,7 +186,7 @@ pub struct LoadedScene<'a> {
 }
 
 impl LoadedScene<'_> {
-    /// The values at points of the world; see `scene_value` for `within`.
+    /// The values at points of the world. See `scene_value` for `within`.
     ///
     /// # Errors
     /// The device fails.
@@ -204,8 +205,8 @@ impl LoadedScene<'_> {
         Ok(words.as_chunks().0.iter().map(read).collect())
     }
 
-    /// The first surfaces on rays; all of them leave surfaces, or none does. A march goes on in another dispatch until all
-    /// rays have ended; those that do not say so.
+    /// The first hits of rays, either all of which leave a surface, or none. Dispatches continue the marches until
+    /// every ray has ended or makes no progress; [`ProbedHit::ended`] tells which.
     ///
     /// # Errors
     /// The device fails.
@@ -227,7 +228,7 @@ impl LoadedScene<'_> {
             self.dispatch(&self.probe.ray, &inputs, rays.len(), leaves_surface, &results);
             let now = read_words(self.gpu, results.buffer(), words.len())?;
             let before = std::mem::replace(&mut words, now);
-            // What is counted goes on, what has ended or cannot get on stays.
+            // Counters change in every dispatch. A march that has ended, or that cannot proceed, stays the same.
             let marches = |words: &[u32]| -> Vec<u32> {
                 words.chunks_exact(MARCH_WORDS).flat_map(|march| march[..=ENDED_WORD].to_vec()).collect()
             };
@@ -244,7 +245,7 @@ impl LoadedScene<'_> {
         Ok(rays.iter().zip(words.as_chunks().0).map(read).collect())
     }
 
-    /// A point as the GPU gets it, with one more number.
+    /// A point relative to the origin of the query, with a fourth component.
     fn relative(&self, p: DVec3, w: f64) -> [f32; 4] {
         (p - self.origin).as_vec3().extend(w as f32).to_array()
     }

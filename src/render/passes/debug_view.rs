@@ -1,4 +1,4 @@
-//! Pass `debug_view`: what was found or counted, as colors over the finished picture; only where a view mode is asked for.
+//! Pass `debug_view`: hits or counts as colors over the finished picture. It runs only if a view mode asks for it.
 
 use std::ops::Range;
 
@@ -36,21 +36,21 @@ bindings! {
     }
 }
 
-/// What the shader reads.
+/// Parameters of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct DebugView {
-    /// The number of the [`ViewMode`].
+    /// Code of the [`ViewMode`].
     pub view_mode: u32,
-    /// Counts above this, or distances from here on, have the last color.
+    /// Counts above this, and distances from here on, have the last color.
     pub top: f32,
     /// Distances up to here have the first color, in meters.
     pub bottom: f32,
-    /// Distance between two lines of equal distance, in meters.
+    /// Spacing of the isolines, in meters.
     pub spacing: f32,
-    /// Where the colors of the meshes begin.
+    /// Index of the first mesh color.
     pub first_mesh: u32,
-    /// Where the colors of the components begin.
+    /// Index of the first component color.
     pub first_component: u32,
     /// Unused.
     pub padding_0: u32,
@@ -69,7 +69,7 @@ pub struct DebugViewPass {
 }
 
 impl DebugViewPass {
-    /// Uploads what the view mode needs; distances are colored within `depth_range`.
+    /// Uploads the data of the view mode. Colors of distances span `depth_range`.
     pub fn prepare(
         &mut self,
         gpu: (&wgpu::Device, &wgpu::Queue),
@@ -125,7 +125,7 @@ impl FramePass for DebugViewPass {
         if recorder.frame.view_mode == ViewMode::Shaded {
             return;
         }
-        // What a view mode needs is uploaded when it is asked for, after groups are bound.
+        // The view mode's data are uploaded on request, after the frame has bound its groups.
         let own = DebugViewBindings {
             settings: self.uniform.binding(),
             counted: recorder.resources.counts.buffer().as_entire_binding(),

@@ -1,5 +1,4 @@
-//! The passes that evaluate a component: `cone`, `trace`, `surface`. Their pipelines are in
-//! `pipelines::field`.
+//! The passes that evaluate a component: `cone`, `trace`, `surface`. Their pipelines are in `pipelines::field`.
 
 use std::ops::Range;
 
@@ -14,7 +13,7 @@ use isolith_wgsl::ShaderError;
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
 
-/// Which subtiles of the picture a component touches, and from where on.
+/// Finds the subtiles that a component touches, and the distance at which rays start there.
 #[derive(Debug)]
 pub struct ConePass(FieldLayouts);
 
@@ -39,7 +38,7 @@ impl FramePass for ConePass {
     }
 }
 
-/// Hits within these subtiles.
+/// Finds hits within these subtiles.
 #[derive(Debug)]
 pub struct TracePass(FieldLayouts);
 
@@ -66,7 +65,7 @@ impl FramePass for TracePass {
     }
 }
 
-/// Normal, material and leaf of the hits.
+/// Computes normal, material and leaf of the hits.
 #[derive(Debug)]
 pub struct SurfacePass(FieldLayouts);
 

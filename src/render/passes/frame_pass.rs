@@ -1,4 +1,4 @@
-//! What a pass of the frame is: how it is built, what it binds, and how it is written down.
+//! The interface of a pass of the frame: how it is built, what it binds, and how it is recorded.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::renderer::resources::Bound;
 use crate::resources::layouts::Layouts;
 use isolith_wgsl::ShaderError;
 
-/// What passes are built of.
+/// Inputs for the construction of passes.
 #[derive(Clone, Copy, Debug)]
 pub struct Building<'a> {
     /// The device.
@@ -21,17 +21,18 @@ pub struct Building<'a> {
 
 /// A pass of the frame.
 pub trait FramePass: Sized {
-    /// Builds what depends on no frame.
+    /// Builds the parts that depend on no frame.
     ///
     /// # Errors
     /// A shader file is missing.
     fn new(building: Building<'_>) -> Result<Self, ShaderError>;
 
-    /// Its own bind groups for the targets of a picture; made anew when a buffer or the size is another one.
+    /// Its own bind groups for the targets of a picture. The frame rebuilds them when a buffer is replaced or resized.
     fn bind(&self, _device: &wgpu::Device, _bound: &Bound<'_>) -> Vec<wgpu::BindGroup> {
         Vec::new()
     }
 
-    /// Writes these dispatches of the frame down, all of which are its own. A pass over the finished picture has none.
+    /// Records these dispatches of the frame, all of which belong to this pass. A pass over the finished picture has
+    /// none.
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>);
 }

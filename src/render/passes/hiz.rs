@@ -1,4 +1,4 @@
-//! Pass `hiz`: the farthest depth in each subtile after the meshes; only where there are meshes.
+//! Pass `hiz`: the farthest depth in each subtile after the meshes. It runs only if the scene has meshes.
 
 use std::ops::Range;
 

@@ -23,69 +23,70 @@ use isolith_geometry::Camera;
 use isolith_mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
 use isolith_wgsl::{ShaderError, assemble_plain};
 
-/// The pass, and the meshes that are on the device.
+/// The pass and the uploaded meshes.
 #[derive(Debug)]
 pub struct MeshPass {
     pipeline: wgpu::RenderPipeline,
     instance_layout: BindGroupLayout,
     texture_layout: BindGroupLayout,
-    /// For every way to look a texture up.
+    /// A sampler for each kind of texture lookup.
     samplers: HashMap<Sampler, wgpu::Sampler>,
     instances: SyncedBuffer,
     instance_group: Option<BindGroup>,
-    /// By the address of the mesh on the CPU; dropped with it.
+    /// By the address of the mesh on the CPU. Dropped together with that mesh.
     uploaded: HashMap<usize, Uploaded>,
     draws: Vec<Draw>,
 }
 
-/// A part of a placed mesh, as the shader reads it.
+/// A part of a placed mesh, in the layout of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Instance {
-    /// First row of world space, relative to the eye or to what `ray_origin_depth` says, from the mesh's space.
+    /// First row of the matrix from mesh space to world space, relative to the eye or to the point of
+    /// `ray_origin_depth`.
     pub eye_from_local_x: [f32; 4],
     /// Second row.
     pub eye_from_local_y: [f32; 4],
     /// Third row.
     pub eye_from_local_z: [f32; 4],
-    /// First row of the matrix for normals.
+    /// First row of the normal matrix.
     pub normal_x: [f32; 4],
     /// Second row.
     pub normal_y: [f32; 4],
     /// Third row.
     pub normal_z: [f32; 4],
-    /// Factor of the vertices' colors and of their opacity.
+    /// Factor of the vertex colors and their opacity.
     pub color: [f32; 4],
-    /// Row of the texture's U from the coordinates of the vertices.
+    /// Row that computes the texture's U from the vertices' texture coordinates.
     pub texture_x: [f32; 4],
-    /// The same of its V.
+    /// Row that computes the texture's V.
     pub texture_y: [f32; 4],
-    /// See `overridden`.
+    /// Albedo, used if `overridden` is 1.
     pub albedo: [f32; 3],
-    /// Goes to the visibility target.
+    /// Value for the visibility target.
     pub visibility: u32,
-    /// 1: `albedo` stands for the mesh's own colors.
+    /// 1: `albedo` replaces the mesh's own colors.
     pub overridden: u32,
-    /// 1: the placement turns left into right, and so the order of a triangle's corners.
+    /// 1: the placement mirrors the mesh, which reverses the winding of its triangles.
     pub mirrored: u32,
-    /// Where the opacity is less, there is no surface; negative: it is everywhere.
+    /// Opacity below which there is no surface; negative: the surface is everywhere.
     pub alpha_cutoff: f32,
-    /// How far the point that positions are relative to is before the eye, see `shaders/common/ray.wgsl`.
+    /// Distance from the eye to the point that positions are relative to, see `shaders/common/ray.wgsl`.
     pub ray_origin_depth: f32,
 }
 
-/// What to draw.
+/// A draw of one part.
 #[derive(Clone, Copy, Debug)]
 struct Draw {
-    /// In [`MeshPass::uploaded`].
+    /// Index into [`MeshPass::uploaded`].
     mesh: usize,
-    /// In [`Uploaded::parts`].
+    /// Index into [`Uploaded::parts`].
     part: usize,
-    /// Of its instance.
+    /// Offset of its instance.
     offset: u32,
 }
 
-/// Dynamic offsets are multiples of this.
+/// Alignment of dynamic offsets.
 const STRIDE: usize = 256;
 
 #[derive(Debug)]
@@ -139,8 +140,8 @@ impl FramePass for MeshPass {
 }
 
 impl MeshPass {
-    /// Puts on the device what is to be drawn: `meshes` stands beside `flat.meshes`, with `None` where a
-    /// file could not be read.
+    /// Uploads the meshes of the frame. `meshes` is parallel to `flat.meshes`, with `None` for files that could not be
+    /// read.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -165,7 +166,7 @@ impl MeshPass {
             let mut last = None;
             for (part, look) in mesh.parts.iter().enumerate() {
                 let instance = placed.of_part(look);
-                // Most parts of a mesh differ in their texture only, which is no part of the instance.
+                // Most parts of a mesh differ only in their texture, which is not part of the instance.
                 if last != Some(instance) {
                     self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32 });
                     bytes.extend_from_slice(bytemuck::bytes_of(&instance));
@@ -183,7 +184,7 @@ impl MeshPass {
         }
     }
 
-    /// Clears the shared targets and draws.
+    /// Clears the shared targets and draws the meshes.
     fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -192,7 +193,7 @@ impl MeshPass {
         stamps: Option<Stamps<'_>>,
     ) {
         let [first, last] = stamps.map_or([None, None], |stamps| stamps.of_several().map(Some));
-        // Another size, so another render pass; it only clears.
+        // `hiz` has another size, so it needs a render pass of its own, which only clears.
         drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("clear hiz"),
             color_attachments: &[cleared(&targets.hiz.view, f64::from(BACKGROUND))],
@@ -247,7 +248,7 @@ impl MeshPass {
         let white = Texture { width: 1, height: 1, rgba: vec![255; 4] };
         let white = upload_texture(device, queue, &white);
         let views: Vec<_> = mesh.textures.iter().map(|texture| upload_texture(device, queue, texture)).collect();
-        // Many parts have the same texture.
+        // Many parts share a texture.
         let mut groups: HashMap<(Option<usize>, Sampler), BindGroup> = HashMap::new();
         let mut group = |Surface { texture, sampler, .. }: Surface| {
             let make = || {
@@ -288,7 +289,7 @@ fn upload_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture)
         .create_view(&wgpu::TextureViewDescriptor::default())
 }
 
-/// The texture with every second pixel left out, until the device can hold it.
+/// The texture, halved until it fits the device's limit.
 fn fitting(texture: &Texture, longest: u32) -> Cow<'_, Texture> {
     let mut fitting = Cow::Borrowed(texture);
     while fitting.width.max(fitting.height) > longest {
@@ -325,17 +326,17 @@ fn samplers(device: &wgpu::Device) -> HashMap<Sampler, wgpu::Sampler> {
     .collect()
 }
 
-/// An attachment that begins as `value` everywhere.
+/// An attachment that is cleared to `value`.
 fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColorAttachment<'_>> {
     let load = wgpu::LoadOp::Clear(wgpu::Color { r: value, g: 0.0, b: 0.0, a: 0.0 });
     let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
 }
 
-/// A placed mesh: what its parts have in common.
+/// A placed mesh: the data that its parts share.
 struct PlacedInstance {
     eye_from_local: DAffine3,
-    /// As it is for a part at the mesh's own origin that looks like nothing special.
+    /// The instance of a part at the mesh's own origin with default appearance.
     common: Instance,
 }
 
@@ -343,7 +344,7 @@ impl PlacedInstance {
     fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ray_origin_depth: f64) -> Self {
         let eye = camera.position + camera.rotation * DVec3::NEG_Z * ray_origin_depth;
         let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
-        // Normals go by the inverse transpose; only its direction counts.
+        // Normals transform by the inverse transpose; only their direction matters.
         let n = m.matrix3.inverse().transpose();
         let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
         let normal_row = |i: usize| {

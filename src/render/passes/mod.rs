@@ -1,4 +1,4 @@
-//! The passes, each with its shader of the same name. In which order they come stands in [`super::recipe`].
+//! The passes, each with its shader of the same name. [`super::recipe`] defines their order.
 
 pub mod debug_view;
 pub mod field;
@@ -23,7 +23,7 @@ use mesh::MeshPass;
 use overlay::OverlayPass;
 use shade::ShadePass;
 
-/// Declares [`Passes`] by the recipe.
+/// Declares [`Passes`] from the recipe.
 macro_rules! passes {
     ($($(#[$doc:meta])* $pass:ident: $field:ident = $type:ident, $file:literal, over $extent:ident;)*) => {
         /// All passes of the recipe.
@@ -33,7 +33,7 @@ macro_rules! passes {
         }
 
         impl Passes {
-            /// Builds all of them.
+            /// Builds all passes.
             ///
             /// # Errors
             /// A shader file is missing.
@@ -41,12 +41,12 @@ macro_rules! passes {
                 Ok(Self { $($field: $type::new(building)?,)* })
             }
 
-            /// The own bind groups of all of them, in the order of the frame.
+            /// The bind groups of all passes, in the order of the frame.
             pub fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<Vec<wgpu::BindGroup>> {
                 vec![$(self.$field.bind(device, bound)),*]
             }
 
-            /// Has a pass write these dispatches down, all of which are its own.
+            /// Records these dispatches by the pass that they all belong to.
             pub fn record(&self, pass: Pass, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
                 let _span = tracing::debug_span!("pass", name = pass.label(), dispatches = dispatches.len()).entered();
                 recorder.begin(pass);

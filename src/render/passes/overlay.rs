@@ -1,4 +1,4 @@
-//! Pass `overlay`: grid and outline of the selection, over the finished picture; only the editor asks for it.
+//! Pass `overlay`: grid and selection outline over the finished picture. It runs only if the editor asks for it.
 
 use std::ops::Range;
 
@@ -18,25 +18,25 @@ use isolith_field::FlatScene;
 use isolith_scene::NodeId;
 use isolith_wgsl::{ShaderError, assemble_plain};
 
-/// What the shader reads.
+/// Parameters of the shader.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Overlay {
-    /// The eye, its x and z reduced to one coarse cell.
+    /// Position of the eye; x and z are modulo one coarse cell.
     pub eye: [f32; 3],
     /// Side of a fine cell, in meters.
     pub cell: f32,
-    /// Where the X axis runs in the reduced grid.
+    /// Position of the X axis in the reduced grid.
     pub axis_x: f32,
-    /// Where the Z axis runs in the reduced grid.
+    /// Position of the Z axis in the reduced grid.
     pub axis_z: f32,
-    /// Bits before those of the meshes.
+    /// Number of selection bits before those of the meshes.
     pub leaf_count: u32,
-    /// Of what is drawn on, in pixels: the width, and the height times 65 536.
+    /// Size of the target in pixels: the width, plus the height times 65 536.
     pub size: u32,
 }
 
-/// Pixels from a selected one to the outline, at most: the ring in the shader.
+/// Largest distance of the outline from a selected pixel, in pixels: the ring in the shader.
 const REACH: u32 = 2;
 
 /// The pass.
@@ -137,7 +137,7 @@ impl FramePass for OverlayPass {
 }
 
 impl OverlayPass {
-    /// Uploads what is to be drawn over a picture of `size` pixels, seen from `eye`.
+    /// Uploads the parameters for a picture of `size` pixels, seen from `eye`.
     pub fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -148,7 +148,7 @@ impl OverlayPass {
         eye: DVec3,
     ) {
         self.draws_grid = settings.grid;
-        // The cell follows the eye's height in powers of ten.
+        // The cell size follows the eye's height in powers of ten.
         let cell = 10.0_f64.powf(eye.y.abs().max(1e-3).log10().floor()) * 0.1;
         let period = cell * 100.0;
         let reduced = DVec3::new(eye.x.rem_euclid(period), eye.y, eye.z.rem_euclid(period));
@@ -172,17 +172,17 @@ impl OverlayPass {
     }
 }
 
-/// The part of a picture `to` pixels wide and high that shows what is in this part of one `from` pixels wide and high.
+/// Scales a rectangle of a picture of `from` pixels to a picture of `to` pixels.
 fn larger(low: UVec2, high: UVec2, from: UVec2, to: UVec2) -> (UVec2, UVec2) {
     let scale = to.as_dvec2() / from.as_dvec2();
     let high = (high.as_dvec2() * scale).ceil().as_uvec2();
     ((low.as_dvec2() * scale).floor().as_uvec2().min(to - 1), high.min(to))
 }
 
-/// Where an outline can be.
+/// The objects that may have an outline.
 #[derive(Debug, Default)]
 struct Outlined {
-    /// Components with a selected leaf, in rising order.
+    /// Components with a selected leaf, ascending.
     components: Vec<u32>,
     /// Whether a mesh is selected.
     meshes: bool,
@@ -200,7 +200,7 @@ impl Outlined {
         }
     }
 
-    /// Around the pixels that the outline may cover: upper left, and the first outside.
+    /// Bounding rectangle of the pixels that the outline may cover: upper left pixel, first pixel outside.
     fn around(&self, plan: &FramePlan, size: UVec2) -> Option<[UVec2; 2]> {
         if self.meshes {
             return Some([UVec2::ZERO, size]);

@@ -1,16 +1,16 @@
-//! What is to be drawn over the picture.
+//! Settings of the overlay.
 
 use isolith_scene::NodeId;
 
-/// What is drawn over the picture.
+/// Marks to draw over the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OverlaySettings {
     /// A grid on the ground.
     pub grid: bool,
-    /// An outline around these nodes.
+    /// Nodes to outline.
     pub outline: Vec<NodeId>,
-    /// The size in which a coarse picture is shown: it is enlarged to it first, so that lines are as thin as over a fine
-    /// one. `None` draws on the picture as it is.
+    /// Display size of a coarse picture. The pass enlarges the picture to this size first, so that lines are as thin as
+    /// over a fine picture. `None` draws on the picture itself.
     pub shown_at: Option<[u32; 2]>,
 }
 
@@ -20,7 +20,7 @@ impl OverlaySettings {
         !self.grid && self.outline.is_empty()
     }
 
-    /// The size of what is drawn on where a picture of this size is enlarged for it.
+    /// Size of the enlarged picture, if a picture of this size is to be enlarged.
     pub(crate) fn enlarged(&self, size: [u32; 2]) -> Option<[u32; 2]> {
         self.shown_at.filter(|shown| *shown != size && !self.is_empty())
     }

@@ -1,4 +1,4 @@
-//! Pass `shade`: light on what the passes before have found, and the background.
+//! Pass `shade`: lighting of the hits, and the background.
 
 use std::ops::Range;
 

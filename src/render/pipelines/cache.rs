@@ -1,5 +1,5 @@
-//! Which pipeline evaluates which component: the interpreter at once, a specialized one as soon as it is
-//! built. Equal structures share a pipeline; nobody ever waits for one unless asked to.
+//! The pipeline that evaluates each component: the interpreter at once, a specialized pipeline as soon as it is built.
+//! Equal structures share a pipeline. No frame waits for a pipeline unless the strategy demands it.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -18,10 +18,10 @@ use isolith_field::FlatScene;
 use isolith_guard::guarded;
 use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError};
 
-/// Most specialized pipelines that are kept; the least recently used go first.
+/// Limit of cached specialized pipelines. The cache evicts the least recently used first.
 pub const MAX_PIPELINES: usize = 1024;
 
-/// See the module.
+/// Pipeline cache, see the module.
 #[derive(Debug)]
 pub struct PipelineCache {
     shared: Arc<CompileContext>,
@@ -34,20 +34,20 @@ pub struct PipelineCache {
     failures: Vec<String>,
 }
 
-/// Most pipelines for walking that are kept for scenes of other shapes.
+/// Limit of cached interpreter pipelines for scenes with other shapes.
 const MAX_INTERPRETERS: usize = 8;
 
-/// Pipelines that walk, for scenes with certain shapes.
+/// Interpreter pipelines for scenes with a certain set of operations.
 #[derive(Debug)]
 struct InterpreterPipelines {
     ops: OpSet,
     entries: Arc<FieldPipelines>,
     tape: Option<Arc<FieldPipelines>>,
-    /// By tapes too, for components with modifiers.
+    /// The tape evaluator for components with modifiers.
     tape_modified: Option<Arc<FieldPipelines>>,
 }
 
-/// What the worker needs too.
+/// State that the cache shares with the worker.
 #[derive(Debug)]
 struct CompileContext {
     gpu: Gpu,
@@ -69,23 +69,23 @@ enum PipelineState {
     Failed,
 }
 
-/// The pipeline of a component.
+/// The pipelines chosen for a component.
 #[derive(Clone, Debug)]
 pub struct PipelineChoice {
-    /// Its pipelines.
+    /// The pipelines.
     pub pipelines: Arc<FieldPipelines>,
-    /// How they evaluate it.
+    /// How these pipelines evaluate the component.
     pub mode: EvalMode,
 }
 
 /// How pipelines evaluate a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EvalMode {
-    /// All entries of the subtree-extent array.
+    /// Loop over all entries of the subtree-extent array.
     Interpreter,
-    /// The tape of a cell.
+    /// Loop over the tape of a cell.
     Tape,
-    /// Straight-line code: it is the component's structure.
+    /// Straight-line code of the component's structure or template.
     StraightLine,
 }
 
@@ -101,7 +101,7 @@ struct CompileWorker {
 }
 
 impl PipelineCache {
-    /// The interpreter, for no shapes yet.
+    /// A cache with an interpreter that knows no shapes yet.
     pub fn new(gpu: &Gpu, layouts: &Layouts, options: Options) -> Result<Self, ShaderError> {
         let field = FieldLayouts::new(&gpu.device);
         let ops = OpSet::none();
@@ -121,37 +121,37 @@ impl PipelineCache {
         })
     }
 
-    /// Layouts of the field passes.
+    /// Bind group layouts of the field passes.
     pub fn field(&self) -> &FieldLayouts {
         &self.shared.field
     }
 
-    /// Pipelines built so far.
+    /// Number of pipelines built so far.
     pub fn built(&self) -> u32 {
         self.built
     }
 
-    /// Loops in the code that walks, see [`OpSet::loops`].
+    /// Loops in the interpreter's code, see [`OpSet::loops`].
     pub fn loops(&self) -> u32 {
         self.interpreters.first().map_or(0, |interpreter| interpreter.ops.loops())
     }
 
-    /// How many pipelines are being built.
+    /// Number of pipelines that are being built.
     pub fn building(&self) -> usize {
         self.worker.as_ref().map_or(0, |w| w.waiting)
     }
 
-    /// Pipelines that could not be built; the interpreter or tapes draw in their place.
+    /// Number of pipelines that failed to build; the interpreter or tapes draw in their place.
     pub fn failed(&self) -> usize {
         self.specialized.values().filter(|slot| matches!(slot.state, PipelineState::Failed)).count()
     }
 
-    /// What went wrong since the last call; the interpreter goes on.
+    /// Takes the errors since the last call. The interpreter keeps drawing.
     pub fn take_failures(&mut self) -> Vec<String> {
         std::mem::take(&mut self.failures)
     }
 
-    /// Takes over what the worker has finished. True if there was anything.
+    /// Collects the pipelines that the worker has finished. Returns true if there were any.
     pub fn collect(&mut self) -> bool {
         let Some(worker) = &mut self.worker else { return false };
         let finished: Vec<FinishedBuild> = worker.finished.try_iter().collect();
@@ -163,7 +163,7 @@ impl PipelineCache {
         any
     }
 
-    /// Pipelines that have become ready since `choices` were made, put in their place.
+    /// Replaces `choices` with pipelines that have become ready since.
     pub fn refresh(&mut self, keys: &[Option<PipelineKey>], choices: &mut [PipelineChoice]) {
         for (key, choice) in keys.iter().zip(choices) {
             let Some(CachedPipelines { state: PipelineState::Ready(pipelines), .. }) =
@@ -175,8 +175,8 @@ impl PipelineCache {
         }
     }
 
-    /// What each component's pipeline is for; `None` where it gets none. `lengths`: how many entries the tapes of components
-    /// hold on average, as far as they are there.
+    /// The pipeline key of each component; `None` if it gets no pipeline of its own. `lengths`: mean tape length of
+    /// each component, where its tapes are ready.
     pub fn keys(
         &mut self,
         flat: &FlatScene,
@@ -186,8 +186,8 @@ impl PipelineCache {
         self.templates.keys(flat, strategy, lengths)
     }
 
-    /// The pipeline for each component; `keys` from [`PipelineCache::keys`], `has_tapes` tells which components have
-    /// tapes. Those that come first in `order` have their pipelines ordered first.
+    /// Chooses the pipeline of each component. `keys` come from [`PipelineCache::keys`]; `has_tapes` tells which
+    /// components have tapes. The worker builds the pipelines of components that come first in `order` first.
     pub fn choose(
         &mut self,
         flat: &FlatScene,
@@ -251,7 +251,7 @@ impl PipelineCache {
         let shared = self.shared.clone();
         let worker = self.worker.get_or_insert_with(|| CompileWorker::start(shared));
         worker.waiting += 1;
-        // A worker that is gone leaves everything to the interpreter.
+        // If the worker has stopped, the interpreter draws everything.
         if let Some(orders) = &worker.orders {
             let _ = orders.send((key, evaluator));
         }
@@ -270,9 +270,9 @@ impl PipelineCache {
         self.specialized.insert(key, CachedPipelines { state, used: self.clock });
     }
 
-    /// Puts the pipelines first that walk and know all shapes of the scene, and not many more: what a pipeline holds is
-    /// paid for by every scene, because lavapipe executes every arm of a `switch`.
-    /// `needs_tapes` tells whether components without, and with, modifiers have some.
+    /// Moves interpreter pipelines to the front that know all shapes of the scene and few others. Every scene pays for
+    /// all that its pipeline holds, because lavapipe executes every arm of a `switch`. `needs_tapes` tells whether
+    /// components without, and with, modifiers have tapes.
     fn choose_interpreter(&mut self, flat: &FlatScene, needs_tapes: [bool; 2]) -> Result<(), ShaderError> {
         let wanted = OpSet::of(flat);
         let CompileContext { gpu, layouts, field, options } = &*self.shared;
@@ -320,8 +320,8 @@ impl CompileWorker {
         let is_unwanted = Arc::new(AtomicBool::new(false));
         let should_end = is_unwanted.clone();
         let work = move || {
-            // A driver that computes on the processor compiles at the first dispatch, in the queue's own
-            // thread: a device of the worker's own takes that time, and leaves the result in the driver's cache.
+            // A software driver compiles at the first dispatch, in the thread of the queue. The worker has a device of
+            // its own, which takes that time and leaves the result in the driver's cache.
             let new_prewarmer = || guarded(|| Prewarmer::new(&shared.gpu, shared.options)).ok()?.ok();
             let prewarmer = if shared.gpu.is_software() { new_prewarmer() } else { None };
             for (key, evaluator) in ordered {
@@ -329,7 +329,7 @@ impl CompileWorker {
                     return;
                 }
                 if let Some(prewarmer) = &prewarmer {
-                    // A pipeline that fails is reported where it is built for use.
+                    // A failure is reported where the pipeline is built for use.
                     let _ = guarded(|| prewarmer.prewarm(&evaluator));
                 }
                 let built = guarded(|| build(&shared, &evaluator)).flatten();
@@ -338,25 +338,25 @@ impl CompileWorker {
                 }
             }
         };
-        // Without a thread the orders stay where they are, and the interpreter goes on.
+        // Without a thread the orders stay queued, and the interpreter keeps drawing.
         let thread = std::thread::Builder::new().name("pipelines".into()).spawn(work).ok();
         Self { orders: Some(orders), finished, waiting: 0, is_unwanted, thread }
     }
 }
 
-/// Waits for the pipeline that is being built: a driver that is compiling while the program ends crashes.
+/// Waits for the pipeline that is being built: a driver that still compiles when the program ends crashes.
 impl Drop for CompileWorker {
     fn drop(&mut self) {
         self.is_unwanted.store(true, Ordering::Relaxed);
         self.orders = None;
         if let Some(thread) = self.thread.take() {
-            // A worker that has panicked has nothing left to do either.
+            // A worker that has panicked has also finished.
             let _ = thread.join();
         }
     }
 }
 
-/// Builds a pipeline; what the driver or the validation has against it comes back in words.
+/// Builds a pipeline. An error of the driver or of the validation is returned as text.
 fn build(shared: &CompileContext, evaluator: &Evaluator) -> Result<FieldPipelines, String> {
     let device = &shared.gpu.device;
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);

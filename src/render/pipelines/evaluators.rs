@@ -1,5 +1,5 @@
-//! Every evaluator that a renderer builds for a scene, without a device: for whoever reads its shaders or compiles them
-//! elsewhere.
+//! Every evaluator that a renderer builds for a scene, without a device: for tools that read the shaders or compile
+//! them elsewhere.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -8,18 +8,18 @@ use crate::pipelines::strategy::EvalStrategy;
 use isolith_field::{FlatScene, has_tape};
 use isolith_wgsl::{Evaluator, OpSet};
 
-/// An evaluator, and the components that it draws, by their index. The interpreter of [`EvalStrategy::Auto`] draws all of
-/// them until something better is ready.
+/// An evaluator and the components that it draws, by index. The interpreter of [`EvalStrategy::Auto`] draws all of them
+/// until faster pipelines are ready.
 #[derive(Clone, Debug)]
 pub struct EvaluatorUse {
     /// The evaluator.
     pub evaluator: Evaluator,
-    /// Which components it draws, in rising order.
+    /// Indices of the components that it draws, ascending.
     pub components: Vec<usize>,
 }
 
-/// Every evaluator that a new renderer builds for `flat` by this method: those that walk, then straight-line code in the
-/// order of the first component of each.
+/// Every evaluator that a new renderer builds for `flat` with this strategy: first interpreter and tapes, then
+/// straight-line code, ordered by the first component of each.
 pub fn evaluators_of(flat: &FlatScene, strategy: EvalStrategy) -> Vec<EvaluatorUse> {
     let ops = OpSet::of(flat);
     let keys = Templates::default().keys(flat, strategy, &[]);
@@ -51,7 +51,7 @@ pub fn evaluators_of(flat: &FlatScene, strategy: EvalStrategy) -> Vec<EvaluatorU
     walking.chain(straight).collect()
 }
 
-/// The evaluators of tapes for a scene that uses these operations: for components without modifiers, and with some.
+/// The tape evaluators for a scene that uses these operations: for components without modifiers, and with modifiers.
 pub(super) fn tape_evaluators(ops: &OpSet) -> [Evaluator; 2] {
     let plain = OpSet { modifiers: BTreeSet::new(), ..ops.clone() };
     [plain, ops.clone()].map(Evaluator::Tape)

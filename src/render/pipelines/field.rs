@@ -1,5 +1,5 @@
-//! The pipelines of the passes that evaluate a component, `cone`, `trace` and `surface`, all three for one [`Evaluator`], and
-//! what these passes bind.
+//! The pipelines of the passes that evaluate a component (`cone`, `trace`, `surface`), all three for one [`Evaluator`],
+//! and the bindings of these passes.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -51,21 +51,21 @@ bindings! {
 /// The pipelines of one evaluator.
 #[derive(Debug)]
 pub struct FieldPipelines {
-    /// Which subtiles of the picture a component touches, and from where on.
+    /// Finds the subtiles that a component touches, and the distance at which rays start there.
     pub cone: ComputePipeline,
-    /// Hits within these subtiles.
+    /// Finds hits within these subtiles.
     pub trace: ComputePipeline,
-    /// Normal, material and leaf of the hits.
+    /// Computes normal, material and leaf of the hits.
     pub surface: ComputePipeline,
-    /// One bit for each pass that was dispatched.
+    /// One bit for each pass that has been dispatched.
     used: AtomicU32,
 }
 
 impl FieldPipelines {
-    /// The passes that it has a pipeline for.
+    /// The passes with a pipeline here.
     pub const STAGES: [Pass; 3] = [Pass::Cone, Pass::Trace, Pass::Surface];
 
-    /// Its pipeline for one of these.
+    /// The pipeline of one of these passes.
     pub fn pipeline(&self, stage: Pass) -> &ComputePipeline {
         match stage {
             Pass::Cone => &self.cone,
@@ -90,25 +90,25 @@ pub struct FieldLayouts {
     surface: BindGroupLayout,
 }
 
-/// Buffers that the passes hand on to each other.
+/// Buffers that carry data from pass to pass.
 #[derive(Clone, Copy, Debug)]
 pub struct FieldBuffers<'a> {
-    /// Subtiles that the cones have left, list after list; then those with hits.
+    /// Subtiles that the cones keep, list after list; then the subtiles with hits.
     pub subtiles: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatch, and how many there are.
+    /// For each list the arguments of its indirect dispatch, and its length.
     pub subtile_counts: &'a wgpu::Buffer,
-    /// Pixels whose march goes on, list after list.
+    /// Pixels whose march continues, list after list.
     pub rays: &'a wgpu::Buffer,
-    /// For each list the arguments of its indirect dispatches over these, and over subtiles with hits.
+    /// For each list the arguments of its indirect dispatches over these pixels, and over subtiles with hits.
     pub ray_counts: &'a wgpu::Buffer,
-    /// Any other buffer.
+    /// Placeholder: any other buffer.
     pub nothing: &'a wgpu::Buffer,
-    /// What was counted: see `shaders/common/counts.wgsl`.
+    /// Counters, see `shaders/common/counts.wgsl`.
     pub march_counts: &'a wgpu::Buffer,
 }
 
 impl FieldLayouts {
-    /// Makes them.
+    /// Creates the layouts.
     pub fn new(device: &wgpu::Device) -> Self {
         Self {
             cone: ConeBindings::layout(device),
@@ -117,10 +117,10 @@ impl FieldLayouts {
         }
     }
 
-    /// Builds the pipeline of an evaluator.
+    /// Builds the pipelines of an evaluator.
     ///
     /// # Errors
-    /// A shader file is missing. What the driver thinks of the source is reported to the device.
+    /// A shader file is missing. The device reports what the driver rejects in the source.
     pub fn build(
         &self,
         device: &wgpu::Device,
@@ -141,7 +141,7 @@ impl FieldLayouts {
         })
     }
 
-    /// Binds what the cone pass works on.
+    /// Bind group of the cone pass.
     pub fn bind_cone(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> BindGroup {
         let group = ConeBindings {
             hiz: targets.hiz.binding(),
@@ -152,8 +152,8 @@ impl FieldLayouts {
         group.bind(device, &self.cone)
     }
 
-    /// Binds what the trace pass works on; then the same where the rays that are left are dispatched: what says how many
-    /// must not be written then.
+    /// Bind groups of the trace pass: the usual one, and one for dispatches over the unfinished rays, which must not
+    /// write the buffer that holds their indirect arguments.
     pub fn bind_trace(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> [BindGroup; 2] {
         [lists.ray_counts, lists.nothing].map(|ray_counts| {
             let group = TraceBindings {
@@ -171,7 +171,7 @@ impl FieldLayouts {
         })
     }
 
-    /// Binds what the surface pass works on.
+    /// Bind group of the surface pass.
     pub fn bind_surface(&self, device: &wgpu::Device, targets: &Targets, lists: FieldBuffers<'_>) -> BindGroup {
         let group = SurfaceBindings {
             depth: targets.depth.binding(),

@@ -1,10 +1,11 @@
-//! Which components get a pipeline, and for what: their structure, or their template.
+//! The pipeline key of each component: its structure, or its template.
 //!
-//! A pipeline for a structure is the fastest, but a scene may have as many structures as components: each takes a driver
-//! tenths of a second, and lavapipe compiles all of them anew in every frame where they are too many (137 s instead of
-//! 0.14 for 128 groups of 8 leaves), probably because it throws pipelines away that hold more than about 500 000
-//! instructions together. So where there are many, components whose templates are alike share a pipeline for their template, which
-//! takes about a fifth longer. What has no template, see [`Structure::template`], keeps the pipeline for its structure, or gets none.
+//! A pipeline for a structure is the fastest, but a scene may have as many structures as components. A driver takes
+//! tenths of a second for each. lavapipe compiles all of them again in every frame when they are too many (137 s
+//! instead of 0.14 for 128 groups of 8 leaves), probably because it evicts pipelines that hold more than about 500 000
+//! instructions together. So when structures are many, components with equal templates share a pipeline for their
+//! template, which is about a fifth slower. Components without a template, see [`Structure::template`], keep the
+//! pipeline of their structure, or get none.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,17 +13,18 @@ use crate::pipelines::strategy::EvalStrategy;
 use isolith_field::{Component, FlatScene};
 use isolith_wgsl::{Evaluator, OpSet, ShapeSet, Structure, tapes_are_cheaper};
 
-/// What a component's pipeline is for.
+/// Identifies the pipeline of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PipelineKey {
-    /// Equal for what shares a pipeline.
+    /// Equal for components that share a pipeline.
     pub bits: u128,
-    /// The shapes that its leaves may be, where it is for a template.
+    /// For a template: the shapes that its leaves may be.
     pub template: Option<ShapeSet>,
 }
 
 impl PipelineKey {
-    /// What its pipeline evaluates: `component` is one of those that share it. `None` where the component has no such pipeline.
+    /// The evaluator of this pipeline. `component` is one of those that share it. `None` if the key has no such
+    /// pipeline.
     pub fn evaluator(&self, flat: &FlatScene, component: &Component, strategy: EvalStrategy) -> Option<Evaluator> {
         match (strategy, self.template) {
             (EvalStrategy::Baked, _) => {
@@ -34,31 +36,32 @@ impl PipelineKey {
     }
 }
 
-/// The component's numbers as bits, without the data of its leaves.
+/// The component's rows as bits, without the payload rows of its leaves.
 fn component_rows(flat: &FlatScene, component: &Component) -> Vec<[u32; 4]> {
     let rows = component.params as usize..(component.params + component.param_rows - component.payload_rows) as usize;
     flat.params[rows].iter().map(|row| row.map(f32::to_bits)).collect()
 }
 
-/// Most entries of all different structures together that get pipelines. Twice as many are too many for lavapipe.
+/// Limit of the entries of all different structures together that get pipelines. Twice as many are too many for
+/// lavapipe.
 const MAX_STRUCTURE_ENTRIES: usize = 600;
-/// Where there are more than this, compiling them takes longer than one waits gladly: a second for twenty.
+/// Above this, structures share pipelines: compiling twenty takes about one second.
 const MANY_STRUCTURE_ENTRIES: usize = 200;
-/// Pipelines for templates of more shapes have not been measured: a leaf has the code of each of them.
+/// Templates of more shapes have not been measured: each leaf contains the code of all of them.
 const MOST_SHAPES: u32 = 12;
-/// So many structures of one template share a pipeline, where there are many.
+/// When structures are many, a shared pipeline needs at least this many structures of one template.
 const LEAST_SHARED: usize = 3;
 
-/// Knows which shapes each template has been used with: while they are few only ever more, so that pipelines are seldom made
-/// anew.
+/// Remembers the shapes that each template has been used with. While they are few the set only grows, so that pipelines
+/// are seldom rebuilt.
 #[derive(Debug, Default)]
 pub struct Templates {
     shapes: HashMap<u128, ShapeSet>,
 }
 
 impl Templates {
-    /// The key of each component; `None` where it gets no pipeline of its own. `lengths` stand beside the components: how many
-    /// entries their tapes hold on average, as far as tapes are there.
+    /// The key of each component; `None` if it gets no pipeline of its own. `lengths` is parallel to the components:
+    /// the mean length of their tapes, where tapes are ready.
     pub fn keys(
         &mut self,
         flat: &FlatScene,
@@ -85,9 +88,10 @@ impl Templates {
         }
     }
 
-    /// The keys where the structures are many. Templates of many shapes are slow, and only for where they are too many.
+    /// The keys when structures are many. Templates of many shapes are slow, and serve only when structures are too
+    /// many.
     fn shared(&mut self, flat: &FlatScene, structures: &[Option<u128>], too_many: bool) -> Vec<Option<PipelineKey>> {
-        // What is drawn by tapes has no key, and takes no part.
+        // Components drawn by tapes have no key here and are ignored.
         let template = |(c, key): (&Component, &Option<u128>)| key.and_then(|_| Structure::template_key(flat, c));
         let templates: Vec<_> = flat.components.iter().zip(structures).map(template).collect();
         let mut of_template: HashMap<u128, HashSet<u128>> = HashMap::new();
@@ -114,7 +118,7 @@ impl Templates {
                 PipelineKey { bits: template ^ (u128::from(shapes.0) << 64) ^ TEMPLATE, template: Some(shapes) }
             });
         }
-        // The largest of the others have room for pipelines of their own.
+        // The largest of the other components get pipelines of their own, as far as the limit allows.
         let size = |i: usize| flat.components[i].bounds.half().max_element();
         let mut others: Vec<usize> =
             (0..keys.len()).filter(|i| keys[*i].is_none() && structures[*i].is_some()).collect();
@@ -133,10 +137,10 @@ impl Templates {
     }
 }
 
-/// Tells templates from structures.
+/// Distinguishes keys of templates from keys of structures.
 const TEMPLATE: u128 = 0x5eed_f0f0_0000_0000_0000_0000_0000_0001;
 
-/// Entries of all different structures.
+/// Number of entries of all different structures.
 fn entries(flat: &FlatScene, keys: &[Option<u128>]) -> usize {
     let mut seen = HashSet::new();
     let pairs = flat.components.iter().zip(keys).filter_map(|(c, key)| Some((c, (*key)?)));

@@ -1,4 +1,4 @@
-//! The pipelines that evaluate components: which component shares one, those that are built, and compiling ahead of use.
+//! The pipelines that evaluate components: keys, cache, and prewarming.
 
 pub mod cache;
 pub mod evaluators;

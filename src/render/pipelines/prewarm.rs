@@ -1,4 +1,4 @@
-//! Has a driver compile pipelines before they are needed, on a device of its own.
+//! Prewarms pipelines: has the driver compile them before a frame needs them, on a separate device.
 
 use crate::gpu::{Gpu, GpuError};
 use crate::pipelines::field::{FieldBuffers, FieldLayouts, FieldPipelines};
@@ -8,7 +8,7 @@ use crate::resources::targets::Targets;
 use crate::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith_wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
 
-/// A device with just enough on it to dispatch a pipeline over nothing.
+/// A device with the minimum of resources to dispatch a pipeline over no work.
 #[derive(Debug)]
 pub struct Prewarmer {
     gpu: Gpu,
@@ -18,7 +18,7 @@ pub struct Prewarmer {
     view: wgpu::BindGroup,
     scene: wgpu::BindGroup,
     dispatch_params: wgpu::BindGroup,
-    /// Of the passes of a pipeline.
+    /// Bind groups of the passes of a pipeline.
     own: [wgpu::BindGroup; FieldPipelines::STAGES.len()],
 }
 
@@ -36,7 +36,7 @@ impl Prewarmer {
         };
         let rows = zeros(MAX_PIPELINE_ROWS as usize * 16);
         let small = zeros(1024);
-        // What is written to may not be read in the same dispatch: each has a buffer of its own.
+        // A dispatch must not read a buffer that it writes, so each binding has its own buffer.
         let written = [(); 6].map(|()| zeros(1024));
         let lists = FieldBuffers {
             subtiles: written[0].buffer(),
@@ -55,7 +55,7 @@ impl Prewarmer {
             rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
             tapes: tapes_texture.binding(),
         };
-        // Sides that are no powers of two, as in most windows: what lavapipe compiles depends on it.
+        // Sides that are not powers of two, as in most windows: the code that lavapipe compiles depends on it.
         let targets = Targets::new(device, [24, 24]);
         let [trace, _] = field.bind_trace(device, &targets, lists);
         let own = [field.bind_cone(device, &targets, lists), trace, field.bind_surface(device, &targets, lists)];
@@ -76,10 +76,10 @@ impl Prewarmer {
         })
     }
 
-    /// Compiles the pipeline of `evaluator` by dispatching it over nothing.
+    /// Compiles the pipeline of `evaluator` by dispatching it over no work.
     ///
     /// # Errors
-    /// What the device complains about. Failures show up again where the pipeline is built for use.
+    /// The device reports an error. The same failure shows up again where the pipeline is built for use.
     pub fn prewarm(&self, evaluator: &Evaluator) -> Result<(), GpuError> {
         let Ok(pipelines) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else {
             return Ok(());
@@ -108,7 +108,7 @@ mod tests {
     use isolith_gallery as gallery;
     use isolith_wgsl::OpSet;
 
-    /// Nobody sees what a prewarmer's device complains about: pipelines would only be compiled later, while a frame waits.
+    /// Errors of a prewarmer's device go unnoticed: pipelines would just compile later, while a frame waits.
     #[test]
     fn what_is_dispatched_over_nothing_is_accepted() {
         let prewarmer = Gpu::headless()

@@ -1,18 +1,18 @@
-//! The choice of how components are evaluated.
+//! How the renderer chooses evaluators.
 
-/// How components are evaluated.
+/// Strategy for the evaluation of components.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EvalStrategy {
-    /// Specialized pipelines for what is not too large for one, tapes for the rest; both are made in the
+    /// Specialized pipelines for components that are small enough, tapes for the rest. Workers build both in the
     /// background, and the interpreter draws until they are ready.
     #[default]
     Auto,
-    /// The interpreter for everything.
+    /// The interpreter for all components.
     Interpreter,
-    /// Tapes where a component has them, the interpreter for the rest; waits until they are made.
+    /// Tapes for components that have them, the interpreter for the rest. Waits until the tapes are ready.
     Tape,
-    /// Specialized pipelines for everything that is not too large for one; waits until they are built.
+    /// Specialized pipelines for all components that are small enough. Waits until they are built.
     StraightLine,
-    /// A pipeline for each component with its numbers written into it, however large: what the benches compare with.
+    /// A pipeline for each component, of any size, with its parameters as constants: the baseline of the benches.
     Baked,
 }

@@ -1,4 +1,4 @@
-//! Which pipeline draws which component, and with which tapes.
+//! Chooses the pipeline and the tapes of each component.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use isolith_geometry::Camera;
 use isolith_scene::ShapeKind;
 use isolith_wgsl::shape_loops;
 
-/// What [`Evaluators::choose`] finds, beside the components.
+/// Result of [`Evaluators::choose`], parallel to the components.
 pub struct Chosen {
     pub keys: Vec<Option<PipelineKey>>,
     pub choices: Vec<PipelineChoice>,
@@ -21,11 +21,11 @@ pub struct Chosen {
     pub trees: Vec<Option<Arc<CellTree>>>,
 }
 
-/// Tapes that are expected within this time are waited for: walking without them would cost more. Others come
-/// with a later frame.
+/// The renderer waits for tapes that are expected within this time: interpretation without them would take longer. A
+/// later frame uses the others.
 const TAPES_AT_ONCE: Duration = Duration::from_millis(25);
 
-/// What evaluates components.
+/// The sources of evaluators.
 pub struct Evaluators<'a> {
     pub pipelines: &'a mut PipelineCache,
     pub tape_cache: &'a mut TapeCache,
@@ -35,11 +35,11 @@ pub struct Evaluators<'a> {
 }
 
 impl Evaluators<'_> {
-    /// Pipelines, and what they need to know, for each component.
+    /// Chooses pipelines and tapes for each component.
     pub fn choose(self, flat: &FlatScene, camera: &Camera, cancel: &Cancel) -> Result<Chosen, RenderError> {
         let Self { pipelines, tape_cache, strategy, mut room } = self;
         let mut keys = pipelines.keys(flat, strategy, &[]);
-        // Tapes are made only for what no specialized pipeline is to draw.
+        // Only components without a specialized pipeline need tapes.
         let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && strategy != EvalStrategy::Interpreter).collect();
         let mut trees = match strategy {
             EvalStrategy::Auto => tape_cache.ready_trees(flat, &wanted, TAPES_AT_ONCE),
@@ -47,11 +47,11 @@ impl Evaluators<'_> {
         };
         check(cancel)?;
         if strategy == EvalStrategy::Auto && trees.iter().any(Option::is_some) {
-            // Tapes that have become long are left for straight-line code.
+            // Components with long tapes get straight-line code instead.
             let lengths: Vec<_> = trees.iter().map(|tree| tree.as_ref().map(|tree| tree.mean_length())).collect();
             keys = pipelines.keys(flat, strategy, &lengths);
         }
-        // What has no room on the device is walked without tapes.
+        // Components whose tapes do not fit on the device fall back to the interpreter.
         for tree in &mut trees {
             let needed = tree.as_ref().map_or(0, |tree| tree.words.len());
             match room.checked_sub(needed) {
@@ -82,12 +82,12 @@ impl Evaluators<'_> {
     }
 }
 
-/// An error where the caller asks to stop.
+/// Fails if the caller asks to stop.
 pub fn check(cancel: &Cancel) -> Result<(), RenderError> {
     if cancel.is_canceled() { Err(RenderError::Canceled) } else { Ok(()) }
 }
 
-/// Components in the order of how large they are seen.
+/// Components ordered by their apparent size, largest first.
 fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     let size = |c: &Component| {
         let way = c.bounds.distance(camera.position - c.origin);
@@ -98,13 +98,13 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Iterations that the loops of the component's leaves take together, at most.
+/// Upper bound of the loop iterations of the component's leaves together.
 fn loop_trips(flat: &FlatScene, component: &Component) -> u32 {
     let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
     let of_leaf = |node: &FlatNode| {
         let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];
         let [loops, most] = shape_loops(kind);
-        // Without a loop data are looked up at one place.
+        // A shape without a loop reads its payload at a single place.
         most + if loops > 0 { leaf_payload(kind, &flat.params[node.params as usize..]).len() as u32 } else { 0 }
     };
     entries.iter().filter(|node| node.is_leaf()).map(of_leaf).sum()
@@ -116,7 +116,8 @@ mod tests {
     use isolith_field as field;
     use isolith_gallery as gallery;
 
-    /// Dispatches are cut by these trip counts: if an image's rows counted, a heightmap would take minutes.
+    /// These trip counts determine the length of dispatches: if they counted an image's rows, a heightmap would take
+    /// minutes.
     #[test]
     fn data_count_as_loop_trips_only_where_they_are_looped_over() {
         let shapes = gallery::all().into_iter().find(|(name, _)| *name == "shapes").expect("the sheet of shapes").1;

@@ -1,4 +1,4 @@
-//! Why there is no picture.
+//! Errors of rendering.
 
 use thiserror::Error;
 
@@ -9,22 +9,22 @@ use isolith_wgsl::ShaderError;
 /// Why there is no picture.
 #[derive(Debug, Error)]
 pub enum RenderError {
-    /// The device.
+    /// Error of the device.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// A shader could not be put together.
+    /// A shader could not be assembled.
     #[error(transparent)]
     Shader(#[from] ShaderError),
     /// The picture is larger than the device allows.
     #[error("a picture of {0} by {1} pixels is not possible; the device's limit is {2} a side")]
     Size(u32, u32, u32),
-    /// What each pixel takes cannot be counted in one buffer of the device.
+    /// The counters of all pixels do not fit into one buffer of the device.
     #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
     Counts(u32, u32),
-    /// What is to be done is more than one buffer of the device lists: most of it for this node.
+    /// The plan needs more dispatches than one buffer of the device can hold, mostly for this node.
     #[error("a picture of {0} by {1} pixels takes too many steps for this device, most of them for node {2}")]
     TooManyDispatches(u32, u32, NodeId),
-    /// The lists of what components cover in the picture take more than one binding of the device holds.
+    /// The subtile lists exceed the largest binding of the device.
     #[error(
         "a picture of {} by {} pixels takes lists of {needed} bytes for the places that components cover, most of them \
          for node {node}; this device binds at most {limit} bytes",
@@ -33,11 +33,11 @@ pub enum RenderError {
     ListBytes {
         /// Width and height of the picture.
         size: [u32; 2],
-        /// What takes the most.
+        /// The node with the longest lists.
         node: NodeId,
-        /// Bytes of the lists.
+        /// Bytes that the lists need.
         needed: u64,
-        /// Bytes that the device binds at once.
+        /// Bytes that the device can bind.
         limit: u64,
     },
     /// The caller asked to stop.
@@ -53,7 +53,7 @@ mod tests {
     use isolith_field::flatten;
     use isolith_gallery as gallery;
 
-    /// A device that binds at most so many bytes of a storage buffer.
+    /// A device that binds at most `bytes` bytes of a storage buffer.
     fn device_that_binds(bytes: u64) -> Gpu {
         let adapter = AdapterChoice::new(None).pick(&all(&instance()), |_| true).expect("an adapter");
         let mut descriptor = device_descriptor(&adapter);
@@ -62,7 +62,7 @@ mod tests {
         Gpu::watch(device, queue, adapter.get_info())
     }
 
-    /// 65 536 balls in one place took lists of a gigabyte, and the driver refused the bind group.
+    /// 65 536 balls in one place needed lists of a gigabyte, and the driver refused the bind group.
     #[test]
     fn lists_larger_than_a_binding_are_refused_with_node_limit_and_size() {
         const LIMIT: u64 = 1 << 16;

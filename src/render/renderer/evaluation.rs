@@ -1,27 +1,27 @@
-//! What one evaluation of a component takes, by how it is evaluated: dispatches are cut by it.
+//! Cost of one evaluation of a component with a given evaluator. The plan sizes dispatches by it.
 
 use isolith_field::{CellTree, Component};
 
-/// What evaluating a component means for its pipeline.
+/// Cost of one evaluation of a component by its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EvaluationCost {
     /// Whether the pipeline is straight-line code.
     pub straight: bool,
-    /// Most loop iterations of one evaluation.
+    /// Upper bound of the loop iterations of one evaluation.
     pub iterations: u32,
-    /// Leaves that one evaluation visits, about.
+    /// Approximate number of leaves that one evaluation visits.
     pub leaves: f64,
 }
 
-/// Loop iterations for each copy of an entry, about: a modifier's own loops (layers of noise, steps of a recursion).
+/// Approximate loop iterations for each copy of an entry: a modifier's own loops (layers of noise, recursion steps).
 const LOOPS_OF_COPIES: u32 = 2;
 
 impl EvaluationCost {
-    /// Of a component that is walked through, entry by entry, by code that holds `loops` besides; `loop_trips` is
-    /// how many its own leaves take.
+    /// Cost of a component by the interpreter, entry by entry. `loops`: other loops in the interpreter's code.
+    /// `loop_trips`: iterations of the component's own leaves.
     pub fn of_entries(component: &Component, loops: u32, loop_trips: u32) -> Self {
-        // For each entry an iteration, one for the choice of its shape, one for a group that ends. Of copies most are
-        // out of reach.
+        // Each entry takes an iteration, one for the choice of its shape, and one for a group that ends. Most copies
+        // are out of reach.
         let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
         Self {
             straight: false,
@@ -30,8 +30,8 @@ impl EvaluationCost {
         }
     }
 
-    /// Of straight-line code for a component: loops are only in modifiers, at most one for each entry, and in leaves;
-    /// `loop_trips` as in [`EvaluationCost::of_entries`].
+    /// Cost of straight-line code for a component. Loops occur only in modifiers, at most one for each entry, and in
+    /// leaves. `loop_trips` as in [`EvaluationCost::of_entries`].
     pub fn of_straight_line(component: &Component, loop_trips: u32) -> Self {
         let copies = if component.is_modified() { component.copies * LOOPS_OF_COPIES } else { 1 };
         Self {
@@ -41,7 +41,7 @@ impl EvaluationCost {
         }
     }
 
-    /// Of a component with tapes.
+    /// Cost of a component with tapes.
     pub fn of_tapes(component: &Component, tree: &CellTree, loops: u32, loop_trips: u32) -> Self {
         // Two iterations find the cell.
         Self {
@@ -52,12 +52,12 @@ impl EvaluationCost {
     }
 }
 
-/// Entries of a component, the loops of its leaves counted in: a trip takes a part of what a leaf takes, and most loops
+/// Entries of a component, including the loops of its leaves: an iteration costs a fraction of a leaf, and most loops
 /// end early.
 fn leaves(component: &Component, loop_trips: u32) -> f64 {
     f64::from(component.count) + f64::from(loop_trips) * LOOP_TRIP
 }
 
-/// Leaves that a loop trip counts as. With 0 single batches took 0.55 s in `fractals`, now 0.16; its stills take a tenth longer,
-/// with 1 those of `drawn` took a third longer.
+/// Leaves that a loop iteration counts as. With 0, single batches took 0.55 s in `fractals`, now 0.16; its stills take
+/// a tenth longer. With 1, those of `drawn` took a third longer.
 const LOOP_TRIP: f64 = 0.25;

@@ -1,4 +1,4 @@
-//! A picture under way: what is still to be done, by which pipelines.
+//! A frame in progress: its remaining dispatches and their pipelines.
 
 use std::time::Duration;
 
@@ -15,37 +15,37 @@ use crate::recipe::Pass;
 use isolith_field::debug_view::ViewMode;
 use isolith_field::{FlatScene, ParamRow};
 
-/// A frame under way.
+/// A frame in progress.
 #[derive(Clone, Debug)]
 pub struct Frame {
     pub(crate) plan: FramePlan,
     pub(super) keys: Vec<Option<PipelineKey>>,
     pub(super) choices: Vec<PipelineChoice>,
     pub(super) next: usize,
-    /// The cost model at the beginning: what is learned on the way must not move the bar.
+    /// The cost model at the start: later learning must not move the progress bar.
     pub(super) cost_model: CostModel,
     pub(super) seconds_done: f64,
-    /// What its dispatches have taken; `None` where that says nothing about others.
+    /// Time of its dispatches so far; `None` if it says nothing about other frames.
     pub(super) measured: Option<Duration>,
-    /// So many later relaunches may be submitted together with others; where it is 0 each stands alone.
+    /// Number of later relaunches that one batch may hold; with 0 each forms a batch of its own.
     pub(super) relaunches_at_once: u32,
     pub(super) seconds: f64,
     pub(super) slot: Slot,
     pub(crate) overlay: OverlaySettings,
     pub(crate) view_mode: ViewMode,
-    /// How its rays go on.
+    /// State of the rays that continue beyond the plan.
     pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
-    /// Where pipelines for templates find theirs; beside components with such a key.
+    /// Offset of the template rows of each component with such a pipeline; parallel to the components.
     pub(super) template_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<isolith_scene::NodeId>,
 }
 
-/// See [`Frame::relaunches_at_once`]; more would save nothing.
+/// Limit of [`Frame::relaunches_at_once`]; more would save nothing.
 const MAX_RELAUNCHES_AT_ONCE: u32 = 64;
 
 impl Frame {
-    /// What is to be done for a picture in `slot`.
+    /// A frame for the picture in `slot`.
     pub(super) fn new(
         slot: Slot,
         flat: &FlatScene,
@@ -74,18 +74,18 @@ impl Frame {
         }
     }
 
-    /// Share that is done, from 0 to 1.
+    /// Fraction that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
     }
 
-    /// Where the rows of a component's pipeline begin among those of templates, in bytes; `None` for all other pipelines.
+    /// Offset of a component's rows among the template rows, in bytes; `None` if its pipeline is not for a template.
     pub(super) fn template_window(&self, component: usize) -> Option<u32> {
         self.template_rows[component].filter(|_| self.choices[component].mode == EvalMode::StraightLine)
     }
 
-    /// The dispatches to submit next, what they cost, and how many of them are later relaunches. How long those take nobody
-    /// can foresee: mostly nothing is left for them, but what is left may take long.
+    /// The next dispatches to submit, their cost, and the number of later relaunches among them. The time of those is
+    /// unpredictable: usually no rays are left for them, but the rays that are left may take long.
     pub(super) fn next_batch(&self, cost_model: &CostModel) -> (std::ops::Range<usize>, Cost, u32) {
         let (mut cost, mut relaunches, mut end) = (Cost::default(), 0, self.next);
         for dispatch in &self.plan.dispatches[self.next..] {
@@ -101,7 +101,7 @@ impl Frame {
         (self.next..end, cost, relaunches)
     }
 
-    /// Learns from how long a batch took how many later relaunches the next one may hold.
+    /// Adapts the number of later relaunches in the next batch to the time of the last one.
     pub(super) fn learn_relaunches(&mut self, relaunches: u32, elapsed: Duration) {
         if elapsed > DISPATCH_TARGET {
             self.relaunches_at_once = 0;
@@ -110,32 +110,32 @@ impl Frame {
         }
     }
 
-    /// Whether a pipeline is dispatched for the first time among these dispatches.
+    /// Whether one of these dispatches is the first use of a pipeline.
     pub(super) fn uses_fresh_pipelines(&self, dispatches: std::ops::Range<usize>) -> bool {
         let field = |p: &&Dispatch| FieldPipelines::STAGES.contains(&p.pass);
         let pipelines = self.plan.dispatches[dispatches]
             .iter()
             .filter(field)
             .map(|p| (p, &self.choices[p.params.component as usize]));
-        // All of them, not only up to the first fresh one: each is marked.
+        // `fold` visits all of them, not only up to the first fresh one, because `first_use` marks each.
         pipelines.fold(false, |fresh, (dispatch, choice)| choice.pipelines.first_use(dispatch.pass as usize) | fresh)
     }
 
-    /// Leaves out everything but light and overlay: for a picture of the same scene from the same place
-    /// that is complete in its slot already.
+    /// Skips all passes but lighting and overlay, for a picture of the same scene from the same place that is already
+    /// complete in its slot.
     pub fn skip_to_shading(&mut self) {
         let shading = self.plan.dispatches.iter().position(|p| p.pass == Pass::Shade);
         self.next = shading.unwrap_or(self.plan.dispatches.len());
         self.measured = None;
     }
 
-    /// Leaves out light and overlay: depth, normals and materials are all that is wanted.
+    /// Skips lighting and overlay, if only depth, normals and materials are needed.
     pub fn skip_shading(&mut self) {
         self.plan.dispatches.retain(|dispatch| dispatch.pass != Pass::Shade);
         self.overlay = OverlaySettings::default();
     }
 
-    /// Leaves the rays that have not ended as they are, unasked.
+    /// Ends the frame as planned, without checking for rays that have not ended.
     pub(super) fn end_as_planned(&mut self) {
         self.going_on.times = LONGER.len();
     }

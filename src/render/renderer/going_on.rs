@@ -1,12 +1,12 @@
-//! How far the rays of a frame have got that have not ended as planned.
+//! State of the rays that have not ended within the plan.
 
-/// How the rays of a frame go on that have not ended as planned.
+/// Progress of a frame's rays beyond the plan.
 #[derive(Clone, Debug, Default)]
 pub struct GoingOn {
-    /// How many of [`crate::frame::plan::LONGER`] were tried.
+    /// Number of factors of [`crate::frame::plan::LONGER`] that were tried.
     pub times: usize,
-    /// Pieces of the plan before any ray went on.
+    /// Number of planned dispatches, before any ray continued.
     pub planned: Option<usize>,
-    /// Rays without an end by component, as far as that was asked.
+    /// Number of unfinished rays of each component, once it was read back.
     pub unfinished: Option<Vec<u32>>,
 }

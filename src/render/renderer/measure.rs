@@ -1,4 +1,4 @@
-//! What is measured by a finished frame: counts, and the least work that its picture takes.
+//! Measurements of a finished frame: its counters, and the minimal work for its picture.
 
 use super::frame::Frame;
 use super::pixel_counts::COMPONENT_COUNTS;
@@ -8,27 +8,27 @@ use crate::passes::overlay_settings::OverlaySettings;
 use crate::recipe::Pass;
 use crate::resources::uniforms::DispatchParams;
 
-/// What pipelines that count have counted.
+/// Results of pipelines that count.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Evaluations of fields by rays.
     pub steps: u64,
-    /// Rays that were started, once for each component that they meet.
+    /// Started rays: one for each component that a ray meets.
     pub rays: u64,
     /// Evaluations of fields by cones.
     pub cone_steps: u64,
-    /// Subtiles that the cones have left, of all components.
+    /// Subtiles that the cones keep, over all components.
     pub subtiles: u64,
     /// Evaluations by rays and cones, for each component.
     pub of_components: Vec<u64>,
-    /// Cells of tapes that rays and cones looked up, for each component.
+    /// Tape cells that rays and cones looked up, for each component.
     pub cells: Vec<u64>,
-    /// Entries of tapes that they read, for each component.
+    /// Tape entries that they read, for each component.
     pub entries: Vec<u64>,
 }
 
-/// The least work that the picture of a finished frame needs: every ray starts at its true depth and
-/// evaluates the field once to confirm it, then come normals and light as usual. Only for measuring.
+/// The minimal work for the picture of a finished frame: every ray starts at its true depth and evaluates the field
+/// once to confirm it; normals and lighting follow as usual. For measurements only.
 pub(super) fn limit(frame: &Frame) -> Frame {
     let confirm = |dispatch: &Dispatch| {
         let dispatch_params =
@@ -49,7 +49,7 @@ pub(super) fn limit(frame: &Frame) -> Frame {
 }
 
 impl Counts {
-    /// What a frame has counted, with pipelines that count: `words` for each component, and its lists of subtiles.
+    /// The counters of a frame: `words` of each component, and the counts of its subtile lists.
     pub(super) fn new(frame: &Frame, words: &[[u32; COMPONENT_COUNTS]], lists: &[u32]) -> Self {
         let sum = |i: usize| lists.chunks_exact(SUBTILE_COUNTS).map(|c| u64::from(c[i])).sum();
         let of_each = |i: usize| words.iter().map(|c| u64::from(c[i])).collect::<Vec<_>>();

@@ -1,8 +1,8 @@
-//! Materials of the meshes, as the shade pass reads them.
+//! Materials of the meshes, in the form that the shade pass reads.
 
 use isolith_field::{FILE_SHININESS, FILE_SPECULAR, FlatMaterial, FlatScene};
 
-/// What each mesh is made of: the material that stands for its own ones, where there is one. Its color stands in a target.
+/// The material of each mesh: the one that overrides its own materials, if any. Its color is in a target.
 pub fn mesh_materials(flat: &FlatScene) -> Vec<FlatMaterial> {
     let own = FlatMaterial {
         albedo: [1.0; 3],

@@ -1,55 +1,55 @@
-//! What each pixel took, counted on the device. The counts stand at the end of the buffer of counts; without pipelines
-//! that count there is no room for them, and nothing is written.
+//! Counters of components and pixels. Those of pixels follow at the end of the buffer. If the pipelines do not count,
+//! the buffer has no room for them, and no pass writes them.
 
 use crate::frame::plan::TILE;
 use crate::gpu::readback::read_words_at;
 use crate::gpu::{Gpu, GpuError};
 use crate::resources::buffers::SyncedBuffer;
 
-/// Words that are counted for each component: rays without an end, evaluations by rays, rays started, and by rays and
-/// cones cells and tape entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
+/// Counters of each component: rays without an end, evaluations by rays, started rays, and, by rays and cones, tape
+/// cells and entries read. `COMPONENT_COUNTS` in `shaders/common/counts.wgsl`.
 pub const COMPONENT_COUNTS: usize = 5;
-/// Words that are counted for each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
+/// Counters of each pixel and each tile. `PIXEL_COUNTS` in `shaders/common/counts.wgsl`.
 pub const PIXEL_COUNTS: usize = 4;
 
-/// What rays or cones took.
+/// Counters of rays or cones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraceCounts {
     /// Evaluations of fields.
     pub evaluations: u32,
-    /// Rays started, one for each component that is met; 0 for cones.
+    /// Started rays, one for each component that a ray meets; 0 for cones.
     pub rays: u32,
-    /// Cells of tapes that were looked up.
+    /// Tape cells looked up.
     pub cells: u32,
-    /// Entries of tapes that were read.
+    /// Tape entries read.
     pub entries: u32,
 }
 
-/// What each pixel of a picture took, of all components together. Normals are not counted: they are one evaluation
-/// for each pixel that shows a field.
+/// Counters of each pixel of a picture, over all components. They leave out normals, which take one evaluation for each
+/// pixel that shows a field.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct PixelCounts {
     /// Width and height of the picture.
     pub size: [u32; 2],
-    /// By rays, for each pixel, row by row from the upper left corner.
+    /// Counters of the rays of each pixel, row by row from the upper left corner.
     pub pixels: Vec<TraceCounts>,
-    /// By cones, for each tile of 8 by 8 pixels; a cone looks for all of them, so they are counted apart.
+    /// Counters of the cones of each tile of 8 by 8 pixels. A cone serves all pixels of its tile, so they count apart.
     pub tiles: Vec<TraceCounts>,
 }
 
-/// How a number is spread over the pixels.
+/// Distribution of a number over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distribution {
-    /// Of all pixels.
+    /// Mean of all pixels.
     pub mean: f64,
-    /// 99 of 100 pixels have no more.
+    /// 99th percentile.
     pub p99: f64,
-    /// The most.
+    /// Maximum.
     pub max: f64,
 }
 
 impl PixelCounts {
-    /// Evaluations by the rays of a pixel.
+    /// Distribution of the evaluations by the rays of a pixel.
     pub fn steps(&self) -> Distribution {
         let mut all: Vec<u32> = self.pixels.iter().map(|pixel| pixel.evaluations).collect();
         all.sort_unstable();
@@ -58,7 +58,7 @@ impl PixelCounts {
         Distribution { mean, p99: f64::from(all[(all.len() - 1) * 99 / 100]), max: f64::from(*max) }
     }
 
-    /// A pixel's share, a 64th, of what the cones of its tile took, with what its own rays took.
+    /// A pixel's own rays, plus a 64th of the cones of its tile.
     pub fn with_cones(&self, x: u32, y: u32, of: impl Fn(&TraceCounts) -> u32) -> f64 {
         let [width, _] = self.size;
         let tile = (y / TILE * width.div_ceil(TILE) + x / TILE) as usize;
@@ -66,14 +66,14 @@ impl PixelCounts {
         f64::from(own) + f64::from(of(&self.tiles[tile])) / f64::from(TILE * TILE)
     }
 
-    /// By rays and cones, over all pixels.
+    /// Rays and cones, averaged over all pixels.
     pub fn per_pixel(&self, of: impl Fn(&TraceCounts) -> u32) -> f64 {
         let sum: u64 = self.pixels.iter().chain(&self.tiles).map(|counted| u64::from(of(counted))).sum();
         sum as f64 / self.pixels.len().max(1) as f64
     }
 }
 
-/// The buffer of counts: of components at its beginning; where pipelines count, of pixels and tiles at its end.
+/// The buffer of counters: first those of components; if pipelines count, then those of pixels and tiles.
 #[derive(Debug)]
 pub struct MarchCounts {
     words: SyncedBuffer,
@@ -82,7 +82,7 @@ pub struct MarchCounts {
 }
 
 impl MarchCounts {
-    /// No counts yet.
+    /// A buffer without counters.
     pub fn new(device: &wgpu::Device, is_on: bool) -> Self {
         Self { words: SyncedBuffer::read_back(device, "march counts"), is_on }
     }
@@ -92,20 +92,20 @@ impl MarchCounts {
         self.words.buffer()
     }
 
-    /// Words that a picture of this size needs for its pixels and tiles; none where nobody counts.
+    /// Words for the pixels and tiles of a picture of this size; none if the pipelines do not count.
     fn pixel_words(&self, size: [u32; 2]) -> usize {
         let of = |sides: [u32; 2]| sides[0] as usize * sides[1] as usize;
         if self.is_on { (of(size) + of(size.map(|side| side.div_ceil(TILE)))) * PIXEL_COUNTS } else { 0 }
     }
 
-    /// Whether a binding of so many bytes can hold the counts of such a picture.
+    /// Whether the counters of such a picture fit into a binding of `most` bytes.
     pub fn fit(&self, components: usize, size: [u32; 2], most: u64) -> bool {
         let words = components * COMPONENT_COUNTS + self.pixel_words(size);
         (words as u64 * 4).next_power_of_two() <= most
     }
 
-    /// Makes room for the counts of so many components and a picture of this size, and sets those of the components
-    /// to nothing. True where the buffer is another one.
+    /// Makes room for the counters of `components` components and a picture of this size, and resets those of the
+    /// components. Returns true if the buffer was replaced.
     pub fn reset(&mut self, gpu: &Gpu, components: usize, size: [u32; 2]) -> bool {
         let nothing = vec![0; components * COMPONENT_COUNTS * 4];
         let bytes = nothing.len() + self.pixel_words(size) * 4;
@@ -113,7 +113,7 @@ impl MarchCounts {
         self.words.reset(&gpu.device, &gpu.queue, &nothing) || grown
     }
 
-    /// Sets what pixels and tiles took to nothing.
+    /// Resets the counters of pixels and tiles.
     pub fn clear_pixels(&self, encoder: &mut wgpu::CommandEncoder, size: [u32; 2]) {
         let bytes = self.pixel_words(size) as u64 * 4;
         if bytes > 0 {
@@ -121,13 +121,13 @@ impl MarchCounts {
         }
     }
 
-    /// What was counted for each component.
+    /// Reads the counters of each component.
     pub fn of_components(&self, gpu: &Gpu, components: usize) -> Result<Vec<[u32; COMPONENT_COUNTS]>, GpuError> {
         let words = read_words_at(gpu, self.buffer(), 0, components * COMPONENT_COUNTS)?;
         Ok(words.as_chunks().0.to_vec())
     }
 
-    /// What each pixel of a picture of this size took; empty where pipelines do not count.
+    /// Reads the counters of each pixel of a picture of this size; empty if the pipelines do not count.
     pub fn of_pixels(&self, gpu: &Gpu, size: [u32; 2]) -> Result<PixelCounts, GpuError> {
         let count = self.pixel_words(size);
         let first = self.buffer().size() as usize / 4 - count;

@@ -1,4 +1,4 @@
-//! Writes the passes of a frame down, each under its label and, where time is taken, between two timestamps.
+//! Records the passes of a frame, each under its label and, if timings are on, between two timestamps.
 
 use super::frame::Frame;
 use super::resources::{FrameResources, Groups, SlotState};
@@ -9,36 +9,36 @@ use crate::recipe::{Extent, Pass};
 use crate::resources::targets::{Target, Targets};
 use crate::resources::uniforms::UNIFORM_STRIDE;
 
-/// Passes that evaluate fields share one pass of the device where no time is taken: beginning one for each of thousands of
-/// components would cost more than some of them take.
+/// Without timings, the passes that evaluate fields share one compute pass: beginning one for each of thousands of
+/// components would take longer than some of the components.
 const SHARED_LABEL: &str = "fields";
 
-/// See the module.
+/// Records a submission, see the module.
 #[derive(Debug)]
 pub struct Recorder<'a> {
     /// The device.
     pub gpu: &'a Gpu,
     /// The frame.
     pub frame: &'a Frame,
-    /// The buffers that the passes work on.
+    /// The buffers of the frame.
     pub resources: &'a FrameResources,
-    /// The textures that the passes work on.
+    /// The textures of the picture.
     pub targets: &'a Targets,
-    /// What a coarse picture is enlarged to.
+    /// Target of the enlarged coarse picture, if any.
     pub enlarged: Option<&'a Target>,
     groups: &'a Groups,
     encoder: wgpu::CommandEncoder,
-    /// The compute pass that is being written.
+    /// The open compute pass.
     open: Option<wgpu::ComputePass<'static>>,
-    /// The pass of the frame that is being written.
+    /// The pass of the recipe that is being recorded.
     current: Pass,
     stamps: Option<Stamps<'a>>,
-    /// Passes between timestamps, in order.
+    /// Passes with timestamps, in order.
     timed: Vec<Pass>,
 }
 
 impl<'a> Recorder<'a> {
-    /// For the slot of `frame`. Time is taken of as many passes as `stamps` has room for.
+    /// A recorder for the slot of `frame`. `stamps` limits how many passes can have timestamps.
     pub fn new(gpu: &'a Gpu, frame: &'a Frame, resources: &'a FrameResources, stamps: Option<Stamps<'a>>) -> Self {
         let SlotState { targets, enlarged, groups } = resources.slot(frame.slot);
         let groups = groups.as_ref().expect("begin binds");
@@ -48,12 +48,12 @@ impl<'a> Recorder<'a> {
         Self { gpu, frame, resources, targets, enlarged, groups, encoder, open, current, stamps, timed }
     }
 
-    /// Whether another pass, and those over the finished picture, have a place for their time.
+    /// Whether there are timestamps left for another pass and for those over the finished picture.
     pub fn has_room(&self) -> bool {
         self.stamps.is_none_or(|stamps| self.timed.len() + Pass::ALL.len() <= stamps.room())
     }
 
-    /// What comes next is of this pass of the frame.
+    /// Begins a pass of the recipe.
     pub fn begin(&mut self, field_pass: Pass) {
         if self.stamps.is_some() || field_pass.extent() == Extent::Finished {
             self.open = None;
@@ -61,17 +61,17 @@ impl<'a> Recorder<'a> {
         self.current = field_pass;
     }
 
-    /// The groups of the view and, of the pass's own ones, the one with this index.
+    /// The bind group of the view, and the pass's own bind group with the index `own`.
     pub fn groups(&self, own: usize) -> [&'a wgpu::BindGroup; 2] {
         [&self.groups.view, &self.groups.own[self.current as usize][own]]
     }
 
-    /// The group of the view.
+    /// The bind group of the view.
     pub fn view(&self) -> &'a wgpu::BindGroup {
         &self.groups.view
     }
 
-    /// Where a dispatch for `at`, a dispatch of the frame, is to be written. Group 0 is the view, 3 the dispatch.
+    /// The compute pass for the dispatch `at` of the frame. Group 0 is the view, group 3 the dispatch.
     pub fn compute(&mut self, at: usize) -> &mut wgpu::ComputePass<'static> {
         let groups = self.groups;
         let pass = self.open();
@@ -79,7 +79,7 @@ impl<'a> Recorder<'a> {
         pass
     }
 
-    /// The same for a dispatch over the finished picture.
+    /// The compute pass for a dispatch over the finished picture.
     pub fn open(&mut self) -> &mut wgpu::ComputePass<'static> {
         if self.open.is_none() {
             let timestamp_writes = self.stamp().map(|stamps| stamps.of_compute());
@@ -96,7 +96,8 @@ impl<'a> Recorder<'a> {
         self.open.as_mut().expect("opened above")
     }
 
-    /// The same for a dispatch over a component, by the pipeline of its pipeline and the pass's own group `own`.
+    /// The compute pass for a dispatch over a component, with the component's pipeline and the pass's own bind group
+    /// `own`.
     pub fn component(
         &mut self,
         at: usize,
@@ -118,21 +119,21 @@ impl<'a> Recorder<'a> {
         pass
     }
 
-    /// Where passes that draw are to be written, with what takes their time.
+    /// The encoder for render passes, with their timestamps.
     pub fn drawing(&mut self) -> (&mut wgpu::CommandEncoder, Option<Stamps<'a>>) {
         self.open = None;
         let stamps = self.stamp();
         (&mut self.encoder, stamps)
     }
 
-    /// The next two timestamps.
+    /// Takes the next two timestamps.
     fn stamp(&mut self) -> Option<Stamps<'a>> {
         let stamps = self.stamps?.at(self.timed.len())?;
         self.timed.push(self.current);
         Some(stamps)
     }
 
-    /// Hands everything to the device. The passes whose time is taken, in order.
+    /// Submits the recorded passes. Returns those with timestamps, in order.
     pub fn submit(mut self) -> Vec<Pass> {
         self.open = None;
         if let Some(stamps) = self.stamps {
@@ -143,7 +144,8 @@ impl<'a> Recorder<'a> {
     }
 }
 
-/// Dispatches the pipelines of a pipeline over nothing that were never used: lavapipe compiles them then. Whether there were any.
+/// Dispatches the never used ones of these pipelines over no work, which makes lavapipe compile them. Returns whether
+/// there were any.
 pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
     let fresh: Vec<Pass> =
         FieldPipelines::STAGES.into_iter().filter(|field_pass| pipelines.first_use(*field_pass as usize)).collect();
@@ -191,13 +193,13 @@ mod tests {
                 std::thread::sleep(Duration::from_millis(10));
             }
             let (frame, _) = begin();
-            // One after the other, as between two paintings of the window.
+            // One after the other, as between two repaints of the window.
             while met && renderer.prewarm_pipelines(&flat, &camera, Duration::ZERO).expect("a device that answers") {}
             assert!(frame.choices.iter().any(|choice| choice.mode == EvalMode::StraightLine));
             frame.uses_fresh_pipelines(0..frame.plan.dispatches.len())
         };
         assert!(is_fresh(false));
-        // Elsewhere drivers compile when a pipeline is built.
+        // Other drivers compile when a pipeline is built.
         assert_eq!(is_fresh(true), !gpu.is_software());
     }
 }

@@ -1,5 +1,5 @@
-//! What a frame works on beside the scene: who looks, its dispatches, what passes hand on to each other, and the targets
-//! of its slot.
+//! The resources of a frame besides the scene: the view, its dispatches, the buffers between passes, and the targets of
+//! its slot.
 
 use wgpu::BindGroup;
 
@@ -22,24 +22,24 @@ use isolith_geometry::Camera;
 
 /// Bytes of a subtile in a list.
 const SUBTILE_BYTES: usize = 12;
-/// Bytes of the lists that hold so many subtiles: as cones leave them, and once more those with hits.
+/// Bytes of the lists for `subtiles` subtiles: those that the cones keep, and again those with hits.
 pub fn bytes_of_subtiles(subtiles: u64) -> u64 {
     2 * subtiles * SUBTILE_BYTES as u64
 }
 
-/// Words of a list of subtiles, and of a list of what its rays leave: see `shaders/common/subtiles.wgsl`.
+/// Words of the counts of a subtile list, and of its list of unfinished rays: see `shaders/common/subtiles.wgsl`.
 pub const SUBTILE_COUNTS: usize = 5;
 pub const RAY_COUNTS: usize = 7;
-/// Of a list of subtiles before its cones, and of what its rays leave.
+/// Initial counts of a subtile list, and of its list of unfinished rays.
 const NO_SUBTILES: [u32; SUBTILE_COUNTS] = [0, 1, 1, 0, 0];
 const NO_RAYS: [u32; RAY_COUNTS] = [0, 1, 1, 0, 1, 1, 0];
 
-/// What passes bind.
+/// The resources that passes bind.
 #[derive(Clone, Debug)]
 pub struct Bound<'a> {
     /// The textures of the picture.
     pub targets: &'a Targets,
-    /// The buffers that passes work on.
+    /// The buffers of the frame.
     pub resources: &'a FrameResources,
     /// The materials of the scene.
     pub materials: wgpu::BindingResource<'a>,
@@ -50,31 +50,31 @@ pub struct Bound<'a> {
 pub struct Groups {
     pub view: BindGroup,
     pub scene: BindGroup,
-    /// The same with the rows of templates.
+    /// Like `scene`, with the rows of templates.
     pub templates: BindGroup,
     pub dispatch_params: BindGroup,
-    /// Of each pass, in the order of the frame.
+    /// Own bind groups of each pass, in the order of the frame.
     pub own: Vec<Vec<BindGroup>>,
 }
 
-/// Targets of a picture with the bind groups that lead to them; remade when its size changes or a
+/// Targets of a picture with their bind groups. The renderer rebuilds them when the picture's size changes, or when a
 /// buffer or pipeline is replaced.
 #[derive(Debug)]
 pub struct SlotState {
     pub targets: Targets,
-    /// What the picture is enlarged to where marks are drawn over it that it is too coarse for.
+    /// Target of the enlarged picture, if marks are drawn over a picture that is too coarse for them.
     pub enlarged: Option<Target>,
     pub groups: Option<Groups>,
 }
 
 impl SlotState {
-    /// What is shown of it.
+    /// The target on display.
     pub fn shown(&self) -> &Target {
         self.enlarged.as_ref().unwrap_or(&self.targets.color)
     }
 }
 
-/// See the module.
+/// Resources of a frame, see the module.
 #[derive(Debug)]
 pub struct FrameResources {
     layouts: Layouts,
@@ -92,7 +92,7 @@ pub struct FrameResources {
 }
 
 impl FrameResources {
-    /// Nothing yet. `counting`: whether pipelines count.
+    /// Empty resources. `counting`: whether the pipelines count.
     pub fn new(device: &wgpu::Device, layouts: Layouts, counting: bool) -> Self {
         let storage = |label| SyncedBuffer::storage(device, label);
         Self {
@@ -111,7 +111,7 @@ impl FrameResources {
         }
     }
 
-    /// A slot that a frame has begun in.
+    /// A slot in which a frame has begun.
     pub fn slot(&self, slot: Slot) -> &SlotState {
         self.begun(slot).expect("begin makes the targets")
     }
@@ -121,12 +121,12 @@ impl FrameResources {
         self.slots[slot as usize].as_ref()
     }
 
-    /// The groups of any slot that has some.
+    /// The bind groups of any slot that has them.
     pub fn any_groups(&self) -> Option<&Groups> {
         self.slots.iter().flatten().find_map(|state| state.groups.as_ref())
     }
 
-    /// Gives the slot targets of this size, and what its picture is enlarged to.
+    /// Gives the slot targets of this size, and a target for the enlarged picture if the overlay needs one.
     pub fn resize(&mut self, device: &wgpu::Device, slot: Slot, size: [u32; 2], overlay: &OverlaySettings) {
         let state = &mut self.slots[slot as usize];
         if state.as_ref().is_none_or(|state| state.targets.size != size) {
@@ -139,7 +139,7 @@ impl FrameResources {
         }
     }
 
-    /// Uploads what has changed and makes room for what the plan takes. Returns whether a buffer was replaced.
+    /// Uploads changed data and reserves space for the plan. Returns whether a buffer was replaced.
     pub fn upload(&mut self, gpu: &Gpu, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &FramePlan) -> bool {
         let Gpu { device, queue, .. } = gpu;
         let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
@@ -165,12 +165,12 @@ impl FrameResources {
         self.dispatch_params.set(&gpu.device, &gpu.queue, &strided(dispatches.iter().map(|dispatch| dispatch.params)))
     }
 
-    /// Has all bind groups be made anew.
+    /// Drops all bind groups, so that [`Self::bind`] rebuilds them.
     pub fn forget_groups(&mut self) {
         self.slots.iter_mut().flatten().for_each(|state| state.groups = None);
     }
 
-    /// Makes the bind groups of the slot that it lacks; `own` those of the passes.
+    /// Builds the bind groups of the slot if they are missing; `own` builds those of the passes.
     pub fn bind(
         &mut self,
         device: &wgpu::Device,
@@ -197,7 +197,7 @@ impl FrameResources {
         }
     }
 
-    /// The buffers that passes over components hand on to each other.
+    /// The buffers between the passes over components.
     pub fn lists(&self) -> FieldBuffers<'_> {
         FieldBuffers {
             subtiles: self.subtiles.buffer(),
@@ -214,19 +214,19 @@ impl FrameResources {
         self.lights.binding()
     }
 
-    /// What the meshes are made of.
+    /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
     }
 
-    /// Sets to nothing what a frame of so many lists leaves over and counts.
+    /// Clears the counts of unfinished rays of `lists` lists, and the counters of pixels.
     pub fn clear(&self, encoder: &mut wgpu::CommandEncoder, lists: u32, size: [u32; 2]) {
         encoder.clear_buffer(self.rays.buffer(), 0, Some(u64::from(lists.max(1)) * 4));
         self.counts.clear_pixels(encoder, size);
     }
 
-    /// Uploads the dispatches of the frame, which goes on with those from `planned` on; nothing has been found and counted for what
-    /// they trace.
+    /// Uploads the dispatches of the frame, which continues with those from `planned` on. Resets the counts and lists
+    /// that they fill.
     pub fn restart(&mut self, gpu: &Gpu, frame: &Frame, planned: usize, is_meant: &dyn Fn(u32) -> bool) -> bool {
         let write = |buffer: &wgpu::Buffer, word: usize, words: &[u32]| {
             gpu.queue.write_buffer(buffer, word as u64 * 4, bytemuck::cast_slice(words));

@@ -1,4 +1,4 @@
-//! The scene on the device: arrays, rows, lists, and the bind groups that lead to them.
+//! The scene on the device: arrays, rows, tapes, and their bind groups.
 
 use std::sync::Arc;
 
@@ -14,20 +14,20 @@ use isolith_field::standpoint::{Standpoint, Standpoints};
 use isolith_field::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT};
 use isolith_wgsl::{MAX_PIPELINE_ROWS, template_rows};
 
-/// Bytes of a pipeline's window on the rows of its component. As much room is kept behind the last row, so
-/// that the window on the last component does not end outside the buffer.
+/// Bytes of a pipeline's window on the rows of its component. The buffer has as much room after the last row, so that
+/// the window on the last component stays inside.
 pub const PIPELINE_WINDOW: usize = MAX_PIPELINE_ROWS as usize * size_of::<ParamRow>();
 
-/// See the module.
+/// Scene resources, see the module.
 #[derive(Debug)]
 pub struct SceneResources {
     layout: BindGroupLayout,
     nodes: SyncedBuffer,
-    /// For the windows of specialized pipelines.
+    /// Rows for the windows of specialized pipelines.
     rows: SyncedBuffer,
-    /// For those of pipelines for templates.
+    /// Rows for the windows of pipelines for templates.
     template_rows: SyncedBuffer,
-    /// The same numbers once more, for pipelines that walk.
+    /// The same rows as a texture, for interpreter and tapes.
     params: DataTexture,
     tapes: TapeTexture,
     components: SyncedBuffer,
@@ -35,7 +35,7 @@ pub struct SceneResources {
 }
 
 impl SceneResources {
-    /// Nothing yet.
+    /// Empty resources.
     pub fn new(device: &wgpu::Device, layout: BindGroupLayout) -> Self {
         Self {
             layout,
@@ -56,13 +56,13 @@ impl SceneResources {
         buffers.iter().sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
     }
 
-    /// Most words of lists that the device can hold.
+    /// Words of tapes that the device can hold.
     pub fn most_words(&self, device: &wgpu::Device) -> usize {
         self.tapes.most_words(device)
     }
 
-    /// Uploads what has changed. Returns whether a buffer was replaced, and where the rows of each component's pipeline begin
-    /// that is for a template, in bytes.
+    /// Uploads changed data. Returns whether a buffer was replaced, and for each component with a pipeline for a
+    /// template the offset of its rows, in bytes.
     pub fn upload(
         &mut self,
         gpu: &Gpu,
@@ -102,7 +102,7 @@ impl SceneResources {
         self.materials.binding()
     }
 
-    /// The group with the rows of all components, and the same with those of templates.
+    /// The bind group with the rows of all components, and the one with the rows of templates.
     pub fn bind(&self, device: &wgpu::Device) -> [BindGroup; 2] {
         [&self.rows, &self.template_rows].map(|rows| {
             let group = SceneBindings {
@@ -117,8 +117,8 @@ impl SceneResources {
     }
 }
 
-/// The rows of components whose pipelines are for templates, and where those of each begin, in bytes. As much room as a window
-/// takes is behind the last.
+/// The rows of components whose pipelines are for templates, and the offset of each in bytes. They end with room for a
+/// whole window.
 fn template_windows(
     flat: &FlatScene,
     params: &[ParamRow],

@@ -1,27 +1,27 @@
-//! How long the device takes for each pass of the recipe.
+//! Device time of each pass of the recipe.
 
 use crate::gpu::readback::read_words_at;
 use crate::gpu::{Gpu, GpuError};
 use crate::recipe::Pass;
 
-/// Passes whose time is taken in one submission: a quarter of the timestamps that a set may hold, two each.
+/// Limit of passes with timestamps in one submission. With two for each, they take a quarter of a query set.
 const MOST_TIMED: usize = 512;
 
-/// What a pass of the recipe has taken, all of its runs in a frame together.
+/// Time of a pass of the recipe, over all its runs in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PassTime {
-    /// Which pass.
+    /// Label of the pass.
     pub label: &'static str,
-    /// So often it was begun on the device.
+    /// Number of times that it began on the device.
     pub runs: u64,
-    /// On the device's clock, in seconds.
+    /// Time on the device, in seconds.
     pub seconds: f64,
 }
 
-/// See the module.
+/// Timings of the passes, see the module.
 #[derive(Debug, Default)]
 pub struct PassTimings {
-    /// Where somebody asks, and the device has a clock.
+    /// `None` if timings are off, or the device has no timestamps.
     queries: Option<Queries>,
     rows: Vec<PassTime>,
 }
@@ -33,7 +33,7 @@ struct Queries {
 }
 
 impl PassTimings {
-    /// Takes time from now on if the device can.
+    /// Switches timings on, if the device supports them.
     pub fn new(gpu: &Gpu) -> Self {
         let new = || Queries {
             set: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
@@ -54,24 +54,23 @@ impl PassTimings {
         timings
     }
 
-    /// A frame begins.
+    /// Begins a frame.
     pub fn begin(&mut self) {
         let row = |field_pass: &Pass| PassTime { label: field_pass.label(), runs: 0, seconds: 0.0 };
         self.rows = Pass::ALL.iter().map(row).collect();
     }
 
-    /// What the passes of the frame have taken that was begun last, in the order of the frame; `None` where no time is
-    /// taken.
+    /// Times of the passes of the last frame begun, in the order of the frame; `None` if timings are off.
     pub fn rows(&self) -> Option<&[PassTime]> {
         self.queries.as_ref().map(|_| self.rows.as_slice())
     }
 
-    /// Where passes write when they begin and end.
+    /// The timestamps that passes write when they begin and end.
     pub fn stamps(&self) -> Option<Stamps<'_>> {
         self.queries.as_ref().map(|queries| Stamps { queries, first: 0 })
     }
 
-    /// Adds what these passes have taken, in the order of their timestamps. Waits for the device.
+    /// Adds the times of these passes, in the order of their timestamps. Waits for the device.
     pub fn add(&mut self, gpu: &Gpu, timed: &[Pass]) -> Result<(), GpuError> {
         let Some(queries) = &self.queries else { return Ok(()) };
         let words = read_words_at(gpu, &queries.resolved, 0, 4 * timed.len())?;
@@ -95,17 +94,17 @@ pub struct Stamps<'a> {
 }
 
 impl<'a> Stamps<'a> {
-    /// So many passes have a place.
+    /// Number of passes that can have timestamps.
     pub fn room(self) -> usize {
         MOST_TIMED
     }
 
-    /// Those of the pass with this index.
+    /// The timestamps of the pass with this index.
     pub fn at(self, index: usize) -> Option<Self> {
         (index < self.room()).then_some(Self { first: 2 * index as u32, ..self })
     }
 
-    /// Of a compute pass.
+    /// Timestamps of a compute pass.
     pub fn of_compute(self) -> wgpu::ComputePassTimestampWrites<'a> {
         wgpu::ComputePassTimestampWrites {
             query_set: &self.queries.set,
@@ -114,7 +113,7 @@ impl<'a> Stamps<'a> {
         }
     }
 
-    /// Of a pass that draws.
+    /// Timestamps of a render pass.
     pub fn of_drawing(self) -> wgpu::RenderPassTimestampWrites<'a> {
         wgpu::RenderPassTimestampWrites {
             query_set: &self.queries.set,
@@ -123,7 +122,7 @@ impl<'a> Stamps<'a> {
         }
     }
 
-    /// Of the first and of the last of several passes that draw.
+    /// Timestamps of the first and of the last of several render passes.
     pub fn of_several(self) -> [wgpu::RenderPassTimestampWrites<'a>; 2] {
         [
             wgpu::RenderPassTimestampWrites { end_of_pass_write_index: None, ..self.of_drawing() },
@@ -131,7 +130,7 @@ impl<'a> Stamps<'a> {
         ]
     }
 
-    /// Has the device hand out those of the first `count` passes.
+    /// Resolves the timestamps of the first `count` passes.
     pub fn resolve(self, encoder: &mut wgpu::CommandEncoder, count: usize) {
         if count > 0 {
             encoder.resolve_query_set(&self.queries.set, 0..2 * count as u32, &self.queries.resolved, 0);

@@ -1,4 +1,5 @@
-//! Rays that have not come to an end within the steps of a plan: traced again with more, and reported where that does not do.
+//! Rays that have not ended within the steps of a plan: the renderer traces them again with more steps, and reports
+//! those that still do not end.
 
 use super::frame::Frame;
 use crate::frame::cost_model::Cost;
@@ -7,15 +8,15 @@ use isolith_field::Warning;
 use isolith_scene::NodeId;
 
 impl Frame {
-    /// The dispatches that were planned before any ray went on.
+    /// The dispatches of the plan, before any ray continued.
     pub(super) fn planned(&self) -> &[Dispatch] {
         &self.plan.dispatches[..self.going_on.planned.unwrap_or(self.plan.dispatches.len())]
     }
 }
 
-/// Has a frame that is done, with so many rays without an end for each component, trace the components with such rays again
-/// with more steps. Nothing is lost by that but time: what was found stays, and only what is nearer is added. Where there is
-/// something to do again, which components that are meant, and where their dispatches begin.
+/// Makes a completed frame trace the components with unfinished rays again, with more steps. `unfinished` holds their
+/// number for each component. This costs only time: hits stay, and only nearer ones are added. Returns where the new
+/// dispatches begin and which components they trace, if there are any.
 pub(super) fn go_on(frame: &mut Frame, unfinished: Vec<u32>, max_dispatches: usize) -> Option<(usize, Vec<bool>)> {
     let times = *LONGER.get(frame.going_on.times)?;
     let meant: Vec<bool> = unfinished.iter().map(|count| *count > 0).collect();
@@ -39,17 +40,17 @@ pub(super) fn go_on(frame: &mut Frame, unfinished: Vec<u32>, max_dispatches: usi
 }
 
 impl Frame {
-    /// Whether its rays may go on that have not ended.
+    /// Whether its unfinished rays may continue.
     pub(super) fn may_go_on(&self) -> bool {
         self.going_on.times < LONGER.len()
     }
 
-    /// Rays without an end by component, where that was asked already.
+    /// Number of unfinished rays of each component, if it was read back.
     pub(super) fn unfinished(&self) -> Option<&Vec<u32>> {
         self.going_on.unfinished.as_ref()
     }
 
-    /// The components with rays that did not come to an end.
+    /// Warnings about the components with unfinished rays.
     pub(super) fn warnings(&self, counts: &[u32]) -> Vec<Warning> {
         let unfinished = counts.iter().zip(&self.origins).filter(|(count, _)| **count > 0);
         let warning = |(count, id): (&u32, &NodeId)| Warning {

@@ -1,8 +1,8 @@
-//! Buffers that hold what the CPU says and upload only what has changed.
+//! Buffers and textures that mirror data of the CPU, and upload only what has changed.
 
 use std::ops::Range;
 
-/// A GPU buffer with a copy of what it holds.
+/// A GPU buffer with a copy of its contents on the CPU.
 #[derive(Debug)]
 pub struct SyncedBuffer {
     label: &'static str,
@@ -28,25 +28,25 @@ impl SyncedBuffer {
         Self::new(device, label, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC)
     }
 
-    /// An empty buffer for every use: read as storage and as uniform, written, read back.
+    /// An empty buffer for all uses: storage, uniform, copy in both directions.
     pub fn rows(device: &wgpu::Device, label: &'static str) -> Self {
         let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_SRC;
         Self::new(device, label, usages)
     }
 
-    /// An empty buffer that holds the arguments of indirect dispatches, written by the device.
+    /// An empty buffer for the arguments of indirect dispatches, which the device writes.
     pub fn indirect(device: &wgpu::Device, label: &'static str) -> Self {
         let usages = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
         Self::new(device, label, usages)
     }
 
-    /// Makes the buffer hold `bytes`, whatever the device has written since.
+    /// Uploads `bytes` whole, also over what the device has written. Returns whether the buffer was replaced.
     pub fn reset(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
         self.held.clear();
         self.set(device, queue, bytes)
     }
 
-    /// Makes room for `size` bytes; what they are does not matter.
+    /// Reserves `size` bytes with unspecified contents. Returns whether the buffer was replaced.
     pub fn reserve(&mut self, device: &wgpu::Device, size: usize) -> bool {
         let grown = size as u64 > self.buffer.size();
         if grown {
@@ -61,17 +61,17 @@ impl SyncedBuffer {
         Self { label, usage, buffer: create(device, label, usage, Self::LEAST), held: Vec::new(), uploaded: 0 }
     }
 
-    /// Smallest buffer: no binding may be empty.
+    /// Size of the smallest buffer, since a binding must not be empty.
     const LEAST: usize = 256;
 
-    /// Makes the buffer hold `bytes` (a multiple of 4). Uploads the range between the first and the
-    /// last difference. Returns whether the buffer is another one, so that bind groups must be remade.
+    /// Sets the contents to `bytes` (a multiple of 4), and uploads the range between the first and the last difference.
+    /// Returns whether the buffer was replaced, so that bind groups must be rebuilt.
     pub fn set(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) -> bool {
         self.set_with_room(device, queue, bytes, 0, 4).0
     }
 
-    /// The same, with at least `room` bytes behind `bytes`; what they are does not matter. Also returns what has
-    /// changed, in whole units of `unit` bytes.
+    /// Like [`Self::set`], but reserves at least `room` bytes after `bytes`, with unspecified contents. Also returns
+    /// the changed range, in whole units of `unit` bytes.
     pub fn set_with_room(
         &mut self,
         device: &wgpu::Device,
@@ -89,7 +89,7 @@ impl SyncedBuffer {
         (grown, changed)
     }
 
-    /// The buffer, whole.
+    /// The whole buffer as a binding.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         self.buffer.as_entire_binding()
     }
@@ -105,7 +105,7 @@ impl SyncedBuffer {
     }
 }
 
-/// A texture of rows that holds what the CPU says, line after line.
+/// A texture that holds data of the CPU in lines of texels.
 #[derive(Debug)]
 pub struct DataTexture {
     label: &'static str,
@@ -119,18 +119,18 @@ impl DataTexture {
     /// Texels in a line; `LINE` in `shaders/common/scene.wgsl`.
     pub const LINE: usize = 4096;
 
-    /// Of texels of this format.
+    /// An empty texture with texels of this format.
     pub fn new(device: &wgpu::Device, label: &'static str, format: wgpu::TextureFormat) -> Self {
         let (texture, view) = create_lines(device, label, format, 1);
         Self { label, format, texture, view, uploaded: 0 }
     }
 
-    /// Most bytes that a device can hold.
+    /// Capacity on this device, in bytes.
     pub fn most_bytes(&self, device: &wgpu::Device) -> usize {
         device.limits().max_texture_dimension_2d as usize * Self::LINE * self.texel()
     }
 
-    /// Makes room for `bytes`. Where that takes another texture nothing stands in it, and the answer is true.
+    /// Reserves `bytes`. Returns true if the texture was replaced; its contents are then lost.
     pub fn reserve(&mut self, device: &wgpu::Device, bytes: usize) -> bool {
         let lines = bytes.div_ceil(self.texel() * Self::LINE).max(1) as u32;
         let grown = lines > self.texture.height();
@@ -141,7 +141,7 @@ impl DataTexture {
         grown
     }
 
-    /// Writes whole texels, the first at the byte `at`: the end of a line, whole lines, the beginning of one.
+    /// Writes whole texels from the byte `at` on: the end of a line, then whole lines, then the start of a line.
     pub fn write(&mut self, queue: &wgpu::Queue, at: usize, bytes: &[u8]) {
         let line = self.texel() * Self::LINE;
         let head = (at.next_multiple_of(line) - at).min(bytes.len());
@@ -173,7 +173,7 @@ impl DataTexture {
         self.format.block_copy_size(None).expect("a format of colors") as usize
     }
 
-    /// The texture, whole.
+    /// The whole texture as a binding.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::TextureView(&self.view)
     }
@@ -213,8 +213,8 @@ fn create(device: &wgpu::Device, label: &str, usage: wgpu::BufferUsages, size: u
     })
 }
 
-/// Makes `held` what `bytes` is. Returns the range that differed, in whole units of `unit` bytes; `None` where nothing
-/// has to be uploaded.
+/// Sets `held` to `bytes`. Returns the range that differed, in whole units of `unit` bytes; `None` if nothing needs an
+/// upload.
 fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<Range<usize>> {
     let common = held.len().min(bytes.len());
     let same = common_prefix(&held[..common], &bytes[..common]);
@@ -228,7 +228,7 @@ fn take_over(held: &mut Vec<u8>, bytes: &[u8], unit: usize) -> Option<Range<usiz
     Some(same / unit * unit..(bytes.len() - tail).next_multiple_of(unit))
 }
 
-/// Length of the common beginning. Compares blocks, which is as fast as memory.
+/// Length of the common prefix. Comparing blocks runs at the speed of memory.
 fn common_prefix(a: &[u8], b: &[u8]) -> usize {
     const BLOCK: usize = 4096;
     let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK)).take_while(|(x, y)| x == y).count();
@@ -236,7 +236,7 @@ fn common_prefix(a: &[u8], b: &[u8]) -> usize {
     start + a[start..].iter().zip(&b[start..]).take_while(|(x, y)| x == y).count()
 }
 
-/// Length of the common end.
+/// Length of the common suffix.
 fn common_suffix(a: &[u8], b: &[u8]) -> usize {
     const BLOCK: usize = 4096;
     let blocks = a.rchunks(BLOCK).zip(b.rchunks(BLOCK)).take_while(|(x, y)| x == y).count();

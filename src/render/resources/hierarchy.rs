@@ -1,5 +1,5 @@
-//! What the scene evaluator of `shaders/scene/` reads: the hierarchy over the components, and the components as they stand to
-//! the origin of the query. Whoever needs it makes it; a frame without such a pass has none of it.
+//! Input of the scene evaluator in `shaders/scene/`: the hierarchy over the components, and the components relative to
+//! the origin of the query. Only passes that query the scene create these resources.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -14,7 +14,7 @@ use isolith_field::FlatScene;
 use isolith_field::hierarchy::{Hierarchy, HierarchyNode};
 use isolith_field::standpoint::Standpoint;
 
-/// A node of the hierarchy; its box is relative to the origin of the query.
+/// A node of the hierarchy. Its box is relative to the origin of the query.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuHierarchyNode {
@@ -29,7 +29,7 @@ pub struct GpuHierarchyNode {
 }
 
 impl GpuHierarchyNode {
-    /// Relative to `origin`. Rounding must never cut a component off.
+    /// The node relative to `origin`. Rounding must never cut a component off.
     fn new(node: &HierarchyNode, origin: DVec3) -> Self {
         let bounds = node.bounds.translated(-origin);
         let reach = bounds.min.abs().max(bounds.max.abs()).max_element();
@@ -39,36 +39,36 @@ impl GpuHierarchyNode {
         Self { low, link: node.link, high, axis: node.axis }
     }
 
-    /// A component without bounds.
+    /// A leaf for a component without bounds.
     fn unbounded(component: u32) -> Self {
         let axis = HierarchyNode::LEAF;
         Self { low: [-UNBOUNDED; 3], link: component, high: [UNBOUNDED; 3], axis }
     }
 }
 
-/// What there is, and what one invocation may do in a dispatch.
+/// Sizes of the hierarchy, and limits of one invocation in a dispatch.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct SceneLimits {
-    /// Nodes of the tree.
+    /// Number of nodes of the tree.
     pub tree_nodes: u32,
-    /// Those, and leaves for components without bounds.
+    /// Number of nodes including the leaves of components without bounds.
     pub all_nodes: u32,
-    /// Evaluations of the field of a component.
+    /// Limit of evaluations of components' fields.
     pub max_evaluations: u32,
-    /// Nodes that are visited.
+    /// Limit of visited nodes.
     pub max_visits: u32,
 }
 
-/// Visits of nodes that one invocation may do in a dispatch. A ray that would have to visit more to find one component is
-/// reported; a tree of half as many components has no such ray.
+/// Limit of node visits of one invocation in a dispatch. A ray that needs more to find one component is reported. A
+/// tree of half as many components has no such ray.
 pub const MAX_VISITS: u32 = 20_000;
-/// A march needs two evaluations to get on.
+/// A march needs two evaluations to advance.
 const LEAST_EVALUATIONS: u32 = 2;
 
 impl SceneLimits {
-    /// For a scene in which evaluating a component takes at most so many loop iterations. The driver counts all loops of an
-    /// invocation together.
+    /// Limits for a scene in which evaluating a component takes at most `iterations` loop iterations. The driver counts
+    /// all loops of an invocation together.
     pub fn new(hierarchy: &Hierarchy, iterations: u32) -> Self {
         let tree_nodes = hierarchy.nodes.len() as u32;
         let all_nodes = tree_nodes + hierarchy.unbounded.len() as u32;
@@ -77,20 +77,20 @@ impl SceneLimits {
     }
 }
 
-/// The components of a scene as they stand to the origin of a query. `standpoints` say relative to which points their rows
-/// are; they stand beside the components, or there are none where all rows are relative to their components' origins.
+/// The components of a scene relative to the origin of a query. `standpoints` is parallel to the components; it is
+/// empty if all rows are relative to the origins of their components.
 pub fn query_components(flat: &FlatScene, origin: DVec3, standpoints: &[Standpoint]) -> Vec<GpuComponent> {
     let at_origin = Standpoint::at_origin();
     let all = flat.components.iter().enumerate().map(|(i, component)| {
         let at = standpoints.get(i).unwrap_or(&at_origin);
-        // In narrow pictures the eye stands elsewhere; a query has one origin for all.
+        // In narrow pictures the eye lies elsewhere, but a query has one origin for all components.
         let eye = origin - component.origin - at.shift;
         GpuComponent::new(component, &Standpoint { ray_origin_depth: 0.0, eye, ..*at })
     });
     all.collect()
 }
 
-/// The buffers of group 3 of passes that ask the scene.
+/// The buffers of group 3 for passes that query the scene.
 #[derive(Debug)]
 pub struct HierarchyBuffers {
     nodes: SyncedBuffer,
@@ -99,7 +99,7 @@ pub struct HierarchyBuffers {
 }
 
 impl HierarchyBuffers {
-    /// Their layout.
+    /// The layout of the buffers.
     pub fn layout(device: &wgpu::Device) -> BindGroupLayout {
         let types = [read_storage(), read_storage(), uniform(false)];
         let entries: Vec<_> =
@@ -107,7 +107,7 @@ impl HierarchyBuffers {
         layout(device, "hierarchy", &entries)
     }
 
-    /// Empty ones.
+    /// Empty buffers.
     pub fn new(device: &wgpu::Device) -> Self {
         Self {
             nodes: SyncedBuffer::storage(device, "hierarchy"),
@@ -116,7 +116,7 @@ impl HierarchyBuffers {
         }
     }
 
-    /// Uploads what has changed. Returns whether bind groups must be made anew.
+    /// Uploads changed data. Returns whether bind groups must be rebuilt.
     pub fn set(
         &mut self,
         gpu: &Gpu,
@@ -136,7 +136,7 @@ impl HierarchyBuffers {
         grown.contains(&true)
     }
 
-    /// Binds them.
+    /// Bind group of the buffers.
     pub fn bind(&self, device: &wgpu::Device, layout: &BindGroupLayout) -> BindGroup {
         bind(device, "hierarchy", layout, &[self.nodes.binding(), self.components.binding(), self.limits.binding()])
     }

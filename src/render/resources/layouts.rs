@@ -1,16 +1,16 @@
 //! Bind group layouts. Group 0 is the view, 1 the scene, 2 the pass's own targets, 3 the dispatch.
 //!
-//! What a group binds is declared once, by `bindings!`: the layout and the bind group follow from it.
+//! `bindings!` declares the bindings of a group once; the layout and the bind group follow from it.
 
 use wgpu::{BindGroupLayout, BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages};
 use wgpu::{StorageTextureAccess as Access, TextureFormat as Format};
 
-/// Of the texture of rows.
+/// Format of the texture of rows.
 pub const PARAMS_FORMAT: Format = Format::Rgba32Float;
-/// Of the texture of tapes.
+/// Format of the texture of tapes.
 pub const TAPES_FORMAT: Format = Format::Rg32Uint;
 
-/// Declares a group: a struct of resources whose fields stand in the order of the bindings, with its layout.
+/// Declares a group as a struct of resources, with fields in the order of the bindings, and its layout.
 macro_rules! bindings {
     ($(#[$doc:meta])* $name:ident, $label:literal, $stages:ident { $($(#[$field_doc:meta])* $field:ident: $type:expr,)* }) => {
         $(#[$doc])*
@@ -27,7 +27,7 @@ macro_rules! bindings {
                 layout(device, $label, &entries)
             }
 
-            /// The group.
+            /// The bind group.
             pub fn bind(self, device: &wgpu::Device, layout: &wgpu::BindGroupLayout) -> wgpu::BindGroup {
                 bind(device, $label, layout, &[$(self.$field),*])
             }
@@ -45,7 +45,7 @@ bindings! {
         params: storage_texture(PARAMS_FORMAT, Access::ReadOnly),
         /// The component, at a dynamic offset.
         subject: uniform(true),
-        /// The component's own rows once more, at a dynamic offset.
+        /// The component's own rows again, at a dynamic offset.
         rows: uniform(true),
         /// Tapes.
         tapes: storage_texture(TAPES_FORMAT, Access::ReadOnly),
@@ -64,7 +64,7 @@ pub struct Layouts {
 }
 
 impl Layouts {
-    /// Makes them.
+    /// Creates the layouts.
     pub fn new(device: &wgpu::Device) -> Self {
         let everywhere = ShaderStages::COMPUTE | ShaderStages::VERTEX_FRAGMENT;
         Self {
@@ -75,7 +75,7 @@ impl Layouts {
     }
 }
 
-/// A layout with the given entries.
+/// A layout with these entries.
 pub fn layout(device: &wgpu::Device, label: &str, entries: &[BindGroupLayoutEntry]) -> BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some(label), entries })
 }
@@ -90,7 +90,7 @@ pub fn uniform(has_dynamic_offset: bool) -> BindingType {
     BindingType::Buffer { ty: BufferBindingType::Uniform, has_dynamic_offset, min_binding_size: None }
 }
 
-/// A storage buffer that is only read.
+/// A read-only storage buffer.
 pub fn read_storage() -> BindingType {
     BindingType::Buffer {
         ty: BufferBindingType::Storage { read_only: true },
@@ -99,7 +99,7 @@ pub fn read_storage() -> BindingType {
     }
 }
 
-/// A storage buffer that is written.
+/// A writable storage buffer.
 pub fn write_storage() -> BindingType {
     BindingType::Buffer {
         ty: BufferBindingType::Storage { read_only: false },
@@ -108,12 +108,12 @@ pub fn write_storage() -> BindingType {
     }
 }
 
-/// A texture that is written.
+/// A write-only storage texture.
 pub fn write_texture(format: Format) -> BindingType {
     storage_texture(format, Access::WriteOnly)
 }
 
-/// A texture that is read and written.
+/// A read-write storage texture.
 pub fn read_write_texture(format: Format) -> BindingType {
     storage_texture(format, Access::ReadWrite)
 }
@@ -122,7 +122,7 @@ fn storage_texture(format: Format, access: Access) -> BindingType {
     BindingType::StorageTexture { access, format, view_dimension: wgpu::TextureViewDimension::D2 }
 }
 
-/// A texture that is read texel by texel.
+/// A texture for single texel loads.
 pub fn read_texture(unsigned: bool) -> BindingType {
     BindingType::Texture {
         sample_type: if unsigned {
@@ -141,7 +141,7 @@ pub fn window(buffer: &wgpu::Buffer, size: usize) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset: 0, size })
 }
 
-/// A bind group of views and buffers in the order of their bindings.
+/// A bind group of views and buffers, in the order of their bindings.
 pub fn bind(
     device: &wgpu::Device,
     label: &str,
@@ -178,7 +178,7 @@ pub fn compute_pipeline(
     })
 }
 
-/// A pipeline that draws each pixel of the picture by `entry_point` of `module`, which holds `common/screen.wgsl`.
+/// A pipeline that draws all pixels of the picture by `entry_point` of `module`, which includes `common/screen.wgsl`.
 pub fn screen_pipeline(
     device: &wgpu::Device,
     module: &wgpu::ShaderModule,
@@ -205,7 +205,7 @@ pub fn screen_pipeline(
             targets: &[Some(wgpu::ColorTargetState {
                 format: wgpu::TextureFormat::Rgba8Unorm,
                 blend,
-                // What is drawn over it must leave it opaque.
+                // Drawing over the picture must leave it opaque.
                 write_mask: if blend.is_some() { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },
             })],
         }),
@@ -214,7 +214,7 @@ pub fn screen_pipeline(
     })
 }
 
-/// Begins to draw over the picture.
+/// Begins a render pass over the picture.
 pub fn screen_pass<'e>(
     encoder: &'e mut wgpu::CommandEncoder,
     label: &str,
@@ -231,7 +231,7 @@ pub fn screen_pass<'e>(
     })
 }
 
-/// The layout of a pipeline's groups.
+/// The layout of a pipeline with these groups.
 pub fn pipeline_layout(device: &wgpu::Device, label: &str, layouts: &[&BindGroupLayout]) -> wgpu::PipelineLayout {
     let groups: Vec<_> = layouts.iter().map(|l| Some(*l)).collect();
     device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

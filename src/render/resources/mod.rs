@@ -1,4 +1,4 @@
-//! What lives on the device: buffers, textures, targets, layouts of bind groups, and the structs that shaders read.
+//! Resources on the device: buffers, textures, targets, layouts of bind groups, and the structs of the shaders.
 
 pub mod buffers;
 pub mod hierarchy;

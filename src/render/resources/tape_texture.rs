@@ -1,5 +1,5 @@
-//! The tapes of all components in one texture. A tree that stays keeps its place, so nothing is compared and only
-//! new trees are uploaded: they hold megabytes.
+//! The tapes of all components in one texture. A tree that remains keeps its place, so there is nothing to compare and
+//! only new trees are uploaded: trees take megabytes.
 
 use std::collections::HashSet;
 use std::sync::Arc;
@@ -8,11 +8,11 @@ use crate::resources::buffers::DataTexture;
 use crate::resources::layouts::TAPES_FORMAT;
 use isolith_field::CellTree;
 
-/// See the module.
+/// The texture of tapes, see the module.
 #[derive(Debug)]
 pub struct TapeTexture {
     texture: DataTexture,
-    /// In the order of their places.
+    /// The trees in the order of their places.
     placed: Vec<PlacedTree>,
 }
 
@@ -31,18 +31,18 @@ impl PlacedTree {
 }
 
 impl TapeTexture {
-    /// Nothing yet.
+    /// An empty texture.
     pub fn new(device: &wgpu::Device) -> Self {
         Self { texture: DataTexture::new(device, "tapes", TAPES_FORMAT), placed: Vec::new() }
     }
 
-    /// Most words that a device can hold.
+    /// Capacity on this device, in words.
     pub fn most_words(&self, device: &wgpu::Device) -> usize {
         self.texture.most_bytes(device) / self.texture.texel()
     }
 
-    /// Makes the texture hold these trees, which together have room on the device, and forgets all others. Returns
-    /// whether it is another texture.
+    /// Stores these trees, which must fit together on the device, and drops all others. Returns whether the texture was
+    /// replaced.
     pub fn hold(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, trees: &[Option<Arc<CellTree>>]) -> bool {
         let wanted: HashSet<*const CellTree> = trees.iter().flatten().map(Arc::as_ptr).collect();
         self.placed.retain(|placed| wanted.contains(&Arc::as_ptr(&placed.tree)));
@@ -65,12 +65,12 @@ impl TapeTexture {
         grown
     }
 
-    /// Where a tree begins that the texture holds, in words.
+    /// First word of a stored tree.
     pub fn place(&self, tree: &Arc<CellTree>) -> Option<u32> {
         self.placed.iter().find(|placed| Arc::ptr_eq(&placed.tree, tree)).map(|placed| placed.at as u32)
     }
 
-    /// The texture, whole.
+    /// The whole texture as a binding.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         self.texture.binding()
     }
@@ -84,7 +84,7 @@ impl TapeTexture {
         self.placed.last().map_or(0, PlacedTree::end)
     }
 
-    /// Puts all trees one after the other; all have to be uploaded then.
+    /// Moves all trees together; all of them need a new upload then.
     fn move_together(&mut self) {
         let mut at = 0;
         for placed in &mut self.placed {
@@ -94,7 +94,7 @@ impl TapeTexture {
     }
 }
 
-/// Gives a tree the first gap that is long enough, or the place behind all others.
+/// Places a tree into the first gap that is long enough, or after all others.
 fn insert(placed: &mut Vec<PlacedTree>, tree: Arc<CellTree>) {
     let mut at = 0;
     let fits = |(_, next): &(usize, &PlacedTree)| {

@@ -1,28 +1,28 @@
-//! The textures that the passes share, all of the picture's size.
+//! The textures that the passes share, each of the picture's size.
 //!
 //! | target | format | written by | holds |
 //! |---|---|---|---|
-//! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] where nothing is |
+//! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] without a hit |
 //! | visibility | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
-//! | march | R32Float | trace | where a march goes on in the next relaunch |
+//! | march | R32Float | trace | where a march continues in the next relaunch |
 //! | hiz | R32Float | hiz, trace | the farthest depth in each subtile of 4 by 4 pixels; it may be wider |
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
-//! | base color | Rgba16Float | mesh | linear color of meshes |
+//! | hiz | R32Float | hiz, trace | the farthest depth in each subtile of 4 by 4 pixels; the texture may be wider |
 //! | material | Rgba32Uint | surface | of fields: the mixture of materials, see `shaders/common/mixture.wgsl` |
 //! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; where no field is, as visibility |
 //! | color | Rgba8Unorm | shade, debug_view, overlay | the picture, sRGB encoded |
-//! | hardware depth | Depth32Float | mesh | for the meshes among themselves; reversed, 0 is infinity |
+//! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; the value of visibility where no field is |
 //!
-//! `shaders/common/depth.wgsl` is the counterpart of the conventions.
+//! `shaders/common/depth.wgsl` implements the same conventions.
 
 use wgpu::{TextureFormat, TextureUsages};
 
 use crate::frame::plan::{SUBTILES, TILE};
 
-/// Depth where nothing was hit.
+/// Depth of pixels without a hit.
 pub const BACKGROUND: f32 = 1e30;
 
-/// See the module.
+/// The targets of a picture, see the module.
 #[derive(Debug)]
 pub struct Targets {
     /// Width and height in pixels.
@@ -54,7 +54,7 @@ pub struct Targets {
 pub struct Target {
     /// The texture.
     pub texture: wgpu::Texture,
-    /// All of it.
+    /// A view of the whole texture.
     pub view: wgpu::TextureView,
 }
 
@@ -81,20 +81,21 @@ impl Targets {
     }
 }
 
-/// The number, or one that is more and no power of two. lavapipe seems to compile a pipeline once for textures with such sides
-/// and once for all others: 3.8 s within a frame where a coarse picture had 8 tiles to a side for the first time.
+/// The number, or a larger one if it is a power of two. lavapipe seems to compile a pipeline once for textures with
+/// such sides and once for all others: 3.8 s within a frame when a coarse picture had 8 tiles to a side for the first
+/// time.
 fn no_power_of_two(side: u32) -> u32 {
     if side.is_power_of_two() { side.max(2) + 1 } else { side }
 }
 
 impl Target {
-    /// Something to show, as the color target is.
+    /// A target for display, of the same kind as the color target.
     pub fn shown(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let usage = TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC | TextureUsages::RENDER_ATTACHMENT;
         Self::new(device, "shown", size, TextureFormat::Rgba8Unorm, usage)
     }
 
-    /// All of it, as a resource.
+    /// The whole target as a binding.
     pub fn binding(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::TextureView(&self.view)
     }

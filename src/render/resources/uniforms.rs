@@ -1,4 +1,4 @@
-//! What the passes read besides the flat scene. Each struct has a counterpart of the same name in `shaders/common/`.
+//! Input of the passes besides the flat scene. Each struct has a counterpart of the same name in `shaders/common/`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -7,33 +7,33 @@ use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, Component, FlatScene};
 use isolith_geometry::Camera;
 
-/// Who looks, from where. One a frame.
+/// The camera, the background and the lights of a frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuView {
     /// Half the picture's width at distance 1, to the right.
     pub right: [f32; 3],
-    /// Nothing nearer is seen.
+    /// Near limit of visible points.
     pub near: f32,
     /// Half the picture's height at distance 1, upward.
     pub up: [f32; 3],
-    /// Nothing farther is seen.
+    /// Far limit of visible points.
     pub far: f32,
     /// Unit direction of view.
     pub forward: [f32; 3],
     /// Width of a pixel at distance 1.
     pub footprint: f32,
-    /// Background above.
+    /// Color of the background above.
     pub sky: [f32; 3],
-    /// Lights in the buffer.
+    /// Number of lights in the buffer.
     pub light_count: u32,
-    /// Background at the horizon and below.
+    /// Color of the background at the horizon and below.
     pub horizon: [f32; 3],
-    /// Of the picture, in pixels.
+    /// Width of the picture, in pixels.
     pub width: u32,
-    /// Light from everywhere.
+    /// Ambient light.
     pub ambient: [f32; 3],
-    /// Of the picture, in pixels.
+    /// Height of the picture, in pixels.
     pub height: u32,
 }
 
@@ -61,12 +61,12 @@ impl GpuView {
     }
 }
 
-/// A component as it stands to the eye.
+/// A component relative to the eye.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct GpuComponent {
-    /// The eye, or the point that `ray_origin_depth` puts before it, relative to what all positions here are relative to: the component's
-    /// origin, or a point near the eye, see [`Standpoint`].
+    /// The eye, or the point at `ray_origin_depth` before it. It is relative to the same point as all positions here:
+    /// the component's origin, or a point near the eye, see [`Standpoint`].
     pub eye: [f32; 3],
     /// First entry.
     pub first: u32,
@@ -80,36 +80,38 @@ pub struct GpuComponent {
     pub params: u32,
     /// See [`Component::half_space`]; all zero for none.
     pub half_space: [f32; 4],
-    /// Lower corner of its grid of cells; all zero where there is none.
+    /// Lower corner of its grid of cells; all zero if it has none.
     pub grid_low: [f32; 3],
-    /// Side of a cell at the top.
+    /// Side of a top cell.
     pub grid_side: f32,
-    /// Cells at the top along each axis.
+    /// Number of top cells along each axis.
     pub grid_counts: [u32; 3],
-    /// Where its top cells stand in the texture of tapes; the headers of its contents stand before.
+    /// Place of its top cells in the texture of tapes; the headers of their contents precede them.
     pub tapes: u32,
     /// See [`Standpoint::ray_origin_depth`].
     pub ray_origin_depth: f32,
-    /// Where the field is not below the negative of this, two faces in one place may have been rounded apart.
+    /// Rounding bound: where the field is not below the negative of this, rounding may have separated two faces in one
+    /// place.
     pub flush: f32,
-    /// Fills the last eight bytes.
+    /// Padding of eight bytes.
     pub _padding: [u32; 2],
 }
 
-/// What two faces in one place may be rounded apart, relative to the coordinates they are computed from: each by a few
-/// roundings of 2^-24.
+/// Rounding distance of two coincident faces, relative to the coordinates that they are computed from: each moves by a
+/// few roundings of 2^-24.
 const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
-/// See [`GpuComponent::flush`]. Relative to a point near the eye, rounding moves what is seen by no more than is allowed.
+/// See [`GpuComponent::flush`]. Relative to a point near the eye, rounding moves visible points by at most the allowed
+/// amount.
 fn flush(component: &Component, at: &Standpoint) -> f64 {
     let rounding = FLUSH_ROUNDING * component.flush_extent;
     if at.shift == DVec3::ZERO { rounding } else { rounding.min(at.most_moved) }
 }
 
-/// Uniforms at dynamic offsets begin at multiples of this: what every device can do.
+/// Alignment of uniforms at dynamic offsets, valid on every device.
 pub const UNIFORM_STRIDE: usize = 256;
 
-/// The bytes of `all`, each at its multiple of [`UNIFORM_STRIDE`].
+/// The bytes of `all`, each aligned to [`UNIFORM_STRIDE`].
 pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
     const { assert!(size_of::<T>() <= UNIFORM_STRIDE) };
     let mut bytes = vec![0; all.len() * UNIFORM_STRIDE];
@@ -119,13 +121,13 @@ pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
     bytes
 }
 
-/// Where bounds without end are said to end: far beyond any camera, near enough for f32 arithmetic.
+/// Stand-in for an infinite bound: far beyond any camera, but small enough for f32 arithmetic.
 pub const UNBOUNDED: f32 = 1e18;
 
 impl GpuComponent {
-    /// As it stands to the eye.
+    /// The component relative to the eye.
     pub fn new(component: &Component, at: &Standpoint) -> Self {
-        // Rounding must never cut the surface off, and a ray should begin outside.
+        // Rounding must never cut the surface off, and a ray should start outside.
         let slack = (component.bounds.max - component.bounds.min).max_element().min(1e6) * 1e-5 + 1e-9;
         let bounds = component.bounds.expanded(slack).translated(-at.shift);
         let [x, y, z, d] = component.half_space.unwrap_or_default();
@@ -151,7 +153,7 @@ impl GpuComponent {
 }
 
 impl GpuComponent {
-    /// The same with a tree of cells that begins at `tapes` in the texture of tapes.
+    /// Adds a tree of cells that starts at `tapes` in the texture of tapes.
     pub fn with_grid(self, tree: &CellTree, tapes: u32, at: &Standpoint) -> Self {
         let grid = &tree.grids[0];
         let (grid_low, grid_side) = ((grid.low - at.shift).as_vec3().to_array(), grid.side as f32);
@@ -159,7 +161,7 @@ impl GpuComponent {
     }
 }
 
-/// One dispatch: which component, which part of the picture, how far.
+/// Parameters of one dispatch: its component, its part of the picture, its step limit.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 pub struct DispatchParams {
@@ -169,22 +171,22 @@ pub struct DispatchParams {
     pub end: [u32; 2],
     /// Index of the component.
     pub component: u32,
-    /// Steps that an invocation may take.
+    /// Step limit of an invocation.
     pub max_steps: u32,
-    /// 0 begins a march, later relaunches continue it.
+    /// 0 starts a march; later relaunches continue it.
     pub relaunch: u32,
     /// 1 in the last relaunch.
     pub last_relaunch: u32,
-    /// Which list of subtiles.
+    /// Index of its list of subtiles.
     pub list: u32,
-    /// Where its subtiles start.
+    /// First subtile of the list.
     pub first_subtile: u32,
-    /// 1 where a march goes on with the rays that were left, compacted; 0 for all pixels of the subtiles.
+    /// 1 for a march that continues with the compacted list of unfinished rays; 0 for all pixels of the subtiles.
     pub compacted: u32,
-    /// Where the rays that are left stand in the buffer of rays.
+    /// Place of the unfinished rays in the buffer of rays.
     pub rays: u32,
-    /// Where the lists of subtiles with hits begin.
+    /// Place of the lists of subtiles with hits.
     pub hits: u32,
-    /// Fills the last eight bytes.
+    /// Padding of eight bytes.
     pub _padding: u32,
 }

@@ -1,4 +1,4 @@
-//! Scenes to disk and back. A save leaves the old file or the new one, whenever it is cut off.
+//! Loading and saving of scenes. An interrupted save leaves either the old file or the new one.
 
 mod backup;
 mod leftovers;
@@ -30,10 +30,10 @@ pub fn load(path: &Path) -> Result<Scene, FileError> {
     load_stamped(path, &Task::new("Reading")).map(|(scene, _)| scene)
 }
 
-/// Reads a scene file as a part of a task, and returns with it how the file was, to find out later whether it has changed.
-/// One that is canceled ends with an error.
+/// Reads a scene file as a part of a task. Returns the file's stamp too, to find out later whether the file has
+/// changed. A canceled task ends with an error.
 pub fn load_stamped(path: &Path, task: &Task) -> Result<(Scene, Stamp), FileError> {
-    // Looked at first: a file that is changed while it is read counts as changed afterward.
+    // Metadata first: a file that changes while it is read then counts as changed afterward.
     let metadata = fs::metadata(path);
     let bytes = bytes_of(path, MAX_FILE_BYTES)?;
     task.check().map_err(|canceled| FileError::new(path, canceled.to_string()))?;
@@ -44,12 +44,12 @@ pub fn load_stamped(path: &Path, task: &Task) -> Result<(Scene, Stamp), FileErro
     Ok((scene, stamp))
 }
 
-/// The bytes of a file that a shape is to keep.
+/// The bytes of a file to be embedded in the scene.
 pub fn attachment(path: &Path) -> Result<Vec<u8>, FileError> {
     bytes_of(path, MAX_ATTACHMENT_BYTES as u64)
 }
 
-/// The contents of a file. Its size is checked before they are read.
+/// The contents of a file. The size is checked before the contents are read.
 fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let fail = |e: io::Error| FileError::new(path, format!("cannot be read: {}", plain(&e)));
     let metadata = fs::metadata(path).map_err(fail)?;
@@ -58,7 +58,7 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     }
     let mut bytes = Vec::new();
     if metadata.len() <= most {
-        // One byte more than allowed tells of a file that has grown meanwhile.
+        // Reads one byte more than allowed, to detect a file that has grown meanwhile.
         File::open(path).and_then(|f| f.take(most + 1).read_to_end(&mut bytes)).map_err(fail)?;
     }
     if metadata.len() > most || bytes.len() as u64 > most {
@@ -67,16 +67,15 @@ fn bytes_of(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     Ok(bytes)
 }
 
-/// Writes a scene file. What is written is read again and compared before the old file is touched; the
-/// old contents stay beside it as backups: `name~`, and older ones as `name~2~`, `name~3~`. On failure the
-/// file is what it was.
+/// Writes a scene file. It parses and compares the text before it touches the old file. The old contents stay beside
+/// the file as backups: `name~`, and older ones as `name~2~`, `name~3~`. On failure the file is unchanged.
 ///
-/// A link is followed: the file that it leads to is written.
+/// Links are followed: the write goes to the file that the link leads to.
 pub fn save(scene: &Scene, path: &Path) -> Result<(), FileError> {
     save_stamped(scene, path).map(|_| ())
 }
 
-/// The same; returns how the file is now.
+/// Like [`save`]; returns the stamp of the written file.
 pub fn save_stamped(scene: &Scene, path: &Path) -> Result<Stamp, FileError> {
     let json = to_json(scene).map_err(|e| FileError { file: path.display().to_string(), ..e })?;
     if json.len() as u64 > MAX_FILE_BYTES {
@@ -91,7 +90,7 @@ pub fn save_stamped(scene: &Scene, path: &Path) -> Result<Stamp, FileError> {
     Ok(Stamp::of(json.as_bytes(), fs::metadata(path).ok().as_ref()))
 }
 
-/// Equal, but for rotations that writing settles.
+/// Whether both are equal, except for rotations that writing normalizes.
 fn is_same(scene: &Scene, again: &Scene) -> bool {
     let nodes = || scene.nodes().iter().zip(again.nodes());
     scene.environment == again.environment

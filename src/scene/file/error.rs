@@ -1,4 +1,4 @@
-//! What is wrong with a file, and where.
+//! Errors in files: what is wrong, and where.
 
 use std::fmt;
 use std::path::Path;
@@ -13,39 +13,39 @@ use crate::check::Fault;
 pub struct FileError {
     /// Path of the file.
     pub file: String,
-    /// Name and id of the node, where it is about one.
+    /// Name and id of the node, if the error concerns one.
     pub node: Option<String>,
-    /// Path of the value, such as `nodes[3].object.shape.radius`, where it is about one.
+    /// Path of the value, such as `nodes[3].object.shape.radius`, if the error concerns one.
     pub field: Option<String>,
-    /// What is wrong, in plain words.
+    /// The reason, in plain words.
     pub reason: String,
 }
 
 impl FileError {
-    /// About the file as a whole.
+    /// An error about the file as a whole.
     pub fn new(file: &Path, reason: impl Into<String>) -> Self {
         Self { file: file.display().to_string(), node: None, field: None, reason: reason.into() }
     }
 
-    /// The same about a node.
+    /// Adds the node.
     pub(super) fn of_node(mut self, name: &str, id: NodeId) -> Self {
         self.node = Some(format!("{} {id}", clipped(name, 60)).trim_start().to_owned());
         self
     }
 
-    /// The same about a value.
+    /// Adds the path of the value.
     pub(super) fn at(mut self, field: impl Into<String>) -> Self {
         self.field = Some(field.into());
         self
     }
 
-    /// About a value that did not pass, somewhere below `outer`.
+    /// An error about a value below `outer` that failed a check.
     pub(super) fn from_fault(file: &Path, outer: &str, fault: Fault) -> Self {
         Self::new(file, fault.reason).at(format!("{outer}.{}", fault.field))
     }
 }
 
-/// Text from a file, fit for a message: not too long, and without control characters.
+/// Text from a file, prepared for a message: shortened, and without control characters.
 pub(super) fn clipped(text: &str, most: usize) -> String {
     let mut out: String =
         text.chars().take(most).map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c }).collect();

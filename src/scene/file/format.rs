@@ -1,6 +1,6 @@
-//! Version 1 of the file format, as types: what serde reads and writes, and what the schema describes.
+//! Version 1 of the file format, as types for serde and the schema.
 //!
-//! Values that a node shares with most others are left out, so that a file says what is special.
+//! Values that most nodes share are left out, so that a file shows what is special.
 
 use std::fmt;
 use std::marker::PhantomData;
@@ -19,27 +19,27 @@ use crate::{
 };
 use isolith_geometry::Transform;
 
-/// The version that is written; every version up to it is read.
+/// The version that is written; every version up to it can be read.
 pub const VERSION: u64 = 1;
 
 /// A scene of Isolith. Lengths are meters, angles degrees, colors linear; +Y is up.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a scene in braces")]
 pub(super) struct SceneV1 {
-    /// Where this schema is kept, for text editors; nothing to the program.
+    /// Location of this schema, for text editors; the program ignores it.
     #[serde(rename = "$schema", default, skip_serializing)]
     #[expect(dead_code, reason = "read, so that it is no unknown field, and described in the schema")]
     pub schema: Option<String>,
     /// Version of the format.
     #[serde(deserialize_with = "whole::read")]
     pub isolith: u64,
-    /// What surrounds the scene.
+    /// The environment.
     #[serde(default)]
     pub environment: Environment,
     /// Materials, in the artist's order.
     #[serde(default, deserialize_with = "at_most::<_, _, MAX_MATERIALS>")]
     pub materials: Vec<Material>,
-    /// The id that the next new node gets; ids are not used twice.
+    /// The id of the next new node; ids are never reused.
     #[serde(default, deserialize_with = "whole::read")]
     pub next_id: u64,
     /// All nodes: each group is followed by its children, in the artist's order.
@@ -47,25 +47,25 @@ pub(super) struct SceneV1 {
     pub nodes: Vec<NodeV1>,
 }
 
-/// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` says what it is.
+/// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` gives its kind.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a node in braces")]
 pub(super) struct NodeV1 {
     /// Identity; never changes.
     pub id: NodeId,
-    /// Id of the group that holds it; none at the top.
+    /// Id of the group that contains it; none at the top.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parent: Option<NodeId>,
-    /// Name for people.
+    /// Display name.
     #[serde(default)]
     pub name: String,
-    /// Hidden, with all below it, when false.
+    /// Hides the node and its subtree when false.
     #[serde(default = "yes", skip_serializing_if = "is_true")]
     pub visible: bool,
     /// Protected from selection and change in the viewport.
     #[serde(default, skip_serializing_if = "is_false")]
     pub locked: bool,
-    /// Cut away from what precedes it in its group.
+    /// Subtracted from what precedes it in its group.
     #[serde(default, skip_serializing_if = "is_false")]
     pub negative: bool,
     /// How it blends with its siblings.
@@ -77,7 +77,7 @@ pub(super) struct NodeV1 {
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformV1::is_identity")]
     pub transform: TransformV1,
-    /// What it does to itself and all below it, the first one first.
+    /// Modifiers of the node and its subtree, in order of application.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
     pub modifiers: Vec<ModifierSlot>,
     /// Joins its children.
@@ -101,7 +101,7 @@ pub(super) struct NodeV1 {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a transform in braces")]
 pub(super) struct TransformV1 {
-    /// Where the origin goes.
+    /// The position of the origin.
     #[serde(default, skip_serializing_if = "is_origin")]
     pub translation: [f64; 3],
     /// Unit quaternion x, y, z, w.
@@ -171,7 +171,7 @@ impl From<&Node> for NodeV1 {
 }
 
 impl NodeV1 {
-    /// The node, or `None` where it is not of exactly one kind.
+    /// The node, or `None` if it is not of exactly one kind.
     pub fn into_node(self) -> Option<Node> {
         let kinds = [
             self.group.map(NodeKind::Group),
@@ -197,15 +197,15 @@ impl NodeV1 {
         })
     }
 
-    /// The material that it refers to, with the place of the reference.
+    /// The referenced material, with the place of the reference.
     pub fn material(&self) -> Option<(MaterialId, &'static str)> {
         let of_mesh = self.mesh.as_ref().and_then(|m| m.material).map(|id| (id, "mesh.material"));
         self.object.as_ref().map(|o| (o.material, "object.material")).or(of_mesh)
     }
 }
 
-/// The JSON Schema of the format, made from the types that read it. The limits of numbers are not in it;
-/// loading checks them.
+/// The JSON Schema of the format, generated from the types that read it. It does not contain the limits of numbers;
+/// loading checks those.
 pub fn schema() -> serde_json::Value {
     let mut schema = schemars::schema_for!(SceneV1).to_value();
     schema["title"] = "Isolith scene".into();
@@ -215,7 +215,7 @@ pub fn schema() -> serde_json::Value {
     schema
 }
 
-/// A list that ends with an error, before it has grown, where it is longer than `MOST`.
+/// Reads a list. Fails as soon as it has more than `MOST` entries, before it grows further.
 fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
 where
     D: Deserializer<'de>,

@@ -2,15 +2,15 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `format` | the types of version 1, as serde and the schema see them |
+//! | `format` | the types of version 1, for serde and the schema |
 //! | `read` | bytes → checked scene; every message names file, node and field |
-//! | `watch` | how far the reading is, and whether it is to stop |
-//! | `weight` | how much a text holds, before anything is made of it |
+//! | `watch` | progress and cancellation of reading |
+//! | `weight` | counts the values of a text before it is parsed |
 //! | `place` | finds name and id of the node at which reading failed |
 //! | `write` | scene → bytes, always the same, one value per line |
 //! | `atomic` | bytes → file, so that a crash leaves the old file or the new one |
 //!
-//! The version is read first and alone. A later version gets its own `format`, its own reader, and a
+//! The reader parses the version first and alone. A later version gets its own `format`, its own reader, and a
 //! conversion from the one before; readers are never removed.
 
 mod atomic;

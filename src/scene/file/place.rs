@@ -1,4 +1,4 @@
-//! Where in a text reading failed: line and column, and the node around it.
+//! The place in a text where reading failed: line and column, and the node around it.
 
 use std::path::Path;
 
@@ -10,15 +10,15 @@ use super::error::{FileError, clipped};
 use crate::NodeId;
 use crate::attachment::cleaned;
 
-/// Line and column, counted from 1, of what follows these bytes.
+/// Line and column, counted from 1, of the position after these bytes.
 pub(super) fn line_and_column(before: &[u8]) -> (usize, usize) {
     let line = before.iter().filter(|b| **b == b'\n').count() + 1;
     let start = before.iter().rposition(|b| *b == b'\n').map_or(0, |i| i + 1);
     (line, String::from_utf8_lossy(&before[start..]).chars().count() + 1)
 }
 
-/// An error of the JSON reader, in our words: with the field where the path is known, with the node where
-/// the path leads through one.
+/// Translates an error of the JSON reader: adds the field if the path is known, and the node if the path leads through
+/// one.
 pub(super) fn json_error(text: &str, file: &Path, path: Option<&FieldPath>, error: &serde_json::Error) -> FileError {
     let whole = error.to_string();
     let place = format!(" at line {} column {}", error.line(), error.column());
@@ -64,7 +64,7 @@ fn shown(path: &FieldPath) -> String {
     out
 }
 
-/// The field that a message of serde names itself.
+/// The field that serde's message names.
 fn named(reason: &str) -> Option<&str> {
     let heads = ["missing field `", "unknown field `", "duplicate field `"];
     heads.iter().find_map(|head| reason.strip_prefix(head)?.split('`').next())
@@ -78,8 +78,8 @@ fn node_index(path: &FieldPath) -> Option<usize> {
     }
 }
 
-/// The rest of the way to a value of the wrong type: an enum told apart by a `type` inside it is read as a
-/// whole first, and the path ends there. Empty where it cannot be told.
+/// The remaining path to a value of the wrong type. Serde buffers an enum with an inner `type` as a whole before it
+/// parses it, and the path ends there. Empty if the value cannot be identified.
 fn offender(node: &Value, path: &FieldPath, reason: &str) -> String {
     let mut at = node;
     for segment in path.iter().skip(2) {
@@ -91,7 +91,7 @@ fn offender(node: &Value, path: &FieldPath, reason: &str) -> String {
         let Some(next) = next else { return String::new() };
         at = next;
     }
-    // Depth is bounded by the JSON reader; the last entry is next, so the first in the file is found first.
+    // The JSON reader bounds the depth. The last entry is next, so the search finds the first value in the file first.
     let mut open = vec![(String::new(), at)];
     while let Some((way, value)) = open.pop() {
         if !way.is_empty() && is_blamed(value, reason) {
@@ -110,7 +110,7 @@ fn offender(node: &Value, path: &FieldPath, reason: &str) -> String {
     String::new()
 }
 
-/// Whether a message of serde is about this value.
+/// Whether serde's message blames this value.
 fn is_blamed(value: &Value, reason: &str) -> bool {
     let variant = reason.strip_prefix("unknown variant `").and_then(|rest| rest.split('`').next());
     let found = match value {
@@ -128,7 +128,7 @@ fn is_blamed(value: &Value, reason: &str) -> bool {
     reason.strip_prefix("invalid type: ").and_then(|r| r.strip_prefix(&found)).is_some_and(|r| r.starts_with(", "))
 }
 
-/// Whether a message is about the file that is kept here: it cannot be used, or its fields are wrong.
+/// Whether serde's message blames this attachment: it cannot be used, or its fields are wrong.
 fn is_blamed_file(map: &Map<String, Value>, reason: &str) -> bool {
     let field = |name: &str| map.get(name).and_then(Value::as_str);
     match (field("name"), field("base64"), named(reason)) {
@@ -139,10 +139,10 @@ fn is_blamed_file(map: &Map<String, Value>, reason: &str) -> bool {
     }
 }
 
-/// What can be read of the node at `index` before the text goes wrong. Nothing else is kept.
+/// The readable part of the node at `index`, up to the error. Keeps nothing else.
 fn node_at(text: &str, index: usize) -> Value {
     let mut found = Map::new();
-    // An error is expected here: the text is broken, or reading stops early.
+    // An error is expected: the text is broken, or reading stops early.
     let _ = serde_json::Deserializer::from_str(text).deserialize_map(Top { index, found: &mut found });
     Value::Object(found)
 }

@@ -1,7 +1,7 @@
-//! From bytes to a scene, with every check at the border.
+//! From bytes to a scene. All checks happen here, at the border.
 //!
-//! The text is read without ever building a tree of values: first for the version alone, then into that
-//! version's types. No step recurses over what a file nests, and lists are bounded while they grow.
+//! Reading never builds a tree of values: it parses the text for the version alone, then into the types of that
+//! version. No step recurses over the nesting of a file, and lists are bounded while they grow.
 
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
@@ -23,12 +23,12 @@ pub fn parse(bytes: &[u8], file: &Path) -> Result<Scene, FileError> {
     parse_by(bytes, file, &Task::new("Reading"))
 }
 
-/// The same as a part of a task: it learns how far the reading is, and can cancel it.
+/// Like [`parse`], as a part of a task: reports progress to it, and stops when the task is canceled.
 pub(super) fn parse_by(bytes: &[u8], file: &Path, task: &Task) -> Result<Scene, FileError> {
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(FileError::new(file, format!("is larger than {} MiB", MAX_FILE_BYTES >> 20)));
     }
-    // Some editors put a byte order mark in front.
+    // Some editors write a byte order mark.
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let text = std::str::from_utf8(bytes).map_err(|e| {
         let (line, column) = place::line_and_column(&bytes[..e.valid_up_to()]);
@@ -53,14 +53,14 @@ pub(super) fn parse_by(bytes: &[u8], file: &Path, task: &Task) -> Result<Scene, 
     }
 }
 
-/// The version, whatever the rest is.
+/// The version, regardless of the rest.
 fn version(text: &str, file: &Path) -> Result<u64, FileError> {
     #[derive(Deserialize)]
     struct Header {
         isolith: Option<Value>,
     }
     let header: Header = serde_json::from_str(text).map_err(|e| {
-        // Reading on as a scene tells the place better.
+        // Parsing the text as a scene locates the error better.
         typed::<SceneV1>(text, file).err().unwrap_or_else(|| place::json_error(text, file, None, &e))
     })?;
     let Some(version) = header.isolith else {
@@ -72,7 +72,7 @@ fn version(text: &str, file: &Path) -> Result<u64, FileError> {
     })
 }
 
-/// The text as one version's types.
+/// Parses the text into the types of one version.
 fn typed<'a, T: Deserialize<'a>>(text: &'a str, file: &Path) -> Result<T, FileError> {
     let mut reader = serde_json::Deserializer::from_str(text);
     let value = serde_path_to_error::deserialize(&mut reader).map_err(|e| {
@@ -100,7 +100,7 @@ fn scene_from_v1(scene: SceneV1, file: &Path) -> Result<Scene, FileError> {
     tables.map_err(|e| FileError::new(file, e.to_string()))
 }
 
-/// A node with its own values checked.
+/// The node with its own values checked.
 fn checked(node: NodeV1, i: usize, file: &Path) -> Result<Node, FileError> {
     let (name, id) = (node.name.clone(), node.id);
     let kinds = "must hold exactly one of group, object, mesh, light, camera";
@@ -130,7 +130,7 @@ fn check_materials(materials: &[Material], file: &Path) -> Result<(), FileError>
     Ok(())
 }
 
-/// Ids are unique; parents and materials exist, and parents are groups.
+/// Checks that ids are unique, that parents and materials exist, and that parents are groups.
 fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
     let materials: HashSet<_> = scene.materials.iter().map(|m| m.id).collect();
     let mut holds: HashMap<NodeId, bool> = HashMap::with_capacity(scene.nodes.len());
@@ -161,8 +161,8 @@ fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
     Ok(())
 }
 
-/// The indices of the nodes in depth-first pre-order. Siblings keep the order of the file, so a file that
-/// is in pre-order stays as it is. Parents exist.
+/// The indices of the nodes in depth-first pre-order. Siblings keep the order of the file, so a file in pre-order stays
+/// unchanged. All parents exist.
 fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
     let mut children: HashMap<Option<NodeId>, Vec<usize>> = HashMap::new();
     for (i, node) in nodes.iter().enumerate().rev() {
@@ -170,8 +170,8 @@ fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
     }
     let mut order = Vec::with_capacity(nodes.len());
     let mut reached = vec![false; nodes.len()];
-    // Nodes still to visit with their depth; the last is next. An entry is taken out when it is used, so
-    // each node is visited once.
+    // Nodes still to visit, with their depth; the last is next. Visiting a node takes its entry out, so each node is
+    // visited once.
     let mut open: Vec<(usize, usize)> =
         children.remove(&None).unwrap_or_default().into_iter().map(|i| (i, 1)).collect();
     while let Some((i, depth)) = open.pop() {
@@ -195,7 +195,7 @@ fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
     }
 }
 
-/// The first node of the circle into which the parents of `start` lead.
+/// The first node of the cycle that the parents of `start` lead into.
 fn on_cycle(nodes: &[NodeV1], start: usize) -> usize {
     let index: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(i, n)| (n.id, i)).collect();
     let mut seen = HashSet::new();

@@ -1,5 +1,5 @@
-//! Lets the task on whose thread a scene is read know how far it is, and stops the reading where it was canceled: asked once
-//! for each entry of the file, because the JSON reader has no place for a task of its own.
+//! Progress and cancellation of reading a scene. The JSON reader cannot carry a task, so a thread-local holds it; each
+//! entry of the file reports to it and asks it for cancellation.
 
 use std::cell::RefCell;
 
@@ -7,13 +7,13 @@ use serde::de::Error;
 
 use isolith_jobs::Task;
 
-/// Progress of a task when the bytes are there, and when the scene is. What its session makes of it comes after that.
+/// Progress of a task when the bytes are read, and when the scene is parsed. The rest is the session's.
 pub(super) const BYTES_READ: f32 = 0.1;
 pub(super) const PARSED: f32 = 0.5;
 
 struct Watched {
     task: Task,
-    /// Nodes in the file, and those read so far.
+    /// Nodes in the file, and nodes read so far.
     nodes: usize,
     read: usize,
 }
@@ -22,7 +22,7 @@ thread_local! {
     static WATCHED: RefCell<Option<Watched>> = const { RefCell::new(None) };
 }
 
-/// Reads with the task watching; `nodes` is how many there are.
+/// Runs `read` with this task watching; `nodes` is the number of nodes in the file.
 pub(super) fn within<T>(task: &Task, nodes: usize, read: impl FnOnce() -> T) -> T {
     struct Ended;
     impl Drop for Ended {
@@ -35,7 +35,7 @@ pub(super) fn within<T>(task: &Task, nodes: usize, read: impl FnOnce() -> T) -> 
     read()
 }
 
-/// An entry of a list was read; an error where there is no reason to go on.
+/// Reports that an entry of a list was read. Fails if the task is canceled.
 pub(super) fn entry<E: Error>(is_node: bool) -> Result<(), E> {
     WATCHED.with_borrow_mut(|watched| {
         let Some(Watched { task, nodes, read }) = watched else { return Ok(()) };

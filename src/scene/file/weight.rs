@@ -1,29 +1,29 @@
-//! How much a text holds, before anything is made of it. An entry that is told apart by its `type` is read as a whole first,
-//! and a list of a million numbers takes twenty times its text then.
+//! Counts the values in a text before it is parsed. Serde buffers an entry with an inner `type` as a whole, and a list
+//! of a million numbers then takes twenty times the size of its text.
 
 use serde::Deserialize;
 
 use crate::limits::MAX_ENTRY_VALUES;
 
-/// An entry of a file that holds too much.
+/// An entry of a file with too many values.
 #[derive(Debug)]
 pub(super) struct TooMuch {
-    /// Where in the text it becomes too much, in bytes.
+    /// Offset in the text at which the entry exceeds the limit, in bytes.
     pub at: usize,
-    /// Where in the file the entry is.
+    /// Path of the entry in the file.
     pub field: String,
-    /// Its name and id, as far as they stand in it.
+    /// Its name and id, as far as the text contains them.
     pub name: String,
     pub id: Option<u64>,
 }
 
-/// Looks for an entry with more than [`MAX_ENTRY_VALUES`] values in it: a node, a material, or anything else at the top.
-/// Returns how many nodes there are.
+/// Searches for an entry with more than [`MAX_ENTRY_VALUES`] values: a node, a material, or any other entry at the top.
+/// Returns the number of nodes.
 pub(super) fn weigh(text: &str) -> Result<usize, TooMuch> {
     let bytes = text.as_bytes();
     let mut depth = 0_usize;
     let (mut key, mut is_key_next) = ("", false);
-    // In a list of entries: which one, and where it starts.
+    // In a list of entries: the index of the current entry, and its start.
     let (mut index, mut start) = (0, 0);
     let (mut values, mut nodes) = (0, 0);
     let mut i = 0;
@@ -66,7 +66,7 @@ pub(super) fn weigh(text: &str) -> Result<usize, TooMuch> {
     Ok(nodes)
 }
 
-/// Where the string ends whose first letter is at `from`: at its closing quotes, or at the end of the text.
+/// The end of the string whose first letter is at `from`: its closing quote, or the end of the text.
 fn string_end(bytes: &[u8], from: usize) -> usize {
     let mut i = from;
     loop {
@@ -77,12 +77,12 @@ fn string_end(bytes: &[u8], from: usize) -> usize {
         if bytes[i] == b'"' {
             return i;
         }
-        // What is escaped is no end.
+        // An escaped quote does not end the string.
         i += 2;
     }
 }
 
-/// The name and the id of the entry with which a text starts; the rest of it is skipped.
+/// The name and the id of the entry at the start of a text; skips the rest of the entry.
 fn named(text: &str) -> (String, Option<u64>) {
     #[derive(Default, Deserialize)]
     #[serde(default)]
@@ -109,7 +109,7 @@ mod tests {
         assert_eq!((&*found.field, &*found.name, found.id), ("nodes[1]", "a, \"b\" [", Some(2)));
         let found = weigh(&format!(r#"{{"isolith": {}}}"#, list(2 * MAX_ENTRY_VALUES))).unwrap_err();
         assert_eq!(found.field, "isolith");
-        // Commas in strings are letters.
+        // Commas inside strings do not count as separators.
         assert!(weigh(&scene(&format!(r#"{{"name": "{}"}}"#, "[,".repeat(MAX_ENTRY_VALUES)))).is_ok());
         for broken in ["", "]", "{\"", "{\"a\\", "[[[[", "}}}}{\"nodes\":[,"] {
             assert!(weigh(broken).is_ok(), "{broken}");

@@ -10,10 +10,10 @@ use super::FileError;
 use super::format::{NodeV1, SceneV1, VERSION};
 use crate::{Material, Scene, check};
 
-/// The text of a scene. Floating-point numbers are the shortest that read back as the same number, so
-/// reading and writing again gives the same bytes.
+/// The text of a scene. Floating-point numbers use the shortest form that reads back as the same number, so reading and
+/// writing again gives the same bytes.
 ///
-/// Fails where a value is not finite or out of its limits: what is written can be read.
+/// Fails if a value is not finite or out of its limits, so that every written file can be read.
 pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     let file = Path::new("scene");
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
@@ -39,16 +39,16 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     String::from_utf8(out).map_err(|e| FileError::new(file, e.to_string()))
 }
 
-/// Every value of an object stands on a line of its own, and so does every object and every list in a list. A list
-/// of numbers stays on one line: a point or a color is one value.
+/// Puts every value of an object on its own line, and every object and list within a list too. A list of numbers stays
+/// on one line: a point or a color is one value.
 #[derive(Default)]
 struct OneValuePerLine {
     indent: usize,
-    /// For each list that is open, whether it is itself an entry of a list.
+    /// For each open list: whether it is itself an entry of a list.
     nested: Vec<bool>,
-    /// Whether what closes next holds lines of its own.
+    /// Whether the next closing bracket ends a value of several lines.
     has_lines: bool,
-    /// Whether what comes next is an entry of a list.
+    /// Whether the next value is an entry of a list.
     is_entry: bool,
 }
 

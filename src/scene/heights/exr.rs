@@ -1,4 +1,4 @@
-//! OpenEXR images, with the channels that stand for a height.
+//! OpenEXR images: selects the channels that make up the height.
 
 use std::io::Cursor;
 
@@ -9,13 +9,13 @@ use image::{ImageBuffer, Luma};
 
 use crate::decode_budget::{check_size, spend};
 
-/// The weights of red, green and blue in the brightness, as those of Rec. 709, which is what EXR has where it says nothing.
+/// The weights of red, green and blue in the luminance: those of Rec. 709, the default of EXR.
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// An image of brightness.
+/// A luminance image.
 type Gray = ImageBuffer<Luma<f32>, Vec<f32>>;
 
-/// Brightness from 0 to 1 within the display window; black where there is no data. And how many pixels were read.
+/// Luminance from 0 to 1 within the display window, black where there is no data; and the number of decoded pixels.
 pub fn read(bytes: &[u8]) -> Result<(Gray, u64), String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
     let (mut pixels, mut size) = (0_u64, 0_u64);
@@ -60,7 +60,7 @@ pub fn read(bytes: &[u8]) -> Result<(Gray, u64), String> {
         }
         let i = y as usize * layer.size.0 + x as usize;
         let sum: f64 = sources.iter().map(|(samples, weight)| sample(samples, i) * weight).sum();
-        // What is no number is 0.
+        // NaN becomes 0.
         if sum > 0.0 { sum.min(1.0) as f32 } else { 0.0 }
     };
     let image = ImageBuffer::from_fn(window.size.0 as u32, window.size.1 as u32, |x, y| Luma([value(x, y)]));
@@ -75,8 +75,8 @@ fn sample(samples: &FlatSamples, i: usize) -> f64 {
     }
 }
 
-/// The channels of a layer that make the brightness, with their weights: Y, or R, G and B, or the only one besides alpha.
-/// What stands before the last dot is the name of a layer inside of the file.
+/// The channels of a layer that make up the luminance, with their weights: Y, or R, G and B, or the only one besides
+/// alpha. The part of a channel's name before the last dot is the name of a layer within the file.
 fn sources(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<Vec<(&FlatSamples, f64)>> {
     let name = |channel: &AnyChannel<FlatSamples>| {
         let whole = channel.name.to_string();

@@ -1,6 +1,6 @@
-//! What is made of a table of parameters.
+//! Macros that define types and their code from a table of parameters.
 
-/// The key of a field in files: its name, unless the table gives another.
+/// The key of a field in files: its name, unless the table specifies another.
 macro_rules! param_name {
     ($field:ident) => {
         stringify!($field)
@@ -11,7 +11,7 @@ macro_rules! param_name {
 }
 pub(crate) use param_name;
 
-/// The rows of a table, made once.
+/// The rows of a table, built once.
 macro_rules! param_rows {
     ($( $(#[doc = $help:literal])+ [$name:expr] $type:ty = $default:expr, $spec:expr; )*) => {{
         static TABLE: std::sync::LazyLock<Vec<$crate::params::Param>> = std::sync::LazyLock::new(|| {
@@ -25,7 +25,7 @@ macro_rules! param_rows {
 }
 pub(crate) use param_rows;
 
-/// A struct whose fields are parameters. Fields in brackets are not; they come first.
+/// Defines a struct whose fields are parameters. Fields in brackets are not parameters; they come first.
 ///
 /// ```text
 /// param_struct! {
@@ -115,7 +115,7 @@ macro_rules! param_table {
 }
 pub(crate) use param_table;
 
-/// An enum whose variants have parameters, and the enum of its kinds, which have none.
+/// Defines an enum whose variants have parameters, and the enum of its kinds, without parameters.
 macro_rules! param_kinds {
     (
         $(#[$meta:meta])* pub enum $name:ident;
@@ -140,12 +140,12 @@ macro_rules! param_kinds {
             /// Every kind, in the order of the user interface.
             pub const ALL: &[Self] = &[$( Self::$variant, )+];
 
-            /// Name for people.
+            /// Display name.
             pub fn label(self) -> &'static str {
                 match self { $( Self::$variant => $label, )+ }
             }
 
-            /// What it is or does, for people.
+            /// The help text.
             pub fn help(self) -> &'static str {
                 match self { $( Self::$variant => concat!($( $doc, )+).trim_ascii(), )+ }
             }
@@ -176,8 +176,8 @@ macro_rules! param_kinds {
                 values
             }
 
-            /// Sets the parameter at `index`; false, and nothing changed, where there is none or the value is of another
-            /// type.
+            /// Sets the parameter at `index`. Returns false and changes nothing if there is none or the value is of
+            /// another type.
             pub fn set_value(&mut self, index: usize, value: $crate::params::ParamValue) -> bool {
                 let param = self.kind().params().get(index);
                 param.is_some_and(|param| $crate::params::Params::set(self, param.name, value))
@@ -191,7 +191,7 @@ macro_rules! param_kinds {
 }
 pub(crate) use param_kinds;
 
-/// The parameters of an enum whose tables are at hand.
+/// Implements the parameters of an enum whose tables exist already.
 macro_rules! param_variants {
     ($name:ident by |$value:ident| $table:expr; { $( $owner:ident::$variant:ident { $( $param:ident, )* } )+ }) => {
         #[allow(unused_variables, reason = "variants without parameters")]
@@ -242,7 +242,7 @@ macro_rules! param_variants {
 }
 pub(crate) use param_variants;
 
-/// Lets a struct with parameters be a part of another one.
+/// Makes a struct with parameters usable as a part of another one.
 macro_rules! nested_params {
     ($name:ident) => {
         impl $crate::params::ParamField for $name {
@@ -274,7 +274,7 @@ macro_rules! nested_params {
 }
 pub(crate) use nested_params;
 
-/// Lets an enum with parameters be a part of a struct. Its variant is the parameter `type`, as in files.
+/// Makes an enum with parameters usable as a part of a struct. Its variant is the parameter `type`, as in files.
 macro_rules! nested_variants {
     ($name:ident, $label:literal, $help:literal) => {
         impl $name {
@@ -345,7 +345,7 @@ macro_rules! nested_variants {
 }
 pub(crate) use nested_variants;
 
-/// Lets an enum without fields be a parameter that is chosen: it needs `ALL`, `label` and `help`.
+/// Makes an enum without fields usable as a choice parameter. It needs `ALL`, `label` and `help`.
 macro_rules! choices {
     ($name:ident) => {
         impl $crate::params::ParamField for $name {

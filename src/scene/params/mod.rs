@@ -1,9 +1,9 @@
 //! Parameters: the values of a scene that have a name, limits, a default and a help text.
 //!
-//! Each type has one table, and a parameter is one row of it: `name: type = default, limits;` with the help text as the comment
-//! above. The file's checks, the inspector, multi-edit, attachments and [`super::ParamPath`] follow from the row.
-//! [`param_struct`] and [`param_kinds`] define the type with its table; [`param_table`] and [`param_variants`] add a table to
-//! a type that stands elsewhere.
+//! Each type has one table, and a parameter is one row of it: `name: type = default, limits;` with the help text as the
+//! comment above. The checks of files, the inspector, multi-edit, attachments and [`super::ParamPath`] follow from the
+//! row. [`param_struct`] and [`param_kinds`] define the type with its table; [`param_table`] and [`param_variants`] add
+//! a table to a type defined elsewhere.
 
 use std::borrow::Cow;
 
@@ -22,39 +22,39 @@ pub(crate) use define::{
 };
 pub use value::{LIST_COLUMNS, List, ParamValue};
 
-/// What is known about a parameter.
+/// The description of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
     /// Its key in files, below the part that it belongs to.
     pub name: &'static str,
-    /// Its name for people.
+    /// Its display name.
     pub label: Cow<'static, str>,
-    /// One sentence for people.
+    /// Its help text: one sentence.
     pub help: &'static str,
-    /// Accepted and offered ranges, with the unit; for a text, those of its length. Without meaning for the rest.
+    /// Accepted and offered ranges, with the unit; for a text, those of its length. Unused by other types.
     pub limits: Limits,
-    /// The value that a new object has.
+    /// The value in a new object.
     pub default: ParamValue,
-    /// What can be chosen, for a value that is a choice.
+    /// The choices, if the value is one.
     pub choices: &'static [Choice],
     /// Whether its three numbers are a linear color.
     pub is_color: bool,
-    /// Whether it may change with time: a change neither reads a file nor makes another structure.
+    /// Whether it may change with time: a change neither reads a file nor alters the structure.
     pub animatable: bool,
 }
 
-/// One of the values that a parameter can be chosen from.
+/// One of the values of a choice parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// Its name in files.
     pub key: String,
-    /// Its name for people.
+    /// Its display name.
     pub label: &'static str,
-    /// One sentence for people.
+    /// Its help text: one sentence.
     pub help: &'static str,
 }
 
-/// The last column of a table: limits, and what is unusual about the parameter.
+/// The last column of a table: limits, and special properties of the parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct ParamSpec {
     limits: Limits,
@@ -70,7 +70,7 @@ impl From<Limits> for ParamSpec {
 }
 
 impl Limits {
-    /// These limits, for a parameter that people know by another name than files do.
+    /// These limits, with a display name that differs from the name in files.
     pub fn labeled(self, label: &'static str) -> ParamSpec {
         ParamSpec::from(self).labeled(label)
     }
@@ -87,39 +87,39 @@ impl Limits {
 }
 
 impl ParamSpec {
-    /// The same for a parameter that people know by another name than files do.
+    /// The same with a display name that differs from the name in files.
     pub fn labeled(self, label: &'static str) -> Self {
         Self { label: Some(label), ..self }
     }
 }
 
-/// Takes what stands before a parameter's name, the parameter, and its value.
+/// Receives the prefix of a parameter's name, the parameter, and its value.
 pub type Visit<'v> = dyn FnMut(&str, &'static Param, ParamValue) + 'v;
 
-/// What has parameters.
+/// A type with parameters.
 pub trait Params {
     /// The rows of its table.
     fn params(&self) -> &'static [Param];
 
-    /// Visits every parameter that it has now, in the table's order, those of its parts included; `prefix` stands before
-    /// their names.
+    /// Visits every parameter that the value has now, in the order of the table, including those of its parts; `prefix`
+    /// precedes their names.
     fn visit(&self, prefix: &str, visit: &mut Visit<'_>);
 
-    /// What is known about the parameter of this name.
+    /// The description of the parameter of this name.
     fn find(&self, name: &str) -> Option<&'static Param>;
 
     /// The value of the parameter of this name.
     fn get(&self, name: &str) -> Option<ParamValue>;
 
-    /// Sets the parameter of this name; false, and nothing changed, where there is none or the value is of another type.
-    /// Limits are the business of [`super::check`].
+    /// Sets the parameter of this name. Returns false and changes nothing if there is none or the value is of another
+    /// type. [`super::check`] checks the limits.
     fn set(&mut self, name: &str, value: ParamValue) -> bool;
 }
 
-/// Where a field stands in its table.
+/// The position of a field in its table.
 #[derive(Clone, Copy)]
 pub struct ParamSlot<'a> {
-    /// Before the field's name.
+    /// The prefix of the field's name.
     pub prefix: &'a str,
     /// The field's name.
     pub name: &'static str,
@@ -128,19 +128,19 @@ pub struct ParamSlot<'a> {
 }
 
 impl ParamSlot<'_> {
-    /// What stands before the names of what is below the field.
+    /// The prefix for the names of parameters below the field.
     pub fn inner_prefix(&self) -> String {
         format!("{}{}.", self.prefix, self.name)
     }
 }
 
-/// A type that a field of a table can have: one value, or a part with parameters of its own. `below` is what follows the
-/// field's name: nothing for the field itself, or a dot and a name.
+/// A possible type of a field in a table: one value, or a part with parameters of its own. `below` is the remainder
+/// after the field's name: empty for the field itself, or a dot and a name.
 pub trait ParamField: Sized {
-    /// Whether such a value may change with time.
+    /// Whether a value of this type may change with time.
     const ANIMATABLE: bool = true;
 
-    /// The values to choose from; none for most types.
+    /// The choices; empty for most types.
     fn choices() -> &'static [Choice] {
         &[]
     }
@@ -148,10 +148,10 @@ pub trait ParamField: Sized {
     /// The value; `None` for a part.
     fn to_value(&self) -> Option<ParamValue>;
 
-    /// The field of this value, where it is of the right type.
+    /// A field of this value, if the value is of the right type.
     fn from_value(value: ParamValue) -> Option<Self>;
 
-    /// From a file.
+    /// Reads the field from a file.
     fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error>
     where
         Self: Deserialize<'de>,
@@ -183,7 +183,7 @@ pub trait ParamField: Sized {
     }
 }
 
-/// A row of a table; `None` for a part, which has a table of its own.
+/// A row of a table; `None` for a part, which has its own table.
 pub(super) fn row<T: ParamField>(
     name: &'static str,
     help: &'static str,
@@ -208,7 +208,7 @@ pub(super) fn named(table: &'static [Param], name: &str) -> Option<&'static Para
     table.iter().find(|param| param.name == name)
 }
 
-/// What of a name follows the field: nothing, or a dot and the rest.
+/// The remainder of a name after the field: empty, or a dot and the rest.
 pub(super) fn below<'n>(name: &'n str, field: &str) -> Option<&'n str> {
     name.strip_prefix(field).filter(|rest| rest.is_empty() || rest.starts_with('.'))
 }
@@ -220,7 +220,7 @@ fn sentence_case(name: &str) -> String {
     chars.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + chars.as_str())
 }
 
-/// The choices of an enum without fields, by the names that files have for them.
+/// The choices of an enum without fields, with their keys in files.
 pub(super) fn choices_of<T: Copy + Serialize>(
     all: &[T],
     label: impl Fn(T) -> &'static str,
@@ -232,20 +232,20 @@ pub(super) fn choices_of<T: Copy + Serialize>(
 
 /// An enum whose variants have parameters.
 pub trait Variants: Params + Serialize + Sized {
-    /// Each variant with its default parameters, its name and its help text, for people.
+    /// Each variant with its default parameters, its display name and its help text.
     fn variants() -> Vec<(Self, &'static str, &'static str)>;
-    /// The place of its variant among them.
+    /// The index of its variant among them.
     fn variant(&self) -> usize;
 }
 
-/// The variants as choices, by their tags in files.
+/// The variants as choices, with their tags in files as keys.
 pub(super) fn tags<T: Variants>() -> Vec<Choice> {
     let tag = |value: &T| serde_json::to_value(value).ok()?.get("type")?.as_str().map(str::to_owned);
     let choice = |(value, label, help)| Choice { key: tag(&value).unwrap_or_default(), label, help };
     T::variants().into_iter().map(choice).collect()
 }
 
-/// Another variant, with the values of all parameters that both have.
+/// Changes to another variant and keeps the values of all parameters that both have.
 pub(super) fn change_variant<T: Variants>(this: &mut T, index: usize) {
     let mut new = T::variants().swap_remove(index).0;
     this.visit("", &mut |prefix, param, value| {

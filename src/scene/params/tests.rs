@@ -1,4 +1,4 @@
-//! The tables against what is made of them.
+//! Tests of the tables against the code generated from them.
 
 use super::*;
 use crate::{
@@ -35,7 +35,7 @@ fn scene() -> Scene {
     scene
 }
 
-/// Another value of the same type that passes the checks wherever one can.
+/// Another value of the same type; passes the checks wherever one can.
 fn another(param: &Param, value: &ParamValue) -> Option<ParamValue> {
     let number = |v: f64| if param.limits.accept(v + 1.0) { v + 1.0 } else { 0.5 * (v + param.limits.hard[0]) };
     Some(match value {
@@ -53,7 +53,7 @@ fn another(param: &Param, value: &ParamValue) -> Option<ParamValue> {
             ParamValue::List(list)
         }
         ParamValue::Text(text) => ParamValue::Text(format!("b{text}")),
-        // None is a value too; other files are in the tests of attachments.
+        // No file is a value too; the tests of attachments cover other files.
         ParamValue::File(_) => return None,
     })
 }
@@ -104,7 +104,7 @@ fn every_parameter_has_a_label_a_help_text_and_a_default_of_its_type_that_is_all
         assert!(!param.label.is_empty() && !param.help.is_empty(), "{path}");
         assert_eq!(std::mem::discriminant(&param.default), std::mem::discriminant(&value), "{path}");
         assert_eq!(matches!(value, ParamValue::Choice(_)), !param.choices.is_empty(), "{path}");
-        // A mesh has no file before one is chosen.
+        // A mesh has no file before the artist chooses one.
         if !path.to_string().ends_with(".mesh.path") {
             let changed = with(&scene, &path, param.default.clone()).expect("of the right type");
             assert_eq!(checked(&changed, &path), Ok(()), "{path}");
@@ -112,7 +112,7 @@ fn every_parameter_has_a_label_a_help_text_and_a_default_of_its_type_that_is_all
     }
 }
 
-/// What the file's checks say of what has the parameter.
+/// Runs the checks of files on the owner of the parameter.
 fn checked(scene: &Scene, path: &ParamPath) -> Result<(), check::Fault> {
     match path.owner {
         ParamOwner::Node(id, _) => check::node(scene.node(id).expect("there")),
@@ -147,7 +147,7 @@ fn the_limits_of_the_tables_are_those_that_files_are_held_to() {
                 }
                 _ => continue,
             };
-            // The same number is within the limits of a magnitude, with a sign.
+            // With a sign, the same number is within the limits of a magnitude.
             if param.limits.accept(bad) {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! The values that parameters have, and the types that hold one.
+//! The values of parameters, and the types that hold one.
 
 use std::fmt;
 
@@ -32,13 +32,13 @@ pub enum ParamValue {
     Flag(bool),
     /// On or off for each axis.
     Flags([bool; 3]),
-    /// One of the choices of the parameter, by its name in files.
+    /// One of the choices of the parameter, by its key in files.
     Choice(&'static str),
     /// A unit quaternion.
     Rotation(DQuat),
     /// Points.
     List(List),
-    /// Letters.
+    /// Text.
     Text(String),
     /// A file.
     File(Attached),
@@ -47,7 +47,7 @@ pub enum ParamValue {
 /// Points as rows of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct List {
-    /// The rows; places behind the last column are 0.
+    /// The rows; entries behind the last column are 0.
     pub rows: Vec<[f64; LIST_COLUMNS]>,
     /// The names of the columns.
     pub columns: &'static [&'static str],
@@ -56,14 +56,14 @@ pub struct List {
 }
 
 impl List {
-    /// The limits of the numbers in a column, where those of the parameter are `limits`.
+    /// The limits of the numbers in a column, given the `limits` of the parameter.
     pub fn limits(&self, column: usize, limits: &Limits) -> Limits {
         if column < 3 { *limits } else { SIZE }
     }
 }
 
 impl ParamValue {
-    /// One of the three elements of a value for each axis or channel.
+    /// One of the three elements of a value per axis or channel.
     pub fn element(&self, index: usize) -> Option<Self> {
         match self {
             Self::Vector(v) => v.to_array().get(index).map(|v| Self::Scalar(*v)),
@@ -73,7 +73,7 @@ impl ParamValue {
         }
     }
 
-    /// The same with another value for one of its three elements; `None` where it has no such element of that type.
+    /// The same value with one of its three elements replaced; `None` if it has no such element of that type.
     pub fn with_element(&self, index: usize, value: &Self) -> Option<Self> {
         let mut new = self.clone();
         match (&mut new, value) {
@@ -87,7 +87,7 @@ impl ParamValue {
 }
 
 impl fmt::Display for ParamValue {
-    /// As in files, but for points and files, which are only counted and named.
+    /// As in files, but points are only counted and attachments only named.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scalar(v) => write!(f, "{v}"),
@@ -153,7 +153,7 @@ impl ParamField for String {
     }
 }
 
-/// What is kept as a file.
+/// Implements the field for a type of attachment.
 macro_rules! file {
     ($content:ty, $kind:ident) => {
         impl ParamField for Attachment<$content> {

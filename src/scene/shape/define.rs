@@ -1,4 +1,4 @@
-//! What is made of the table of shapes.
+//! Macros that define the types of shapes from their table.
 
 macro_rules! shapes {
     ($( $(#[doc = $doc:literal])+ $name:ident = $function:ident $(with $data:ident)?, $label:literal {
@@ -10,7 +10,7 @@ macro_rules! shapes {
             #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
             pub enum Shape;
 
-            /// Which shape, without its parameters. The number is the code that the GPU reads.
+            /// The kind of a shape, without its parameters. The number is the code that the GPU reads.
             #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
             #[repr(u32)]
             pub enum ShapeKind;
@@ -26,7 +26,7 @@ macro_rules! shapes {
                 match self { $( Self::$name => stringify!($function), )+ }
             }
 
-            /// The shape of these packed parameters, see [`Shape::packed`]; nothing for one with data.
+            /// The shape of these packed parameters, see [`Shape::packed`]; `None` for one with data.
             #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
             pub fn unpacked(self, packed: &[f64; SHAPE_FLOATS]) -> Option<Shape> {
                 if self.has_data() {
@@ -36,12 +36,13 @@ macro_rules! shapes {
                 Some(match self { $( Self::$name => Shape::$name { $( $param: Packed::unpack(&mut rest), )* }, )+ })
             }
 
-            /// How many rows of four numbers it takes: its parameters, and behind them where its data are.
+            /// Rows of four numbers in total: those of its parameters, and for a shape with data the location of its
+            /// payload.
             pub fn rows(self) -> usize {
                 self.parameter_rows() + usize::from(self.has_data())
             }
 
-            /// How many rows of four numbers its parameters take, see [`Shape::packed`].
+            /// Rows of four numbers for its parameters, see [`Shape::packed`].
             pub fn parameter_rows(self) -> usize {
                 if self.has_data() {
                     return DATA_PARAMETER_ROWS;
@@ -49,12 +50,12 @@ macro_rules! shapes {
                 match self { $( Self::$name => const { (0_usize $( + <$type as Packed>::FLOATS )*).div_ceil(4) }, )+ }
             }
 
-            /// Whether it is evaluated from numbers made of its parameters, with further rows behind them.
+            /// Whether it is evaluated from a payload derived from its parameters.
             pub fn has_data(self) -> bool {
                 match self { $( Self::$name => false $( || stringify!($data) == "data" )?, )+ }
             }
 
-            /// Whether its field is found by iterating, as that of a fractal.
+            /// Whether its field is computed by iteration, like that of a fractal.
             pub fn is_iterated(self) -> bool {
                 self.params().iter().any(|param| param.name == "iterations")
             }
@@ -66,9 +67,9 @@ macro_rules! shapes {
         }
 
         impl Shape {
-            /// The parameters in order, as the evaluators read them; unused places are 0. An angle is its sine and
-            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one. Of a shape with
-            /// data all are 0: `flat::PreparedShape` makes what is read instead.
+            /// The parameters in order, as the evaluators read them; unused places are 0. An angle becomes its sine and
+            /// cosine; a number of sides is followed by the cosine and sine of half the angle of one side. For a shape
+            /// with data all are 0: `field::PreparedShape` makes the numbers that the evaluators read.
             #[allow(unused_mut, unused_variables, reason = "shapes without parameters")]
             pub fn packed(&self) -> [f64; SHAPE_FLOATS] {
                 let mut out = [0.0; SHAPE_FLOATS];
@@ -81,7 +82,7 @@ macro_rules! shapes {
             }
         }
 
-        /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` behind those that have data.
+        /// Calls `$callback!(Name = sdf_name, …)` with every shape; `with data` follows those that have data.
         #[macro_export]
         macro_rules! for_each_shape {
             ($callback:ident) => { $callback! { $( $name = $function $(with $data)?, )+ } };

@@ -1,4 +1,4 @@
-//! How far shapes reach, and what scaling makes of them.
+//! Bounds of shapes, and the effect of scaling on them.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ const INFINITY: f64 = f64::INFINITY;
 impl Shape {
     /// A box around the surface, in local space.
     pub fn bounds(&self) -> Aabb {
-        // A body of revolution: its radius, its lowest and its highest point.
+        // The bounds of a solid of revolution, from its radius, its lowest and its highest point.
         let turned = |r: f64, low: f64, high: f64| Aabb::new(DVec3::new(-r, low, -r), DVec3::new(r, high, r));
         match *self {
             Self::Tube { ref points, radius, closed } => tube_bounds(points, radius, closed),
@@ -103,16 +103,16 @@ impl Shape {
                 let corner = minor_radius / sides.half_angle().cos();
                 turned(major_radius + corner, corner)
             }
-            // Shapes without a middle, see `bounds`.
+            // Shapes that are not centered, see `bounds`.
             _ => DVec3::splat(INFINITY),
         }
     }
 
-    /// The shape whose field is exactly that of this one scaled by `s` (all positive) along its own
-    /// axes, where there is one: non-uniform scale then costs nothing and loosens nothing.
+    /// The shape whose field is exactly that of this one scaled by `s` (all positive) along its own axes, if there is
+    /// one: non-uniform scale then costs nothing and keeps the bound tight.
     pub fn absorb_scale(&self, s: DVec3) -> Option<Self> {
         if self.kind().has_data() {
-            // Its numbers would all have to be made anew, and a factor on its distance loosens nothing.
+            // All of its payload would have to be rebuilt, and a factor on its distance keeps the bound just as tight.
             return None;
         }
         if s.x == s.y && s.y == s.z {
@@ -162,7 +162,7 @@ impl Shape {
         })
     }
 
-    /// The shape with every length multiplied.
+    /// The shape with every length multiplied by a factor.
     pub fn with_lengths_times(mut self, factor: f64) -> Self {
         for (index, value) in self.values().into_iter().enumerate() {
             if self.kind().params()[index].limits.unit == "m" {
@@ -182,7 +182,7 @@ impl Shape {
     }
 }
 
-/// What is flat along Z, as thick as this.
+/// Extends flat bounds to a depth along Z.
 fn thick(flat: Aabb, depth: f64) -> Aabb {
     let half = DVec3::Z * (0.5 * depth);
     Aabb::new(flat.min - half, flat.max + half)

@@ -1,4 +1,4 @@
-//! The types of shapes' parameters, packed for the evaluators.
+//! The parameter types of shapes, packed for the evaluators.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,25 +12,25 @@ use isolith_font::Face;
 /// Most numbers that the packed parameters of one shape may take.
 pub const SHAPE_FLOATS: usize = 8;
 
-/// An angle in degrees. Evaluators are given its sine and cosine: those of the GPU are not exact.
+/// An angle in degrees. Evaluators receive its sine and cosine, because those of the GPU are not exact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Degrees(pub f64);
 
-/// How many sides a regular polygon has; rounded to a whole number. Evaluators are given that, then cosine and
-/// sine of half the angle that a side takes.
+/// The number of sides of a regular polygon, rounded to a whole number. Evaluators receive it, followed by the cosine
+/// and sine of half the angle of one side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(transparent)]
 pub struct Sides(pub f64);
 
 impl Sides {
-    /// Half the angle that a side takes, in radians.
+    /// Half the angle of one side, in radians.
     pub fn half_angle(self) -> f64 {
         std::f64::consts::PI / self.0.round()
     }
 }
 
-/// One number in a wrapper.
+/// Implements `ParamField` for a wrapper around one number.
 macro_rules! scalar {
     ($type:ident) => {
         impl ParamField for $type {
@@ -46,13 +46,13 @@ macro_rules! scalar {
 scalar!(Degrees);
 scalar!(Sides);
 
-/// A type of parameter as evaluators are given it.
+/// A parameter type in its packed form.
 pub trait Packed: Sized {
-    /// How many numbers it takes when packed.
+    /// Numbers in the packed form.
     const FLOATS: usize;
-    /// Writes the packed numbers to the start of `out`, which then begins behind them.
+    /// Writes the packed numbers to the start of `out` and advances `out` behind them.
     fn pack(&self, out: &mut &mut [f64]);
-    /// Reads the packed numbers from the start of `rest`, which then begins behind them.
+    /// Reads the packed numbers from the start of `rest` and advances `rest` behind them.
     fn unpack(rest: &mut &[f64]) -> Self;
 }
 
@@ -110,7 +110,7 @@ impl Packed for Sides {
     }
 }
 
-/// What only shapes with data have, which are not packed.
+/// Implements the trait for types that only shapes with data have: they are not packed.
 macro_rules! not_packed {
     ($($type:ty = $empty:expr;)+) => { $(
         impl Packed for $type {

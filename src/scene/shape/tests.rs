@@ -1,4 +1,4 @@
-//! The table against what is made of it.
+//! Tests of the table of shapes against the code generated from it.
 
 use super::*;
 use crate::params::{LIST_COLUMNS, ParamValue};

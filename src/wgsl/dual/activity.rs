@@ -1,5 +1,5 @@
-//! Which expressions and variables of a function must carry a derivative: those that follow an active
-//! argument and that the result follows in turn. All others are written as they stand.
+//! Activity analysis: finds the expressions and variables of a function that must carry a derivative, because they
+//! depend on an active argument and affect the result. The dual function copies all others unchanged.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use naga::{
 /// The arguments of each call, by its result.
 type Calls<'a> = HashMap<Handle<Expression>, &'a [Handle<Expression>]>;
 
-/// What of one function carries a derivative, by index.
+/// The active parts of one function, by index.
 pub struct Activity {
     /// Expressions.
     pub expressions: Vec<bool>,
@@ -30,7 +30,7 @@ impl Activity {
         Self { expressions: both(varies.0, matters.0), locals: both(varies.1, matters.1) }
     }
 
-    /// The functions that must have dual functions, with the arguments that are active in each call.
+    /// The functions that need dual functions, with the active arguments of each call.
     pub fn calls(&self, function: &Function) -> Vec<(Handle<Function>, Vec<bool>)> {
         let mut calls = Vec::new();
         walk(&function.body, &mut |statement| {
@@ -47,7 +47,7 @@ impl Activity {
 /// Flags of expressions and of local variables.
 type Flags = (Vec<bool>, Vec<bool>);
 
-/// How values get from one expression to another.
+/// The flow of values between expressions.
 struct Flow<'a> {
     module: &'a Module,
     function: &'a Function,
@@ -70,7 +70,7 @@ impl<'a> Flow<'a> {
         });
     }
 
-    /// What follows an active argument.
+    /// Everything that depends on an active argument.
     fn forward(&self, info: &FunctionInfo, arguments: &[bool]) -> Flags {
         let (mut expressions, mut locals) = self.none();
         loop {
@@ -94,7 +94,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// What the result follows.
+    /// Everything that affects the result.
     fn backward(&self) -> Flags {
         let (mut expressions, mut locals) = self.none();
         for value in &self.results {
@@ -128,7 +128,7 @@ impl<'a> Flow<'a> {
         (vec![false; self.function.expressions.len()], vec![false; self.function.local_variables.len()])
     }
 
-    /// The operands that the expression's derivative depends on.
+    /// The operands with an influence on the expression's derivative.
     fn carriers(&self, handle: Handle<Expression>) -> Vec<Handle<Expression>> {
         use MathFunction as M;
         match &self.function.expressions[handle] {
@@ -152,7 +152,7 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// Whether the result of this function takes no part in differentiation.
+/// Whether the result of this function is excluded from differentiation.
 fn is_detached(module: &Module, function: Handle<Function>) -> bool {
     module.functions[function].name.as_deref().is_some_and(|name| name.starts_with("detach_"))
 }
@@ -162,7 +162,7 @@ fn is_discrete(ty: &TypeInner) -> bool {
     matches!(ty.scalar_kind(), Some(ScalarKind::Sint | ScalarKind::Uint | ScalarKind::Bool))
 }
 
-/// The local variable that a pointer leads into.
+/// The local variable that a pointer points into.
 pub fn root(function: &Function, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
     match function.expressions[pointer] {
         Expression::LocalVariable(local) => Some(local),

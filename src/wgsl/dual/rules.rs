@@ -1,22 +1,22 @@
 //! The rules of differentiation.
 //!
-//! `#` stands for the tangent of an operand along each axis in turn. What divides or is the argument of
-//! a root is held off zero, so that tangents are finite where values are.
+//! `#` stands for the tangent of an operand along each axis in turn. Divisors and arguments of roots are kept away from
+//! zero, so that tangents are finite where values are.
 
 use naga::{BinaryOperator, Expression, Handle, MathFunction, TypeInner, UnaryOperator};
 
 use super::error::DualError;
 use super::tangent_writer::{AXES, TangentWriter, Tangents, construct};
 
-/// The functions that rules call; a source that gives these names to its own could not be read.
+/// The functions that rules call. A source must not define these names.
 pub const CALLED: &str =
     "cos cosh cross degrees dot inverseSqrt length log max radians saturate select sin sinh transpose trunc";
 
-/// The tangents of an expression as text, or that there is no rule.
+/// The tangents of an expression as text, or an error if it has no rule.
 type Ruled = Result<Tangents, DualError>;
 
 impl TangentWriter<'_> {
-    /// The tangents of an active expression, whose value stands already.
+    /// The tangents of an active expression whose value is already written.
     pub fn tangents(&mut self, of: Handle<Expression>) -> Ruled {
         let function = self.function;
         match &function.expressions[of] {
@@ -31,7 +31,7 @@ impl TangentWriter<'_> {
                 let part = self.part(of)?;
                 let mut tangents = self.sum(&[(*whole, &format!("#{part}"))]);
                 if self.is_point(*whole) {
-                    // The point's components are independent: of its parts most tangents are zero.
+                    // The point's components are independent, so most tangents of its parts are zero.
                     for (axis, tangent) in AXES.iter().zip(&mut tangents) {
                         *tangent = tangent.take().filter(|_| part.contains(axis) || part.starts_with('['));
                     }
@@ -74,7 +74,7 @@ impl TangentWriter<'_> {
         sums
     }
 
-    /// A text in the tangents of all operands, unless all of them are zero.
+    /// A text with the tangents of all operands, unless all of them are zero.
     fn each(&self, operands: &[Handle<Expression>], text: impl Fn(&[String]) -> String) -> Tangents {
         std::array::from_fn(|axis| {
             let moves = operands.iter().any(|operand| self.tangents_of(*operand)[axis].is_some());
@@ -166,7 +166,8 @@ impl TangentWriter<'_> {
         match fun {
             M::Min | M::Max => {
                 let sign = if fun == M::Min { "<" } else { ">" };
-                // Of equals the first, unless only the second moves: a face is left at 0 as it is beside it.
+                // For equal operands, the derivative of the first, unless only the second moves: on a face, where the
+                // value is 0, the derivative is the one beside it.
                 let equal = if self.is_active(left) { "=" } else { "" };
                 let k = self.shared(of, "k", &format!("{a} {sign}{equal} {b}"));
                 Ok(self.either(&k, left, right))
@@ -231,8 +232,8 @@ impl TangentWriter<'_> {
     }
 }
 
-/// The gradient of the length `v` of `a`. At 0 any will do but zero: with one component that moves the
-/// length is that of a number, and there it is that number's.
+/// The gradient of the length `v` of `a`. At 0 it may be any vector but zero: if only one component moves, the length
+/// is that of a number, and so is its derivative.
 fn direction(a: &str, v: &str, ty: &str) -> String {
     format!("select({a} / max({v}, 1e-30), {ty}(1.0), {v} == 0.0)")
 }

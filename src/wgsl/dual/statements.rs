@@ -203,7 +203,7 @@ impl<'a> TangentWriter<'a> {
         Ok(())
     }
 
-    /// Evaluates an expression here, unless it is only a part of one that stands already.
+    /// Writes an expression here, unless it is only a part of one that is already written.
     fn emit(&mut self, handle: Handle<Expression>) -> Result<(), DualError> {
         if self.is_pointer(handle) {
             return Ok(());
@@ -219,7 +219,7 @@ impl<'a> TangentWriter<'a> {
         self.carried[handle.index()] = Some(Carried { value, tangents: PASSIVE });
         if self.is_active(handle) {
             let mut tangents = self.tangents(handle)?;
-            // A variable may change later; what else is as simple as a name needs no other.
+            // A variable may change later, so its value needs a name. Other texts as simple as a name need none.
             let is_variable = matches!(expression, Expression::Load { .. });
             for (axis, tangent) in AXES.iter().zip(&mut tangents) {
                 *tangent = tangent.take().map(|text| {

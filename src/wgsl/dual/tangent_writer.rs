@@ -1,7 +1,8 @@
-//! A dual function while it is written: what stands for each expression, and the names and types of its values.
+//! The writer of a dual function: the text of each expression, and the names and types of its values.
 //!
-//! Its text is written in layers, each in a file that calls only those before it: values, rules, statements. Every expression becomes a `let` where it was evaluated before, its tangents follow it with their
-//! axis as the last letter: `_d_8`, `_d_8x`, `_d_8y`, `_d_8z`. Names of dual functions begin with an underscore.
+//! It writes in layers, each in a file that calls only those before it: values, rules, statements. Every expression
+//! becomes a `let` at its place of evaluation. Its tangents follow with their axis as the last letter: `_d_8`, `_d_8x`,
+//! `_d_8y`, `_d_8z`. Names in dual functions begin with an underscore.
 
 use std::collections::HashMap;
 use std::fmt::Debug;
@@ -16,20 +17,20 @@ use super::error::DualError;
 /// The last letters of tangents, and the fields of the prelude's structs.
 pub const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The tangents of an expression along x, y and z; `None` where one is known to be zero.
+/// The tangents of an expression along x, y and z; `None` for one that is known to be zero.
 pub type Tangents = [Option<String>; 3];
 
-/// What stands for an expression: names, or texts as simple as names.
+/// The text of an expression: names, or texts as simple as names.
 #[derive(Clone)]
 pub struct Carried {
     pub value: String,
     pub tangents: Tangents,
 }
 
-/// The tangents of what does not follow the point.
+/// The tangents of values that do not depend on the point.
 pub const PASSIVE: Tangents = [const { None }; 3];
 
-/// The dual function of a function while it is written.
+/// Writes the dual function of a function.
 pub struct TangentWriter<'a> {
     pub module: &'a Module,
     pub info: &'a FunctionInfo,
@@ -38,16 +39,16 @@ pub struct TangentWriter<'a> {
     pub activity: Activity,
     /// The active arguments of every function that has a dual function.
     pub active: &'a HashMap<Handle<Function>, Vec<bool>>,
-    /// Whether this is the dual function asked for, which takes the point and returns a vector.
+    /// Whether this is the requested dual function, which takes the point and returns a vector.
     pub is_entry: bool,
-    /// By index of the expression; `None` where it was not evaluated yet.
+    /// By index of the expression; `None` if it is not evaluated yet.
     pub carried: Vec<Option<Carried>>,
     pub out: String,
     pub depth: usize,
 }
 
 impl<'a> TangentWriter<'a> {
-    /// Nothing is written yet.
+    /// A writer without text.
     pub fn new(
         module: &'a Module,
         info: &'a FunctionInfo,
@@ -61,13 +62,13 @@ impl<'a> TangentWriter<'a> {
         Self { module, info, function, handle, activity, active, is_entry, carried, out: String::new(), depth: 1 }
     }
 
-    /// Writes a `let` and gives back its name.
+    /// Writes a `let` and returns its name.
     pub fn define(&mut self, name: &str, text: &str) -> String {
         self.line(&format!("let {name} = {text};"));
         name.to_owned()
     }
 
-    /// What a rule computes once for all three tangents of an expression.
+    /// Writes a value that a rule computes once for all three tangents of an expression.
     pub fn shared(&mut self, of: Handle<Expression>, letter: &str, text: &str) -> String {
         let name = self.name(of);
         self.define(&format!("{name}{letter}"), text)
@@ -78,12 +79,12 @@ impl<'a> TangentWriter<'a> {
         self.activity.expressions[handle.index()]
     }
 
-    /// What stands for the tangents of an expression.
+    /// The texts of an expression's tangents.
     pub fn tangents_of(&self, handle: Handle<Expression>) -> Tangents {
         self.carried[handle.index()].as_ref().map_or(PASSIVE, |carried| carried.tangents.clone())
     }
 
-    /// The same where zeros must be written.
+    /// The texts of an expression's tangents, with explicit zeros.
     pub fn filled(&self, handle: Handle<Expression>) -> [String; 3] {
         let zero = match self.type_of(handle).as_str() {
             "f32" => "0.0".to_owned(),
@@ -98,7 +99,7 @@ impl<'a> TangentWriter<'a> {
         DualError::Unsupported { function, construct: construct.to_owned() }
     }
 
-    /// The name of a local variable; its number keeps it apart from others.
+    /// The name of a local variable; its number makes it unique.
     pub fn local_name(&self, local: Handle<LocalVariable>) -> String {
         let name = self.function.local_variables[local].name.as_deref().unwrap_or("e");
         let name = name.trim_start_matches('_');
@@ -117,7 +118,7 @@ impl<'a> TangentWriter<'a> {
         self.info[handle].ty.inner_with(&self.module.types)
     }
 
-    /// Whether an expression leads to a variable.
+    /// Whether an expression is a pointer to a variable.
     pub fn is_pointer(&self, handle: Handle<Expression>) -> bool {
         matches!(self.inner(handle), TypeInner::Pointer { .. } | TypeInner::ValuePointer { .. })
     }
@@ -137,7 +138,7 @@ impl<'a> TangentWriter<'a> {
         short(&self.module.types.type_to_string(ty))
     }
 
-    /// The name of the prelude's struct that carries a type.
+    /// The name of the prelude's struct for a type.
     pub fn dual_type(&self, ty: Handle<Type>) -> Result<String, DualError> {
         let name = self.type_name(ty);
         Ok(match name.as_str() {
@@ -160,7 +161,7 @@ impl<'a> TangentWriter<'a> {
     }
 }
 
-/// The name of a construct, from how it is printed for debugging.
+/// The name of a construct, from its debug output.
 pub fn construct(of: &impl Debug) -> String {
     format!("{of:?}").split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()
 }

@@ -1,4 +1,5 @@
-//! Dual functions are valid, give the value of the original, and its gradient as central differences see it.
+//! Tests: dual functions are valid, and return the original's value and a gradient that agrees with central
+//! differences.
 
 mod evaluate;
 
@@ -12,7 +13,7 @@ use isolith_scene::{Limits, ParamValue, Shape, ShapeKind};
 
 const DETACH: &str = include_str!("../../../shaders/sdf/detach.wgsl");
 
-/// Every shape without data, with its source and all that it includes.
+/// Every shape without payload, with its source and all includes.
 fn shapes() -> impl Iterator<Item = (ShapeKind, &'static str, String)> {
     let source = |name| assemble_plain(&format!("sdf/{name}.wgsl")).unwrap();
     let named = |kind: &ShapeKind| (*kind, kind.function().strip_prefix("sdf_").unwrap());
@@ -42,7 +43,7 @@ fn machine(source: &str, function: &str) -> Machine {
     Machine::new(&format!("{source}{DUAL_PRELUDE}{derived}"))
 }
 
-/// Differences on either side, or none where they disagree: a kink.
+/// Central differences, or `None` at a kink, where both sides disagree.
 fn differences(machine: &Machine, function: &str, p: [f64; 3], a: &[f64], b: &[f64]) -> Option<[f64; 3]> {
     const H: f64 = 1e-5;
     let value = |p: [f64; 3]| machine.call(function, &[&p, a, b])[0];
@@ -60,12 +61,12 @@ fn differences(machine: &Machine, function: &str, p: [f64; 3], a: &[f64], b: &[f
     Some(gradient)
 }
 
-/// The greatest difference between the dual function's gradient and the differences, over random points.
+/// The largest difference between the dual function's gradient and central differences, over random points.
 fn worst(source: &str, function: &str, tries: usize) -> f64 {
     worst_with(source, function, tries, |random| std::array::from_fn(|_| 0.1 + random.next()))
 }
 
-/// The same, with parameters made from random numbers.
+/// Like `worst`, with parameters made from random numbers.
 fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&mut Random) -> [f64; 8]) -> f64 {
     let machine = machine(source, function);
     let mut random = Random(7);
@@ -90,7 +91,7 @@ fn worst_with(source: &str, function: &str, tries: usize, parameters: impl Fn(&m
 fn gradients_of_shapes_are_those_of_central_differences() {
     for (kind, name, text) in shapes() {
         let error = worst_with(&text, kind.function(), 300, |random| parameters(kind, random));
-        // Fractals bend as finely as they are.
+        // Fractals have curvature at every scale.
         assert!(
             error < if matches!(name, "ellipsoid" | "julia" | "kleinian" | "mandelbulb") { 1e-3 } else { 1e-6 },
             "{name}: {error:e}"
@@ -98,7 +99,7 @@ fn gradients_of_shapes_are_those_of_central_differences() {
     }
 }
 
-/// A shape with its data: its source, in which `name` is its function as one of a shape without.
+/// A shape with its payload: its source, in which `name` is its function in the form of a shape without payload.
 fn with_data(name: &str, body: &PreparedShape) -> String {
     let rows: Vec<String> =
         body.payload.iter().map(|r| format!("vec4f({:?}, {:?}, {:?}, {:?})", r[0], r[1], r[2], r[3])).collect();
@@ -150,7 +151,7 @@ fn all_dual_functions_stand_in_one_shader() {
     }
 }
 
-/// The gradient's direction, or zero where there is none.
+/// The gradient's direction, or zero if there is none.
 fn direction(derived: &[f64]) -> [f64; 3] {
     let size = derived[..3].iter().map(|v| v * v).sum::<f64>().sqrt().max(1e-30);
     std::array::from_fn(|i| derived[i] / size)
@@ -165,7 +166,7 @@ fn normals_at_surfaces_are_right_in_f32() {
     for (kind, name, text) in shapes() {
         use ShapeKind::{Julia, Kleinian, Mandelbulb, MengerSponge};
         if matches!(kind, MengerSponge | Julia | Kleinian | Mandelbulb) {
-            // Fractals have edges everywhere, and no distance to reach the surface by in a few steps.
+            // Fractals have edges everywhere, and their fields do not lead to the surface in a few steps.
             continue;
         }
         let derived = format!("dual_sdf_{name}");
@@ -181,7 +182,7 @@ fn normals_at_surfaces_are_right_in_f32() {
                 let d = exact.call(&derived, &[&p, a, b]);
                 p = std::array::from_fn(|i| p[i] - d[3] * direction(&d)[i]);
             }
-            // The reference is that a little outside; where it changes within a little more there is an edge.
+            // The reference is the direction slightly outside. If it changes within a little more, there is an edge.
             let normal = direction(&exact.call(&derived, &[&p, a, b]));
             let beside = |i: usize, by: f64| {
                 let mut q: [f64; 3] = std::array::from_fn(|i| p[i] + 1e-5 * normal[i]);
@@ -228,7 +229,7 @@ fn a_face_has_a_normal_where_the_distance_is_exactly_zero() {
 
 #[test]
 fn every_rule_agrees_with_central_differences() {
-    // `u` and `v` are vectors that follow the point, between 0.1 and 0.9; `c` is constant.
+    // `u` and `v` are vectors that depend on the point, between 0.1 and 0.9; `c` is constant.
     for expression in [
         "u.x + u.y - u.z * 2.0 / v.x",
         "dot(u / v, v) + (1.0 / u.y) - -u.z",

@@ -1,4 +1,4 @@
-//! Expressions and places as text.
+//! The text of expressions and places.
 
 use naga::back::binary_operation_str;
 use naga::common::wgsl::TryToWgsl as _;
@@ -8,7 +8,7 @@ use super::error::DualError;
 use super::tangent_writer::{TangentWriter, construct};
 
 impl TangentWriter<'_> {
-    /// What stands for the value of an expression: a name, or a text that needs no brackets.
+    /// The text of an expression's value: a name, or a text that needs no brackets.
     pub fn value(&self, handle: Handle<Expression>) -> Result<String, DualError> {
         match &self.carried[handle.index()] {
             Some(carried) => Ok(carried.value.clone()),
@@ -74,7 +74,7 @@ impl TangentWriter<'_> {
         Ok(if text.starts_with('-') { format!("({text})") } else { text })
     }
 
-    /// What follows the text of the base of an expression that is a part of another.
+    /// The suffix of a base that selects a part of it.
     pub fn part(&self, handle: Handle<Expression>) -> Result<String, DualError> {
         match &self.function.expressions[handle] {
             Expression::Access { index, .. } => Ok(format!("[{}]", self.value(*index)?)),
@@ -100,7 +100,7 @@ impl TangentWriter<'_> {
         }
     }
 
-    /// A place in a local variable, or in that of one of its tangents.
+    /// A place in a local variable, or in the variable of one of its tangents.
     pub fn place(&self, pointer: Handle<Expression>, axis: &str) -> Result<String, DualError> {
         match &self.function.expressions[pointer] {
             Expression::LocalVariable(local) => Ok(format!("{}{axis}", self.local_name(*local))),

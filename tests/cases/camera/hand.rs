@@ -1,24 +1,24 @@
-//! What rays meet, by hand.
+//! Closed-form ray intersections.
 
 use glam::DVec3;
 use isolith::geometry::Ray;
 
-/// What a ray meets.
+/// The intersection of a ray with a solid.
 #[derive(Clone, Copy, Debug)]
 pub struct Seen {
-    /// Where it enters and leaves the solid, if it does.
+    /// Where the ray enters and leaves the solid, if it does.
     pub span: Option<[f64; 2]>,
     /// The tangent of the angle between the ray and the normal where it enters.
     pub slope: f64,
-    /// By which angle it passes the nearest outline, in radians.
+    /// Angle between the ray and the nearest outline, in radians.
     pub edge: f64,
 }
 
-/// Nothing anywhere near.
+/// No solid near the ray.
 pub const NOTHING: Seen = Seen { span: None, slope: 0.0, edge: f64::INFINITY };
 
 impl Seen {
-    /// The nearer one of two things that lie apart.
+    /// The nearer of two separate solids.
     pub fn or(self, other: Self) -> Self {
         let entry = |seen: &Self| seen.span.map_or(f64::INFINITY, |[entry, _]| entry);
         let nearer = if entry(&other) < entry(&self) { other } else { self };
@@ -39,23 +39,23 @@ pub fn ball(ray: &Ray, center: DVec3, radius: f64) -> Seen {
     Seen { span: Some([along - half, along + half]), slope: aside / half, edge }
 }
 
-/// The nearest of many balls of one radius.
+/// The nearest of many balls with one radius.
 pub fn balls(ray: &Ray, centers: impl IntoIterator<Item = DVec3>, radius: f64) -> Seen {
     centers.into_iter().map(|center| ball(ray, center, radius)).fold(NOTHING, Seen::or)
 }
 
-/// All below a plane.
+/// The half space below a plane.
 pub fn half_space(ray: &Ray, point: DVec3, normal: DVec3) -> Seen {
     let climb = normal.dot(ray.direction);
     let height = normal.dot(ray.origin - point);
-    // Toward the horizon f32 does not know.
+    // Toward the horizon, f32 cannot decide.
     let edge = if climb.abs() < 1e-3 { 0.0 } else { f64::INFINITY };
     let slope = (1.0 - climb * climb).max(0.0).sqrt() / climb.abs();
     Seen { span: (climb < 0.0 && height > 0.0).then(|| [-height / climb, f64::INFINITY]), slope, edge }
 }
 
-/// A floor at height 0 with a round hole of `radius` around `center`, as deep as `depth`; open below where `is_open`. The eye is
-/// above the floor.
+/// A floor at height 0 with a round hole of `radius` around `center`, of the given `depth`; open below if `is_open`.
+/// The eye is above the floor.
 pub fn floor_with_hole(ray: &Ray, center: DVec3, radius: f64, depth: f64, is_open: bool) -> Seen {
     let floor = half_space(ray, DVec3::ZERO, DVec3::Y);
     let Some([t, end]) = floor.span else { return floor };
@@ -70,7 +70,7 @@ pub fn floor_with_hole(ray: &Ray, center: DVec3, radius: f64, depth: f64, is_ope
     if aside(t).length() >= radius {
         return Seen { edge, ..floor };
     }
-    // Inside the hole: the wall, or the bottom before it.
+    // In the hole, the ray meets its wall, or the bottom first.
     let bottom = t + depth / rise;
     let flat = DVec3::new(ray.direction.x, 0.0, ray.direction.z);
     let (a, b, c) = (flat.length_squared(), aside(t).dot(flat), aside(t).length_squared() - radius * radius);

@@ -1,4 +1,4 @@
-//! Large things with small parts: f32 is too coarse for the one origin of a component, beside what is a thousand times
+//! Large shapes with small details: one origin per component is too coarse for f32 near details a thousand times
 //! smaller.
 
 use glam::DQuat;
@@ -10,7 +10,7 @@ use isolith::scene::{Blend, BlendKernel, Group, Modifier, Operator};
 use super::hand::{self, Seen};
 use super::*;
 
-/// Half a picture of 256 pixels is as sharp as the cases were counted by.
+/// Half of a picture of 256 pixels, which keeps the sharpness of the recorded figures.
 const SIZE: [u32; 2] = [128, 128];
 
 fn hole() -> DVec3 {
@@ -45,14 +45,14 @@ fn a_hole_that_is_2_mm_elsewhere_is_refused() {
 fn two_things_1000_km_apart_are_both_right() {
     let mut bench_scene = case("numerics/blended_pair_1e6_apart");
     let mut found = check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::ball(ray, DVec3::ZERO, 0.5));
-    // The other one is a cube: from its side a wall that faces the eye.
+    // The other shape is a cube: seen from its side, a wall that faces the eye.
     let wall = DVec3::new(1e6 + 0.5, 0.0, 0.0);
     bench_scene.camera = Camera::looking_at(wall + DVec3::new(2.0, 0.1, 0.2), wall, 0.1);
     found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::half_space(ray, wall, DVec3::X)));
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// The floor with a hole, as a scene: all of it turned and moved by `place`.
+/// The floor with a hole, as a scene, rotated and moved by `place`.
 fn floor(shape: Shape, at: DVec3, center: DVec3, (turn, place): (DQuat, DVec3)) -> Scene {
     let mut scene = Scene::new();
     let group = Node::new("floor", NodeKind::Group(Group::new(Operator::Difference, Blend::HARD)));
@@ -67,7 +67,7 @@ fn floor(shape: Shape, at: DVec3, center: DVec3, (turn, place): (DQuat, DVec3)) 
     scene
 }
 
-/// Looks into the hole from 3 m, in the space of the floor.
+/// A camera 3 m away that looks into the hole, in the space of the floor.
 fn into_hole(center: DVec3, (turn, place): (DQuat, DVec3)) -> Camera {
     let world = |p: DVec3| turn * p + place;
     let mut camera = Camera::looking_at(DVec3::new(0.7, 2.2, 1.9), DVec3::ZERO, 0.6);
@@ -80,7 +80,7 @@ fn in_space(ray: &Ray, (turn, place): (DQuat, DVec3)) -> Ray {
     Ray { origin: turn.inverse() * (ray.origin - place), direction: turn.inverse() * ray.direction }
 }
 
-/// Where it stands and how it is turned does not matter.
+/// Position and rotation do not matter.
 #[test]
 fn floors_of_many_kilometers_are_right_however_they_are_turned() {
     let turn = DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 0.7);
@@ -100,7 +100,7 @@ fn floors_of_many_kilometers_are_right_however_they_are_turned() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// The reference knows the numbers before they were rounded: else it would be wrong by the same.
+/// The reference uses the values before rounding: else it would have the same error.
 #[test]
 fn the_field_of_a_large_thing_is_known_to_a_micrometer() {
     let place = (DQuat::from_euler(glam::EulerRot::XYZ, 0.4, -1.1, 0.7), DVec3::new(1234.5, -77.0, 9e4));
@@ -119,7 +119,7 @@ fn the_field_of_a_large_thing_is_known_to_a_micrometer() {
     }
 }
 
-/// Copies blended with each other are one component, as wide as they are apart.
+/// Copies blended with each other are one component, as wide as their distance.
 #[test]
 fn a_mirror_image_80_km_away_is_right() {
     let center = DVec3::new(40_000.3, 1.7, -20_000.9);
@@ -142,7 +142,7 @@ fn a_mirror_image_80_km_away_is_right() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// What the cell of this number shows: a ball that stands a little beside the middle, in mirrored cells on the other side.
+/// The ball in cell number `cell`: a little off the middle, in mirrored cells on the other side.
 fn beads(cell: i32, mirrored: bool) -> DVec3 {
     let side = if mirrored && cell.rem_euclid(2) == 1 { -0.2 } else { 0.2 };
     DVec3::new(2.5 * f64::from(cell) + side, 0.125 * f64::from(cell), 0.0)
@@ -171,7 +171,7 @@ fn the_20000th_copy_is_as_right_as_the_first() {
         for cell in [4, 20_001, 29_999] {
             let there = place(cell);
             bench_scene.camera = Camera::looking_at(there + DVec3::new(0.1, 0.9, 1.6), there, 0.6);
-            // Others are seen far behind, or not at all.
+            // The other beads are far behind, or not visible.
             bench_scene.camera.far = 4.0;
             let cells = || (cell - 4..=cell + 4).filter(|cell| endless || (0..30_000).contains(cell));
             found.extend(check(&bench_scene, SIZE, &STRATEGIES, &|ray| hand::balls(ray, cells().map(place), 0.3)));
@@ -180,8 +180,8 @@ fn the_20000th_copy_is_as_right_as_the_first() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// What stays right far from where it is turned about is not what this is about: only that such a thing is drawn as the
-/// reference says.
+/// A twist far from its axis is not accurate itself. The test only requires that the device draws it like the
+/// reference.
 #[test]
 fn a_twisted_thing_far_from_the_rest_of_its_component_is_right() {
     let far = DVec3::new(60_000.0, 3.0, 0.0);
@@ -194,7 +194,7 @@ fn a_twisted_thing_far_from_the_rest_of_its_component_is_right() {
     scene.insert(Some(group), 1, object(Shape::Sphere { radius: 0.5 }, DVec3::ZERO)).expect("room");
     let mut near_it = BenchScene::new("twisted", &scene, None);
     near_it.camera = Camera::looking_at(far + DVec3::new(0.8, 0.6, 3.0), far, 0.9);
-    // The same without the other thing stands at its own origin.
+    // Without the other shape it is at its own origin.
     let mut alone = Scene::new();
     let column = Shape::Box { size: [0.4, 2.0, 0.3], rounding: 0.0 };
     alone.insert(None, 0, object(column, far).modified(Modifier::Twist { angle: 90.0 })).expect("room");
@@ -213,7 +213,7 @@ fn a_twisted_thing_far_from_the_rest_of_its_component_is_right() {
     }
 }
 
-/// What is uploaded when the camera moves a little is no more than where it stands; nothing is built.
+/// A small camera move uploads only the new standpoint and builds nothing.
 #[test]
 fn a_small_move_of_the_camera_uploads_no_rows_and_builds_nothing() {
     let mut bench_scene = case("numerics/slab_100km_hole_at_corner");
@@ -232,13 +232,13 @@ fn a_small_move_of_the_camera_uploads_no_rows_and_builds_nothing() {
             uploaded.push(renderer.uploaded() - before);
             bench_scene.camera.position += DVec3::new(1e-4, 2e-4, -1e-4);
         }
-        // One component's uniforms; a cell's border may lie on the way once.
+        // One component's uniforms; the camera may cross a cell's border once.
         let more = uploaded[1..].iter().filter(|bytes| **bytes > 256).count();
         assert!(more <= 1, "{strategy:?}: {uploaded:?}");
     }
 }
 
-/// Many small things of one blend over 20 km: by tapes, each in a cell of its own.
+/// Many small shapes in one blend over 20 km: with tapes, each in its own cell.
 #[test]
 fn a_heap_of_stones_is_right_in_each_of_its_corners() {
     let mut scene = Scene::new();

@@ -1,4 +1,4 @@
-//! The near and far limits: distances along the ray, for everything that is drawn or picked.
+//! The near and far limits: distances along the ray, for everything drawn or picked.
 
 use glam::{DAffine3, DQuat};
 use isolith::field::pick::pick;
@@ -37,7 +37,8 @@ fn nothing_behind_the_far_limit_is_drawn() {
     }
 }
 
-/// A ball that both limits cut, off the middle of a wide picture; its pipeline leaps, and by a difference it does not.
+/// A ball cut by both limits, off the center of a wide picture. Its own pipeline oversteps; the one of a difference
+/// does not.
 #[test]
 fn a_ball_is_cut_at_distances_along_the_ray() {
     let (center, radius) = (DVec3::new(3.0, 2.5, -3.5), 1.75);
@@ -67,7 +68,7 @@ fn a_ball_is_cut_at_distances_along_the_ray() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// Where picking finds something else than is seen.
+/// Describes where picking disagrees with the picture.
 fn check_picking(
     bench_scene: &BenchScene,
     [width, height]: [u32; 2],
@@ -89,11 +90,11 @@ fn check_picking(
     wrong
 }
 
-/// A mesh is clipped by the graphics driver, along the view axis.
+/// The graphics driver clips a mesh along the view axis.
 #[test]
 fn a_mesh_is_cut_at_distances_along_the_ray() {
     let turn = DQuat::from_rotation_y(0.2);
-    // Nowhere farther than 0.8 along the view axis; in the corners of the picture more than 1 along the ray.
+    // At most 0.8 away along the view axis; in the corners of the picture more than 1 along the ray.
     let place = DAffine3::from_scale_rotation_translation(DVec3::splat(9.0), turn, DVec3::new(0.0, 0.0, -0.6));
     let mut found = Vec::new();
     for [near, far] in [[1e-3, 1e4], [1.0, 1e4], [1.0, 1.3]] {
@@ -105,7 +106,7 @@ fn a_mesh_is_cut_at_distances_along_the_ray() {
             let plane = hand::half_space(ray, DVec3::new(0.0, 0.0, -0.6), normal);
             let Some([t, _]) = plane.span else { return plane };
             let aside = (turn.inverse() * (ray.at(t) - DVec3::new(0.0, 0.0, -0.6))).abs().max_element() - 9.0;
-            // Of no thickness: what the near limit cuts off shows nothing behind.
+            // The square has no thickness: where the near limit cuts it off, nothing shows behind.
             Seen { span: plane.span.map(|[t, _]| [t, t]).filter(|_| aside < 0.0), ..plane }
         };
         found.extend(check(&bench_scene, [64, 64], &[EvalStrategy::Interpreter], &seen));

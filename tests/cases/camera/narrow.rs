@@ -1,4 +1,4 @@
-//! Narrow and wide pixels: a ball and a plane by hand over all angles of view and long pictures.
+//! Narrow and wide pixels: a ball and a plane against closed forms, over all angles of view and in elongated pictures.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use isolith::field::FlatMesh;
@@ -10,7 +10,7 @@ use isolith::scene::{Blend, Group, Node, NodeId, NodeKind, Operator, Shape};
 use super::hand::{self, Seen};
 use super::*;
 
-/// Seen by the longer side of a picture, in degrees.
+/// Angles of view along the longer side of a picture, in degrees.
 const ANGLES: [f64; 9] = [0.05, 0.1, 0.5, 2.0, 10.0, 40.0, 90.0, 120.0, 170.0];
 const SIZES: [[u32; 2]; 3] = [[8, 8192], [8192, 8], [64, 64]];
 const CENTER: DVec3 = DVec3::new(12.5, -4.25, 7.0);
@@ -24,12 +24,12 @@ fn cameras() -> impl Iterator<Item = (f64, [u32; 2], f64)> {
     ANGLES.into_iter().flat_map(of_angle)
 }
 
-/// A ball that fills four fifths of the longer side.
+/// Radius of a ball that fills four fifths of the longer side.
 fn radius(angle: f64, distance: f64) -> f64 {
     f64::from((distance * (0.4 * angle).min(60.0).to_radians().sin()) as f32)
 }
 
-/// Draws what `shapes` makes of each camera's radius, and compares.
+/// Builds the shapes for each camera's radius, draws them and compares.
 fn sweep(
     name: &str,
     strategies: &[EvalStrategy],
@@ -60,7 +60,7 @@ fn a_ball_is_right_from_a_twentieth_of_a_degree_to_170() {
     );
 }
 
-/// A difference whose cutters are out of reach: as many shapes as tapes and pipelines with cuts need.
+/// A difference with cutters out of reach: enough shapes for tapes and for pipelines with cuts.
 #[test]
 fn a_ball_among_cuts_is_right_by_every_method() {
     sweep(
@@ -120,12 +120,12 @@ fn long_lenses_of_the_cases_are_right() {
 #[test]
 fn shapes_by_long_lenses_are_as_the_reference_says() {
     let mut found = check_by_reference("numerics/fov_01_far", [128, 128]);
-    // As tall as the picture that was wrong, and as wide as the time of a test allows.
+    // As tall as the faulty picture, and as wide as the time limit of a test permits.
     found.extend(check_by_reference("numerics/fov_10_1080p", [48, 1080]));
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// A square of four vertices, in its own space 2 m wide across Z.
+/// A mesh of a square, 2 m wide and across Z in its own space.
 pub fn square(world_from_local: DAffine3, camera: Camera) -> BenchScene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases/narrow-pixels");
     let mut bench_scene = BenchScene::new("square", &Scene::new(), None);
@@ -155,7 +155,7 @@ fn a_mesh_is_right_by_long_lenses() {
             let Some([t, _]) = plane.span else { return plane };
             let local = turn.inverse() * (ray.at(t) - CENTER);
             let aside = local.abs().max_element() - half;
-            // Rasterizers place vertices on a grid of a 256th of a pixel.
+            // Rasterizers place vertices on a grid of 1/256 pixel.
             let edge = (aside.abs() / (t * plane.slope.hypot(1.0))
                 - bench_scene.camera.footprint(size[1].into()) / 128.0)
                 .max(0.0);

@@ -1,4 +1,4 @@
-//! Two editors on one file: nobody writes over what the other has saved without being asked.
+//! Two editors on one file: neither overwrites the other's save without asking.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ fn darken(document: &mut Document) {
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
 }
 
-/// An editor with a change, over a file that another one has saved since.
+/// An editor with a change, on a file that another editor has saved since.
 fn overtaken(path: &Path, theirs: Scene) -> (Harness<'static, Editor>, Scene, Scene) {
     let mut document = Document::open(path).expect("opens");
     darken(&mut document);
@@ -69,7 +69,7 @@ fn saving_knows_what_it_would_replace() {
     assert_eq!(document.would_replace(&path), OverwriteRisk::Nothing, "what was saved is known");
     fs::remove_file(&path).expect("removed");
     assert_eq!(document.would_replace(&path), OverwriteRisk::Nothing, "it is gone");
-    // A document that was saved elsewhere belongs there from then on.
+    // Saving under another name changes the document's file from then on.
     document.save_as(&other).expect("saved");
     fs::write(&other, "{}").expect("written");
     assert_eq!(document.would_replace(&other), OverwriteRisk::ChangedByOthers);
@@ -82,7 +82,7 @@ fn a_file_that_was_changed_is_not_written_over_unasked() {
     let (mut harness, mine, theirs) = overtaken(&path, plain_scene(98, 5));
     save(&mut harness);
     assert!(shows(&harness, QUESTION) && harness.state().has_dialog());
-    // Esc leaves everything as it is, and so does the button.
+    // Escape changes nothing, and neither does the button.
     harness.key_press(Key::Escape);
     harness.settle();
     assert!(!shows(&harness, QUESTION));

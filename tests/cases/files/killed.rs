@@ -1,4 +1,4 @@
-//! Editors of their own processes that die while they are at work.
+//! Editors in processes of their own that are killed while they work.
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
@@ -13,11 +13,12 @@ use isolith::scene::{Node, file};
 
 use super::{add_group, changed, editor, has, kept_with, names, plain_scene, until};
 
-/// What may be lost.
+/// Largest loss, as time before the kill.
 const MOST_LOST: Duration = Duration::from_secs(5);
-/// Editors that are driven at the same time, each until it is killed.
+/// Editors driven at the same time, each until it is killed.
 const EDITORS: u64 = 8;
-/// Tells a test, started once more as a process of its own, to be an editor: the folder for recovery and its file.
+/// Environment variables that turn a test, started again as a process, into an editor: the recovery folder and its
+/// file.
 const EDITOR: [&str; 2] = ["ISOLITH_TEST_RECOVERY", "ISOLITH_TEST_SCENE"];
 
 #[test]
@@ -43,13 +44,13 @@ fn killed_editors_lose_at_most_five_seconds() {
     assert_eq!(names(&root), Vec::<String>::new(), "what is saved is not kept any longer");
 }
 
-/// Starts an editor, kills it after a while, and recovers what it was at. Returns how much is lost.
+/// Starts an editor, kills it after a while, and recovers its document. Returns how much is lost.
 fn kill_one(root: &Path, path: &Path, number: u64, one_at_a_time: &Mutex<()>) -> Duration {
     file::save(&plain_scene(number, 300), path).expect("saved");
     let (mut editor, said) = start_editor(root, path);
     let mut ticks = BTreeMap::from([said.recv_timeout(Duration::from_secs(60)).expect("it starts to edit")]);
     std::thread::sleep(Duration::from_millis(1_500 + 700 * number));
-    // Whoever looks now is to find the one that has just died and none of those that live.
+    // Recovery must find the process that just died and none of the living ones.
     let guard = one_at_a_time.lock().expect("no other has failed");
     editor.kill().expect("it runs until it is killed");
     let killed = Instant::now();
@@ -68,11 +69,11 @@ fn kill_one(root: &Path, path: &Path, number: u64, one_at_a_time: &Mutex<()>) ->
     let last = document.scene().nodes().iter().find_map(tick).expect("one edit at least has been kept");
     document.save().expect("saved");
     recovery.forget();
-    // The first edit that did not come back.
+    // The first edit that was not recovered.
     ticks.range(last + 1..).next().map_or(Duration::ZERO, |(_, at)| killed - *at)
 }
 
-/// An editor of its own process; tells the number of each edit, with the time at which it was read here.
+/// Starts an editor in its own process. It reports the number of each edit; the receiver adds the time of arrival.
 fn start_editor(root: &Path, path: &Path) -> (Child, mpsc::Receiver<(u64, Instant)>) {
     let mut child = Command::new(std::env::current_exe().expect("this program"))
         .args(["--exact", "cases::files::killed::killed_editors_lose_at_most_five_seconds", "--nocapture"])
@@ -87,14 +88,14 @@ fn start_editor(root: &Path, path: &Path) -> (Child, mpsc::Receiver<(u64, Instan
     std::thread::spawn(move || {
         let ticks = lines.map_while(Result::ok).filter_map(|line| line.strip_prefix("tick ")?.parse().ok());
         for tick in ticks {
-            // Nobody listens after the kill.
+            // The receiver is gone after the kill.
             let _ = sender.send((tick, Instant::now()));
         }
     });
     (child, said)
 }
 
-/// Edits as an artist would, some by one click, some by dragging for a second.
+/// Edits like an artist, some with one click, some with drags of one second.
 fn edit_for_ever(root: &Path, path: &Path) -> ! {
     let document = Document::open(path).expect("opens");
     let recovery = Recovery::start(root).expect("starts");
@@ -118,8 +119,8 @@ fn edit_for_ever(root: &Path, path: &Path) -> ! {
     unreachable!("the ticks have no end")
 }
 
-/// Started once more as a process of its own, this test makes two changes, the second of which is not written yet, panics on
-/// a thread, and dies.
+/// Started again as a process, this test makes two changes, the second of which is not written yet, panics on a thread,
+/// and dies.
 #[test]
 fn a_panic_of_any_thread_is_told_of_and_loses_nothing() {
     if let Some(root) = std::env::var_os(EDITOR[0]) {

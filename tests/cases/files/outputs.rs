@@ -1,4 +1,4 @@
-//! `isolith render` writes what it was asked to write, where it was asked to, and nothing else.
+//! `isolith render` writes the requested files to the requested places, and nothing else.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,7 +8,7 @@ use image::GenericImageView;
 
 use super::names;
 
-/// A folder with the ball in it as `ball.json`, and one for the program's state beside it.
+/// A folder with the ball in `ball.json`, and a folder for the program's state.
 struct Place {
     folder: tempfile::TempDir,
     state: tempfile::TempDir,
@@ -34,7 +34,7 @@ impl Place {
         command.output().expect("the program starts")
     }
 
-    /// Renders by the reference renderer, which needs no driver.
+    /// Renders with the reference renderer, which needs no driver.
     fn render(&self, outputs: &[&str]) -> Output {
         self.run(&[&["render", "ball.json", "--reference", "--size", "16x12", "--quiet"], outputs].concat())
     }
@@ -42,7 +42,7 @@ impl Place {
     fn rendered(&self, outputs: &[&str]) {
         let output = self.render(outputs);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        // No temporary is left, and no record of one.
+        // No temporary remains, and no record of one.
         assert!(names(self.folder.path()).iter().all(|name| !name.starts_with('.')), "{:?}", names(self.folder.path()));
         let records = self.state.path().join("isolith/temporaries");
         assert_eq!(names(&records), Vec::<String>::new());
@@ -78,7 +78,7 @@ fn a_link_is_written_through_and_the_file_keeps_its_mode() {
     assert!(["link.png", "chain.png", "dangling.exr"].iter().all(|name| place.at(name).is_symlink()));
     assert_eq!((size(&place.at("deep/real.png")), size(&place.at("deep/new.exr"))), ((16, 12), (16, 12)));
     assert_eq!(mode(&place.at("deep/real.png")), 0o604);
-    // A new file is what the user's mask says.
+    // A new file gets its mode from the user's mask.
     place.rendered(&["-o", "plain.png"]);
     fs::write(place.at("by hand"), "").expect("written");
     assert_eq!(mode(&place.at("plain.png")), mode(&place.at("by hand")));
@@ -140,7 +140,7 @@ fn two_charts_of_one_name_are_refused() {
     assert!(text.contains("two scenes are called ball"), "{text}");
 }
 
-/// Names that were guessed in the past, planted as links: what they lead to stays as it is.
+/// Links planted under names that were guessable in the past: their targets stay unchanged.
 #[cfg(unix)]
 #[test]
 fn links_planted_beside_an_output_empty_no_file() {
@@ -149,7 +149,7 @@ fn links_planted_beside_an_output_empty_no_file() {
     fs::write(&precious, "keep me").expect("written");
     let next = std::process::id();
     let planted = |name: String| std::os::unix::fs::symlink(&precious, place.at(&name)).expect("linked");
-    // The next process ids, also after their count has begun anew.
+    // The next process ids, including a wrap of the counter.
     let processes: Vec<u32> = (next..next + 1_500).chain(2..300).collect();
     for process in &processes {
         planted(format!(".x.png.tmp-{process}"));
@@ -178,14 +178,14 @@ fn whoever_opens_a_scene_deletes_nothing_beside_it() {
     assert_eq!(names(place.folder.path()).len(), before.len() + 1);
 }
 
-/// A picture that cannot be written leaves the one that was there.
+/// A failed write leaves the previous picture.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_leaves_the_old_picture() {
     let place = Place::new();
     place.rendered(&["-o", "x.png"]);
     let old = fs::read(place.at("x.png")).expect("there");
-    // No file may become longer than nothing; a signal that is ignored becomes an error.
+    // No file may grow beyond zero bytes; an ignored signal becomes an error.
     let limited = format!(
         "trap '' XFSZ; ulimit -f 0; exec '{}' render ball.json --reference --size 64x48 --quiet -o x.png",
         env!("CARGO_BIN_EXE_isolith")

@@ -1,4 +1,4 @@
-//! Nothing that was changed is lost when the program ends without saving it.
+//! No unsaved change is lost when the program ends.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use isolith::scene::{Scene, file};
 use super::{add_group, changed, editor, has, kept, kept_with, last_message, names, plain_scene, press, shows, until};
 use crate::settle::Settle;
 
-/// Keeps the document as a process would that dies then.
+/// Leaves the document as a process that dies at this point would.
 fn lose(root: &Path, document: &Document) {
     let mut recovery = Recovery::start(root).expect("starts");
     assert_eq!(recovery.follow(document, false), None);
@@ -34,14 +34,14 @@ fn several_windows_do_not_take_each_others_work() {
     let found = one.lost();
     assert_eq!(found.len(), 1);
     assert!(one.lost().is_empty() && Recovery::start(root).expect("starts").lost().is_empty(), "it is offered once");
-    // Decided later: it is offered again.
+    // The user decides later: recovery offers the document again.
     drop(found);
     let mut third = Recovery::start(root).expect("starts");
     let lost = third.lost().pop().expect("it is there again");
     let Recovered { document, .. } = third.recover(lost).expect("it can be read");
     assert!(has(&document, "Two") && document.is_changed() && document.path().is_none());
     assert!(one.lost().is_empty(), "whoever has recovered it owns it");
-    // If that one dies before any change, nothing is lost.
+    // If that process dies before any change, nothing is lost.
     drop(third);
     assert_eq!(one.lost().len(), 1);
     one.forget();
@@ -57,7 +57,7 @@ fn what_is_kept_goes_when_it_is_saved_or_given_up_and_at_no_other_time() {
     let mut recovery = Recovery::start(&root).expect("starts");
     recovery.follow(&document, false);
     until("it is kept", || kept_with(&root, "Ball"));
-    // Undone: it may be done again.
+    // After an undo: a redo may follow.
     document.undo();
     assert!(!document.is_changed());
     recovery.follow(&document, false);
@@ -69,11 +69,11 @@ fn what_is_kept_goes_when_it_is_saved_or_given_up_and_at_no_other_time() {
     document.save_as(&folder.path().join("ball.json")).expect("saved");
     recovery.forget();
     until("what is saved goes", || names(&root).is_empty());
-    // A document without changes is not kept.
+    // Recovery does not keep an unchanged document.
     recovery.follow(&document, false);
     drop(recovery);
     assert_eq!(names(&root), Vec::<String>::new());
-    // Killed between saving and clearing away: nothing is lost, so nothing is offered.
+    // Killed between the save and the cleanup: nothing is lost, so recovery offers nothing.
     add_group(&mut document, "Cube");
     lose(&root, &document);
     document.save().expect("saved");
@@ -113,7 +113,7 @@ fn a_snapshot_that_cannot_be_read_is_replaced_by_the_one_before() {
     }
     let error = recover().expect_err("nothing is left");
     assert!(!error.reason.is_empty());
-    // What cannot be read may be read by somebody else: it is not removed.
+    // Another program may be able to read an unreadable file, so recovery does not remove it.
     assert_eq!(Recovery::start(root).expect("starts").lost().len(), 1);
 }
 
@@ -127,7 +127,7 @@ fn panics_keep_the_last_change_first() {
     assert_eq!(rescuer.rescue("nothing was changed"), Rescued::Nothing);
     recovery.follow(&document, false);
     until("the first change is kept", || kept_with(root, "Before"));
-    // The next is not written for a second.
+    // The next write waits for a second.
     add_group(&mut document, "After");
     recovery.follow(&document, false);
     assert!(!kept_with(root, "After"), "too fast to test anything");
@@ -172,8 +172,7 @@ fn where_nothing_can_be_kept_the_artist_is_told_and_goes_on() {
     assert!(message.text.contains("cannot be kept"), "{}", message.text);
 }
 
-/// The interface hands over a pointer; the table of nodes is copied by its next edit, while a value is dragged at most
-/// twice a second.
+/// The interface hands over a pointer. The next edit copies the node table, at most twice a second during a drag.
 #[test]
 fn keeping_never_blocks_the_interface() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -193,7 +192,7 @@ fn keeping_never_blocks_the_interface() {
     file::replace(&folder.path().join("snapshot.json"), json.as_bytes(), 2).expect("written");
     let writing = start.elapsed();
     eprintln!("keeping 10 000 nodes: median {:?}, longest {:?}; writing them {writing:.2?}", times[20], times[39]);
-    // The processors may be busy with other tests: not the longest.
+    // Use a quantile instead of the maximum: other tests may keep the processors busy.
     assert!(times[35] < Duration::from_millis(2), "{times:?}");
     let mut snapshots = 0;
     let start = Instant::now();
@@ -232,7 +231,7 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     assert!(found[0].changed().elapsed().expect("in the past") < Duration::from_secs(60));
     drop(found);
 
-    // Decided later, by button and by key.
+    // The user decides later, by button and by key.
     let mut harness = start(&root);
     assert!(shows(&harness, "Recover unsaved work?") && shows(&harness, &path.display().to_string()));
     assert!(shows(&harness, "never saved") && harness.state().has_dialog());
@@ -245,7 +244,7 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     assert!(!harness.state().has_dialog() && !harness.state().document().is_changed());
     drop(harness);
 
-    // The picked one is opened, the other one stays.
+    // The chosen document opens, the other one stays.
     let mut harness = start(&root);
     press(&mut harness, "Recover pawn.json");
     let document = harness.state().document();
@@ -253,14 +252,14 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     assert_eq!((document.path(), document.title()), (Some(&*path), "pawn.json *".to_owned()));
     assert!(last_message(&harness).contains("1 more"), "{}", last_message(&harness));
     assert_eq!(kept(&root).len(), 2, "it is kept until it is saved");
-    // The file is as it was read: saving needs no question.
+    // The file is unchanged since it was read, so saving needs no question.
     harness.key_press_modifiers(egui::Modifiers::COMMAND, Key::S);
     harness.settle();
     assert!(!harness.state().document().is_changed() && !harness.state().has_dialog());
     until("what is saved goes", || kept(&root).len() == 1);
     drop(harness);
 
-    // Thrown away by two clicks.
+    // Two clicks discard it.
     let mut harness = start(&root);
     press(&mut harness, "Discard Untitled");
     assert_eq!(kept(&root).len(), 1, "one click could be a mistake");
@@ -269,7 +268,7 @@ fn lost_work_is_offered_with_name_time_and_picture() {
     until("what is thrown away goes", || kept(&root).is_empty());
 }
 
-/// A document that was lost while somebody else changed its file asks before it replaces that.
+/// A recovered document asks before it replaces a file that changed since.
 #[test]
 fn a_recovered_document_asks_before_it_replaces_what_others_wrote() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -289,7 +288,7 @@ fn a_recovered_document_asks_before_it_replaces_what_others_wrote() {
     harness.settle();
     assert!(shows(&harness, "“pawn.json” was changed by another program"));
     assert_eq!(file::load(&path), Ok(plain_scene(5, 5)));
-    // Closing now would not be agreed to: what is not saved stays kept.
+    // The user would not confirm closing now: the unsaved document stays kept.
     harness.state_mut().end_recovery();
     drop(harness);
     assert!(kept_with(&root, "Mine"));

@@ -7,10 +7,10 @@ use isolith::scene::{Attachment, CameraNode, Group, Light, Modifier, Node, NodeI
 
 use super::{ALL_AXES, add, around, ball, blended, flat, group, load, object};
 
-/// So many kinds of the empty set there are.
+/// Number of kinds of the empty set.
 const KINDS: usize = 9;
 
-/// Adds one of them below `parent`.
+/// Adds an empty set of this kind below `parent`.
 fn add_nothing(scene: &mut Scene, parent: Option<NodeId>, kind: usize) {
     let blank = |text: &str| {
         object(Shape::Text { text: text.into(), font: Attachment::NONE, size: 1.0, depth: 0.2, rounding: 0.0 })
@@ -68,7 +68,7 @@ fn every_operator_takes_every_kind_of_nothing() {
         flat(&scene)
     };
     for operator in Operator::ALL {
-        // What is left where the empty set comes first, and where it comes last.
+        // The result with the empty set as first and as last operand.
         let expected = match operator {
             Operator::Union | Operator::Xor => [true, true],
             Operator::Intersection | Operator::Pipe | Operator::Morph => [false, false],
@@ -146,7 +146,7 @@ fn negative_children_cut_nothing_from_nothing() {
     let cutter = add(&mut scene, parent, ball().negative());
     assert_eq!(count(&flat(&scene)), 0);
     assert_eq!(flat(&scene).warnings.iter().map(|w| w.node).collect::<Vec<_>>(), [cutter]);
-    // An empty cutter cuts nothing, and nobody has to be told.
+    // An empty cutter cuts nothing and needs no warning.
     let mut scene = Scene::new();
     add(&mut scene, None, ball());
     add(&mut scene, None, group(Operator::Union).negative());

@@ -1,4 +1,4 @@
-//! Scenes that are built to take all memory or time: refused with the node, or flattened, within seconds.
+//! Scenes built to exhaust memory or time: flattening refuses them with the node, or succeeds, within seconds.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -12,10 +12,10 @@ use isolith::scene::{Modifier, Node, NodeId, NodeKind, Operator, Scene, Shape, f
 
 use super::{ALL_AXES, add, around, ball, blended, case, group, load, object};
 
-/// Each ends within this time, in a build for tests too.
+/// Time limit of each, in test builds too.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// Flattens, and holds it to the time.
+/// Flattens the scene and asserts the time limit.
 fn timed(name: &str, scene: &Scene) -> Result<FlatScene, FlattenError> {
     let started = Instant::now();
     let result = flatten(scene, 0.0);
@@ -23,7 +23,7 @@ fn timed(name: &str, scene: &Scene) -> Result<FlatScene, FlattenError> {
     result
 }
 
-/// A limit that was hit, by which node.
+/// The exceeded limit and the node that exceeded it.
 fn refused(name: &str, scene: &Scene) -> (u64, String, usize) {
     match timed(name, scene) {
         Err(FlattenError { node, what, value, limit, .. }) => {
@@ -78,7 +78,7 @@ fn copies_of_nothing_are_nothing() {
 
 #[test]
 fn what_turns_out_to_be_nothing_is_not_copied_either() {
-    // Letters that no font draws: only evaluating them tells.
+    // Letters that no font draws: only evaluation reveals that the text is empty.
     let text = Shape::Text {
         text: "\u{200b}".into(),
         font: isolith::scene::Attachment::NONE,
@@ -109,13 +109,13 @@ fn chains_of_copies_are_counted_before_they_are_made() {
         let (node, what, value) = refused(name, &scene);
         assert!(node == 1 && what.contains("copies included") && value > MAX_FLAT_NODES, "{name}: {what} {value}");
     }
-    // Too many parts to be drawn one by one.
+    // Too many separate components.
     let mut scene = Scene::new();
     let ring = ball().modified(Modifier::Round { radius: 0.01 }).modified(around(512)).modified(around(255));
     add(&mut scene, None, ring);
     let (node, what, value) = refused("separate parts", &scene);
     assert!(node == 1 && what.contains("hard union") && value == 512 * 255, "{what} {value}");
-    // Many that are small by themselves: the group that holds too many is named.
+    // Many rings, each within the limit: the error names the group that contains too many.
     let mut scene = Scene::new();
     let parent = add(&mut scene, None, blended(Operator::Union));
     for _ in 0..400 {
@@ -130,7 +130,7 @@ fn cuts_into_many_components_are_counted() {
     add(&mut scene, None, ball().modified(around(512)).modified(around(256)));
     let cut = add(&mut scene, None, ball().modified(around(1024)).negative());
     assert_eq!(refused("a ring of cuts", &scene).0, cut.0);
-    // As many cuts as components, each of which reaches one: no comparison of all with all.
+    // As many cuts as components, each reaching one: flattening must not compare all with all.
     let mut scene = Scene::new();
     let place = |i: usize| DVec3::new((i % 200) as f64, 0.0, (i / 200) as f64) * 5.0;
     let pairs = (0..20_000).map(|i| (ball().at(place(i)), ball().at(place(i) + DVec3::Y).negative()));
@@ -145,7 +145,7 @@ fn cuts_into_many_components_are_counted() {
 
 #[test]
 fn exclusions_are_counted() {
-    // A row in which each keeps apart from the one before it: each is joined with all others once more.
+    // A row of balls, each apart from the previous one: every ball joins all others once more.
     let mut scene = Scene::new();
     let parent = add(&mut scene, None, blended(Operator::Union));
     let mut before = None;
@@ -154,7 +154,7 @@ fn exclusions_are_counted() {
         before = Some(add(&mut scene, Some(parent), node));
     }
     refused("a row", &scene);
-    // Those that name nobody who is there are compared with nobody.
+    // Exclusions of nodes that do not exist need no comparisons.
     let mut scene = Scene::new();
     let parent = add(&mut scene, None, blended(Operator::Union));
     let apart: Vec<NodeId> = (0..64).map(|i| NodeId(900_000 + i)).collect();
@@ -168,7 +168,7 @@ fn exclusions_are_counted() {
     scene.set_nodes(std::iter::once(group).chain(children).map(Into::into).collect()).expect("a table");
     let (node, _, value) = refused("strangers", &scene);
     assert_eq!((node, value > MAX_COMPONENT_NODES), (parent.0, true));
-    // Doubling at each of sixty levels.
+    // Exclusions that double the work at each of sixty levels.
     let mut scene = Scene::new();
     let mut parent = None;
     for _ in 0..60 {
@@ -205,7 +205,7 @@ fn nesting_is_limited_before_it_fills_the_stack() {
         scene.set_nodes(nodes.map(Into::into).collect()).expect("a table");
         scene
     };
-    // A copy of one at every level.
+    // One copy at every level.
     let once = |_: usize| (0..32).fold(blended(Operator::Union), |node, _| node.modified(around(1)));
     let (_, what, value) = refused("rings of one", &nested(1000, &once));
     assert!(what.contains("nesting") && value > MAX_FLAT_LEVELS, "{what}: {value}");
@@ -215,7 +215,7 @@ fn nesting_is_limited_before_it_fills_the_stack() {
     assert!(what.contains("nesting") && value > MAX_STACK as usize && node > 100, "{node}, {what}: {value}");
     let (_, what, _) = refused("mirrors", &nested(1000, &|_| blended(Operator::Union).modified(ALL_AXES)));
     assert!(what.contains("copies included"), "{what}");
-    // Without modifiers all of it is simplified.
+    // Without modifiers, flattening simplifies all of it.
     for operator in [Operator::Union, Operator::Difference] {
         let flat = timed("deep", &nested(1000, &|_| blended(operator))).expect("within every limit");
         assert_eq!(flat.nodes.len(), 2, "{operator:?}");
@@ -227,7 +227,7 @@ fn nesting_is_limited_before_it_fills_the_stack() {
 
 #[test]
 fn deep_nesting_that_stays_is_named_and_deep_nesting_around_many_is_quick() {
-    // Alternating operators with a sibling before each, so that no level can be simplified.
+    // Alternating operators, with a sibling before each, so that no level can be simplified.
     let mut scene = Scene::new();
     let mut parent = None;
     for i in 0..1000 {
@@ -293,7 +293,7 @@ fn repetitions_of_repetitions_are_limited_by_what_a_point_meets() {
         carve_from: [0; 3],
         carve_to: [0; 3],
     };
-    // Ever so many copies are looked at one by one at each place.
+    // The evaluator visits copies one by one at each point, so their number does not matter.
     let mut scene = Scene::new();
     add(&mut scene, None, ball().modified(repeat([1_000_000; 3])));
     let flat = timed("a million cubed", &scene).expect("within every limit");
@@ -353,7 +353,8 @@ fn preparing_a_picture_obeys_ctrl_c() {
     let (from, to) = (folder.path().join("scene.json"), folder.path().join("picture.png"));
     std::fs::write(&from, file::to_json(&scene).expect("a sound scene")).expect("it can be written");
     let mut command = Command::new(env!("CARGO_BIN_EXE_isolith"));
-    // As small as it is, preparing takes seconds; a large picture of so many is refused at once.
+    // Preparing takes seconds in spite of the small size; the program refuses a large picture of so many components at
+    // once.
     command.arg("render").arg(&from).args(["--size", "64x48", "-o"]).arg(&to);
     command.env("XDG_RUNTIME_DIR", folder.path());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program starts");
@@ -363,7 +364,7 @@ fn preparing_a_picture_obeys_ctrl_c() {
     assert!(kill.success());
     let status = child.wait().expect("it ends");
     let took = interrupted.elapsed();
-    // Before its own handler is there, the signal ends it.
+    // Before the program installs its own handler, the signal ends it.
     let is_interrupted =
         status.code() == Some(130) || std::os::unix::process::ExitStatusExt::signal(&status) == Some(2);
     assert!(is_interrupted && took < LONGEST, "{status}, {took:?}");

@@ -1,4 +1,4 @@
-//! Scenes that take long to flatten open in the editor beside its frames.
+//! Scenes that take long to flatten open in the editor in the background.
 
 use std::time::{Duration, Instant};
 
@@ -11,7 +11,7 @@ use isolith::scene::{CameraNode, Modifier, Node, NodeId, NodeKind, Scene};
 
 use super::{add, around, ball, flat, load};
 
-/// So many balls in rings, and a camera.
+/// `inner` times `outer` balls in rings, and a camera.
 fn rings(inner: u32, outer: u32) -> Scene {
     let mut scene = Scene::new();
     add(&mut scene, None, ball().modified(around(inner)).modified(around(outer)));
@@ -30,7 +30,7 @@ fn shown(editor: Editor) -> Harness<'static, Editor> {
         .build_ui_state(|ui, editor: &mut Editor| editor.show(ui, &Picture::default()), editor)
 }
 
-/// Goes on until the arrays are there.
+/// Shows frames until the arrays are ready.
 fn wait(harness: &mut Harness<'_, Editor>) {
     let started = Instant::now();
     while harness.query_by_label("Preparing the scene…").is_some() {
@@ -45,15 +45,15 @@ fn a_large_scene_is_prepared_beside_the_frames() {
     let scene = rings(512, 100);
     let started = Instant::now();
     let editor = Editor::new(Document::new(scene.clone()));
-    // Nobody has waited, and what is not there yet is not that of another document either.
+    // The editor has not waited, and shows no arrays of another document in the meantime.
     assert!(editor.flat().nodes.is_empty(), "it was there after {:?}", started.elapsed());
     let mut harness = shown(editor);
     harness.step();
     wait(&mut harness);
     assert_eq!(**harness.state().flat(), flat(&scene));
-    // The first view waited for the camera.
+    // The first view waited for the scene's camera.
     assert!((harness.state().view().camera.fov_y.to_degrees() - 33.0).abs() < 1e-9);
-    // A small scene is there with its first frame.
+    // A small scene is ready in its first frame.
     assert!(!open(rings(3, 2)).state().flat().nodes.is_empty());
 }
 

@@ -1,16 +1,16 @@
-//! Small TrueType fonts, made by code.
+//! Builds small TrueType fonts in code.
 
-/// The font's height in its units.
+/// The font's height in font units.
 pub const EM: u16 = 1_000;
 
-/// A glyph of rectangles, each from a corner to a corner.
+/// A glyph of rectangles, each given by two corners.
 pub fn rectangles(parts: &[[i16; 4]]) -> Vec<u8> {
     let points: Vec<[i16; 2]> =
         parts.iter().flat_map(|[x0, y0, x1, y1]| [[*x0, *y0], [*x0, *y1], [*x1, *y1], [*x1, *y0]]).collect();
     polygons(&points, 4)
 }
 
-/// A glyph of straight lines, each closed curve of so many points.
+/// A glyph of straight lines; each closed curve has `each` points.
 pub fn polygons(points: &[[i16; 2]], each: usize) -> Vec<u8> {
     let contours = points.len() / each;
     let mut out = words(&[contours as i16]);
@@ -30,11 +30,11 @@ pub fn polygons(points: &[[i16; 2]], each: usize) -> Vec<u8> {
     out
 }
 
-/// A glyph of other glyphs, all at the same place.
+/// A glyph composed of other glyphs, all at the same place.
 pub fn composite(parts: &[u16]) -> Vec<u8> {
     let mut out = words(&[-1, 0, 0, 10, 10]);
     for (i, part) in parts.iter().enumerate() {
-        // Offsets in words; more parts follow.
+        // Flags: offsets are words; more parts follow.
         let more = if i + 1 < parts.len() { 0x20 } else { 0 };
         out.extend((0x0003_u16 | more).to_be_bytes());
         out.extend(part.to_be_bytes());
@@ -56,23 +56,23 @@ fn words(numbers: &[i16]) -> Vec<u8> {
 /// A font under construction.
 #[derive(Default)]
 pub struct Font {
-    /// Glyphs as they stand in the file; the first is for letters that are missing.
+    /// Glyph data as in the file; the first glyph is for missing letters.
     pub glyphs: Vec<Vec<u8>>,
-    /// How wide each is, and where its ink starts.
+    /// Advance width and left side bearing of each glyph.
     pub widths: Vec<(u16, i16)>,
-    /// First and last letter, and the glyph of the first; ascending.
+    /// First and last letter, and the glyph of the first; in ascending order.
     pub letters: Vec<(u32, u32, u32)>,
     /// Further tables.
     pub tables: Vec<([u8; 4], Vec<u8>)>,
 }
 
 impl Font {
-    /// With a box for missing letters.
+    /// A font with a box for missing letters.
     pub fn new() -> Self {
         Self::default().glyph(rectangles(&[[0, 0, 500, 700]]), 600)
     }
 
-    /// With another glyph of this width.
+    /// Adds a glyph of this width.
     pub fn glyph(mut self, glyph: Vec<u8>, width: u16) -> Self {
         let ink = if glyph.len() > 4 { i16::from_be_bytes([glyph[2], glyph[3]]) } else { 0 };
         self.glyphs.push(glyph);
@@ -80,19 +80,19 @@ impl Font {
         self
     }
 
-    /// With a letter that is drawn by this glyph.
+    /// Maps a letter to this glyph.
     pub fn letter(mut self, letter: char, glyph: u32) -> Self {
         self.letters.push((letter.into(), letter.into(), glyph));
         self
     }
 
-    /// With another table.
+    /// Adds a table.
     pub fn table(mut self, tag: &[u8; 4], table: Vec<u8>) -> Self {
         self.tables.push((*tag, table));
         self
     }
 
-    /// The file.
+    /// The bytes of the font file.
     pub fn file(&self) -> Vec<u8> {
         let count = self.glyphs.len() as u16;
         let mut glyf = Vec::new();
@@ -106,7 +106,7 @@ impl Font {
         head[1] = 1;
         head[12..16].copy_from_slice(&0x5f0f_3cf5_u32.to_be_bytes());
         head[18..20].copy_from_slice(&EM.to_be_bytes());
-        // Offsets of glyphs are written in 4 bytes.
+        // Glyph offsets take 4 bytes.
         head[51] = 1;
         let mut hhea = vec![0; 36];
         hhea[1] = 1;
@@ -129,7 +129,7 @@ impl Font {
         assembled(&tables)
     }
 
-    /// Letters as groups of the format for all of Unicode.
+    /// The letter map, as groups in the format for all of Unicode.
     fn cmap(&self) -> Vec<u8> {
         let mut out: Vec<u8> = [0_u16, 1, 3, 10, 0, 12, 12, 0].iter().flat_map(|n| n.to_be_bytes()).collect();
         let count = self.letters.len() as u32;
@@ -156,13 +156,13 @@ fn assembled(tables: &[([u8; 4], Vec<u8>)]) -> Vec<u8> {
     out
 }
 
-/// A table of substitutions for the Arabic script: each feature replaces glyph 1 by another one.
+/// A substitution table for the Arabic script: each feature replaces glyph 1 by another one.
 pub fn arabic_forms(forms: &[(&[u8; 4], u16)]) -> Vec<u8> {
     let count = forms.len() as u16;
     let [scripts, features] = [10_u16, 10 + 2 + 6 + 4 + 6 + 2 * count];
     let lookups = features + 2 + 6 * count + 6 * count;
     let mut out: Vec<u16> = vec![1, 0, scripts, features, lookups];
-    // One script with one language, which has all features.
+    // One script with one language that has all features.
     out.extend([1, 0x6172, 0x6162, 8, 4, 0, 0, 0xffff, count]);
     out.extend(0..count);
     out.push(count);

@@ -1,5 +1,5 @@
-//! The cards, and a process for each: the driver reads which one to be when it is loaded, and then the program's own
-//! devices must not be among those of the environment.
+//! The cards, and a process for each. The driver reads the card to emulate when it is loaded, and that environment must
+//! not affect the program's own devices.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,10 +15,10 @@ use crate::{Error, Statistics};
 pub struct Card {
     /// Its name in tables.
     pub name: &'static str,
-    /// What RADV calls it, by age of the driver.
+    /// Its names in RADV, by version of the driver.
     families: &'static [&'static str],
-    /// Most vector registers of a lane: 128, in the steps by which the card gives them out. With so many a SIMD keeps 8 or 10
-    /// waves, enough for some to compute while others wait for memory.
+    /// Most vector registers per lane: 128, in the allocation steps of the card. With these a SIMD holds 8 or 10 waves,
+    /// enough for some to compute while others wait for memory.
     pub max_vgprs: u64,
 }
 
@@ -28,16 +28,16 @@ pub const CARDS: [Card; 2] = [
     Card { name: "GFX11", families: &["gfx1100", "navi31"], max_vgprs: 132 },
 ];
 
-/// What a driver says of all pipelines.
+/// The driver's statistics for all pipelines.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Report {
-    /// The card and the driver, in words.
+    /// Description of the card and the driver.
     pub device: String,
-    /// For each pipeline what is said of its stages.
+    /// Statistics of the stages of each pipeline.
     pub statistics: Vec<Vec<Statistics>>,
 }
 
-/// Has `program` compile everything for a card, in a process of its own.
+/// Makes `program` compile all pipelines for a card, in its own process.
 pub fn measure(card: &Card, program: &Path, pipelines: &[Pipeline]) -> Result<Report, Error> {
     let failed = |error: &dyn std::fmt::Display| Error::Process(format!("{}: {error}", card.name));
     let drivers = drivers()?;
@@ -48,9 +48,9 @@ pub fn measure(card: &Card, program: &Path, pipelines: &[Pipeline]) -> Result<Re
     for family in card.families {
         let mut command = Command::new(program);
         command.arg(orders.path()).env("RADV_FORCE_FAMILY", family).env("AMD_FORCE_FAMILY", family);
-        // Both names of the same variable: loaders before 1.3.207 know the second one only.
+        // Both names of the same variable: loaders before 1.3.207 know only the second one.
         command.env("VK_DRIVER_FILES", &drivers).env("VK_ICD_FILENAMES", &drivers);
-        // What is in the driver's cache would take no time.
+        // Cached pipelines would take no time.
         command.env("MESA_SHADER_CACHE_DISABLE", "true").env_remove("RADV_DEBUG").env_remove("ACO_DEBUG");
         let output = command.output().map_err(|error| failed(&error))?;
         if output.status.success() {
@@ -67,10 +67,10 @@ pub fn measure(card: &Card, program: &Path, pipelines: &[Pipeline]) -> Result<Re
     }
 }
 
-/// What the process for a card begins its complaint with where the driver is missing.
+/// Prefix of the error message of the card's process if the driver is missing.
 pub const NO_DRIVER: &str = "no driver: ";
 
-/// What the process for a card does: compiles the pipelines in the file and prints a [`Report`], or complains.
+/// The body of the card's process: compiles the pipelines in the file and prints a [`Report`] or an error.
 pub fn serve(orders: &Path) -> Result<String, String> {
     let text = std::fs::read(orders).map_err(|error| error.to_string())?;
     let pipelines: Vec<Pipeline> = serde_json::from_slice(&text).map_err(|error| error.to_string())?;
@@ -84,7 +84,7 @@ pub fn serve(orders: &Path) -> Result<String, String> {
     serde_json::to_string(&Report { device: device.name.clone(), statistics }).map_err(|error| error.to_string())
 }
 
-/// RADV's manifests, as the loader wants them named.
+/// Paths of RADV's manifests, in the loader's format.
 fn drivers() -> Result<String, Error> {
     let folders = folders();
     let mut found: Vec<String> = Vec::new();
@@ -98,11 +98,11 @@ fn drivers() -> Result<String, Error> {
         let folders = folders.iter().map(|folder| folder.display().to_string());
         return Err(Error::NoDriver(format!("no radeon_icd*.json in {}", folders.collect::<Vec<_>>().join(", "))));
     }
-    // One for each architecture: the loader takes what it can load.
+    // One for each architecture: the loader picks one that it can load.
     Ok(found.join(":"))
 }
 
-/// Where manifests of drivers are: beside the one that the environment names, then where loaders look.
+/// Folders of driver manifests: that of the manifest named in the environment, then the loader's default folders.
 fn folders() -> Vec<PathBuf> {
     let variable = |name: &str| std::env::var(name).unwrap_or_default();
     let named = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].map(variable).join(":");

@@ -1,24 +1,24 @@
-//! Limits, and the exceptions from them.
+//! Limits and their exceptions.
 
 use crate::cards::{Card, Report};
-use crate::subjects::{EvaluatorKind, Purpose, Subjects};
+use crate::subjects::{Purpose, Subjects, EvaluatorKind};
 
-/// What a card's compiler makes of all pipelines of one purpose: the worst of each figure.
+/// The compiler's figures for all pipelines of one purpose on a card: the worst of each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// The card.
     pub card: Card,
-    /// What they are for.
+    /// The purpose of the pipelines.
     pub purpose: Purpose,
-    /// How many they are.
+    /// Number of pipelines.
     pub pipelines: usize,
     /// Most vector registers.
     pub vgprs: u64,
     /// Most scalar registers.
     pub sgprs: u64,
-    /// Most vector registers that are spilled.
+    /// Most spilled vector registers.
     pub spilled_vgprs: u64,
-    /// Most scalar registers that are spilled.
+    /// Most spilled scalar registers.
     pub spilled_sgprs: u64,
     /// Most scratch memory.
     pub scratch: u64,
@@ -59,33 +59,34 @@ pub fn rows(card: &Card, subjects: &Subjects, report: &Report) -> Vec<Row> {
     subjects.purposes.iter().map(row).collect()
 }
 
-/// More than the limits for one purpose, and why.
+/// Raised limits for one purpose, with the reason.
 #[derive(Clone, Copy, Debug)]
 pub struct Exception {
     /// Name of the scene.
     pub scene: &'static str,
-    /// How fields are evaluated.
+    /// The evaluator.
     pub way: EvaluatorKind,
     /// The pass.
     pub pass: &'static str,
-    /// Most vector registers, on whichever card takes more.
+    /// Most vector registers, on the card that takes more.
     pub vgprs: u64,
-    /// Most of them that are spilled.
+    /// Most spilled vector registers.
     pub spilled: u64,
-    /// Why it is so.
+    /// Reason of the exception.
     pub reason: &'static str,
 }
 
-/// The Mandelbulb keeps two numbers of each of up to 17 steps, with their derivatives, for the way back: 136 registers,
-/// because the compiler puts such an array into registers. The surface is evaluated once in a pixel that shows it; the march
-/// has no derivatives, and takes 96.
+/// For its backward pass, the Mandelbulb keeps two numbers of each of up to 17 steps, with their derivatives: 136
+/// registers, because the compiler puts such an array into registers. The surface pass evaluates once per visible
+/// pixel. The march has no derivatives and takes 96.
 const ORBIT: &str = "the orbit of a fractal, with derivatives, is in registers";
-/// The interpreter keeps what stands before a modifier, its nearest copy, and the content at once, beside the derivatives of a
-/// shape. Lists and straight-line code for surfaces with modifiers would be other ways; the march takes 96.
+/// The interpreter keeps three surfaces alive at once beside the derivatives of a shape: the one before a modifier, its
+/// nearest copy, and the content. Tapes and straight-line code for surfaces with modifiers would avoid this. The march
+/// takes 96.
 const COPIES: &str = "with modifiers three surfaces are alive at once, beside a shape's derivatives";
 
-/// What is allowed beyond the limits, as measured with Mesa 22.3.6. Its compiler gives a lane of GFX11 no more than 132
-/// registers, and spills the rest.
+/// Exceptions from the limits, as measured with Mesa 22.3.6. Its compiler gives a lane of GFX11 at most 132 registers
+/// and spills the rest.
 pub const EXCEPTIONS: &[Exception] = &[
     surface("shapes", EvaluatorKind::Interpreter, 256, 371, ORBIT),
     surface("shapes", EvaluatorKind::Straight, 232, 295, ORBIT),
@@ -101,7 +102,7 @@ const fn surface(scene: &'static str, way: EvaluatorKind, vgprs: u64, spilled: u
     Exception { scene, way, pass: "surface", vgprs, spilled, reason }
 }
 
-/// What is wrong with these rows: what spills, what takes too many registers, and exceptions that nothing needs.
+/// Faults of these rows: spills, too many registers, and unused exceptions.
 pub fn faults(rows: &[Row], exceptions: &[Exception]) -> Vec<String> {
     let is_for = |exception: &Exception, row: &Row| {
         let Purpose { scene, way, pass } = &row.purpose;
@@ -155,14 +156,8 @@ mod tests {
         }
     }
 
-    const FOR_PAWN: Exception = Exception {
-        scene: "pawn",
-        way: EvaluatorKind::Straight,
-        pass: "trace",
-        vgprs: 192,
-        spilled: 2,
-        reason: "a sample",
-    };
+    const FOR_PAWN: Exception =
+        Exception { scene: "pawn", way: EvaluatorKind::Straight, pass: "trace", vgprs: 192, spilled: 2, reason: "a sample" };
 
     #[test]
     fn what_spills_and_what_takes_too_many_registers_is_refused() {

@@ -1,16 +1,16 @@
-//! What the compiler of a graphics card makes of every shader of the program, without the card.
+//! Compiles every shader of the program with a graphics card's compiler, without the card.
 //!
-//! Mesa's RADV has a null device: it compiles for any AMD generation, and tells of each pipeline how many registers it
-//! takes, what spills, how many waves fit a SIMD and how long it takes at best. wgpu cannot open that device, so this
-//! package speaks to Vulkan itself, and is a package of its own because that needs `unsafe`, which the others forbid.
+//! Mesa's RADV has a null device: it compiles for any AMD generation and reports for each pipeline its registers,
+//! spills, waves per SIMD and minimum run time. wgpu cannot open that device, so this package calls Vulkan itself. It
+//! is a separate package because that needs `unsafe`, which the others forbid.
 //!
-//! | module | what it does |
+//! | module | content |
 //! |---|---|
 //! | `subjects` | every pipeline that the renderer builds for the example scenes |
 //! | `spirv` | WGSL to SPIR-V, with the options of wgpu |
 //! | `cards` | the cards, and a process for each: the driver reads its environment once |
 //! | `vulkan` | the only `unsafe` code: compiles pipelines and reads their statistics |
-//! | `gate` | limits, and the exceptions from them |
+//! | `gate` | limits and their exceptions |
 //! | `table` | the tables of `benches/README.md` |
 
 pub mod cards;
@@ -23,50 +23,50 @@ pub mod vulkan;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Why nothing was measured.
+/// Reasons for a failed measurement.
 #[derive(Clone, Debug, Error)]
 pub enum Error {
-    /// There is no driver that knows the card.
+    /// No driver knows the card.
     #[error(
         "Mesa's driver for AMD graphics cards (RADV) is missing: {0}. It compiles without a card. On Debian or Ubuntu \
          `apt-get install mesa-vulkan-drivers libvulkan1` installs it, on Fedora `dnf install mesa-vulkan-drivers \
          vulkan-loader`, on Arch `pacman -S vulkan-radeon vulkan-icd-loader`"
     )]
     NoDriver(String),
-    /// A shader is not valid, or the driver refuses it.
+    /// A shader is invalid, or the driver refuses it.
     #[error("{what}: {reason}")]
     Refused {
-        /// Which pipeline.
+        /// The pipeline.
         what: String,
-        /// What is said against it.
+        /// The error message.
         reason: String,
     },
-    /// The process for a card, or a file between it and this one.
+    /// An error of a card's process, or of a file between it and this one.
     #[error("{0}")]
     Process(String),
 }
 
-/// What the driver says of one stage of a pipeline.
+/// The driver's statistics for one stage of a pipeline.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
-    /// The stage, as the driver calls it.
+    /// The driver's name of the stage.
     pub stage: String,
-    /// Vector registers of each lane.
+    /// Vector registers per lane.
     pub vgprs: u64,
-    /// Scalar registers of each wave.
+    /// Scalar registers per wave.
     pub sgprs: u64,
-    /// Vector registers that are kept in memory because there are too few.
+    /// Vector registers spilled to memory.
     pub spilled_vgprs: u64,
-    /// Scalar registers that are kept in lanes of vector registers, which takes an instruction each way.
+    /// Scalar registers spilled to lanes of vector registers, which takes an instruction each way.
     pub spilled_sgprs: u64,
-    /// Bytes of memory of each wave for what is spilled, and for arrays that are indexed.
+    /// Bytes of memory per wave for spills and for indexed arrays.
     pub scratch: u64,
-    /// Waves that a SIMD keeps at once: with few of them nothing hides that memory is slow.
+    /// Waves that a SIMD holds at once: few waves cannot hide the latency of memory.
     pub waves: u64,
-    /// Cycles per wave where everything else is hidden, by the driver's estimate. Bodies of loops count once, by ten.
+    /// Cycles per wave if everything else is hidden, by the driver's estimate. It counts loop bodies once, times ten.
     pub inverse_throughput: u64,
     /// Bytes of machine code.
     pub code_size: u64,
-    /// What the driver took to compile the whole pipeline.
+    /// Compile time of the whole pipeline.
     pub compile_ms: f64,
 }

@@ -1,6 +1,6 @@
-//! `gpu-static FILE` is the process for a card: it compiles the pipelines of a file and prints what the driver says of
-//! them; the test beside it starts one for each card. `gpu-static --shader FILE` says what each card makes of the field
-//! passes of one WGSL file, such as `isolith shader` prints.
+//! `gpu-static FILE` is the process for a card: it compiles the pipelines of a file and prints the driver's statistics;
+//! the test beside it starts one for each card. `gpu-static --shader FILE` prints each card's statistics for the field
+//! passes of one WGSL file, such as the output of `isolith shader`.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -27,7 +27,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What each card makes of a file, a line each.
+/// Statistics of each card for a file, one line each.
 fn shader(file: &Path) -> Result<String, String> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("{}: {error}", file.display()))?;
     let pipelines = of_file(&file.display().to_string(), &text).map_err(|error| error.to_string())?;

@@ -1,4 +1,4 @@
-//! WGSL to SPIR-V as wgpu 30 does it for a card whose driver checks bounds of buffers and images (`robustness2`).
+//! Translates WGSL to SPIR-V like wgpu 30 for a card whose driver checks bounds of buffers and images (`robustness2`).
 
 use std::collections::BTreeMap;
 
@@ -10,16 +10,16 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
-/// What a binding holds.
+/// The resource at a binding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Resource {
     /// A uniform buffer.
     Uniform,
-    /// A uniform buffer at an offset that each dispatch chooses.
+    /// A uniform buffer with a dynamic offset.
     DynamicUniform,
     /// A storage buffer.
     Storage,
-    /// A texture that is read and written texel by texel.
+    /// A storage texture.
     StorageImage,
     /// A texture.
     SampledImage,
@@ -27,18 +27,18 @@ pub enum Resource {
     Sampler,
 }
 
-/// One shader, ready for a driver.
+/// A shader in the form that a driver takes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SpirvStage {
     /// Name of its entry point.
     pub entry_point: String,
     /// `compute`, `vertex` or `fragment`.
     pub kind: String,
-    /// SPIR-V.
+    /// The SPIR-V words.
     pub words: Vec<u32>,
 }
 
-/// A module that is valid.
+/// A validated module.
 #[derive(Debug)]
 pub struct Shader {
     module: Module,
@@ -47,7 +47,7 @@ pub struct Shader {
 }
 
 impl Shader {
-    /// Reads `source`; `name` is for messages.
+    /// Parses and validates `source`; `name` is for messages.
     pub fn new(name: &str, source: &str) -> Result<Self, Error> {
         let refused = |reason: String| Error::Refused { what: name.to_owned(), reason };
         let module = naga::front::wgsl::parse_str(source).map_err(|error| refused(error.emit_to_string(source)))?;
@@ -62,7 +62,7 @@ impl Shader {
         all.filter(|entry| entry.stage == kind).map(|entry| entry.name.clone()).collect()
     }
 
-    /// Everything that the module binds, by group and binding. The bindings of `dynamic` have dynamic offsets.
+    /// Resources of the module by group and binding. The bindings in `dynamic` have dynamic offsets.
     pub fn bindings(&self, dynamic: &[[u32; 2]]) -> BTreeMap<[u32; 2], Resource> {
         let globals = self.module.global_variables.iter().map(|(_, variable)| variable);
         let bound = globals.filter_map(|variable| Some((variable.binding?, variable)));
@@ -82,7 +82,7 @@ impl Shader {
         }
     }
 
-    /// One entry point as SPIR-V.
+    /// Translates one entry point to SPIR-V.
     pub fn stage(&self, entry_point: &str, kind: ShaderStage) -> Result<SpirvStage, Error> {
         let pipeline = spv::PipelineOptions { shader_stage: kind, entry_point: entry_point.to_owned() };
         let words = spv::write_vec(&self.module, &self.info, &options(&self.module), Some(&pipeline));
@@ -92,7 +92,7 @@ impl Shader {
     }
 }
 
-/// What `wgpu-hal` 30.0.1 asks of naga in `src/vulkan/adapter.rs`, on a driver of Vulkan 1.3.
+/// The options that `wgpu-hal` 30.0.1 passes to naga in `src/vulkan/adapter.rs`, with a Vulkan 1.3 driver.
 fn options(module: &Module) -> spv::Options<'static> {
     let capabilities = [
         spv::Capability::Shader,

@@ -13,27 +13,27 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 use crate::spirv::{Resource, Shader, SpirvStage};
 
-/// Of a vertex attribute or a target of the picture.
+/// Format of a vertex attribute or a render target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Format {
     /// One float.
     Float,
-    /// Two.
+    /// Two floats.
     Float2,
-    /// Three.
+    /// Three floats.
     Float3,
-    /// Four.
+    /// Four floats.
     Float4,
-    /// Four of 16 bits.
+    /// Four 16-bit floats.
     Half4,
     /// An unsigned integer.
     Uint,
-    /// Four bytes from 0 to 1.
+    /// Four bytes, normalized to 0 to 1.
     Unorm4,
 }
 
 impl Format {
-    /// In bytes.
+    /// Size in bytes.
     pub fn size(self) -> u32 {
         match self {
             Self::Float | Self::Uint | Self::Unorm4 => 4,
@@ -44,51 +44,51 @@ impl Format {
     }
 }
 
-/// A pipeline that a driver can compile.
+/// A pipeline for a driver to compile.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Pipeline {
-    /// For messages.
+    /// Name for messages.
     pub name: String,
-    /// One of compute, or one of vertices and one of fragments.
+    /// A compute stage, or a vertex and a fragment stage.
     pub stages: Vec<SpirvStage>,
-    /// Everything that is bound, by group and binding.
+    /// Bound resources by group and binding.
     pub bindings: Vec<([u32; 2], Resource)>,
-    /// Of each vertex buffer.
+    /// Formats of the vertex buffers.
     pub vertex_formats: Vec<Format>,
-    /// Of each target.
+    /// Formats of the render targets.
     pub color_formats: Vec<Format>,
-    /// Whether there is a depth buffer.
+    /// Whether the pipeline has a depth buffer.
     pub has_depth: bool,
 }
 
-/// What a pipeline is for.
+/// The purpose of a pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Purpose {
     /// The example scene, or [`NO_FIELD`].
     pub scene: String,
-    /// How fields are evaluated.
+    /// The evaluator.
     pub way: EvaluatorKind,
-    /// The pass, and for those that have several its entry point.
+    /// The pass, with its entry point if the pass has several.
     pub pass: String,
 }
 
-/// How fields are evaluated.
+/// The evaluator of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum EvaluatorKind {
-    /// Not at all.
+    /// No field.
     None,
-    /// By the interpreter.
+    /// The interpreter.
     Interpreter,
-    /// By lists.
+    /// Tapes.
     Lists,
-    /// By lists, with modifiers.
+    /// Tapes with modifiers.
     ModifiedLists,
-    /// By straight-line code.
+    /// Straight-line code.
     Straight,
 }
 
 impl EvaluatorKind {
-    /// In words.
+    /// The name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "–",
@@ -109,10 +109,10 @@ impl EvaluatorKind {
     }
 }
 
-/// Stands for a scene where a pass evaluates no field.
+/// Takes the place of a scene for passes that evaluate no field.
 pub const NO_FIELD: &str = "(any)";
 
-/// All pipelines, each once, and what each purpose needs, by index.
+/// All pipelines, without duplicates, and those of each purpose by index.
 #[derive(Debug, Default)]
 pub struct Subjects {
     /// The pipelines.
@@ -121,7 +121,7 @@ pub struct Subjects {
     pub purposes: Vec<(Purpose, Vec<usize>)>,
 }
 
-/// What cards get.
+/// The options for graphics cards.
 const OPTIONS: Options = Options {
     counting: false,
     skip_mode: SkipMode::Branches,
@@ -130,12 +130,12 @@ const OPTIONS: Options = Options {
     quality: isolith::wgsl::Quality::Default,
 };
 
-/// Passes over a field, with their entry points.
+/// Passes that evaluate a field, with their entry points.
 const FIELD_PASSES: [[&str; 2]; 3] = [["cone", "cone"], ["trace", "trace"], ["surface", "surface_pass"]];
-/// Bindings of these passes whose offset each dispatch chooses: the component, its rows, the work.
+/// Bindings of these passes with dynamic offsets: the component, its rows, the dispatch.
 const FIELD_OFFSETS: [[u32; 2]; 3] = [[1, 2], [1, 4], [3, 0]];
 
-/// Everything that is compiled.
+/// All pipelines to compile.
 pub fn subjects() -> Result<Subjects, Error> {
     let mut sources: Vec<(String, &str)> = Vec::new();
     let mut known: HashMap<String, usize> = HashMap::new();
@@ -166,7 +166,7 @@ pub fn subjects() -> Result<Subjects, Error> {
     Ok(all)
 }
 
-/// Every evaluator of every scene, by each method that the window may choose.
+/// Every evaluator of every scene, for each strategy that the window may choose.
 fn evaluators() -> Result<Vec<(String, Evaluator)>, Error> {
     let mut all = Vec::new();
     for (scene, contents) in gallery::all() {
@@ -179,7 +179,7 @@ fn evaluators() -> Result<Vec<(String, Evaluator)>, Error> {
     Ok(all)
 }
 
-/// A pipeline of one entry point.
+/// A compute pipeline for one entry point.
 pub fn compute(name: &str, text: &str, entry_point: &str, dynamic: &[[u32; 2]]) -> Result<Pipeline, Error> {
     let shader = Shader::new(name, text)?;
     Ok(Pipeline {
@@ -190,13 +190,13 @@ pub fn compute(name: &str, text: &str, entry_point: &str, dynamic: &[[u32; 2]]) 
     })
 }
 
-/// The pipelines of all entry points of a file that compute.
+/// Pipelines for all compute entry points of a file.
 pub fn of_file(name: &str, text: &str) -> Result<Vec<Pipeline>, Error> {
     let entry_points = Shader::new(name, text)?.entry_points(ShaderStage::Compute);
     entry_points.iter().map(|entry_point| compute(entry_point, text, entry_point, &FIELD_OFFSETS)).collect()
 }
 
-/// The pipelines of all passes that evaluate no field.
+/// Pipelines of all passes without a field.
 fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
     let mut all = Vec::new();
     let evaluates_fields =
@@ -217,7 +217,7 @@ fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
     Ok(all)
 }
 
-/// A pipeline that draws.
+/// A render pipeline.
 fn drawn(name: &str, shader: &Shader, fragment: &str) -> Result<Pipeline, Error> {
     let is_mesh = name == "mesh";
     let vertex = shader.entry_points(ShaderStage::Vertex);

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use crate::gate::Row;
 use crate::subjects::Purpose;
 
-/// A row of the document for each purpose, both cards in each column. `rows` holds those of one card after those of the other.
+/// One line per purpose, with both cards in each column. `rows` contains the rows of one card, then those of the other.
 pub fn table(rows: &[Row], cards: usize) -> String {
     let mut out = String::from(
         "| scene | by | pass | kernels | VGPRs | of them spilled | SGPRs | of them spilled | scratch, bytes | waves | inverse throughput | code, KB | \
@@ -40,7 +40,7 @@ pub fn table(rows: &[Row], cards: usize) -> String {
     out
 }
 
-/// `text` with what stands between the marks of this name replaced.
+/// Returns `text` with the table between the marks of this name replaced.
 pub fn replaced(text: &str, mark: &str, table: &str) -> Option<String> {
     let [begin, end] = ["begin", "end"].map(|side| format!("<!-- {mark}:{side} -->"));
     let start = text.find(&begin)? + begin.len();

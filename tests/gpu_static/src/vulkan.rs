@@ -1,4 +1,4 @@
-//! Compiles pipelines on the device of the environment, and reads what the driver says of them.
+//! Compiles pipelines on the environment's device and reads the driver's statistics.
 
 #![allow(unsafe_code, reason = "Vulkan is a C interface, and wgpu does not pass its statistics on")]
 
@@ -11,21 +11,21 @@ use crate::spirv::{Resource, SpirvStage};
 use crate::subjects::{Format, Pipeline};
 use crate::{Error, Statistics};
 
-/// A device that compiles.
+/// A device for compiling.
 pub struct Device {
     instance: ash::Instance,
     device: ash::Device,
     executables: khr::pipeline_executable_properties::Device,
-    /// The card and the driver, in words.
+    /// Description of the card and the driver.
     pub name: String,
-    // Last: the others are of it.
+    // Last, because the other fields depend on it.
     _entry: ash::Entry,
 }
 
 impl Device {
-    /// Opens the first device of RADV.
+    /// Opens RADV's first device.
     pub fn open() -> Result<Self, Error> {
-        // SAFETY: the loader is the system's; it is kept as long as what is made with it.
+        // SAFETY: the loader is the system's; it outlives everything created with it.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| missing("the Vulkan loader", &error))?;
         let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
         let create = vk::InstanceCreateInfo::default().application_info(&application);
@@ -38,14 +38,14 @@ impl Device {
                 Ok(Self { instance, device, executables, name, _entry: entry })
             }
             Err(error) => {
-                // SAFETY: nothing was made with the instance.
+                // SAFETY: nothing was created with the instance.
                 unsafe { instance.destroy_instance(None) };
                 Err(error)
             }
         }
     }
 
-    /// What the driver makes of each stage.
+    /// Compiles a pipeline and returns the statistics of each stage.
     pub fn compile(&self, pipeline: &Pipeline) -> Result<Vec<Statistics>, Error> {
         let mut made =
             Made { device: &self.device, modules: Vec::new(), sets: Vec::new(), layout: None, pipeline: None };
@@ -58,7 +58,7 @@ impl Device {
 
 impl Drop for Device {
     fn drop(&mut self) {
-        // SAFETY: all that was made with them is destroyed.
+        // SAFETY: everything created with them is destroyed.
         unsafe {
             self.device.destroy_device(None);
             self.instance.destroy_instance(None);
@@ -70,7 +70,7 @@ fn missing(what: &str, error: &dyn std::fmt::Display) -> Error {
     Error::NoDriver(format!("{what}: {error}"))
 }
 
-/// A device that tells of its pipelines, with the checks of bounds that wgpu asks for, and its name.
+/// A device that captures statistics, with the bounds checks that wgpu requests, and its name.
 fn open_on(instance: &ash::Instance) -> Result<(ash::Device, String), Error> {
     // SAFETY: the instance is alive.
     let found = unsafe { instance.enumerate_physical_devices() }.map_err(|error| missing("a device", &error))?;
@@ -107,7 +107,7 @@ fn open_on(instance: &ash::Instance) -> Result<(ash::Device, String), Error> {
     Ok((device.map_err(|error| missing(&name, &error))?, name))
 }
 
-/// What a pipeline is made of, destroyed with it.
+/// The parts of a pipeline, destroyed together with it.
 struct Made<'a> {
     device: &'a ash::Device,
     modules: Vec<vk::ShaderModule>,
@@ -117,7 +117,7 @@ struct Made<'a> {
 }
 
 impl Made<'_> {
-    /// The pipeline, and how long it took.
+    /// Compiles the pipeline; returns it and the compile time.
     fn compile(&mut self, wanted: &Pipeline) -> Result<(vk::Pipeline, f64), vk::Result> {
         let layout = self.layout(wanted)?;
         let names: Vec<CString> =
@@ -140,7 +140,7 @@ impl Made<'_> {
 
     fn module(&mut self, stage: &SpirvStage) -> Result<vk::ShaderModule, vk::Result> {
         let create = vk::ShaderModuleCreateInfo::default().code(&stage.words);
-        // SAFETY: naga has made the words from a valid module.
+        // SAFETY: naga generated the words from a valid module.
         let module = unsafe { self.device.create_shader_module(&create, None) }?;
         self.modules.push(module);
         Ok(module)
@@ -152,11 +152,11 @@ impl Made<'_> {
             let here = wanted.bindings.iter().filter(|(at, _)| at[0] == group);
             let bindings: Vec<_> = here.map(|(at, resource)| binding(at[1], *resource)).collect();
             let create = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
-            // SAFETY: the bindings are valid, and live until the call ends.
+            // SAFETY: the bindings are valid and live until the call ends.
             self.sets.push(unsafe { self.device.create_descriptor_set_layout(&create, None) }?);
         }
         let create = vk::PipelineLayoutCreateInfo::default().set_layouts(&self.sets);
-        // SAFETY: the layouts of the sets are alive.
+        // SAFETY: the set layouts are alive.
         let layout = unsafe { self.device.create_pipeline_layout(&create, None) }?;
         self.layout = Some(layout);
         Ok(layout)
@@ -171,12 +171,12 @@ impl Made<'_> {
             .flags(vk::PipelineCreateFlags::CAPTURE_STATISTICS_KHR)
             .layout(layout)
             .stage(stage);
-        // SAFETY: layout and module are alive, and the entry point is one of the module's.
+        // SAFETY: layout and module are alive, and the module contains the entry point.
         let made = unsafe { self.device.create_compute_pipelines(vk::PipelineCache::null(), &[create], None) };
         made.map(|all| all[0]).map_err(|(_, error)| error)
     }
 
-    /// With the state that wgpu gives a pipeline that draws triangles without blending.
+    /// A render pipeline with wgpu's state for opaque triangles.
     fn graphics(
         &self,
         layout: vk::PipelineLayout,
@@ -230,7 +230,7 @@ impl Made<'_> {
             .dynamic_state(&dynamic)
             .layout(layout)
             .push_next(&mut rendering);
-        // SAFETY: layout and modules are alive, all states are given, and the entry points are of the modules.
+        // SAFETY: layout and modules are alive, all states are given, and the modules contain the entry points.
         let made = unsafe { self.device.create_graphics_pipelines(vk::PipelineCache::null(), &[create], None) };
         made.map(|all| all[0]).map_err(|(_, error)| error)
     }
@@ -238,7 +238,7 @@ impl Made<'_> {
 
 impl Drop for Made<'_> {
     fn drop(&mut self) {
-        // SAFETY: all of them are of this device, are used by nothing else, and are destroyed once.
+        // SAFETY: all of them belong to this device, nothing else uses them, and each is destroyed once.
         unsafe {
             self.pipeline.into_iter().for_each(|pipeline| self.device.destroy_pipeline(pipeline, None));
             self.layout.into_iter().for_each(|layout| self.device.destroy_pipeline_layout(layout, None));
@@ -281,7 +281,7 @@ fn vk_format(format: Format) -> vk::Format {
     }
 }
 
-/// What the driver says of each stage of a pipeline.
+/// The driver's statistics for each stage of a pipeline.
 fn statistics(
     executables: &khr::pipeline_executable_properties::Device,
     pipeline: vk::Pipeline,
@@ -289,12 +289,12 @@ fn statistics(
 ) -> Result<Vec<Statistics>, String> {
     let failed = |error: vk::Result| format!("the driver tells nothing of it: {error}");
     let info = vk::PipelineInfoKHR::default().pipeline(pipeline);
-    // SAFETY: the pipeline is alive and was made with the flag that captures statistics.
+    // SAFETY: the pipeline is alive and was created with the flag that captures statistics.
     let stages = unsafe { executables.get_pipeline_executable_properties(&info) }.map_err(failed)?;
     let mut all = Vec::new();
     for (index, stage) in (0..).zip(stages) {
         let info = vk::PipelineExecutableInfoKHR::default().pipeline(pipeline).executable_index(index);
-        // SAFETY: the same, and there is an executable of this index.
+        // SAFETY: as above, and the index is that of an executable.
         let found = unsafe { executables.get_pipeline_executable_statistics(&info) }.map_err(failed)?;
         let value = |name: &str| number(&found, name).ok_or_else(|| format!("the driver does not say its \"{name}\""));
         all.push(Statistics {
@@ -313,7 +313,7 @@ fn statistics(
     Ok(all)
 }
 
-/// The statistic of this name.
+/// The value of the statistic with this name.
 fn number(found: &[vk::PipelineExecutableStatisticKHR<'_>], name: &str) -> Option<u64> {
     let is_it = |one: &&vk::PipelineExecutableStatisticKHR<'_>| {
         one.name_as_c_str().is_ok_and(|found| found.to_bytes() == name.as_bytes())

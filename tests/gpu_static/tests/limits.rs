@@ -1,4 +1,4 @@
-//! No shader spills, and none takes so many registers that a graphics card is left with too few waves.
+//! No shader spills, and none takes so many registers that a graphics card has too few waves left.
 //!
 //! `make gpu-static` writes the figures into `benches/README.md`.
 
@@ -14,7 +14,7 @@ use gpu_static::subjects::{Pipeline, compute, subjects};
 use gpu_static::table::{replaced, table};
 use rayon::prelude::*;
 
-/// The process for a card.
+/// The program for a card's process.
 fn program() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_gpu-static"))
 }
@@ -40,7 +40,7 @@ fn every_shader_is_within_the_limits_of_each_card() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// A shader in which `count` numbers are alive at once.
+/// A shader with `count` values alive at once.
 fn crowded(count: usize) -> Pipeline {
     let mut text = String::from("@group(0) @binding(0) var<storage, read_write> data: array<f32>;\n");
     text += "@compute @workgroup_size(64)\nfn crowd(@builtin(global_invocation_id) id: vec3u) {\n";
@@ -59,7 +59,7 @@ fn crowded(count: usize) -> Pipeline {
     compute("crowd", &text, "crowd", &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The figures are those of the shader: with more alive numbers it takes more registers, and with too many they spill.
+/// The figures depend on the shader: more live values take more registers, and too many spill.
 #[test]
 fn crowded_shaders_are_seen_to_take_more_registers_and_to_spill() {
     for card in &CARDS {

@@ -1,5 +1,4 @@
-//! Balls of which something is missing, and the spindle. All are bodies of revolution: `at` is the distance from
-//! the axis, then the height.
+//! Cut balls and the spindle. All are solids of revolution: `at` is the distance from the axis, then the height.
 
 use super::planar::length2;
 use crate::eval::Real;
@@ -8,13 +7,13 @@ fn turned<T: Real>(p: [T; 3]) -> [T; 2] {
     [length2([p[0], p[2]]), p[1]]
 }
 
-/// The radius of the circle in which a ball is cut at a height over its center.
+/// The radius of the circle in which a plane cuts a ball, at a height over the ball's center.
 fn rim(radius: f64, cut: f64) -> f64 {
     ((radius - cut) * (radius + cut)).sqrt()
 }
 
-/// A ball cut flat. Outside the nearest point lies on the ball where the way to its center says so, else on the flat
-/// or its rim; inside the nearer of both is exact.
+/// A ball with a flat cut. Outside, the nearest point lies on the ball if the direction to its center leads there,
+/// else on the flat or its rim; inside, the nearer of both is exact.
 pub fn sdf_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (radius, cut) = (q[0], q[1].clamp(-q[0], q[0]));
     let at = turned(p);
@@ -33,20 +32,20 @@ pub fn sdf_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     }
 }
 
-/// A bowl. Inside the value is a lower bound where its wall meets itself.
+/// A bowl. Inside, the value is a lower bound where its wall meets itself.
 pub fn sdf_hollow_cut_sphere<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (radius, cut) = (q[0], q[1].clamp(-q[0], q[0]));
     let at = turned(p);
     let edge = rim(radius, cut);
-    // Whether the direction from the center is one of the bowl. On the axis below it always is.
+    // Whether the bowl covers the direction from the center. On the axis below it always does.
     let turn = at[1].value() * edge - at[0].value() * cut;
     let is_below = turn < 0.0 || (turn == 0.0 && at[1].value() < 0.0);
     let to_skin = if is_below { (length2(at) - radius).abs() } else { length2([at[0] - edge, at[1] - cut]) };
     to_skin - 0.5 * q[2]
 }
 
-/// A ball without another one. Outside the nearest point is that on the ball or that in the hollow, where such a
-/// point belongs to the surface, else on the circle where both meet; inside the nearer of both is exact.
+/// A ball minus another ball. Outside, the nearest point lies on the ball or in the hollow if that point belongs to
+/// the surface, else on the circle where both meet. Inside, the nearer of both is exact.
 pub fn sdf_death_star<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (radius, distance) = (q[0], q[2]);
     let cut_radius = q[1].min(radius + distance);
@@ -88,13 +87,14 @@ pub fn sdf_solid_angle<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     if across.value() >= 0.0 { to_side } else { (far - radius).max(-to_side) }
 }
 
-/// A spindle: an arc turned about its chord. The arc's center may be very far away, so the distance to it less its
-/// radius is written as the difference of their squares over their sum, all times `k`, the ratio of the half axes.
+/// A spindle: an arc that revolves around its chord. The arc's center may be very far away, so the distance to it
+/// minus its radius is written as the difference of their squares over their sum, all times `k`, the ratio of the
+/// half axes.
 pub fn sdf_vesica<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let half_height = 0.5 * q[0];
     let half_width = (0.5 * q[1]).min(half_height);
     let at = [length2([p[0], p[2]]), p[1].abs()];
-    // k times the distance of the arc's center from the axis, in half heights, is `away`.
+    // `away` is k times the distance of the arc's center from the axis, in half heights.
     let scale = half_height.max(1e-100);
     let k = half_width / scale;
     let away = 0.5 * (1.0 - k) * (1.0 + k);

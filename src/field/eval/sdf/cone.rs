@@ -1,9 +1,9 @@
-//! Shapes that narrow to a tip, or have no end.
+//! Shapes that narrow to a tip or are infinite.
 
 use super::planar::{length2, length3, trapezoid};
 use crate::eval::Real;
 
-/// A cone that opens downward from its tip; has no end.
+/// An infinite cone that opens downward from its tip.
 pub fn sdf_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (sine, cosine) = (q[0], q[1]);
     let at = [length2([p[0], p[2]]), p[1]];
@@ -11,15 +11,15 @@ pub fn sdf_cone<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     if along.value() > 0.0 { at[0] * cosine + at[1] * sine } else { length2(at) }
 }
 
-/// A cylinder without ends.
+/// An infinite cylinder.
 pub fn sdf_infinite_cylinder<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     length2([p[0], p[2]]) - q[0]
 }
 
 /// A pyramid over a square.
 ///
-/// By symmetry in the sector of the face toward +X, where |z| < x: outside the nearer of face and square, each in
-/// its own plane; inside the nearer of the planes.
+/// Symmetry maps the point into the sector of the face toward +X, where |z| < x. Outside, the distance is that of the
+/// nearer of face and square, each in its own plane; inside, that of the nearer plane.
 pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (half, height) = (0.5 * q[0], q[1]);
     let (x, z) = (p[0].abs(), p[2].abs());
@@ -35,7 +35,7 @@ pub fn sdf_pyramid<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let beside = trapezoid([z, along - 0.5 * slope], half, 0.0, slope);
     let to_face = if beside.value() > 0.0 { length2([over, beside]) } else { over.abs() };
     let beyond = [from_edge.positive(), (z - half).positive()];
-    // At the base itself the field rises downward.
+    // On the base itself the field increases downward.
     let below = if y.value() <= 0.0 { -y } else { y };
     let to_base = if beyond[0].value() > 0.0 { length3([beyond[0], beyond[1], y]) } else { below };
     to_face.min(to_base)

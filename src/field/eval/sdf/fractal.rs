@@ -1,24 +1,24 @@
-//! Shapes that repeat themselves, ever smaller.
+//! Fractals.
 
 use super::planar::{clamp, length2, length3};
 use crate::eval::Real;
 
-/// Most iterations of a sponge: the hard limit of the parameter.
+/// The limit on iterations of a sponge: the hard limit of the parameter.
 const MOST: usize = 8;
-/// Most squares of a Julia set and powers of a Mandelbulb: the hard limit of the parameter.
+/// The limit on squarings of a Julia set and powers of a Mandelbulb: the hard limit of the parameter.
 const MOST_SQUARES: usize = 16;
-/// Most steps of Newton's method; it needs four to seven.
+/// The limit on steps of Newton's method; it needs four to seven.
 const MOST_STEPS: usize = 40;
-/// An error, as a share, at which another step would change nothing.
+/// A relative error at which another step changes nothing.
 const CONVERGED: f64 = 1e-13;
-/// Most folds of a Kleinian set: the hard limit of the parameter.
+/// The limit on folds of a Kleinian set: the hard limit of the parameter.
 const MOST_FOLDS: usize = 8;
 /// The radius of the disc of a Kleinian set, in its own unit.
 const DISC: f64 = 0.92;
 
-/// A Menger sponge (Menger, "Dimensionstheorie", 1928): a cube without bars that fill the middle thirds of its cells
-/// along each axis. The field is the greatest of the distance to the cube and of how deep the point is in the bars of
-/// each size, so it is a lower bound of the distance with a slope of at most 1.
+/// A Menger sponge (Menger, "Dimensionstheorie", 1928): a cube without the bars that fill the middle thirds of its
+/// cells along each axis. The field is the maximum of the distance to the cube and the depth of the point in the bars
+/// of each size, so it is a lower bound of the distance with a slope of at most 1.
 pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let d = p.map(|c| c.abs() - 0.5 * q[0]);
     let most = d[0].max(d[1].max(d[2]));
@@ -28,7 +28,7 @@ pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
         if step as f64 + 0.5 > q[1] {
             break;
         }
-        // From the middle of the cell. The point is as deep in the bars as the second least coordinate says.
+        // The position relative to the middle of the cell. The second least coordinate gives the depth in the bars.
         let [x, y, z] = p.map(|c| (c - side * (c.value() / side.max(1e-30)).round()).abs());
         let second = x.min(y).max(x.max(y).min(z));
         field = field.max(-second + side / 6.0);
@@ -37,13 +37,13 @@ pub fn sdf_menger_sponge<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     field
 }
 
-/// A Julia set of quaternions (Norton, "Julia sets in the quaternions", 1989): where z² + c, repeated, does not leave
-/// the ball of radius R = (1 + √(1 + 4|c|)) / 2, outside of which every step leads farther out.
+/// A Julia set of quaternions (Norton, "Julia sets in the quaternions", 1989): the points whose orbit under z² + c
+/// never leaves the ball of radius R = (1 + √(1 + 4|c|)) / 2. Outside of that ball every step leads farther out.
 ///
-/// The field is the radius of a ball around the point that is certainly on one side. For quaternions
-/// |w² − z²| ≤ 2|z|σ + σ² where |w − z| ≤ σ. So if the ball of radius s around z² + c is on one side, that of radius
-/// √(|z|² + s) − |z| around z is; from the last step back to the first these radii follow from the orbit. Balls within
-/// such a ball are so found too, which makes the slope at most 1.
+/// The field is the radius of a ball around the point that lies on one side for certain. For quaternions |w² − z²| ≤
+/// 2|z|σ + σ² where |w − z| ≤ σ. So if the ball of radius s around z² + c is on one side, the ball of radius √(|z|² +
+/// s) − |z| around z is too; the orbit gives these radii from the last step back to the first. The same argument
+/// finds every ball within such a ball, so the slope is at most 1.
 pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let constant = [q[1], q[2], q[3], q[4]];
     let escape = 0.5 + (0.25 + constant.iter().map(|c| c * c).sum::<f64>().sqrt()).sqrt();
@@ -55,7 +55,7 @@ pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     loop {
         let imaginary = at[1].squared() + at[2].squared() + at[3].squared();
         radii[last] = (at[0].squared() + imaginary).sqrt();
-        // So far out the distance to the ball is more than what later steps say.
+        // This far out the distance to the ball exceeds the bounds of later steps.
         if last == MOST_SQUARES || last as f64 + 0.5 > q[5] || radii[last].value() > 4.0 * escape {
             break;
         }
@@ -73,12 +73,13 @@ pub fn sdf_julia<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     field * scale
 }
 
-/// A pseudo-Kleinian set (Knighty, fractalforums.com, 2011): space is folded at a box, turned inside out within a ball,
-/// again and again; what then lies near a disc is the set.
+/// A pseudo-Kleinian set (Knighty, fractalforums.com, 2011): each step folds space at a box and inverts the inside of
+/// a ball. The set is the points that end near a disc.
 ///
-/// The field is the radius of a ball around the point that is certainly on one side, from the distance to the disc
-/// back through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² where that is more
-/// than 1, so a way of `s` from r inward becomes at most k / (r − s) − k / r; solved for `s` this is what it gives back.
+/// The field is the radius of a ball around the point that lies on one side for certain, from the distance to the
+/// disc back through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² if that is
+/// more than 1, so a distance of `s` from r inward becomes at most k / (r − s) − k / r; the step back solves this for
+/// `s`.
 pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (fold, inversion, thickness) = ([q[2], q[3], q[4]], q[5], q[6]);
     let ball = length3(p) - q[0];
@@ -113,20 +114,21 @@ pub fn sdf_kleinian<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     ball.max(field * scale)
 }
 
-/// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): where z → P(z) + c, from z = c
-/// on, does not leave the ball of radius B = 2^(1/(n−1)), outside of which every step leads farther out. P raises the
-/// distance from the center to the power n, and makes n-fold the angle from the Y axis and the angle around it.
+/// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): the points whose orbit z →
+/// P(z) + c, from z = c, never leaves the ball of radius B = 2^(1/(n−1)). Outside of that ball every step leads
+/// farther out. P raises the distance from the center to the power n, and multiplies by n both the angle from the Y
+/// axis and the angle around it.
 ///
-/// The field is the radius of a ball around the point that is certainly on one side (the idea: Hart, Sandin and
-/// Kauffman, "Ray tracing deterministic 3-D fractals", 1989). If the ball of radius t around P(z) + c is on one side, so
-/// is that of radius e around z where e (1 + L) = t, if P stretches by no more than L within it: c moves by no more than
-/// z, because at the first step it is z, and later z moves by what c does and more. From the last step back to the first
-/// these radii follow from the orbit. L can be less, but not more, for a ball within the ball, so balls within such a
-/// ball are found too, and the slope is at most 1.
+/// The field is the radius of a ball around the point that lies on one side for certain (idea: Hart, Sandin and
+/// Kauffman, "Ray tracing deterministic 3-D fractals", 1989). If the ball of radius t around P(z) + c is on one side,
+/// so is the ball of radius e around z where e (1 + L) = t, if P stretches by no more than L within it: c moves by no
+/// more than z, because at the first step it is z, and later z moves at least as far as c. The orbit gives these
+/// radii from the last step back to the first. For a ball within the ball L is the same or less, so the same argument
+/// finds every ball within such a ball, and the slope is at most 1.
 pub fn sdf_mandelbulb<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let power = (q[1] + 0.5).floor().clamp(2.0, 16.0);
     let escape = (1.0 / (power - 1.0)).exp2();
-    // So far out the distance to the ball is more than what later steps say: (2r − B)ⁿ ≥ 2rⁿ.
+    // This far out the distance to the ball exceeds the bounds of later steps: (2r − B)ⁿ ≥ 2rⁿ.
     let reach = escape / (2.0 - (1.0 / power).exp2());
     let scale = q[0].max(1e-30) / escape;
     let start = p.map(|v| v * scale.recip());
@@ -168,10 +170,10 @@ fn bulb_power<T: Real>(at: [T; 3], around: T, power: u32) -> [T; 3] {
     [out * x, up, out * z]
 }
 
-/// The radius e at a place of the orbit (distance from the center, from the axis) for which e (1 + L) is the way.
+/// The radius e at a point of the orbit (distance from the center, from the axis) for which e (1 + L) is `way`.
 ///
-/// Newton's method on logarithms, in which the slope only grows, comes down to it; what is left is taken off. Only the
-/// last step takes part in differentiation.
+/// Newton's method works on logarithms, in which the slope only grows, and approaches the root from above; the
+/// remaining error is subtracted. Only the last step takes part in differentiation.
 fn bulb_back<T: Real>(spot: [T; 2], way: T, power: f64) -> T {
     let (fixed, goal) = (spot.map(T::value), way.value().max(1e-300));
     let mut radius = goal / (1.0 + bulb_stretch(fixed, 0.0, power)[0]);
@@ -189,8 +191,8 @@ fn bulb_back<T: Real>(spot: [T; 2], way: T, power: f64) -> T {
     (way - way.value() - (stretch - held) * radius) * (1.0 + held + growth.value()).recip() + safe
 }
 
-/// L within the radius, and the radius times its derivative. P stretches by n |z|ⁿ⁻¹ max(1, |sin nα / sin α|), α being
-/// the angle from the axis; of that quotient the least of n and 1 / sin α is taken.
+/// L within the radius, and the radius times its derivative. P stretches by n |z|ⁿ⁻¹ max(1, |sin nα / sin α|), with α
+/// the angle from the axis; the lesser of n and 1 / sin α bounds that quotient.
 fn bulb_stretch<T: Real>([far, around]: [T; 2], radius: f64, power: f64) -> [T; 2] {
     let far = (far + radius).max(T::constant(1e-300));
     let beside = around - radius;

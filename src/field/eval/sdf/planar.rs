@@ -1,43 +1,43 @@
-//! Distances in the plane, from which bodies of revolution and prisms are made, and what shapes with data read.
+//! Distances in the plane, for solids of revolution and prisms, and the payload type of shapes.
 
 use crate::eval::Real;
 
-/// The data of a shape: the row at an index.
+/// The payload of a shape: the row at an index.
 pub type Data<'a> = &'a dyn Fn(usize) -> [f64; 4];
 
-/// Distance to a prism or a body of revolution, from the distances to its profile and to its caps.
+/// Distance to a prism or a solid of revolution, from the distances to its profile and to its caps.
 pub fn extruded<T: Real>(d: [T; 2]) -> T {
     let most = d[0].max(d[1]);
     if most.value() > 0.0 { length2(d.map(T::positive)) } else { most }
 }
 
-/// From the nearest point of a segment to a point given from the segment's start.
+/// The vector from the nearest point of a segment to a point, which is given relative to the segment's start.
 pub fn from_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> [T; N] {
     let t = along_segment(from_start, axis);
     std::array::from_fn(|i| from_start[i] - t * axis[i])
 }
 
-/// Where the nearest point of a segment is, as a share of its length, 0 and 1 at the ends.
+/// The position of the nearest point of a segment, as a fraction of its length: 0 and 1 at the ends.
 fn along_segment<T: Real, const N: usize>(from_start: [T; N], axis: [f64; N]) -> T {
     let square: f64 = axis.iter().map(|a| a * a).sum();
     let dot = from_start.iter().zip(axis).fold(T::constant(0.0), |sum, (p, a)| sum + *p * a);
     clamp(dot * square.max(LEAST_SQUARE).recip(), 0.0, 1.0)
 }
 
-/// Segments whose squared length is less are points.
+/// The least squared length of a segment; shorter ones are points.
 const LEAST_SQUARE: f64 = 1e-30;
 
-/// How a point of the plane, given from a segment's start, lies to the segment: the vector from the nearest point, how far
-/// to the right of the segment's line it is, and whether the nearest point lies between the ends.
+/// The position of a point of the plane, given relative to a segment's start: the vector from the nearest point, the
+/// distance to the right of the segment's line, and whether the nearest point lies between the ends.
 ///
-/// Between the ends that vector is along the line's normal. Close to the segment only rounding is left of it, so that
-/// neither its direction nor its side mean anything there: both follow from the line.
+/// Between the ends that vector is along the line's normal. Close to the segment only rounding remains of it, so
+/// neither its direction nor its side is meaningful there: both follow from the line.
 fn beside_segment<T: Real>(from_start: [T; 2], axis: [f64; 2]) -> ([T; 2], T, bool) {
     let t = along_segment(from_start, axis);
     let side = [0, 1].map(|i| from_start[i] - t * axis[i]);
     let length = axis[0].hypot(axis[1]).max(1e-300);
     let over = from_start[0] * (axis[1] / length) - from_start[1] * (axis[0] / length);
-    // Of what is shorter than the least square the nearest point is not known that well.
+    // For a segment below the least square, rounding dominates the nearest point.
     let is_line = axis[0] * axis[0] + axis[1] * axis[1] > LEAST_SQUARE;
     (side, over, is_line && t.value() > 0.0 && t.value() < 1.0)
 }
@@ -63,18 +63,18 @@ pub fn length3<T: Real>(v: [T; 3]) -> T {
     (v[0].squared() + v[1].squared() + v[2].squared()).sqrt()
 }
 
-/// The trapezoid between the half widths `bottom` and `top`, by symmetry for the half where `at[0]` is positive.
+/// The trapezoid between the half widths `bottom` and `top`; by symmetry `at[0]` is positive.
 ///
 /// The nearest point lies on the nearer cap or on the slanted side (idea: Quilez, "distance functions").
 pub fn trapezoid<T: Real>(at: [T; 2], bottom: f64, top: f64, height: f64) -> T {
     let half_height = 0.5 * height;
     let cap_radius = if at[1].value() < 0.0 { bottom } else { top };
     let cap = [(at[0] - cap_radius).positive(), at[1].abs() - half_height];
-    // The way from top to bottom has the inside on its right.
+    // From top to bottom, the inside lies on the right.
     let (side, over, between) = beside_segment([at[0] - top, at[1] - half_height], [bottom - top, -height]);
     let over = -over;
     let inside = (if between { over } else { side[0] }).value() < 0.0 && cap[1].value() < 0.0;
-    // Within the cap's radius the way to it is straight: its length keeps a derivative at 0.
+    // Within the cap's radius the vector to the cap is vertical: its absolute value keeps a derivative at 0.
     let to_cap = if cap[0].value() > 0.0 { length2(cap) } else { cap[1].abs() };
     let to_side = if between { over.abs() } else { length2(side) };
     let least = if to_cap.value() <= to_side.value() { to_cap } else { to_side };
@@ -89,15 +89,15 @@ pub fn edge<T: Real>(at: [T; 2], start: [f64; 2], end: [f64; 2]) -> T {
     if over.value() < 0.0 { -distance } else { distance }
 }
 
-/// A number of sides with cosine and sine of half the angle that each takes, see [`isolith_scene::Sides`].
+/// The number of sides, then cosine and sine of half the angle of one side, see [`isolith_scene::Sides`].
 pub type Polygon = [f64; 3];
 
-/// Turns and mirrors the plane so that all sides of a regular polygon fall onto half of the one that faces X.
+/// Turns and mirrors the plane so that all sides of a regular polygon coincide with half of the one that faces X.
 pub fn sector<T: Real>(at: [T; 2], [sides, cosine, sine]: Polygon) -> [T; 2] {
     let step = std::f64::consts::TAU / sides;
     let (s, c) = (step * (at[1].value().atan2(at[0].value()) / step).round()).sin_cos();
     let (x, y) = (at[0] * c + at[1] * s, (at[1] * c - at[0] * s).abs());
-    // What lies beyond the mirror by rounding comes back.
+    // Rounding may leave the point behind the mirror: reflect it back.
     let behind = (y * cosine - x * sine).positive() * 2.0_f64;
     [x + behind * sine, y - behind * cosine]
 }

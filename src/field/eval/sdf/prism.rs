@@ -16,8 +16,8 @@ pub fn sdf_prism<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     extruded([profile, p[1].abs() - (half_height - rounding)]) - rounding
 }
 
-/// A prism over a rhombus with rounded edges: the rhombus within, from whose sides those of the whole are as far
-/// as the rounding, is smaller by a factor.
+/// A prism over a rhombus with rounded edges. The distance to a smaller rhombus, minus the rounding, gives the sides
+/// of the whole.
 pub fn sdf_rhombus<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (x, z, half_height) = (0.5 * q[0], 0.5 * q[1], 0.5 * q[2]);
     let inner_radius = x * z / x.hypot(z).max(1e-30);
@@ -27,7 +27,7 @@ pub fn sdf_rhombus<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     extruded([profile, p[1].abs() - (half_height - rounding)]) - rounding
 }
 
-/// A prism over a star with rounded edges, by the smaller star within. Inside the value is a lower bound where edges
+/// A prism over a star with rounded edges, by the smaller star within. Inside, the value is a lower bound where edges
 /// are rounded.
 pub fn sdf_star<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (points, outer, inner, half_height) = ([q[0], q[1], q[2]], q[3], q[4], 0.5 * q[5]);

@@ -3,10 +3,10 @@
 use super::planar::{length2, length3, polygon};
 use crate::eval::Real;
 
-/// A ring of which an arc is left. Inside the value is a lower bound where the tube meets itself.
+/// An arc of a ring. Inside, the value is a lower bound where the tube meets itself.
 ///
-/// In the plane of the ring the nearest point of the arc lies in the same direction from the center, or is
-/// an end (idea: Quilez, "distance functions").
+/// In the plane of the ring the nearest point of the arc lies in the point's direction from the center, or is an end
+/// of the arc (idea: Quilez, "distance functions").
 pub fn sdf_capped_torus<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let [major_radius, minor_radius, sine, cosine] = [q[0], q[1], q[2], q[3]];
     let at = [p[0], p[2].abs()];
@@ -19,14 +19,14 @@ pub fn sdf_capped_torus<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     to_arc - minor_radius
 }
 
-/// A link of a chain. Inside the value is a lower bound where the tube meets itself.
+/// A link of a chain. Inside, the value is a lower bound where the tube meets itself.
 pub fn sdf_link<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let bend = (p[0].abs() - 0.5 * q[0]).positive();
     length2([length2([bend, p[2]]) - q[1], p[1]]) - q[2]
 }
 
-/// A ring with a polygon as its section. Where the polygon reaches over the axis, that of the other side counts
-/// too; inside the value is then a lower bound.
+/// A ring with a polygonal section. Where the polygon reaches across the axis, the polygon of the other side counts
+/// too, and the value inside is a lower bound.
 pub fn sdf_polygon_ring<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (sides, major_radius, minor_radius) = ([q[0], q[1], q[2]], q[3], q[4]);
     let around = length2([p[0], p[2]]);

@@ -3,7 +3,7 @@
 use super::planar::{edge, length2};
 use crate::eval::Real;
 
-/// Everything within half a thickness of a convex piece of the plane, from the distances to its edges.
+/// All points within half a thickness of a convex piece of the plane, from the distances to its edges.
 fn sheet<T: Real, const N: usize>(edges: [T; N], height: T, thickness: f64) -> T {
     let over = edges.iter().all(|e| e.value() < 0.0);
     let aside = edges.into_iter().map(T::abs).reduce(T::min).expect("it has edges");
@@ -19,7 +19,7 @@ pub fn sdf_triangle<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     sheet([edge(at, left, right), edge(at, right, tip), edge(at, tip, left)], p[1], q[3])
 }
 
-/// A parallelogram. It is its own picture under a half turn, so only the half toward +Z is looked at.
+/// A parallelogram. A half turn maps it onto itself, so the function evaluates only the half toward +Z.
 pub fn sdf_quad<T: Real>(p: [T; 3], q: &[f64; 8]) -> T {
     let (x, z, skew) = (0.5 * q[0], 0.5 * q[1], 0.5 * q[2]);
     let at = if p[2].value() < 0.0 { [-p[0], -p[2]] } else { [p[0], p[2]] };

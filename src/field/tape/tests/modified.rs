@@ -1,9 +1,9 @@
-//! Tapes of what modifiers hold.
+//! Tests of the tapes of modifiers' contents.
 
 use super::*;
 use isolith_scene::{Attachment, Modifier, ModifierKind};
 
-/// Forty balls and boxes in one blend, below modifiers; `beside` puts as many more beside them, joined with a blend.
+/// Forty balls and boxes in one blend, below modifiers; `beside` adds as many more beside them, joined with a blend.
 fn modified_crowd(seed: u64, modifiers: &[Modifier], beside: bool) -> Scene {
     let random = &mut Random(seed);
     let mut scene = empty_scene();
@@ -26,7 +26,7 @@ fn modified_crowd(seed: u64, modifiers: &[Modifier], beside: bool) -> Scene {
     scene
 }
 
-/// Every modifier that stays one, at values at which it does something.
+/// Every modifier that flattening keeps as a modifier, with parameters that have an effect.
 fn all_modifiers() -> Vec<Modifier> {
     let of_kind = |kind: &ModifierKind| match kind.default_modifier() {
         Modifier::Twist { .. } => Modifier::Twist { angle: 70.0 },
@@ -46,8 +46,8 @@ fn all_modifiers() -> Vec<Modifier> {
     ModifierKind::ALL.iter().filter(|kind| !copied.contains(kind)).map(of_kind).collect()
 }
 
-/// How often the field by the tapes is wrong: of another sign, or not safe to step by. And how often it is the CPU evaluator's near
-/// the surface, where only cells without a tape may say less.
+/// Counts of wrong tape values: another sign, or not safe to step by. And counts of values near the surface equal to
+/// those of the CPU evaluator; only cells without a tape may be lower there.
 fn wrong_and_exact(flat: &FlatScene, tree: &CellTree, seed: u64, points: usize) -> (usize, usize) {
     let component = &flat.components[0];
     let random = &mut Random(seed);
@@ -58,7 +58,7 @@ fn wrong_and_exact(flat: &FlatScene, tree: &CellTree, seed: u64, points: usize) 
         let (reference, by_tape) = (eval::field(flat, component, p), tape_field(flat, component, tree, p));
         exact += usize::from(reference.abs() < 0.02 && (reference - by_tape).abs() <= 1e-9);
         let mut right = reference * by_tape > 0.0;
-        // Within this distance nothing may be on the other side.
+        // Within this distance no point may be on the other side.
         for _ in 0..4 {
             let way = random.point(DVec3::splat(-1.0), DVec3::splat(1.0)).normalize_or_zero() * by_tape.abs() * 0.999;
             right &= eval::field(flat, component, p + way) * reference >= 0.0;

@@ -1,4 +1,4 @@
-//! Plans cover every pixel, and are refused where they would be too long.
+//! Tests: plans cover every pixel, and planning fails if a frame would be too long.
 
 use super::*;
 
@@ -57,7 +57,7 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     let flat = isolith_field::flatten(&isolith_gallery::random(32, 1), 0.0).expect("within the limits");
     let camera = flat.default_camera(&[], 1.0);
     let cheap = EvaluationCost { straight: true, iterations: 10, leaves: 8.0 };
-    // Of the third one few steps fit in a dispatch.
+    // A dispatch has room for only a few steps of the third component.
     let mut evaluations = vec![cheap; flat.components.len()];
     evaluations[2].iterations = MAX_ITERATIONS / 4;
     let planned = |room| plan(&flat, &camera, [640, 480], &evaluations, &CostModel::new(true), room);
@@ -68,7 +68,7 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     assert_eq!(planned(just_enough).expect("just enough room").dispatches.len(), count);
     let error = planned(Room { dispatches: count - 1, ..just_enough }).expect_err("too many dispatches");
     assert_eq!(error, TooMuch::Pieces { component: 2 });
-    // Of all components the one that covers the most of the picture has the longest lists.
+    // The component that covers the largest area has the longest lists.
     let of_component = |index: usize| {
         let cones = whole.dispatches.iter().filter(|p| p.pass == Pass::Cone && p.params.component as usize == index);
         cones.map(|dispatch| dispatch.tiles().iter().product::<u32>() * SUBTILES * SUBTILES).sum::<u32>()

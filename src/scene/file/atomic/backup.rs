@@ -1,4 +1,4 @@
-//! Older contents of a file, kept beside it.
+//! Backups: older contents of a file, kept beside it.
 
 use std::ffi::OsString;
 use std::fs;
@@ -10,13 +10,13 @@ use super::stamp::hash;
 use super::target::is_one_file;
 use super::write_step::{Calls, WriteError, WriteStep};
 
-/// Backups kept of a scene.
+/// Number of backups kept of a scene.
 pub const KEPT_BACKUPS: usize = 3;
 /// Longest name of a file on the file systems in use, in bytes.
 const MAX_NAME_BYTES: usize = 255;
 
-/// The name of the backup of this generation, from 1, the latest, on: `name~`, `name~2~`, `name~3~`. A name that would
-/// get too long is cut, with a hash of the whole behind it.
+/// The name of the backup of a generation; 1 is the latest: `name~`, `name~2~`, `name~3~`. A name that would get too
+/// long is cut and gets a hash of the whole name as its end.
 pub fn backup_path(target: &Path, generation: usize) -> PathBuf {
     let suffix = if generation == 1 { "~".to_owned() } else { format!("~{generation}~") };
     let name = target.file_name().unwrap_or_default();
@@ -34,14 +34,14 @@ pub fn backup_path(target: &Path, generation: usize) -> PathBuf {
     target.with_file_name(backup)
 }
 
-/// Makes the target the first backup, the first the second and so on. At every moment each name leads to a whole file,
-/// or to none where there was none.
+/// Rotates the backups: the target becomes the first, the first the second and so on. At every moment each name leads
+/// to a complete file, or to none where there was none.
 pub(super) fn keep(calls: &mut Calls<'_>, target: &Path, generations: usize) -> Result<(), WriteError> {
     let metadata = |path: &Path| fs::symlink_metadata(path).ok();
     if let (Some(now), Some(kept)) = (metadata(target), metadata(&backup_path(target, 1)))
         && is_one_file(&now, &kept)
     {
-        // A save that failed after this step has done it already.
+        // An earlier save did this step and failed afterward.
         return Ok(());
     }
     for generation in (0..generations).rev() {
@@ -53,7 +53,7 @@ pub(super) fn keep(calls: &mut Calls<'_>, target: &Path, generations: usize) -> 
     Ok(())
 }
 
-/// Gives a file another name besides its own, in one step, whatever has that name.
+/// Gives a file an additional name in one step, replacing any file of that name.
 fn rename_copy(calls: &mut Calls<'_>, from: &Path, to: &Path) -> Result<(), WriteError> {
     let temporary = calls.call(WriteStep::Backup, || Temporary::beside(to))?;
     // Not every file system has hard links.

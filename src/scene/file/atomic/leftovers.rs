@@ -1,9 +1,9 @@
-//! Temporary files, and the proof whose they are.
+//! Temporary files, and the proof of their ownership.
 //!
-//! A temporary is made beside the file that it will become, so that renaming it is one step. For each one a record is
-//! kept in a folder of this user: a locked file that holds the temporary's path. The lock dies with the process. So a
-//! temporary is removed only if it stands in a record of ours that nobody holds any more; what else lies in the folders
-//! of scenes is never touched, whatever it is called.
+//! A temporary stands beside the file that it will become, so that the rename is one step. Each temporary has a record
+//! in a folder of this user: a locked file that holds the temporary's path. The lock dies with the process. So a
+//! temporary is removed only if one of our records names it and nobody holds that record's lock. Other files in the
+//! folders of scenes are never touched, whatever their names.
 
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
@@ -16,19 +16,19 @@ use super::target::{create_private_folder, folder_of};
 
 /// Longest path in a record, in bytes.
 const MAX_RECORD: u64 = 1 << 16;
-/// A record without contents belongs to a process that is just making it, unless it is older than this.
+/// An empty record belongs to a process that is creating it, unless the record is older than this.
 const IN_THE_MAKING: Duration = Duration::from_secs(60);
 
 static RECORDS: OnceLock<PathBuf> = OnceLock::new();
 
-/// Keeps records of temporaries in this folder, for the life of the program. Without, temporaries of a killed process
+/// Sets the folder for records of temporaries, for the life of the program. Without it, temporaries of a killed process
 /// stay where they are. Only the first call counts.
 pub fn keep_records_in(folder: &Path) {
-    // It is made when the first record is.
+    // The first record creates the folder.
     let _ = RECORDS.set(folder.to_path_buf());
 }
 
-/// Removes the temporaries of processes that have died. Nothing is lost where this fails: the next time tries again.
+/// Removes the temporaries of processes that have died. A failure loses nothing: the next call tries again.
 pub fn remove_leftovers() {
     let Some(entries) = RECORDS.get().and_then(|folder| fs::read_dir(folder).ok()) else { return };
     for entry in entries.flatten() {
@@ -37,7 +37,7 @@ pub fn remove_leftovers() {
 }
 
 fn remove_leftover(record: &Path) {
-    // Not a link, nor a pipe that would block.
+    // Skips links, and pipes, which would block.
     if !fs::symlink_metadata(record).is_ok_and(|m| m.is_file()) {
         return;
     }
@@ -65,28 +65,28 @@ fn remove_leftover(record: &Path) {
     let _ = fs::remove_file(record);
 }
 
-/// Whether this is a path as [`Temporary::beside`] makes them.
+/// Whether the path has the form that [`Temporary::beside`] gives it.
 fn is_temporary(path: &Path) -> bool {
     let name = path.file_name().and_then(|name| name.to_str());
     let random = name.and_then(|name| name.strip_prefix(".isolith-")?.strip_suffix(".tmp"));
     path.is_absolute() && random.is_some_and(|r| r.len() == 32 && r.bytes().all(|b| b.is_ascii_hexdigit()))
 }
 
-/// A name that nobody can guess: 128 random bits from the system's source.
+/// An unguessable name: 128 random bits from the system's source.
 pub fn random_name() -> String {
-    // Each of these is keyed by random numbers of the system.
+    // The system seeds each of these with random numbers.
     let bits = || RandomState::new().hash_one(std::process::id());
     format!("{:016x}{:016x}", bits(), bits())
 }
 
-/// A temporary file; removed when it goes out of scope, unless it has been renamed by then.
+/// A temporary file. Dropping it removes the file unless it has been renamed.
 pub(super) struct Temporary {
     path: PathBuf,
     _record: Option<Record>,
 }
 
 impl Temporary {
-    /// A name for one in the folder of `target`, short whatever the target's length. Nothing is made yet.
+    /// A short name for a temporary in the folder of `target`, whatever the target's length. Creates nothing yet.
     pub fn beside(target: &Path) -> io::Result<Self> {
         let folder = folder_of(target).ok_or(io::ErrorKind::InvalidFilename)?;
         let path = folder.join(format!(".isolith-{}.tmp", random_name()));
@@ -98,7 +98,7 @@ impl Temporary {
         &self.path
     }
 
-    /// Makes the file; fails where anything is there, a link as well. A private one is for its owner only until its
+    /// Creates the file; fails if anything stands there, even a link. Only the owner may access a private one until its
     /// mode is set.
     pub fn create(&self, private: bool) -> io::Result<File> {
         let mut options = OpenOptions::new();
@@ -119,14 +119,14 @@ impl Drop for Temporary {
     }
 }
 
-/// The record of a temporary; its file is locked as long as this lives.
+/// The record of a temporary; its file stays locked for the lifetime of this value.
 struct Record {
     path: PathBuf,
     _locked: File,
 }
 
 impl Record {
-    /// Where no record can be made, the temporary goes without: then it stays if the process is killed.
+    /// A temporary whose record cannot be created goes without one: it then stays if the process is killed.
     fn of(temporary: &Path) -> Option<Self> {
         let folder = RECORDS.get()?;
         let text = std::path::absolute(temporary).ok()?;
@@ -165,7 +165,7 @@ mod tests {
         let (first, second) = (record("first", &dead), record("second", &alive));
         let owner = File::open(&second).unwrap();
         owner.lock().unwrap();
-        // One that names a file which cannot be a temporary, one in the making, one that is no file.
+        // A record that names a file which cannot be a temporary, a record being created, a record that is not a file.
         let third = record("third", &at("scene.json"));
         fs::write(at("fourth"), "").unwrap();
         for path in [&first, &second, &third, &at("fourth"), folder.path()] {

@@ -1,4 +1,4 @@
-//! How a file was when it was read or written, to find out whether somebody else has changed it since.
+//! The state of a file when it was read or written, to find out whether somebody else has changed it since.
 
 use std::fs;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::bytes_of;
 use crate::limits::MAX_FILE_BYTES;
 
-/// Length, time of the last change and a hash of the contents.
+/// Length, modification time and a hash of the contents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
     bytes: u64,
@@ -18,14 +18,14 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// Of these contents.
+    /// The stamp of these contents.
     pub fn of(contents: &[u8], metadata: Option<&fs::Metadata>) -> Self {
         let modified = metadata.and_then(|m| m.modified().ok());
         Self { bytes: contents.len() as u64, modified, hash: hash(contents) }
     }
 
     /// Whether the file has other contents now. The time alone proves nothing: copying and syncing change it, and two
-    /// saves within its resolution have the same. A file that is gone or cannot be read is not another one.
+    /// saves within its resolution have the same time. A file that is missing or unreadable does not count as changed.
     pub fn is_outdated(&self, path: &Path) -> bool {
         match fs::metadata(path) {
             Ok(now) if now.is_file() && now.len() != self.bytes => true,
@@ -34,14 +34,15 @@ impl Stamp {
         }
     }
 
-    /// The same, but cheap enough to be asked often: a file with the time of then is not read.
+    /// Like [`Self::is_outdated`], but cheap enough for frequent calls: it does not read a file whose time is
+    /// unchanged.
     pub fn seems_outdated(&self, path: &Path) -> bool {
         let unchanged = |now: &fs::Metadata| now.len() == self.bytes && now.modified().ok() == self.modified;
         fs::metadata(path).is_ok_and(|now| !unchanged(&now)) && self.is_outdated(path)
     }
 }
 
-/// FNV-1a: the same in every version of the program, because stamps are kept in files.
+/// FNV-1a: the same in every version of the program, because files store stamps.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -1,15 +1,15 @@
-//! Where a path leads, and what stands there.
+//! The file that a path leads to, and its metadata.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Most links of a chain, as on Linux.
+/// Longest chain of links, as on Linux.
 const MAX_LINKS: usize = 40;
 
 /// Whether writing to both paths would write one file: by another spelling, through links, or through a linked folder.
-/// Nothing need be there yet.
+/// Neither needs to exist.
 pub fn is_same_place(a: &Path, b: &Path) -> bool {
     match (place(a), place(b)) {
         (Some(a), Some(b)) => a == b,
@@ -17,7 +17,7 @@ pub fn is_same_place(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Makes a folder with all that it stands in, for this user's eyes only where it is new.
+/// Creates a folder with its parents; new ones are accessible to this user only.
 pub fn create_private_folder(path: &Path) -> io::Result<()> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true);
@@ -31,7 +31,7 @@ fn place(path: &Path) -> Option<(PathBuf, OsString)> {
     let target = resolved(path).ok()?;
     let folder = fs::canonicalize(folder_of(&target)?).ok()?;
     let name = target.file_name()?;
-    // There, names that differ in case only are one.
+    // On these systems, names that differ in case only are the same.
     let folded = cfg!(any(windows, target_os = "macos")).then(|| OsString::from(name.to_string_lossy().to_lowercase()));
     Some((folder, folded.unwrap_or_else(|| name.to_os_string())))
 }
@@ -58,7 +58,7 @@ pub(super) fn resolved(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("its links lead in a circle"))
 }
 
-/// What stands there now; fails where that must not be replaced.
+/// The metadata of the file that stands there now; fails if it must not be replaced.
 pub(super) fn existing(target: &Path) -> io::Result<Option<fs::Metadata>> {
     match fs::metadata(target) {
         Ok(m) if m.is_dir() => Err(io::Error::other("it is a folder")),
@@ -70,8 +70,8 @@ pub(super) fn existing(target: &Path) -> io::Result<Option<fs::Metadata>> {
     }
 }
 
-/// Gives the new file the mode of the old one, and owner and group where the system lets us. Where it does not, the mode
-/// is cut so that nobody can do more with the new file than with the old one.
+/// Gives the new file the mode of the old one, and its owner and group if the system allows it. If not, the mode is
+/// reduced so that nobody can do more with the new file than with the old one.
 #[cfg(unix)]
 pub(super) fn keep_owner_and_mode(file: &File, old: &fs::Metadata) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
@@ -88,19 +88,20 @@ pub(super) fn keep_owner_and_mode(file: &File, old: &fs::Metadata) -> io::Result
         }
     }
     match file.set_permissions(fs::Permissions::from_mode(mode)) {
-        // A file system without modes.
+        // The file system has no modes.
         Err(e) if matches!(e.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::Unsupported) => Ok(()),
         result => result,
     }
 }
 
-/// Elsewhere a new file has the rights of its folder, and a read-only one is not replaced.
+/// On other systems a new file gets the rights of its folder, and a read-only file is not replaced.
 #[cfg(not(unix))]
 pub(super) fn keep_owner_and_mode(_: &File, _: &fs::Metadata) -> io::Result<()> {
     Ok(())
 }
 
-/// The mode for a file whose group could not be kept: another group may do what the old group and others both may.
+/// The mode for a file that could not keep its group: another group gets the rights that the old group and others had
+/// in common.
 #[cfg(unix)]
 fn cut_for_another_group(mode: u32) -> u32 {
     let others = (mode & 0o007) << 3;
@@ -114,19 +115,19 @@ pub(super) fn is_one_file(a: &fs::Metadata, b: &fs::Metadata) -> bool {
     (a.dev(), a.ino()) == (b.dev(), b.ino())
 }
 
-/// Not known.
+/// Unknown on other systems.
 #[cfg(not(unix))]
 pub(super) fn is_one_file(_: &fs::Metadata, _: &fs::Metadata) -> bool {
     false
 }
 
-/// Has the names in the folder of a file on the disk.
+/// Syncs the names in the folder of a file to the disk.
 #[cfg(unix)]
 pub(super) fn sync_folder(target: &Path) -> io::Result<()> {
     File::open(folder_of(target).unwrap_or(Path::new(".")))?.sync_all()
 }
 
-/// Elsewhere folders cannot be opened, and renaming is the file system's to keep.
+/// On other systems folders cannot be opened, and the file system is responsible for the rename.
 #[cfg(not(unix))]
 pub(super) fn sync_folder(_: &Path) -> io::Result<()> {
     Ok(())

@@ -1,31 +1,31 @@
-//! The steps of writing a file, each of which may fail.
+//! The steps of writing a file. Each may fail.
 
 use std::fmt;
 use std::io;
 
-/// What writing does, in order.
+/// The steps, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WriteStep {
-    /// Follow links and look at the file that stands there.
+    /// Follow links and read the metadata of the existing file.
     Resolve,
-    /// Make the temporary file beside it.
+    /// Create the temporary file beside it.
     Create,
     /// Write the bytes.
     Write,
-    /// Give it owner and mode of the old file.
+    /// Give the temporary the owner and mode of the old file.
     Mode,
-    /// Have them on the disk.
+    /// Sync the bytes to the disk.
     Sync,
     /// Keep the old contents under another name.
     Backup,
-    /// Put the new in the place of the old.
+    /// Rename the temporary over the old file.
     Rename,
-    /// Have the names on the disk.
+    /// Sync the folder to the disk.
     SyncFolder,
 }
 
 impl WriteStep {
-    /// For messages.
+    /// The step, as messages name it.
     pub fn label(self) -> &'static str {
         match self {
             Self::Resolve => "looking at the file",
@@ -40,12 +40,12 @@ impl WriteStep {
     }
 }
 
-/// Why a file was not written. Unless it is the last step that failed, the file is what it was.
+/// Why a file was not written. Unless the last step failed, the file is unchanged.
 #[derive(Debug)]
 pub struct WriteError {
-    /// What failed.
+    /// The step that failed.
     pub step: WriteStep,
-    /// What the system says.
+    /// The error of the system.
     pub error: io::Error,
 }
 
@@ -57,7 +57,7 @@ impl fmt::Display for WriteError {
 
 impl std::error::Error for WriteError {}
 
-/// Every call to the system that writing consists of goes through this. Tests let any of them fail.
+/// Wraps every system call of a write, so that tests can let any of them fail.
 pub(super) struct Calls<'a> {
     pub before: &'a mut dyn FnMut(WriteStep) -> io::Result<()>,
 }
@@ -68,7 +68,7 @@ impl Calls<'_> {
     }
 }
 
-/// The message without the number that the system has for it.
+/// The message without the system's error number.
 pub(super) fn plain(error: &io::Error) -> String {
     let text = error.to_string();
     match text.find(" (os error") {

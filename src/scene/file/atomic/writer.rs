@@ -1,5 +1,5 @@
-//! The one way in which this program writes a file: beside it, synced, renamed, the folder synced. Whoever reads, and
-//! whenever it is cut off, sees the old file or the new one.
+//! The only way in which this program writes a file: write beside it, sync, rename, sync the folder. A reader sees the
+//! old file or the new one, even if the write is interrupted.
 
 use std::fs;
 use std::io::{self, Write};
@@ -10,14 +10,15 @@ use super::leftovers::Temporary;
 use super::target::{existing, folder_of, keep_owner_and_mode, resolved, sync_folder};
 use super::write_step::{Calls, WriteError, WriteStep};
 
-/// Puts `bytes` in the place of a file, and keeps this many generations of what was there before.
+/// Replaces the contents of a file with `bytes`, and keeps this many generations of earlier contents.
 ///
-/// A link is followed: the file that it leads to is written. It keeps its mode, and its owner where the system allows it.
+/// Links are followed: the write goes to the file that the link leads to. The file keeps its mode, and its owner if the
+/// system allows it.
 pub fn replace(path: &Path, bytes: &[u8], backups: usize) -> Result<(), WriteError> {
     replace_by(&mut Calls { before: &mut |_| Ok(()) }, path, bytes, backups)
 }
 
-/// Fails as [`replace`] would at its first steps: before work whose result could not be written.
+/// Fails as the first steps of [`replace`] would. To be called before work whose result could not be written.
 pub fn check_writable(path: &Path) -> Result<(), WriteError> {
     let calls = &mut Calls { before: &mut |_| Ok(()) };
     let (target, _) = look(calls, path)?;
@@ -45,7 +46,7 @@ fn replace_by(calls: &mut Calls<'_>, path: &Path, bytes: &[u8], backups: usize) 
     }
     calls.call(WriteStep::Sync, || file.sync_all())?;
     drop(file);
-    // Saving the same again must not push older contents out.
+    // Saving identical contents again must not push older contents out.
     let is_same = |old: &fs::Metadata| old.len() == bytes.len() as u64 && fs::read(&target).is_ok_and(|b| b == bytes);
     if backups > 0 && old.as_ref().is_some_and(|old| !is_same(old)) {
         backup::keep(calls, &target, backups)?;
@@ -71,8 +72,8 @@ mod tests {
         fs::read_to_string(folder.join(name)).ok()
     }
 
-    /// Saves over three generations, the call of this number failing with this error. Returns the step that failed, and
-    /// whether saving did.
+    /// Saves over three generations while the call of this number fails with this error. Returns the step that failed,
+    /// and whether the save failed.
     fn with_one_failure(number: usize, kind: ErrorKind) -> Option<(WriteStep, bool)> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.json");
@@ -96,11 +97,11 @@ mod tests {
             Err(error) => {
                 assert_eq!((error.step, error.error.kind()), (step, kind));
                 assert!(error.to_string().len() > 20, "{error}");
-                // Only after the renaming does the new file stand there.
+                // Only the rename puts the new file there.
                 assert_eq!(shown, if step == WriteStep::SyncFolder { "new" } else { "old" }, "call {number}: {step:?}");
             }
         }
-        // Whatever happened: no half file, nothing left over, and of the contents only the oldest may be gone.
+        // After any failure: no partial file, no leftovers, and only the oldest contents may be gone.
         assert_eq!(names(folder.path()), ["scene.json", "scene.json~", "scene.json~2~", "scene.json~3~"]);
         let all: Vec<_> = names(folder.path()).iter().map(|name| text(folder.path(), name).unwrap()).collect();
         for kept in ["old", "third", "second"] {
@@ -116,7 +117,7 @@ mod tests {
         for kind in [ErrorKind::StorageFull, ErrorKind::PermissionDenied, ErrorKind::ReadOnlyFilesystem] {
             let failures: Vec<_> = (0..).map_while(|number| with_one_failure(number, kind)).collect();
             assert!(failures.len() >= 18, "only {} calls", failures.len());
-            // What failing calls do not harm: a hard link, which is copied then.
+            // Failing calls that do not fail the save: a hard link, which is then copied.
             assert_eq!(failures.iter().filter(|(step, failed)| *step == WriteStep::Backup && !failed).count(), 3);
             fatal = failures.iter().filter(|(_, failed)| *failed).map(|(step, _)| *step).collect();
         }
@@ -135,7 +136,7 @@ mod tests {
         let kept = ["scene.json", "scene.json~", "scene.json~2~", "scene.json~3~"];
         assert_eq!(kept.map(|name| text(folder.path(), name).unwrap()), ["5", "4", "3", "2"]);
         assert_eq!(names(folder.path()), kept);
-        // Pictures have none.
+        // Pictures have no backups.
         replace(&folder.path().join("x.png"), b"1", 0).unwrap();
         replace(&folder.path().join("x.png"), b"2", 0).unwrap();
         assert_eq!(names(folder.path()).len(), 5);
@@ -182,7 +183,7 @@ mod tests {
             let mut before = |_| {
                 for entry in fs::read_dir(folder.path()).unwrap() {
                     let mode = mode(&entry.unwrap().path());
-                    // The owner may do what an owner can allow himself anyway.
+                    // The owner's bits are exempt: an owner can grant them to himself anyway.
                     if mode & 0o077 & !wanted != 0 {
                         looser.push(mode);
                     }
@@ -195,7 +196,7 @@ mod tests {
         }
     }
 
-    /// Only root gives files away; whoever else runs this sees that it does not matter.
+    /// Only root can give files away; for other users the test shows that the failure does no harm.
     #[cfg(unix)]
     #[test]
     fn owner_and_group_stay_where_the_system_allows_it() {

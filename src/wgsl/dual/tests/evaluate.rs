@@ -1,4 +1,4 @@
-//! Evaluates functions of a parsed shader, for tests: what the generated text does, not how it reads.
+//! Evaluates functions of a parsed shader, for tests of the generated text by its results.
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use naga::{
@@ -72,7 +72,7 @@ struct Frame<'a> {
 }
 
 impl Machine {
-    /// Panics where the text is not valid.
+    /// Parses the text. Panics if it is not valid.
     pub fn new(text: &str) -> Self {
         let module =
             naga::front::wgsl::parse_str(text).unwrap_or_else(|e| panic!("{}\n{text}", e.emit_to_string(text)));
@@ -82,7 +82,7 @@ impl Machine {
         Self { module, info, rounds: false }
     }
 
-    /// The same, computing in f32.
+    /// The same machine, computing in f32.
     pub fn rounded(self) -> Self {
         Self { rounds: true, ..self }
     }
@@ -283,7 +283,7 @@ impl Frame<'_> {
     }
 }
 
-/// An operation of whole numbers without sign, which wrap.
+/// An operation on unsigned integers, with wrapping.
 fn wrapped(op: B, a: f64, b: f64) -> f64 {
     let [a, b] = [a, b].map(|v| v as i64 as u32);
     f64::from(match op {
@@ -327,7 +327,7 @@ fn compose(ty: &TypeInner, components: Vec<V>) -> V {
     }
 }
 
-/// Component by component, numbers stretched to vectors.
+/// Applies `f` to each component, with scalars extended to vectors.
 fn zip(a: &V, b: &V, f: impl Fn(f64, f64) -> f64) -> V {
     let (a, b) = (a.n(), b.n());
     let at = |v: &[f64], i: usize| if v.len() == 1 { v[0] } else { v[i] };
