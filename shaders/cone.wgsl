@@ -1,7 +1,7 @@
-// Pass `cone`: one invocation for each tile. A cone around all the tile's rays is marched through the
-// component; what it passes without touching, no ray of the tile needs to look at. Tiles in which it
-// touches nothing, or only what is hidden, are dropped; of the others the same is asked about their quarters, and those that
-// are left are listed with a safe start.
+// Pass `cone`: one invocation per tile. Marches a cone that encloses all rays of the tile through
+// the component: no ray of the tile needs to look at a stretch that the cone passes without
+// touching anything. Drops tiles whose cone touches nothing, or only hidden parts. Tests the four
+// subtiles of the other tiles in the same way, and lists those that remain with a safe start.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -14,27 +14,27 @@
 
 @group(2) @binding(0) var hiz_target: texture_2d<f32>;
 @group(2) @binding(1) var<storage, read_write> subtiles: array<Subtile>;
-// SUBTILE_COUNTS for each list.
+// SUBTILE_COUNTS words per list.
 @group(2) @binding(2) var<storage, read_write> subtile_counts: array<atomic<u32>>;
 // See `common/counts.wgsl`.
 @group(2) @binding(3) var<storage, read_write> march_counts: array<atomic<u32>>;
 
-// Steps of a cone before it leaves the rest to the rays.
+// Maximum steps of a cone; the rays do the rest.
 const CONE_STEPS: u32 = 48u;
 // A cone stops where the surface may be nearer to its border than this, in footprints.
 const CONE_CLEARANCE: f32 = select(0.25, 0.1, VERIFIED_OVERSTEP);
-// What stands for a quarter that needs no rays.
+// Start of a subtile that needs no rays.
 const CONE_PASSED: f32 = 3e38;
 
 struct Cone {
     axis: Ray,
-    // The tangent of the angle to the farthest ray, and the cosine of that angle.
+    // Tangent and cosine of the angle to the farthest ray.
     spread: f32,
     cosine: f32,
 }
 
-// Around the rays through the centers of `side` by `side` pixels. Angles come from how far the places of rays in the picture
-// are apart: nothing is left of small ones in a cosine.
+// The cone around the rays through the centers of `side` by `side` pixels. Computes angles from the
+// distances between the rays in the picture: the cosine of a small angle rounds to 1.
 fn cone_around(component: Component, pixel: vec2u, side: u32) -> Cone {
     let middle = view_offset(vec2f(pixel) + 0.5 * f32(side));
     let right = view.right * (f32(side - 1u) / f32(view.width));
@@ -43,7 +43,8 @@ fn cone_around(component: Component, pixel: vec2u, side: u32) -> Cone {
     let b = right - down;
     let forward = middle + view.forward;
     let lengths = vec4f(length(forward + a), length(forward - a), length(forward + b), length(forward - b));
-    // The sum of the four unit directions leads through the mean of their places, each weighted by one over its length.
+    // The sum of the four unit directions passes through the mean of their places, weighted by
+    // 1 / length.
     let weights = 1.0 / lengths;
     let moved = (a * (weights.x - weights.y) + b * (weights.z - weights.w)) / dot(weights, vec4f(1.0));
     let axis = forward + moved;
@@ -64,7 +65,7 @@ fn cone_around(component: Component, pixel: vec2u, side: u32) -> Cone {
     );
 }
 
-// Where any ray of the square may enter the component's half space.
+// Smallest `t` at which a ray of the tile may enter the component's half space.
 fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
     let far = pixel + TILE - 1u;
     return min(
@@ -79,7 +80,7 @@ fn cone_half_space_entry(component: Component, pixel: vec2u) -> f32 {
     );
 }
 
-// Where any ray of the cone around a tile may be within the component: distances along rays, cut by near and far.
+// Interval of `t` in which a ray of the tile may be within the component, clipped to near and far.
 fn cone_interval(component: Component, cone: Cone, place: vec2u) -> vec2f {
     // The box, grown by the cone's radius at its far end.
     let far_corner = max(abs(component.low - component.eye), abs(component.high - component.eye));
@@ -101,11 +102,11 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let interval = cone_interval(component, cone, place);
     let limit = interval.y;
     var exit = min(limit, cone_hiz_of_tile(place));
-    // Distances along a ray are longer than along the axis, by at most the cosine.
+    // A distance along the axis is that along a ray times the cosine, or more.
     var t = interval.x * cone.cosine;
     let enters = id.x < columns * rows && t <= exit;
-    // First the cone around the tile, then, from where that stopped, those around its quarters: one loop,
-    // because the field is called from one place.
+    // First the cone around the tile, then, from where that stopped, the cones around its subtiles:
+    // one loop, so that the source has one call of the field.
     var start = array<f32, 4>(CONE_PASSED, CONE_PASSED, CONE_PASSED, CONE_PASSED);
     var descents = array<f32, 4>();
     if !CONES && enters {
@@ -116,9 +117,10 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     var of_tile = true;
     var steps = 0u;
     var evaluations = 0u;
-    // Where the field was last evaluated on this cone's axis.
+    // `t` of the last evaluation on this cone's axis.
     var last = NEVER;
-    // The field there, and how it fell since the evaluation before; a quarter that stops at its first one has that of the tile.
+    // The field there, and its descent since the previous evaluation. A subtile that stops at its
+    // first evaluation has the descent of the tile.
     var before = 0.0;
     var descent = 0.0;
     let reach = length(component.eye);
@@ -165,7 +167,8 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     cone_list(place, &start, &descents);
 }
 
-// Lists the quarters of a tile that need rays, with where these start, and how the field falls there.
+// Lists the subtiles of a tile that need rays, each with its start and the descent of the field
+// there.
 fn cone_list(place: vec2u, start: ptr<function, array<f32, 4>>, descents: ptr<function, array<f32, 4>>) {
     var count = 0u;
     for (var i = 0u; i < 4u; i += 1u) {
@@ -185,12 +188,12 @@ fn cone_list(place: vec2u, start: ptr<function, array<f32, 4>>, descents: ptr<fu
     }
 }
 
-// A quarter of a tile among all subtiles.
+// Column and row of a quarter of the tile among all subtiles.
 fn cone_subtile(place: vec2u, quarter: u32) -> vec2u {
     return place * 2u + vec2u(quarter & 1u, quarter >> 1u);
 }
 
-// 0 for what lies outside of the picture.
+// The farthest depth of a subtile; 0 outside the picture.
 fn cone_hiz(place: vec2u, quarter: u32) -> f32 {
     let subtile = cone_subtile(place, quarter);
     return select(0.0, textureLoad(hiz_target, subtile, 0).x, view_contains(subtile * SUBTILE));
@@ -204,7 +207,7 @@ fn cone_hiz_of_tile(place: vec2u) -> f32 {
     );
 }
 
-// What the cones of a tile took, for the list, the tile and the component.
+// Adds the cost of a tile's cones to the counts of the list, the tile and the component.
 fn cone_count(place: vec2u, evaluations: u32) {
     atomicAdd(&subtile_counts[dispatch.list * SUBTILE_COUNTS + 3u], evaluations);
     let of_tile = counts_of_tile(arrayLength(&march_counts), place);

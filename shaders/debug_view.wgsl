@@ -1,20 +1,21 @@
-// Pass `debug_view`, only where somebody asks for it: what the passes before have found or counted, as colors over the
-// picture. Counterpart of `flat::debug_view`; colors are sRGB as they go to the screen.
+// Pass `debug_view`, only if a view mode is active: shows the results or counts of the previous
+// passes as colors over the picture. Counterpart of `src/field/debug_view.rs`. Colors are sRGB, as
+// the screen expects them.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/counts.wgsl"
 
 struct DebugView {
-    // Which of the view modes: `ViewMode` on the CPU.
+    // View mode; `ViewMode` on the CPU.
     view_mode: u32,
-    // Counts above this, or distances from here on, have the last color.
+    // Counts above this, and distances from this on, get the last color.
     top: f32,
-    // Distances up to here have the first color.
+    // Distances up to this get the first color.
     bottom: f32,
-    // Distance between two lines of equal distance.
+    // Spacing of the lines of equal distance.
     spacing: f32,
-    // Where the colors of the meshes begin, and where those of the components.
+    // Index of the first mesh and of the first component in `colors`.
     first_mesh: u32,
     first_component: u32,
     padding_0: u32,
@@ -23,10 +24,11 @@ struct DebugView {
 
 @group(1) @binding(0) var<uniform> settings: DebugView;
 @group(1) @binding(1) var<storage, read> counted: array<u32>;
-// For each entry of the subtree-extent array, each mesh, each component: red, green, blue, 8 bits each.
+// One color per entry of the subtree-extent array, then per mesh, then per component: red, green
+// and blue, 8 bits each.
 @group(1) @binding(2) var<storage, read> colors: array<u32>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
-// In w the length of the field's gradient; 0 for meshes.
+// w: length of the field's gradient; 0 for meshes.
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 @group(2) @binding(2) var visibility_target: texture_2d<u32>;
 @group(2) @binding(3) var leaf_target: texture_2d<u32>;
@@ -41,11 +43,11 @@ const VIEW_MODE_NORMALS: u32 = 6u;
 const VIEW_MODE_SLOPE: u32 = 7u;
 const VIEW_MODE_NODES: u32 = 8u;
 
-// Where there is nothing to look at.
+// Pixels without a hit.
 const DEBUG_VIEW_NOTHING: vec3f = vec3f(0.1, 0.11, 0.13);
-// Meshes, where only fields can be looked at.
+// Meshes, in view modes that show fields only.
 const DEBUG_VIEW_MESH: vec3f = vec3f(0.3, 0.31, 0.34);
-// A gradient this much longer than 1 is rounding.
+// Deviations of the gradient's length from 1 up to this are rounding.
 const DEBUG_VIEW_ROUNDING: f32 = 1e-3;
 
 @compute @workgroup_size(8, 8)
@@ -86,7 +88,8 @@ fn debug_view_pixel(pixel: vec2u) -> vec3f {
     return debug_view_lit(unpack4x8unorm(colors[at]).rgb, facing);
 }
 
-// What was counted for a pixel, with its share of what the cones of its tile took where cones evaluate too.
+// Count of a pixel. Where cones evaluate too, includes the pixel's share of the count of its tile's
+// cones.
 fn debug_view_counted(pixel: vec2u) -> f32 {
     let words = arrayLength(&counted);
     let of_pixel = counts_of_pixel(words, pixel);
@@ -98,8 +101,8 @@ fn debug_view_counted(pixel: vec2u) -> f32 {
     return f32(counted[of_pixel + word]) + f32(counted[of_tile + word]) / f32(TILE * TILE);
 }
 
-// Whether a line of equal distance runs between the pixel and the one to its right or below. Where many lines fall
-// between two pixels there is none.
+// Whether a line of equal distance runs between the pixel and the one to its right or below. Not
+// where several lines fall between two pixels.
 fn debug_view_is_line(pixel: vec2u, depth: f32) -> bool {
     let last = vec2u(view.width, view.height) - 1u;
     let right = textureLoad(depth_target, min(pixel + vec2u(1u, 0u), last), 0).x;
@@ -110,7 +113,7 @@ fn debug_view_is_line(pixel: vec2u, depth: f32) -> bool {
     return any((steps == vec2f(1.0)) & near);
 }
 
-// From dark blue by green and yellow to red.
+// From dark blue through green and yellow to red.
 fn debug_view_ramp(share: f32) -> vec3f {
     let at = clamp(share, 0.0, 1.0) * 5.0;
     var color = vec3f(0.06, 0.07, 0.14);
@@ -121,12 +124,12 @@ fn debug_view_ramp(share: f32) -> vec3f {
     return mix(color, vec3f(0.9, 0.28, 0.16), clamp(at - 4.0, 0.0, 1.0));
 }
 
-// Counts by their logarithm; white beyond the top.
+// Logarithmic color of a count; white above the top.
 fn debug_view_count(count: f32, top: f32) -> vec3f {
     return select(debug_view_ramp(log2(1.0 + count) / log2(1.0 + top)), vec3f(1.0), count > top);
 }
 
-// Near is light, far is dark.
+// Light when near, dark when far.
 fn debug_view_distance(share: f32) -> vec3f {
     let at = clamp(share, 0.0, 1.0) * 2.0;
     let nearer = mix(vec3f(0.98, 0.93, 0.78), vec3f(0.27, 0.58, 0.64), min(at, 1.0));
@@ -138,7 +141,8 @@ fn debug_view_normal(normal: vec3f) -> vec3f {
     return normal * 0.5 + 0.5;
 }
 
-// The length of a gradient: blue below 1, gray at 1, orange to red above, magenta where it is no number.
+// Color of a gradient's length: blue below 1, gray at 1, orange to red above, magenta for infinity
+// and NaN.
 fn debug_view_slope(slope: f32) -> vec3f {
     if (bitcast<u32>(slope) & 0x7f800000u) == 0x7f800000u {
         return vec3f(1.0, 0.0, 1.0);
@@ -152,7 +156,7 @@ fn debug_view_slope(slope: f32) -> vec3f {
     return vec3f(0.86, 0.87, 0.85);
 }
 
-// A little darker where the surface turns away from the eye, so that its form can be seen.
+// Slightly darker where the surface turns away from the eye, which makes its form visible.
 fn debug_view_lit(color: vec3f, facing: f32) -> vec3f {
     return color * (0.6 + 0.4 * facing);
 }

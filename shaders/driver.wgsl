@@ -1,4 +1,4 @@
-// Not a pass: counts how many iterations the driver lets a loop do.
+// Not a pass: counts how many iterations of a loop the driver executes.
 
 @group(0) @binding(0) var<storage, read_write> counted: array<u32>;
 

@@ -1,4 +1,5 @@
-// Pass `hiz`: the farthest depth in each subtile after the meshes are drawn. Only where there are meshes.
+// Pass `hiz`: the farthest depth of each subtile after the mesh pass. Runs only in scenes with
+// meshes.
 
 #include "common/view.wgsl"
 #include "common/subtiles.wgsl"

@@ -1,11 +1,13 @@
-// Pass `mesh`: triangles into the shared targets. They meet each other in the hardware's depth buffer
-// (reversed, without far plane) and everything else in the depth target.
+// Pass `mesh`: draws triangles into the shared targets. The hardware's depth buffer (reversed,
+// without far plane) resolves meshes against each other, the depth target resolves them against
+// fields.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 
 struct Instance {
-    // Rows of world space, relative to the eye or to what `ray_origin_depth` says, from the mesh's space.
+    // Rows of the matrix from the mesh's space to world space, relative to the eye or to the point
+    // that `ray_origin_depth` gives.
     eye_from_local_x: vec4f,
     eye_from_local_y: vec4f,
     eye_from_local_z: vec4f,
@@ -13,20 +15,21 @@ struct Instance {
     normal_x: vec4f,
     normal_y: vec4f,
     normal_z: vec4f,
-    // Factor of the vertices' colors and of their opacity.
+    // Factor of the vertex colors and of their opacity.
     color: vec4f,
-    // Rows of the texture's coordinates from those of the vertices.
+    // Rows of the matrix from the vertices' texture coordinates to those of the texture.
     texture_x: vec4f,
     texture_y: vec4f,
     albedo: vec3f,
     visibility: u32,
-    // 1: `albedo` stands for the mesh's own colors. What these cut out stays cut out.
+    // 1: `albedo` replaces the mesh's own colors. Their cutouts remain.
     overridden: u32,
-    // 1: the placement turns left into right, and so the order of a triangle's corners.
+    // 1: the transform mirrors the mesh, which reverses the order of a triangle's corners.
     mirrored: u32,
-    // Where the opacity is less, there is no surface.
+    // Fragments with less opacity are discarded.
     alpha_cutoff: f32,
-    // Positions are relative to the point that this puts before the eye on the view axis: see `common/ray.wgsl`.
+    // Positions are relative to the point at this depth before the eye on the view axis; see
+    // `common/ray.wgsl`.
     ray_origin_depth: f32,
 }
 
@@ -43,7 +46,7 @@ struct Vertex {
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    // Relative to the point that `ray_origin_depth` puts before the eye.
+    // Relative to the point at `ray_origin_depth` before the eye.
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
@@ -57,8 +60,9 @@ struct Written {
     @location(3) base_color: vec4f,
 }
 
-// The near limit is a distance along the ray. Clipped is by the depth along the view axis, which is less, by no more than this
-// toward any corner of a picture: a power of two, so that it changes no bit of any depth.
+// The near limit is a distance along the ray, but the hardware clips by the depth along the view
+// axis. That depth is less, toward a corner of any picture by no more than this factor. A power of
+// two, so that it changes no bit of any depth.
 const NEAR_SHARE: f32 = 1.0 / 16777216.0;
 
 @vertex
@@ -71,7 +75,7 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     );
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
-    // `right` and `up` are half the picture at distance 1, so their squares undo their lengths.
+    // `right` and `up` span half the picture at distance 1; their squares cancel these lengths.
     let clip = vec4f(
         dot(position, view.right) / dot(view.right, view.right),
         dot(position, view.up) / dot(view.up, view.up),
@@ -83,8 +87,8 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     return Varying(clip, position, normal, vertex.color, place);
 }
 
-// How far from the eye a place on a triangle is. Far off, what it is more than the depth along the view axis is little, and
-// rounded for itself.
+// Distance from the eye to a point on a triangle. Far away, its excess over the depth along the
+// view axis is small and is rounded separately.
 fn mesh_distance(position: vec3f) -> f32 {
     let beyond = dot(position, view.forward);
     let aside = position - view.forward * beyond;
@@ -103,8 +107,8 @@ fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     let length_of_normal = length(in.normal);
     let away = in.position + view.forward * instance.ray_origin_depth;
     var normal = select(-away / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
-    // Both sides are shown. The triangle decides which one is seen: near an outline the mixed normal may
-    // point away though the triangle faces the eye.
+    // Both sides are visible. The triangle decides which side faces the eye: near an outline the
+    // interpolated normal may point away although the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));
     let albedo = select(color.rgb, instance.albedo, instance.overridden == 1u);
     return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(albedo, 1.0));

@@ -1,23 +1,23 @@
-// Pass `overlay`, editor only: a grid on the ground and the outline of the selection, blended over the
-// finished picture. Each has a pipeline of its own: lavapipe walks through an `if` that no pixel takes.
+// Pass `overlay`, editor only: blends a grid on the ground and the outline of the selection over
+// the finished picture. Each has its own pipeline: lavapipe executes an `if` that no pixel takes.
 //
-// A coarse picture is enlarged first, and lines over it are as thin as over a fine one.
+// A coarse picture is first enlarged, so that lines over it are as thin as over a fine one.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/screen.wgsl"
 
 struct Overlay {
-    // The eye in the world, reduced to one coarse cell of the grid; y is its true height.
+    // The eye in the world, x and z reduced to one coarse cell of the grid; y is its true height.
     eye: vec3f,
     // Side of a fine cell; ten of them make a coarse one.
     cell: f32,
-    // Red and blue: the lines of X and Z run through these places of the reduced grid, if at all near.
+    // Where the red X axis and the blue Z axis run in the reduced grid, if they are near.
     axis_x: f32,
     axis_z: f32,
     // Bits of `selected` before those of the meshes.
     leaf_count: u32,
-    // Of what is drawn on, in pixels: the picture's or larger. The width, and the height times 65 536.
+    // Size of the target in pixels, the picture's or larger: width plus 65 536 times height.
     size: u32,
 }
 
@@ -57,12 +57,12 @@ fn overlay_size() -> vec2f {
     return vec2f(f32(overlay.size & 0xffffu), f32(overlay.size >> 16u));
 }
 
-// Where a point of what is drawn on lies in the picture; whole numbers are centers of its pixels.
+// Position in the picture of a point of the target; whole numbers are pixel centers.
 fn overlay_place(at: vec2f) -> vec2f {
     return at * vec2f(f32(view.width), f32(view.height)) / overlay_size() - 0.5;
 }
 
-// The pixel of the picture, or the one at the border that is nearest to it.
+// The pixel, clamped to the picture.
 fn overlay_inside(pixel: vec2i) -> vec2i {
     return clamp(pixel, vec2i(0), vec2i(i32(view.width), i32(view.height)) - 1);
 }
@@ -71,8 +71,8 @@ fn overlay_color(pixel: vec2i) -> vec4f {
     return textureLoad(picture, overlay_inside(pixel), 0);
 }
 
-// How much a point lies on the edge of the selection. The edge runs where half of the four pixels around is selected: the
-// share varies between them, so its slope says how far the edge is.
+// Coverage of a point by the edge of the selection. The edge runs where the interpolated selection
+// of the four pixels around is one half; its slope gives the distance to the edge.
 fn overlay_coarse_edge(at: vec2f) -> f32 {
     let place = overlay_place(at);
     let corner = vec2i(floor(place));
@@ -88,12 +88,12 @@ fn overlay_coarse_edge(at: vec2f) -> f32 {
     return clamp(1.5 - distance, 0.0, 1.0);
 }
 
-// Whether the pixel lies outside the selection with a selected one within two pixels.
+// Whether the pixel is outside the selection and within two pixels of it.
 fn overlay_is_edge(pixel: vec2u) -> bool {
     let here = overlay_is_selected(vec2i(pixel));
     var near = false;
-    // A ring of radius 2 without its corners: three pixels on each of four sides. The loop ends where nothing is to be
-    // found any more, which an `if` in it would not.
+    // A ring of radius 2 without its corners: three pixels on each of four sides. The condition
+    // ends the loop early, which an `if` in the body would not.
     for (var i = 0; i < 12 && !here && !near; i += 1) {
         let along = i % 3 - 1;
         let side = 2 - 4 * (i / 3 % 2);
@@ -114,7 +114,7 @@ fn overlay_is_selected(pixel: vec2i) -> bool {
     return ((selected[index >> 5u] >> (index & 31u)) & 1u) == 1u;
 }
 
-// Lines of one pixel on the plane y = 0, hidden by what stands before them, fading into the distance.
+// Lines one pixel wide on the plane y = 0. Nearer surfaces hide them; they fade with distance.
 fn overlay_grid(pixel: vec2u) -> vec4f {
     let direction = overlay_direction(pixel);
     if direction.y * overlay.eye.y >= 0.0 {
@@ -126,7 +126,7 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
         return vec4f(0.0);
     }
     let at = overlay_ground(pixel);
-    // How far the ground moves from this pixel to its neighbors.
+    // Step on the ground from this pixel to its neighbors.
     let right = view.right * (2.0 / f32(view.width));
     let down = view.up * (-2.0 / f32(view.height));
     let width = overlay_step(pixel, right) + overlay_step(pixel, down);
@@ -146,7 +146,7 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     return vec4f(color, strength * fade);
 }
 
-// Unit direction of the ray through the center of a pixel of what is drawn on.
+// Unit direction of the ray through the center of a pixel of the target.
 fn overlay_direction(pixel: vec2u) -> vec3f {
     let at = (vec2f(pixel) + 0.5) / overlay_size() * 2.0 - 1.0;
     return normalize(view.right * at.x - view.up * at.y + view.forward);
@@ -159,8 +159,8 @@ fn overlay_ground(pixel: vec2u) -> vec2f {
     return overlay.eye.xz - direction.xz * (overlay.eye.y / fall);
 }
 
-// How far the ground moves where the place in the picture moves by `step`: without a difference of places that are nearly
-// equal in narrow pictures.
+// Step on the ground for a `step` in the picture. Avoids the difference of two places on the
+// ground, which are nearly equal in narrow pictures.
 fn overlay_step(pixel: vec2u, step: vec3f) -> vec2f {
     let along = view_offset(vec2f(pixel) + 0.5) + view.forward;
     let falls = vec2f(along.y, along.y + step.y);
@@ -171,7 +171,7 @@ fn overlay_step(pixel: vec2u, step: vec3f) -> vec2f {
 fn overlay_lines(at: vec2f, cell: f32, width: vec2f) -> f32 {
     let from_line = abs(fract(at / cell + 0.5) - 0.5) * cell;
     let line = clamp(1.5 - from_line / width, vec2f(0.0), vec2f(1.0));
-    // Where cells are smaller than a few pixels the lines would only flicker.
+    // Lines of cells smaller than a few pixels would only flicker.
     let sparse = clamp(cell / (8.0 * width) - 0.25, vec2f(0.0), vec2f(1.0));
     return max(line.x * sparse.x, line.y * sparse.y);
 }

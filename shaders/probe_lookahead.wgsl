@@ -1,14 +1,15 @@
-// Not a pass: how far a pipeline proves the field positive, for the test that looks whether it is.
+// Not a pass: how far a pipeline proves the field positive, for the test of these proofs.
 
 #include "common/lookahead.wgsl"
 #include "generated/value.wgsl"
 #include "common/probe.wgsl"
 
-// How far is looked, in ways between the two points.
+// Length of the lookahead window, in distances between the two points.
 const PROBE_WINDOW: f32 = 4.0;
 
-// For each two points on a ray the field at the second, how far it is proven beyond it, the least that it can be within the
-// window before the first, and the field at the first; for pipelines that look that way.
+// For each pair of points on a ray: the field at the second, the free interval beyond it, the lower
+// bound of the field in the window before the first (a trivial one in pipelines without verified
+// oversteps), and the field at the first.
 @group(2) @binding(1) var<storage, read_write> values: array<f32>;
 
 @compute @workgroup_size(64)

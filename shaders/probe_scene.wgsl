@@ -5,15 +5,15 @@
 
 struct SceneQueries {
     count: u32,
-    // 1 where rays leave a surface, whose normal stands behind their direction.
+    // 1: rays leave a surface, whose normal follows their direction.
     leaves_surface: u32,
     padding_0: u32,
     padding_1: u32,
 }
 
 @group(2) @binding(0) var<uniform> queries: SceneQueries;
-// Points: xyz, and within which distance. Rays: where from, and where the path from the eye begins; direction, and how far;
-// normal, and where hits begin to count.
+// Points: xyz and `within`. Rays: start and path length from the eye to it; direction and far
+// limit; normal and near limit.
 @group(2) @binding(1) var<storage, read> inputs: array<vec4f>;
 // Points: value, component, whether complete, evaluations, visits. Rays: the march, evaluations, visits.
 @group(2) @binding(2) var<storage, read_write> outputs: array<u32>;
@@ -31,7 +31,7 @@ fn probe_scene_value(@builtin(global_invocation_id) id: vec3u) {
     }
 }
 
-// Goes on with a march, or begins it where the word of `ended` is 2.
+// Continues a march, or begins it where the word of `ended` is 2.
 @compute @workgroup_size(64)
 fn probe_scene_ray(@builtin(global_invocation_id) id: vec3u) {
     if id.x < queries.count {

@@ -1,9 +1,9 @@
-// Not a pass: what surfaces are like at given points, for the tests that compare it with the CPU evaluator.
+// Not a pass: surfaces at given points, for the tests that compare them with the CPU evaluator.
 
 #include "generated/surface.wgsl"
 #include "common/probe.wgsl"
 
-// For each point the bits of the gradient with the distance, then the materials as they are stored.
+// Per point the bits of gradient and distance, then the encoded mixture.
 @group(2) @binding(1) var<storage, read_write> surfaces: array<vec4u>;
 
 @compute @workgroup_size(64)

@@ -1,5 +1,6 @@
-// Pass `shade`: light on what the passes before have found, and the background. It is drawn, not dispatched: lavapipe
-// takes some 16 ns for each texel that a pipeline stores, and less where it draws.
+// Pass `shade`: lights the hits of the previous passes and draws the background. A draw, not a
+// dispatch: lavapipe takes some 16 ns for each texel that a pipeline stores, and less when it
+// draws.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -8,7 +9,7 @@
 
 @group(1) @binding(0) var<storage, read> lights: array<Light>;
 @group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
-// What each mesh is made of, but for its color.
+// Material of each mesh, without its color.
 @group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
@@ -41,7 +42,8 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
             textureLoad(normal_target, pixel, 0).xyz,
             -direction,
             view.ambient,
-            // Of the pixel as well, or lavapipe would compile the loop anew for each buffer that holds the number.
+            // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer
+            // that holds the count.
             select(view.light_count, 0u, depth >= BACKGROUND),
         );
     }

@@ -1,4 +1,4 @@
-// Pass `surface`: once per hit pixel of a component, the normal, the material and the leaf.
+// Pass `surface`: normal, materials and leaf, once per hit pixel of a component.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -12,9 +12,9 @@
 @group(2) @binding(2) var normal_target: texture_storage_2d<rgba32float, write>;
 @group(2) @binding(3) var material_target: texture_storage_2d<rgba32uint, write>;
 @group(2) @binding(4) var leaf_target: texture_storage_2d<r32uint, write>;
-// Those in which something was hit begin at `dispatch.hits`.
+// Subtiles with hits begin at `dispatch.hits`.
 @group(2) @binding(5) var<storage, read> subtiles: array<Subtile>;
-// RAY_COUNTS for each list.
+// RAY_COUNTS words per list.
 @group(2) @binding(6) var<storage, read> ray_counts: array<u32>;
 
 @compute @workgroup_size(8, 8)
@@ -39,16 +39,19 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     }
 }
 
-// How far before a hit whose normal points away it is looked for the place where the ray has entered, in footprints at first:
-// more than twice what is accepted. A thing of this thickness may have been hit at its far side.
+// If the normal of a hit points away from the eye, the search for the entry point starts this far
+// before the hit, in footprints: more than twice the accepted error. The trace may have hit a part
+// of this thickness at its far side.
 const ENTRY: f32 = select(2.5e-3, 1e-2, VERIFIED_OVERSTEP) * FINENESS;
-// Where that is still inside it is looked farther off, by this factor, so often: beyond the longest overstep.
+// While that point is inside, the search moves back by this factor, at most ENTRY_LOOKS times:
+// beyond the longest overstep.
 const ENTRY_GROWTH: f32 = 8.0;
 const ENTRY_LOOKS: u32 = 4u;
-// From outside the surface is found by so many of Newton's steps.
+// Newton steps from a point outside to the surface.
 const ENTRY_STEPS: u32 = 2u;
 
-// The surface at `t`, or, where the ray leaves it there, where it has entered. `seen`: whether anybody asks.
+// The surface at `t`, or, if the ray leaves the solid there, the surface where it entered. `seen`:
+// whether the pixel needs the result.
 fn surface_entered(ray: Ray, t: f32, seen: bool) -> Surface {
     var found: Surface;
     var at = t;

@@ -1,5 +1,5 @@
-// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996), over the subtiles
-// that the cone pass has left.
+// Pass `trace`: one component against the depth target, by sphere tracing (Hart 1996), over the
+// subtiles that the cone pass listed.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -12,17 +12,17 @@
 
 @group(2) @binding(0) var depth_target: texture_storage_2d<r32float, read_write>;
 @group(2) @binding(1) var visibility_target: texture_storage_2d<r32uint, write>;
-// Where a march that has not ended goes on; MARCH_ENDED for the others.
+// `t` at which an unfinished march resumes; MARCH_ENDED for the others.
 @group(2) @binding(2) var march_target: texture_storage_2d<r32float, read_write>;
-// The farthest depth in each subtile.
+// The farthest depth of each subtile.
 @group(2) @binding(3) var hiz_target: texture_storage_2d<r32float, write>;
-// Those that the cone pass has left; from `dispatch.hits` on those in which something was hit, their places only.
+// Subtiles that the cone pass listed; from `dispatch.hits` on, the places of subtiles with hits.
 @group(2) @binding(4) var<storage, read_write> subtiles: array<Subtile>;
 @group(2) @binding(8) var<storage, read> subtile_counts: array<u32>;
-// For each list how many rays have not ended in the first launch; then the pixels of those of the list under way,
-// column and row, 16 bits each.
+// Per list the number of rays unfinished after the first launch; then the pixels of the current
+// list's unfinished rays, column and row, 16 bits each.
 @group(2) @binding(6) var<storage, read_write> rays: array<atomic<u32>>;
-// RAY_COUNTS for each list. Written in the first launch.
+// RAY_COUNTS words per list. Written in the first launch.
 @group(2) @binding(7) var<storage, read_write> ray_counts: array<atomic<u32>>;
 // See `common/counts.wgsl`.
 @group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
@@ -30,7 +30,7 @@
 const MARCH_ENDED: f32 = -1.0;
 
 var<workgroup> hiz: array<atomic<u32>, 4>;
-// Whether any ray of the subtile has hit something, or has not ended.
+// Whether a ray of the subtile has a hit, or is unfinished.
 var<workgroup> has_hits: array<atomic<u32>, 4>;
 
 @compute @workgroup_size(8, 8)
@@ -63,7 +63,7 @@ fn trace(
         start = select(start, NEVER, start == MARCH_ENDED);
     }
     let steps = select(0u, dispatch.max_steps, exists && start <= exit);
-    // Of a half space it is known how steeply it is entered, of others what the cone has seen.
+    // For a half space the angle of entry is known, for others the descent that the cone measured.
     let known_descent = select(select(0.0, subtile.descent, VERIFIED_OVERSTEP), -dot(component.half_space.xyz, ray.direction), start == entry);
     let descent = select(0.0, known_descent, dispatch.relaunch == 0u);
     let marched = march_along(component, ray, start, exit, descent, steps);
@@ -84,10 +84,10 @@ fn trace(
         }
     }
     if dispatch.compacted == 1u {
-        // What was found by single rays only makes subtiles nearer: their farthest depths stay true.
+        // Hits of single rays only make subtiles nearer: their farthest depths remain upper bounds.
         return;
     }
-    // Depths are positive, so their bits are in order.
+    // Depths are positive, so their bits have the same order.
     atomicMax(&hiz[subtile_of(lane)], bitcast<u32>(depth));
     workgroupBarrier();
     if lane % 16u == 0u && is_listed {
@@ -102,7 +102,7 @@ fn trace(
     }
 }
 
-// What has not ended is left for the next relaunch, or counted after the last one.
+// Leaves an unfinished march to the next relaunch, or counts it after the last one.
 fn trace_leave(pixel: vec2u, marched: March) {
     if dispatch.last_relaunch == 1u {
         if !marched.ended {
@@ -120,7 +120,7 @@ fn trace_leave(pixel: vec2u, marched: March) {
     }
 }
 
-// What a march took, for its pixel and for its component.
+// Adds the cost of a march to the counts of its pixel and its component.
 fn trace_count(pixel: vec2u, evaluations: u32) {
     let started = select(0u, 1u, evaluations > 0u && dispatch.compacted == 0u);
     let counted = vec4u(evaluations, started, walked);

@@ -1,14 +1,16 @@
-// Where counts stand in the buffer of counts: what each component took at its beginning; where pipelines count, what
-// each pixel took at its end, and what the cones of each tile took behind that. `PixelCounts` on the CPU is its counterpart.
+// Layout of the buffer of counts: per component at its beginning; in counting pipelines also per
+// pixel at its end, and behind that per tile, for the cones. Counterpart of `PixelCounts` on the
+// CPU.
 
 #include "common/view.wgsl"
 #include "common/dispatch.wgsl"
 #include "common/walked.wgsl"
 
-// Words of a component: rays that had not ended after the last relaunch, evaluations by rays, rays started; then, by
-// rays and cones, cells and tape entries read.
+// Words of a component: rays unfinished after the last relaunch, evaluations by rays, rays started;
+// then cells and tape entries that rays and cones have read.
 const COMPONENT_COUNTS: u32 = 5u;
-// Words of a pixel: evaluations by its rays, rays started, cells, tape entries. Of a tile the same by its cones, and no rays.
+// Words of a pixel: evaluations by its rays, rays started, cells, tape entries. Words of a tile:
+// the same for its cones, without rays.
 const PIXEL_COUNTS: u32 = 4u;
 
 fn counts_tiles_across() -> u32 {

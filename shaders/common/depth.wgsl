@@ -1,7 +1,7 @@
 // The depth target, R32Float: distance from the eye along the pixel's ray, in world units.
 // `src/render/resources/targets.rs` is this file's counterpart.
 
-// Where nothing was hit. Finite, because WGSL need not keep infinities.
+// Depth of pixels without a hit. Finite, because WGSL does not guarantee infinities.
 const BACKGROUND: f32 = 1e30;
 // In the visibility target: no component and no mesh.
 const VISIBILITY_NONE: u32 = 0xffffffffu;

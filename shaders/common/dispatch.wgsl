@@ -1,4 +1,4 @@
-// One dispatch: which component, which part of the picture, how far.
+// Parameters of a dispatch: the component, the part of the picture, the limit of steps.
 
 struct DispatchParams {
     // Upper left pixel.
@@ -10,21 +10,21 @@ struct DispatchParams {
     max_steps: u32,
     // 0 begins a march, later relaunches continue it.
     relaunch: u32,
-    // 1 in the last relaunch: what has not ended by now is counted.
+    // 1 in the last relaunch, which counts unfinished rays.
     last_relaunch: u32,
-    // Which list of subtiles, see `common/subtiles.wgsl`.
+    // Index of the list of subtiles, see `common/subtiles.wgsl`.
     list: u32,
-    // Where its subtiles start in `subtiles`.
+    // First of its subtiles in `subtiles`.
     first_subtile: u32,
-    // 1 where a march goes on with the rays that were left, compacted; 0 for all pixels of the subtiles.
+    // 1: continues the unfinished rays, compacted. 0: all pixels of the subtiles.
     compacted: u32,
-    // Where the rays that are left stand in `rays`.
+    // First of the unfinished rays in `rays`.
     rays: u32,
-    // Where the lists of subtiles with hits begin in `subtiles`.
+    // Start of the lists of subtiles with hits in `subtiles`.
     hits: u32,
 }
 
 @group(3) @binding(0) var<uniform> dispatch: DispatchParams;
 
-// Pixels along a side of a tile: what a cone begins with.
+// Pixels along a side of a tile, the area of one invocation of the cone pass.
 const TILE: u32 = 8u;

@@ -3,7 +3,7 @@
 struct Light {
     position: vec3f,
     kind: u32,
-    // Unit vector in which the light travels.
+    // Unit direction in which the light travels.
     direction: vec3f,
     range: f32,
     // Color times intensity, linear.
@@ -11,7 +11,7 @@ struct Light {
     constant: f32,
     linear: f32,
     quadratic: f32,
-    // Cosines of the half angles of full light and of none; the first is always the greater.
+    // Cosines of the half angles of full light and of no light; the first is always the greater.
     cos_inner: f32,
     cos_outer: f32,
 }

@@ -1,4 +1,4 @@
-// The march along a ray of the trace pass.
+// The march along a ray through one component.
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
@@ -7,8 +7,8 @@
 #include "generated/value.wgsl"
 #include "common/march_state.wgsl"
 
-// From outside only, at an angle that is not grazing: where the field is no more than this, in footprints of a pixel there, it
-// is looked whether it is negative just behind the place where it should end.
+// Only from outside, at an angle that is not grazing: if the field is at most this, in footprints
+// of a pixel there, the march tests whether the field is negative just behind its expected end.
 const CLOSE: f32 = 1e-3 * FINENESS;
 
 struct March {
@@ -18,12 +18,12 @@ struct March {
     evaluations: u32,
 }
 
-// From `start` to a hit, to beyond `exit`, or through `steps` evaluations. `first_descent`: how the field is expected to fall
-// there per distance, 0 for unknown.
+// Marches from `start` to a hit, to beyond `exit`, or through `steps` evaluations. `first_descent`:
+// expected descent of the field there per distance, 0 if unknown.
 //
-// Steps are as long as the sphere around the next point is expected to touch the one around this (Ban and
-// Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023); where the two leave a gap, the step
-// is taken back to the first one's end.
+// A step is as long as the sphere around the next point is expected to touch the one around this
+// (Ban and Valasek, "Automatic Step Size Relaxation in Sphere Tracing", 2023). If the two leave a
+// gap, the march takes the step back to the end of the first sphere.
 fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_descent: f32, steps: u32) -> March {
     let reach = length(component.eye);
     var state = march_begin(start, first_descent);
@@ -55,7 +55,7 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
         let footprint = view.footprint * state.t;
         let f = sample.f;
         let bracketed = state.inside.x < NEVER;
-        // Whether an overstep has ended outside, and there is no surface where its line led.
+        // Whether an overstep ended outside, without a surface where its line led.
         let is_lost = !VERIFIED_OVERSTEP && state.overstepping && f >= 0.0 && state.safe.y + f + MIN_STEP_LIMIT * footprint < sample.advance;
         if state.unverified_gap.x < NEVER && select(f >= state.safe.y && !bracketed && !is_lost, !sample.is_seen, VERIFIED_OVERSTEP) {
             march_return_to_gap(&state);
@@ -64,7 +64,7 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
         if VERIFIED_OVERSTEP {
             state.unverified_gap = march_unverified_gap(state.safe, state.free_interval, state.overstepping && state.free_interval + abs(f) < sample.advance);
         }
-        // Fall of the field per distance since the last point; 0 at the first one.
+        // Descent of the field per distance since the last point; 0 at the first one.
         let descent = select(0.0, (state.safe.y - f) / sample.advance, sample.advance > 0.0 && state.safe.y > 0.0);
         if f < 0.0 || bracketed {
             let root = march_secant(&state, f);
@@ -92,7 +92,7 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
     return March(min(state.safe.x, state.unverified_gap.x), false, steps == 0u, steps);
 }
 
-// Evaluates the field where the march stands: its only call.
+// Evaluates the field at the current point. The only call of the field.
 fn march_evaluate(state: ptr<function, MarchState>, ray: Ray, flush: f32, rounding: f32) -> MarchSample {
     let t = state.t;
     let last = state.last;
@@ -103,9 +103,10 @@ fn march_evaluate(state: ptr<function, MarchState>, ray: Ray, flush: f32, roundi
         lookahead_begin(t - last.x, LOOKAHEAD_WINDOW * (t - state.safe.x), rounding);
     }
     var f = field(ray_at(ray, t));
-    // What is no more than a rounding is no material.
+    // A negative field within `flush` is rounding, not material.
     f = select(f, 0.0, f < 0.0 && f >= -flush);
-    // The way behind an overstep is free where the field is no less there than where the overstep ended.
+    // The stretch behind an overstep is free if the field there is no less than where the overstep
+    // ended.
     let is_seen = lookahead_minimum > min(select(f, last.y, t > last.x), 0.0);
     let proven = select(lookahead_free_interval(f), 0.0, looks_back);
     state.last = vec2f(t, f);

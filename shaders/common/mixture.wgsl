@@ -1,17 +1,18 @@
-// What a surface is made of: up to four materials, each with its weight. Counterpart of `flat::eval::mixture`.
+// Materials of a surface: up to four, each with its weight. Counterpart of `src/field/mixture.rs`.
 //
-// Materials are mixed once for each pixel, where it is shaded: so a material may have any number of properties, and the
-// fold over a component carries eight words whatever they are. Of more than four materials the lightest are left out, and
-// the others are taken for the whole: no property is off by more than the weight that was left out, of its range.
+// The shade pass mixes materials, once per pixel. A material may therefore have any number of
+// properties, and the fold over a component carries eight words in any case. Of more than four
+// materials the mixture drops the lightest and scales the others to the whole: the error of a
+// property is at most the dropped weight, as a share of the property's range.
 
 struct Mixture {
     // Indices into the materials.
     ids: vec4u,
-    // 0 where there is none. Together they are 1, or less where something was left out.
+    // 0 for none. The sum is 1, or less if a material was dropped.
     weights: vec4f,
 }
 
-// Stands beside a weight of 0.
+// Index beside a weight of 0.
 const NO_MATERIAL: u32 = 0xffffu;
 // Weights are stored as 16 bits.
 const MIXTURE_WHOLE: u32 = 65535u;
@@ -24,7 +25,7 @@ fn mixture_of(id: u32) -> Mixture {
     return Mixture(vec4u(id, vec3u(NO_MATERIAL)), vec4f(1.0, 0.0, 0.0, 0.0));
 }
 
-// `weight` more of a material, in the place of the lightest one if it is new.
+// Adds `weight` to a material. A new material replaces the lightest one, if that is lighter.
 fn mixture_add(mixture: Mixture, id: u32, weight: f32) -> Mixture {
     let same = mixture.ids == vec4u(id);
     let weights = mixture.weights + select(vec4f(0.0), vec4f(weight), same);
@@ -38,7 +39,7 @@ fn mixture_add(mixture: Mixture, id: u32, weight: f32) -> Mixture {
     return Mixture(select(mixture.ids, vec4u(id), takes), select(weights, vec4f(weight), takes));
 }
 
-// What joins has this weight.
+// The mixture after a join; `weight` is that of the joining operand.
 fn mixture_joined(before: Mixture, joins: Mixture, weight: f32) -> Mixture {
     var mixed = Mixture(before.ids, before.weights * (1.0 - weight));
     mixed = mixture_add(mixed, joins.ids.x, joins.weights.x * weight);
@@ -47,8 +48,8 @@ fn mixture_joined(before: Mixture, joins: Mixture, weight: f32) -> Mixture {
     return mixture_add(mixed, joins.ids.w, joins.weights.w * weight);
 }
 
-// As it is stored, the heaviest first: 16 bits of weight above 16 bits of index; 0 for none. The weights sum to
-// MIXTURE_WHOLE, so what is made of one material is made of it exactly.
+// Encoded mixture, the heaviest material first: 16 bits of weight above 16 bits of index; 0 for
+// none. The weights sum to MIXTURE_WHOLE, so a surface of one material has exactly that material.
 fn mixture_encoded(mixture: Mixture) -> vec4u {
     let sum = dot(mixture.weights, vec4f(1.0));
     let scaled = vec4u(round(mixture.weights * (f32(MIXTURE_WHOLE) / max(sum, 1e-30))));
@@ -58,7 +59,7 @@ fn mixture_encoded(mixture: Mixture) -> vec4u {
     let middle = vec2u(min(high.x, high.y), max(low.x, low.y));
     let heaviest = max(high.x, high.y);
     let total = (words.x >> 16u) + (words.y >> 16u) + (words.z >> 16u) + (words.w >> 16u);
-    // What rounding has taken or added is the heaviest one's.
+    // The heaviest material absorbs the rounding.
     let rounded = (MIXTURE_WHOLE - total) << 16u;
     return vec4u(heaviest + rounded, max(middle.x, middle.y), min(middle.x, middle.y), min(low.x, low.y));
 }

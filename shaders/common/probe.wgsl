@@ -1,4 +1,4 @@
-// What the probes are given: points of one component.
+// Input of the probes: points of one component.
 
 struct Probe {
     count: u32,

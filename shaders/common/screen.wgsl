@@ -1,4 +1,4 @@
-// One triangle over the whole picture, for passes that write each of its pixels.
+// One triangle over the whole picture, for passes that write every pixel.
 
 @vertex
 fn screen_vertex(@builtin(vertex_index) i: u32) -> @builtin(position) vec4f {

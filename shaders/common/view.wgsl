@@ -1,5 +1,5 @@
-// Who looks, from where. Positions in every pass are relative to the eye or to a component's origin:
-// the world's own coordinates never reach the GPU.
+// The view. Positions in every pass are relative to the eye or to a component's origin: world
+// coordinates never reach the GPU.
 
 struct View {
     // Half the picture's width at distance 1, to the right.
@@ -22,7 +22,8 @@ struct View {
 
 @group(0) @binding(0) var<uniform> view: View;
 
-// A place in the picture, in pixels, on the plane at distance 1 before the eye: how far it is from the picture's middle.
+// Offset from the picture's center, on the plane at distance 1 before the eye, of a place in the
+// picture in pixels.
 fn view_offset(place: vec2f) -> vec3f {
     let size = vec2f(f32(view.width), f32(view.height));
     let at = place / size * 2.0 - 1.0;

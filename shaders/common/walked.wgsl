@@ -1,3 +1,3 @@
-// What an evaluator with tapes has read so far, where pipelines count: cells, and entries of their tapes.
+// Cells, and entries of their tapes, that a tape evaluator has read so far, in counting pipelines.
 
 var<private> walked: vec2u;

@@ -1,5 +1,5 @@
-// The field with what the surface is made of: the same fold as `interpreted_value.wgsl`.
-// Counterpart of `flat::eval::surface`.
+// The field and the attributes of the surface, by the interpreter: the same fold as
+// `interpreted_value.wgsl`. Counterpart of `surface` in `src/field/eval/component.rs`.
 
 #include "field/leaf.wgsl"
 #include "field/joined_surface.wgsl"
@@ -14,17 +14,18 @@ var<private> surface_end: u32;
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_group: array<u32, STACK_SIZE>;
 #if MODIFIERS
-// Of modifiers under way, see `interpreted_value.wgsl`.
+// State of the active modifiers, see `interpreted_value.wgsl`.
 var<private> surface_outside: array<vec3f, STACK_SIZE>;
 var<private> surface_local: array<vec3f, STACK_SIZE>;
 var<private> surface_copy: array<u32, STACK_SIZE>;
 var<private> surface_least: array<Surface, STACK_SIZE>;
 #end
 
-// Chooses the component. Before any call of `surface`.
+// Selects the component. Call it before `surface`.
 fn surface_begin(component: Component) {
     surface_first = component.first;
-    // And nothing, which no compiler knows: lavapipe compiles a pipeline anew for each value of a uniform that ends a loop.
+    // Adds 0, which no compiler can know: lavapipe recompiles a pipeline for each value of a
+    // uniform that ends a loop.
     surface_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
@@ -89,7 +90,7 @@ fn surface(p: vec3f) -> Surface {
                     copy = modifier_next(modifier, local, copy + 1u, least.distance, row);
                 }
                 if copy < NO_COPY {
-                    // The content once more, at another point.
+                    // Evaluate the content again, at another point.
                     surface_least[depth - 1u] = least;
                     surface_copy[depth - 1u] = copy;
                     q = modifier_point(modifier, local, copy, row);

@@ -1,5 +1,5 @@
-// The field of a component: the fold over its range of the subtree-extent array.
-// Counterpart of `flat::eval::field`.
+// The field of a component, by the interpreter: the fold over its range of the subtree-extent
+// array. Counterpart of `field` in `src/field/eval/component.rs`.
 
 #include "field/leaf.wgsl"
 #if MODIFIERS
@@ -11,7 +11,8 @@ var<private> value_end: u32;
 var<private> value_stack: array<f32, STACK_SIZE>;
 var<private> value_group: array<u32, STACK_SIZE>;
 #if MODIFIERS
-// Of modifiers under way: the point outside, the point in its own space, the copy that is evaluated, the least so far.
+// State of the active modifiers: the point outside, the point in the modifier's space, the current
+// copy, the least value so far.
 var<private> value_outside: array<vec3f, STACK_SIZE>;
 var<private> value_local: array<vec3f, STACK_SIZE>;
 var<private> value_copy: array<u32, STACK_SIZE>;
@@ -26,10 +27,11 @@ fn join_value(node: FlatNode, blend_params: vec4f, so_far: f32, value: f32) -> f
     return op_join(join, so_far, value, blend_params, node.code >> 24u).x;
 }
 
-// Chooses the component. Before any call of `field`.
+// Selects the component. Call it before `field`.
 fn field_begin(component: Component) {
     value_first = component.first;
-    // And nothing, which no compiler knows: lavapipe compiles a pipeline anew for each value of a uniform that ends a loop.
+    // Adds 0, which no compiler can know: lavapipe recompiles a pipeline for each value of a
+    // uniform that ends a loop.
     value_end = component.end + (nodes[component.first].extent >> 31u);
 }
 
@@ -75,7 +77,7 @@ fn field(p: vec3f) -> f32 {
             so_far = join_value(node, blend_params, so_far, leaf_distance(kind, node.params, blend_params, q));
             at += 1u;
         }
-        // Every group that ends here joins what stood before it.
+        // Every group that ends here joins the result before it.
         while depth > 0u {
             let group = nodes[value_group[depth - 1u]];
             if value_group[depth - 1u] + group.extent != at {
@@ -93,7 +95,7 @@ fn field(p: vec3f) -> f32 {
                     copy = modifier_next(modifier, local, copy + 1u, least, row);
                 }
                 if copy < NO_COPY {
-                    // The content once more, at another point.
+                    // Evaluate the content again, at another point.
                     value_least[depth - 1u] = least;
                     value_copy[depth - 1u] = copy;
                     q = modifier_point(modifier, local, copy, row);

@@ -1,11 +1,11 @@
-// Surfaces joined one after the other, for evaluators that walk tapes. Gradients are mixed by the derivatives of the
-// blend, materials by the weight of what joins.
+// Joins of surfaces, for the interpreter and the tape evaluators. The derivatives of the blend mix
+// the gradients, the weight of the joining operand mixes the materials.
 
 #include "field/leaf.wgsl"
 #include "field/surface.wgsl"
 #include "generated/gradients.wgsl"
 
-// A group that has ended, `so_far`, joins what stood before it.
+// Joins a group that has ended, `so_far`, to the result before it.
 fn joined_surface(join: u32, kernel: u32, blend_params: vec4f, before: Surface, so_far: Surface) -> Surface {
     if join == JOIN_FIRST {
         return so_far;
@@ -20,8 +20,8 @@ fn joined_surface(join: u32, kernel: u32, blend_params: vec4f, before: Surface, 
     );
 }
 
-// The leaf at the entry `at`, whose rows begin at `row`, joins. Gradient and material are looked up only where
-// the surface follows the leaf.
+// Joins the leaf at the entry `at`, whose rows begin at `row`. Computes gradient and material only
+// where the surface follows the leaf.
 fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, before: Surface, p: vec3f) -> Surface {
     let blend_params = scene_row(row);
     let distance = leaf_distance(shape, row, blend_params, p);
@@ -42,7 +42,7 @@ fn joined_surface_leaf(at: u32, shape: u32, join: u32, kernel: u32, row: u32, be
     return so_far;
 }
 
-// The derivatives of a leaf's distance along the component's axes.
+// Gradient of a leaf's distance along the component's axes.
 fn joined_surface_gradient(shape: u32, row: u32, blend_params: vec4f, p: vec3f) -> vec3f {
     let d = shape_gradient(shape, leaf_place(row, p), row + LEAF_ROWS) * blend_params.y;
     return scene_row(row + 1u).xyz * d.x + scene_row(row + 2u).xyz * d.y + scene_row(row + 3u).xyz * d.z;

@@ -1,11 +1,11 @@
-// One leaf of the subtree-extent array. The choice of the shape is generated: it holds only the shapes
-// that the scene uses.
+// One leaf of the subtree-extent array. The switch over the shapes is generated: it holds only the
+// shapes of the scene.
 
 #include "common/scene.wgsl"
 #include "sdf/op.wgsl"
 #include "generated/shapes.wgsl"
 
-// Where `p` (relative to the component's origin) stands in the leaf's own space; its rows begin at `row`.
+// `p`, relative to the component's origin, in the leaf's own space; the leaf's rows begin at `row`.
 fn leaf_place(row: u32, p: vec3f) -> vec3f {
     let x = scene_row(row + 1u);
     let y = scene_row(row + 2u);
@@ -27,6 +27,6 @@ fn field_group_is_out_of_reach(node: FlatNode, blend_params: vec4f, so_far: f32,
     let kind = (node.code >> 16u) & 0xffu;
     let out = (kind == JOIN_UNION && least >= so_far + blend_params.x)
         || (kind == JOIN_DIFFERENCE && least >= blend_params.x - so_far);
-    // Within its bounds nothing is known of the group's field: it may be far below 0.
+    // Within its bounds the field of the group is unknown: it may be far below 0.
     return SKIPPING && out && least > 0.0;
 }

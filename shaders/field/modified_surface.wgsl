@@ -1,6 +1,6 @@
-// What modifiers make of the surface of what they hold.
+// Surfaces of the content of modifiers.
 
-// The k-th copy of what a modifier holds, as seen from outside of it.
+// The surface of a copy of a modifier's content, as seen from outside the modifier.
 fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Surface) -> Surface {
     let scale = modifier_scale(modifier, copy, row);
     var seen = content;
@@ -9,7 +9,7 @@ fn surface_of_copy(modifier: u32, copy: u32, local: vec3f, row: u32, content: Su
     return seen;
 }
 
-// What the modifier at the entry makes of the nearest copy.
+// Applies the modifier to the surface of the nearest copy.
 fn surface_modified(modifier: u32, params: u32, local: vec3f, content: Surface) -> Surface {
     let slopes = modifier_slopes(modifier, content.distance, local, params + MODIFIER_ROWS);
     let d = content.gradient * slopes.w + slopes.xyz;

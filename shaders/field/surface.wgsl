@@ -1,13 +1,13 @@
-// What a surface is like at a point.
+// Attributes of a surface at a point.
 
 #include "common/mixture.wgsl"
 
 struct Surface {
     distance: f32,
-    // The leaf that outweighs the others at each blend: entry of the subtree-extent array.
+    // The leaf that outweighs the others at each blend, as entry of the subtree-extent array.
     leaf: u32,
-    // Of the field: not of unit length where space is stretched.
+    // Gradient of the field; not of unit length where space is stretched.
     gradient: vec3f,
-    // By the blends' weights.
+    // Mixed by the weights of the blends.
     materials: Mixture,
 }

@@ -1,4 +1,5 @@
-// Cells with tapes: in each cell only what can matter there. Counterpart of `flat::tape`.
+// Cells with simplified tapes, which hold only the entries that matter in the cell. Counterpart of
+// `src/field/tape`.
 
 #include "common/walked.wgsl"
 
@@ -13,15 +14,17 @@ const TAPE_LEAF: u32 = 0u;
 const TAPE_BEGIN: u32 = 1u;
 const TAPE_END: u32 = 2u;
 const TAPE_NEGATE: u32 = 3u;
-// The first of the shape codes that stand for modifiers.
+// First of the shape codes of modifiers.
 const MODIFIED: u32 = 0xc0u;
 const HEADER_WORDS: u32 = 4u;
 const CELL_EMPTY: u32 = 0u;
 const CELL_REFINED: u32 = 2u;
-// How far the grid reaches beyond the bounds, in sides of a cell at the top: a little less, so that f32 may round.
+// Margin of the grid around the bounds, in sides of a top cell: slightly less than on the CPU, to
+// allow for the rounding of f32.
 const GRID_MARGIN: f32 = 0.1818;
 
-// Where the top cells of a space lie and stand, and how far from the surface everything outside is at least.
+// Top cells of a space: lower corner, side and numbers, their first word, and a lower bound of the
+// distance to the surface from outside the grid.
 struct TapeGrid {
     low: vec3f,
     side: f32,
@@ -40,7 +43,7 @@ fn tape_own_grid() -> TapeGrid {
     return TapeGrid(c.grid_low, c.grid_side, c.grid_counts, c.tapes, GRID_MARGIN * c.grid_side);
 }
 
-// The grid of what a modifier holds; `content` counts from 1.
+// The grid of a modifier's content; `content` counts from 1.
 fn tape_modifier_grid(content: u32) -> TapeGrid {
     let at = tape_component.tapes - HEADER_WORDS * content;
     let a = bitcast<vec2f>(tape_word(at));
@@ -51,8 +54,8 @@ fn tape_modifier_grid(content: u32) -> TapeGrid {
     return TapeGrid(vec3f(a, b.x), b.y, counts, tape_component.tapes + c.y, clear);
 }
 
-// Finds the cell around `p` in the space of the grid: its tape entries are `tape_range.x` up to `tape_range.y`. Where there are
-// none, `tape_bound` is a bound of the field.
+// Finds the cell around `p` in the space of the grid. Its tape entries are `tape_range.x` up to
+// `tape_range.y`. If there are none, `tape_bound` is a bound of the field.
 fn tape_find(grid: TapeGrid, p: vec3f) {
     let size = vec3f(grid.counts) * grid.side;
     let q = p - grid.low;

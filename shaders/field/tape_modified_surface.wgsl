@@ -1,5 +1,5 @@
-// The field by tapes where a component holds modifiers, with what the surface is made of: the same fold as
-// `tape_modified_value.wgsl`.
+// The field and the attributes of the surface of a component with modifiers, by tapes: the same
+// fold as `tape_modified_value.wgsl`.
 
 #include "field/joined_surface.wgsl"
 #include "field/tape.wgsl"
@@ -7,7 +7,7 @@
 #include "generated/modifier_gradients.wgsl"
 #include "field/modified_surface.wgsl"
 
-// Of groups and modifiers under way, see `tape_modified_value.wgsl`.
+// State of the active groups and modifiers, see `tape_modified_value.wgsl`.
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 var<private> surface_tape_entry: array<vec2u, STACK_SIZE>;
 var<private> surface_tape: array<vec2u, STACK_SIZE>;
@@ -16,7 +16,7 @@ var<private> surface_local: array<vec3f, STACK_SIZE>;
 var<private> surface_copy: array<u32, STACK_SIZE>;
 var<private> surface_least: array<Surface, STACK_SIZE>;
 
-// A modifier while its copies are evaluated, see `ModifiedValue`.
+// A modifier during the evaluation of its copies, see `ModifiedValue`.
 struct ModifiedSurface {
     kind: u32,
     row: u32,
@@ -25,7 +25,7 @@ struct ModifiedSurface {
     least: Surface,
 }
 
-// Chooses the component. Before any call of `surface`.
+// Selects the component. Call it before `surface`.
 fn surface_begin(component: Component) {
     tape_component = component;
 }
@@ -39,7 +39,7 @@ fn surface_at(distance: f32) -> Surface {
     return Surface(distance, tape_component.first, vec3f(0.0), mixture_none());
 }
 
-// The modifier that a tape entry stands for, at its first copy.
+// The modifier of a tape entry, at its first copy.
 fn modified_surface_begin(tape_entry: vec2u, q: vec3f) -> ModifiedSurface {
     let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
     let row = tape_component.params + (tape_entry.y & 0xffffffu);
@@ -49,7 +49,7 @@ fn modified_surface_begin(tape_entry: vec2u, q: vec3f) -> ModifiedSurface {
     return ModifiedSurface(kind, row, local, copy, surface_at(least));
 }
 
-// Puts it on the stack, with the rest of the tape that it stands in and the point outside.
+// Pushes the modifier with the rest of the tape around it and the point outside.
 fn modified_surface_push(depth: u32, modified: ModifiedSurface, tape_entry: vec2u, tape: vec2u, q: vec3f) {
     surface_tape_entry[depth] = tape_entry;
     surface_tape[depth] = tape;
@@ -59,7 +59,7 @@ fn modified_surface_push(depth: u32, modified: ModifiedSurface, tape_entry: vec2
     surface_least[depth] = modified.least;
 }
 
-// The modifier on the stack at its next copy, after the one under way has been evaluated to `so_far`.
+// Moves the modifier on the stack to its next copy; `so_far` is the value of the current one.
 fn modified_surface_next(at: u32, tape_entry: vec2u, so_far: Surface) -> ModifiedSurface {
     let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
     let row = tape_component.params + (tape_entry.y & 0xffffffu);
@@ -76,7 +76,7 @@ fn modified_surface_next(at: u32, tape_entry: vec2u, so_far: Surface) -> Modifie
     return ModifiedSurface(kind, row, local, copy, least);
 }
 
-// The point in the copy that is evaluated next.
+// The point in the space of the next copy.
 fn modified_surface_point(modified: ModifiedSurface) -> vec3f {
     return modifier_point(modified.kind, modified.local, modified.copy, modified.row + MODIFIER_ROWS);
 }
@@ -135,7 +135,7 @@ fn surface(p: vec3f) -> Surface {
         if depth == 0u {
             break;
         }
-        // What a modifier holds has been evaluated at one point.
+        // A copy of a modifier's content has been evaluated.
         let tape_entry = surface_tape_entry[depth - 1u];
         let modified = modified_surface_next(depth - 1u, tape_entry, so_far);
         is_new = modified.copy < NO_COPY;

@@ -1,14 +1,14 @@
-// The field of a component by tapes where it holds modifiers: what a modifier holds has tapes in its own space.
-// Counterpart of `flat::tape::tape_field`.
+// The field of a component with modifiers, by tapes: the content of a modifier has tapes in its own
+// space. Counterpart of `tape_field` in `src/field/tape/field.rs`.
 
 #include "field/leaf.wgsl"
 #include "field/tape.wgsl"
 #include "generated/modifiers.wgsl"
 
-// Of groups and modifiers under way: what stood before.
+// Results before the active groups and modifiers.
 var<private> value_stack: array<f32, STACK_SIZE>;
-// Of modifiers: the tape entry, the rest of the tape that it stands in, the point outside, the point in its own space, the copy
-// that is evaluated, the least so far.
+// State of the active modifiers: the tape entry, the rest of the tape around it, the point outside,
+// the point in the modifier's space, the current copy, the least value so far.
 var<private> value_tape_entry: array<vec2u, STACK_SIZE>;
 var<private> value_tape: array<vec2u, STACK_SIZE>;
 var<private> value_outside: array<vec3f, STACK_SIZE>;
@@ -16,7 +16,8 @@ var<private> value_local: array<vec3f, STACK_SIZE>;
 var<private> value_copy: array<u32, STACK_SIZE>;
 var<private> value_least: array<f32, STACK_SIZE>;
 
-// A modifier while its copies are evaluated: its rows, the point in its own space, the copy, the least of those before.
+// A modifier during the evaluation of its copies: its rows, the point in its own space, the current
+// copy, the least value of the previous copies.
 struct ModifiedValue {
     kind: u32,
     row: u32,
@@ -25,7 +26,7 @@ struct ModifiedValue {
     least: f32,
 }
 
-// Chooses the component. Before any call of `field`.
+// Selects the component. Call it before `field`.
 fn field_begin(component: Component) {
     tape_component = component;
 }
@@ -39,7 +40,7 @@ fn joined_value(tape_entry: vec2u, before: f32, value: f32) -> f32 {
     return op_join(join, before, value, blend_params, (tape_entry.x >> 14u) & 7u).x;
 }
 
-// The modifier that a tape entry stands for, at its first copy.
+// The modifier of a tape entry, at its first copy.
 fn modified_value_begin(tape_entry: vec2u, q: vec3f) -> ModifiedValue {
     let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
     let row = tape_component.params + (tape_entry.y & 0xffffffu);
@@ -49,7 +50,7 @@ fn modified_value_begin(tape_entry: vec2u, q: vec3f) -> ModifiedValue {
     return ModifiedValue(kind, row, local, copy, least);
 }
 
-// Puts it on the stack, with the rest of the tape that it stands in and the point outside.
+// Pushes the modifier with the rest of the tape around it and the point outside.
 fn modified_value_push(depth: u32, modified: ModifiedValue, tape_entry: vec2u, tape: vec2u, q: vec3f) {
     value_tape_entry[depth] = tape_entry;
     value_tape[depth] = tape;
@@ -59,7 +60,7 @@ fn modified_value_push(depth: u32, modified: ModifiedValue, tape_entry: vec2u, t
     value_least[depth] = modified.least;
 }
 
-// The modifier on the stack at its next copy, after the one under way has been evaluated to `so_far`.
+// Moves the modifier on the stack to its next copy; `so_far` is the value of the current one.
 fn modified_value_next(at: u32, tape_entry: vec2u, so_far: f32) -> ModifiedValue {
     let kind = MODIFIER + (tape_entry.x & 0xffu) - MODIFIED;
     let row = tape_component.params + (tape_entry.y & 0xffffffu);
@@ -73,19 +74,19 @@ fn modified_value_next(at: u32, tape_entry: vec2u, so_far: f32) -> ModifiedValue
     return ModifiedValue(kind, row, local, copy, least);
 }
 
-// The point in the copy that is evaluated next.
+// The point in the space of the next copy.
 fn modified_value_point(modified: ModifiedValue) -> vec3f {
     return modifier_point(modified.kind, modified.local, modified.copy, modified.row + MODIFIER_ROWS);
 }
 
-// The field at `p`, relative to the component's origin; a bound of it in cells where no surface is.
+// The field at `p`, relative to the component's origin; in cells without a surface, a bound of it.
 fn field(p: vec3f) -> f32 {
     var q = p;
     var grid = tape_own_grid();
     var tape = vec2u(0u);
     var so_far = 0.0;
     var depth = 0u;
-    // Whether the tape for `q` in `grid` is still to be found.
+    // Whether the tape for `q` in `grid` is not yet looked up.
     var is_new = true;
     loop {
         if is_new {
@@ -136,7 +137,7 @@ fn field(p: vec3f) -> f32 {
         if depth == 0u {
             break;
         }
-        // What a modifier holds has been evaluated at one point.
+        // A copy of a modifier's content has been evaluated.
         let tape_entry = value_tape_entry[depth - 1u];
         let modified = modified_value_next(depth - 1u, tape_entry, so_far);
         is_new = modified.copy < NO_COPY;

@@ -1,11 +1,11 @@
-// The field by tapes, with what the surface is made of: the same fold as `tape_value.wgsl`.
+// The field and the attributes of the surface, by tapes: the same fold as `tape_value.wgsl`.
 
 #include "field/joined_surface.wgsl"
 #include "field/tape.wgsl"
 
 var<private> surface_stack: array<Surface, STACK_SIZE>;
 
-// Chooses the component. Before any call of `surface`.
+// Selects the component. Call it before `surface`.
 fn surface_begin(component: Component) {
     tape_component = component;
 }

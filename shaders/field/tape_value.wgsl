@@ -1,16 +1,16 @@
-// The field of a component by tapes. Counterpart of `flat::tape::tape_field`.
+// The field of a component, by tapes. Counterpart of `tape_field` in `src/field/tape/field.rs`.
 
 #include "field/leaf.wgsl"
 #include "field/tape.wgsl"
 
 var<private> value_stack: array<f32, STACK_SIZE>;
 
-// Chooses the component. Before any call of `field`.
+// Selects the component. Call it before `field`.
 fn field_begin(component: Component) {
     tape_component = component;
 }
 
-// The field at `p`, relative to the component's origin; a bound of it in cells where no surface is.
+// The field at `p`, relative to the component's origin; in cells without a surface, a bound of it.
 fn field(p: vec3f) -> f32 {
     tape_find(tape_own_grid(), p);
     var so_far = tape_bound;

@@ -1,6 +1,6 @@
-// What materials are, and what a mixture of them is. Needs `materials: array<FlatMaterial>`.
+// Materials and their mixtures. Needs `materials: array<FlatMaterial>`.
 
-// `src/flat/arrays.rs` is this struct's counterpart; a test compares the layouts.
+// `src/field/arrays.rs` holds this struct's counterpart; a test compares the layouts.
 struct FlatMaterial {
     albedo: vec3f,
     specular: f32,
@@ -8,7 +8,7 @@ struct FlatMaterial {
     shininess: f32,
 }
 
-// Of a mixture as `common/mixture.wgsl` stores it.
+// The material of a mixture as `common/mixture.wgsl` encodes it.
 fn mixture_material(encoded: vec4u) -> FlatMaterial {
     var mixed = FlatMaterial(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
     var left = encoded;

@@ -1,5 +1,6 @@
-// Color of a surface point: Lambert's diffuse term, Blinn and Phong's highlight, light from everywhere.
-// Needs `lights: array<Light>` and `light/material.wgsl`. All colors are linear until `shade_encode`.
+// Color of a surface point: Lambert diffuse, Blinn-Phong highlight, ambient light.
+// Needs `lights: array<Light>` and `light/material.wgsl`. All colors are linear until
+// `shade_encode`.
 
 // `position` is relative to the eye; `normal` and `to_eye` have unit length.
 fn shade_surface(
@@ -23,7 +24,7 @@ fn shade_surface(
     return color;
 }
 
-// Unit vector toward the light, and the share of the light that arrives, shadows aside.
+// Unit vector toward the light, and the share of its light that arrives, without shadows.
 fn shade_incoming(light: Light, position: vec3f) -> vec4f {
     if light.kind == LIGHT_DIRECTIONAL {
         return vec4f(-light.direction, 1.0);
@@ -38,25 +39,25 @@ fn shade_incoming(light: Light, position: vec3f) -> vec4f {
     return vec4f(to_light, share);
 }
 
-// Weakening with distance; fades to nothing at the light's range.
+// Attenuation with distance; fades to zero at the light's range.
 fn shade_attenuation(light: Light, distance: f32) -> f32 {
     let ratio = min(distance / light.range, 1.0);
     let window = 1.0 - ratio * ratio * ratio * ratio;
     return window * window / max(light.constant + (light.linear + light.quadratic * distance) * distance, 1e-4);
 }
 
-// Light from everywhere: full from above, half from below.
+// Ambient light: full from above, half from below.
 fn shade_ambient(normal_y: f32, ambient: vec3f) -> vec3f {
     return ambient * (0.75 + 0.25 * normal_y);
 }
 
-// What a ray sees that hits nothing; `direction_y` is the height of its unit direction.
+// Background color of a ray; `direction_y` is the height of its unit direction.
 fn shade_background(direction_y: f32, sky: vec3f, horizon: vec3f) -> vec3f {
     let height = clamp(direction_y, 0.0, 1.0);
     return mix(horizon, sky, height * (2.0 - height));
 }
 
-// Linear light to what a screen expects (IEC 61966-2-1), clamped to 0..1.
+// Encodes linear light as sRGB (IEC 61966-2-1), clamped to 0..1.
 fn shade_encode(linear: vec3f) -> vec3f {
     let c = clamp(linear, vec3f(0.0), vec3f(1.0));
     return select(1.055 * pow(c, vec3f(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3f(0.0031308));

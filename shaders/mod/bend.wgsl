@@ -1,11 +1,12 @@
-// What lies along X becomes an arc around a point on Y. a: radius of the arc, 1 / largest stretch, margin, 1 for up
-// and -1 for down; b: half the angle of the content, its heights away from the center and toward it; c, d: middle and
-// half extent of the bounds.
+// Bend: turns the X axis into an arc around a point on Y. a: radius of the arc, 1 / largest
+// stretch, margin, 1 for up and -1 for down; b: half the angle of the content, its heights away
+// from the center and toward it; c, d: center and half extent of the bounds.
 
 #include "mod/enclosed.wgsl"
 
-// The angle of (x, y) from the y axis toward x. Two reductions and a polynomial, right to 2e-7 (Moshier, "Methods and
-// Programs for Mathematical Functions", 1989): the drivers' own is allowed to be thousands of times worse.
+// The angle of (x, y) from the y axis toward x. Two reductions and a polynomial, accurate to 2e-7
+// (Moshier, "Methods and Programs for Mathematical Functions", 1989): a driver's own function may
+// be thousands of times less accurate.
 fn bend_angle(x: f32, y: f32) -> f32 {
     let wide = max(abs(x), abs(y));
     let ratio = min(abs(x), abs(y)) / max(wide, 1e-30);
@@ -20,11 +21,11 @@ fn bend_angle(x: f32, y: f32) -> f32 {
     return select(third, -third, x < 0.0);
 }
 
-// Along the arc, and from it toward the center.
+// Coordinates along the arc and from it toward the center.
 fn bend_place(p: vec3f, a: vec4f) -> vec2f {
     let height = p.y * a.w;
     let r = length(vec2f(p.x, a.x - height));
-    // The radius less r, without the difference of two large numbers.
+    // The radius minus r, without the difference of two large numbers.
     return vec2f(bend_angle(p.x, a.x - height), (2.0 * a.x * height - p.x * p.x - height * height) / (a.x + r));
 }
 

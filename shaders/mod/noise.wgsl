@@ -1,7 +1,8 @@
-// A displacement by layers of value noise. a: amplitude of the first layer, 1 / its size, layers, seed; b: 1 / largest
-// slope, amplitude of all together.
+// Displacement by layers of value noise. a: amplitude of the first layer, 1 / its size, layers,
+// seed; b: 1 / largest slope, amplitude of all layers together.
 
-// A number between -1 and 1 for a corner of the grid (O'Neill, "PCG", 2014, one step of its mixing).
+// A random number between -1 and 1 for a corner of the grid (O'Neill, "PCG", 2014, one step of its
+// mixing).
 fn noise_corner(x: i32, y: i32, z: i32, seed: u32) -> f32 {
     var h = u32(x) * 0x8da6b343u ^ u32(y) * 0xd8163841u ^ u32(z) * 0xcb1ab31fu ^ seed * 0x9e3779b9u;
     h = (h ^ (h >> 15u)) * 0x2c1b3c6du;

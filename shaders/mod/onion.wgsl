@@ -1,4 +1,4 @@
-// Walls around the surface and inward from it. a: half thickness, how many, distance from one to the next.
+// Onion: walls at the surface and inward from it. a: half thickness, number of walls, spacing.
 
 fn detach_onion_wall(f: f32, a: vec4f) -> f32 {
     return clamp(round(-f / a.z), 0.0, a.y - 1.0);

@@ -1,10 +1,12 @@
-// Copies at equal distances. `src/flat/modify.rs` writes the rows:
-// a: spacing, turn per cell; b: first cells, flags of mirrored axes; c: last cells, neighbors to look at (one
-// number to the base of 128); d: middle of the content in its cell, its least slope; e: its half extent; f: offsets;
-// g, h: the block that is left out, first cell and the one after the last; i, j: corners of the bounds.
+// Repeat: copies at equal distances. `src/field/modify.rs` writes the rows:
+// a: spacing, turn per cell; b: first cells, flags of mirrored axes; c: last cells, number of
+// candidate cells along each axis (one number to the base of 128); d: center of the content in its
+// cell, its least slope; e: its half extent; f: offsets; g, h: the omitted block, first cell and
+// the one after the last; i, j: corners of the bounds.
 //
-// Looked at are the cell around the point and, along each axis, so many of its neighbors, nearer ones first. What
-// is not looked at is farther away than its bounds: that bounds the field. So it is right for any content.
+// The candidates are the cell around the point and, along each axis, its neighbors, nearer ones
+// first. All other cells are farther away than their bounds, and the distance to these bounds
+// limits the field: so it is correct for any content.
 
 fn repeat_candidates(c: vec4f) -> vec3u {
     let code = u32(c.w);
@@ -16,7 +18,7 @@ fn repeat_base(x: f32, spacing: f32, first: f32, last: f32, middle: f32) -> f32 
     return clamp(round((x - middle) / spacing), first, last);
 }
 
-// The n-th neighbor: itself, the nearer one, the one across, and so on.
+// Offset of the n-th candidate: the cell itself, the nearer neighbor, the one across, and so on.
 fn repeat_step(n: u32, side: f32) -> f32 {
     let away = f32((n + 1u) / 2u);
     return select(-away, away, (n & 1u) == 1u) * side;
@@ -38,7 +40,7 @@ fn detach_repeat_index(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f,
     return vec3f(x + repeat_step(k % n.x, repeat_side(row - x * a.x - d.x)), yk, zk);
 }
 
-// Where a cell stands.
+// Position of a cell.
 fn repeat_place(index: vec3f, a: vec4f, f: vec4f) -> vec3f {
     return index * a.xyz + vec3f(f.x * index.y, f.y * index.x, f.z * index.x);
 }
@@ -53,7 +55,7 @@ fn mod_repeat_count(a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, 
     return n.x * n.y * n.z;
 }
 
-// How far the nearest cell that is not looked at is away along one axis; 3e38 where there is none.
+// Distance along one axis to the nearest cell that is not a candidate; 3e38 if there is none.
 fn repeat_beyond(x: f32, spacing: f32, first: f32, last: f32, middle: f32, half: f32, candidates: u32) -> f32 {
     let base = repeat_base(x, spacing, first, last, middle);
     let place = x - middle - base * spacing;
@@ -68,13 +70,13 @@ fn repeat_beyond(x: f32, spacing: f32, first: f32, last: f32, middle: f32, half:
     );
 }
 
-// The distance to all that is not looked at.
+// Distance to all cells that are not candidates.
 fn mod_repeat_start(p: vec3f, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f, h: vec4f, i: vec4f, j: vec4f) -> f32 {
     let n = repeat_candidates(c);
     let outside = max(max(i.xyz - p, p - j.xyz), vec3f(0.0));
     var x = repeat_beyond(p.x, a.x, b.x, c.x, d.x, e.x, n.x);
     if f.x != 0.0 && x < 3e38 {
-        // Rows are shifted: the least that any of them leaves.
+        // Rows are shifted: take the least distance over all shifts.
         x = min((f32(n.x / 2u) + 0.5) * a.x, (f32((n.x - 1u) / 2u) + 1.0) * a.x) - e.x;
     }
     let y = repeat_beyond(p.y, a.y, b.y, c.y, d.y, e.y, n.y);
@@ -88,14 +90,14 @@ fn mod_repeat_start(p: vec3f, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, 
     );
 }
 
-// The least that the k-th copy can be; 3e38 where there is none, -3e38 where nothing is known.
+// Lower bound of the field of the k-th copy; 3e38 if the copy does not exist, -3e38 if unknown.
 fn mod_repeat_bound(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f, h: vec4f, i: vec4f, j: vec4f) -> f32 {
     let index = detach_repeat_index(p, k, a, b, c, d, f);
     let away = length(max(abs(p - repeat_place(index, a, f) - d.xyz) - e.xyz, vec3f(0.0))) * d.w;
     return select(3e38, select(-3e38, away, away > 0.0), repeat_exists(index, b, c, g, h));
 }
 
-// Where the point stands in the k-th copy.
+// The point in the space of the k-th copy.
 fn mod_repeat_point(p: vec3f, k: u32, a: vec4f, b: vec4f, c: vec4f, d: vec4f, e: vec4f, f: vec4f, g: vec4f, h: vec4f, i: vec4f, j: vec4f) -> vec3f {
     let index = detach_repeat_index(p, k, a, b, c, d, f);
     var q = p - repeat_place(index, a, f);

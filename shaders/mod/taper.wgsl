@@ -1,5 +1,5 @@
-// Wider or narrower with height. a: change of width per meter, 1 / largest stretch, margin; b: middle of the bounds,
-// least height of the content; c: half extent, greatest height.
+// Taper: scales the width with height. a: change of width per meter, 1 / largest stretch, margin;
+// b: center of the bounds, least height of the content; c: half extent, greatest height.
 
 #include "mod/enclosed.wgsl"
 

@@ -1,5 +1,5 @@
-// Turned around Y with height. a: radians per meter, 1 / largest stretch, radius of the content, margin; b: its
-// middle and half height.
+// Twist: rotates around Y with height. a: radians per meter, 1 / largest stretch, radius of the
+// content, margin; b: center and half extent of the content along Y.
 
 #include "mod/enclosed.wgsl"
 

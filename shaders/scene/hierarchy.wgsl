@@ -1,9 +1,9 @@
-// The hierarchy over the bounds of all components: which of them a point or a ray comes near. Counterpart of `flat::hierarchy`;
-// `src/render/resources/hierarchy.rs` is what binds it.
+// The hierarchy over the bounds of all components: finds those near a point or ray. Counterpart of
+// `src/field/hierarchy.rs`; `src/render/resources/hierarchy.rs` binds it.
 //
-// Positions in `shaders/scene` are relative to a point that the CPU chooses, the origin of the query. A component's `eye` is
-// here where that point is, relative to what the component's numbers are relative to: so `p + component.eye` is a point's place
-// in the component.
+// Positions in `shaders/scene` are relative to the origin of the query, a point that the CPU
+// chooses. Here a component's `eye` is that origin in the component's space: `p + component.eye` is
+// the position of a point in the component.
 
 #include "common/bounds.wgsl"
 
@@ -12,41 +12,41 @@ struct HierarchyNode {
     // Leaf: the component. Inner node: its right child; the left one follows it.
     link: u32,
     high: vec3f,
-    // Along which its children lie, the left one lower; HIERARCHY_LEAF for a leaf.
+    // Axis that separates its children, the left one lower; HIERARCHY_LEAF for a leaf.
     axis: u32,
 }
 
 struct SceneLimits {
-    // Nodes of the tree. Behind them stand leaves for components without bounds.
+    // Nodes of the tree. Leaves for components without bounds follow them.
     tree_nodes: u32,
     all_nodes: u32,
-    // What one invocation may do in a dispatch: evaluations of fields, and visits of nodes.
+    // Limits of one invocation in a dispatch: evaluations of fields, and visits of nodes.
     max_evaluations: u32,
     max_visits: u32,
 }
 
 const HIERARCHY_LEAF: u32 = 3u;
 const NO_COMPONENT: u32 = 0xffffffffu;
-// `MAX_HIERARCHY_DEPTH` on the CPU, and two.
+// `MAX_HIERARCHY_DEPTH` on the CPU plus two.
 const HIERARCHY_STACK: u32 = 32u;
 
 @group(3) @binding(0) var<storage, read> hierarchy: array<HierarchyNode>;
 @group(3) @binding(1) var<storage, read> scene_components: array<Component>;
 @group(3) @binding(2) var<uniform> scene_limits: SceneLimits;
 
-// What this invocation has done. Loops that lavapipe ends count over a whole invocation, so these are never set back.
+// Work of this invocation. Never reset: the loop limit of lavapipe counts over a whole invocation.
 var<private> scene_evaluations: u32;
 var<private> scene_visits: u32;
 var<private> hierarchy_stack: array<u32, HIERARCHY_STACK>;
 
-// Distance from a point to the node's box; 0 within.
+// Distance from a point to the node's box; 0 inside.
 fn hierarchy_distance(node: HierarchyNode, p: vec3f) -> f32 {
     return length(max(max(node.low - p, p - node.high), vec3f(0.0)));
 }
 
-// Where the ray is within the node's box: entry and exit.
+// Entry and exit of the ray through the node's box.
 fn hierarchy_interval(node: HierarchyNode, ray: Ray) -> vec2f {
-    // A component of the direction that is zero would give 0 times infinity.
+    // A zero component of the direction would yield 0 times infinity.
     let d = select(ray.direction, vec3f(1e-9), abs(ray.direction) < vec3f(1e-9));
     let a = (node.low - ray.origin) / d;
     let b = (node.high - ray.origin) / d;
@@ -55,17 +55,17 @@ fn hierarchy_interval(node: HierarchyNode, ray: Ray) -> vec2f {
     return vec2f(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z)) + ray.skipped;
 }
 
-// A component, and where a ray is within its bounds.
+// A component, with entry and exit of a ray through its bounds.
 struct SceneVisit {
     entry: f32,
     exit: f32,
     component: u32,
 }
 
-// The component behind `after` whose bounds the ray enters first, between `near` and `far`: in the order of entry, then of
-// index. Its index is NO_COMPONENT where there is none. Called again with what it returned, it names all components with
-// bounds on a ray, one by one, and nothing has to be remembered between the calls. Void where `scene_visits` has come to its
-// limit.
+// The component after `after` whose bounds the ray enters first, between `near` and `far`: in the
+// order of entry, then of index. Its index is NO_COMPONENT if there is none. Repeated calls, each
+// with the last result, name all components with bounds on a ray one by one, without further state.
+// Invalid once `scene_visits` has reached its limit.
 fn scene_next(ray: Ray, near: f32, far: f32, after: SceneVisit) -> SceneVisit {
     var first = SceneVisit(far, far, NO_COMPONENT);
     var depth = select(0u, 1u, scene_limits.tree_nodes > 0u);
@@ -78,7 +78,7 @@ fn scene_next(ray: Ray, near: f32, far: f32, after: SceneVisit) -> SceneVisit {
         let interval = hierarchy_interval(node, ray);
         let entry = max(interval.x, near);
         let exit = min(interval.y, far);
-        // A leaf is entered no later than it is left.
+        // The entry of a leaf is no later than its exit.
         if entry > exit || entry > first.entry || exit < after.entry {
             continue;
         }

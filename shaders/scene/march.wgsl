@@ -1,41 +1,45 @@
-// Rays against the whole scene, from anywhere. Counterpart of `flat::scene_eval::SceneEvaluator::ray`.
+// Rays against the whole scene, from anywhere. Counterpart of `SceneEvaluator::ray` in
+// `src/field/scene_eval.rs`.
 //
-// `t` counts from the eye along the whole path, as `Ray.skipped` does: a ray that leaves a surface at depth 5 begins at 5, and
-// its footprint goes on from there.
+// `t` counts from the eye along the whole path, as `Ray.skipped` does: a ray that leaves a surface
+// at depth 5 begins at 5, and its footprint continues from there.
 
 #include "common/march.wgsl"
 #include "scene/hierarchy.wgsl"
 
-// How far a ray that leaves a surface begins above it, in footprints; `flat::scene_eval::SURFACE_BIAS`.
+// Distance above a surface at which a ray that leaves it begins, in footprints; `SURFACE_BIAS` on
+// the CPU.
 const SURFACE_BIAS: f32 = 0.25;
 
 struct SceneMarch {
     // The nearest hit, or the far limit.
     t: f32,
-    // What is hit; NO_COMPONENT for nothing.
+    // The component of the hit; NO_COMPONENT for none.
     component: u32,
-    // The last component that was visited.
+    // The last visited component.
     visit: SceneVisit,
-    // Where the march through it goes on; NEVER where it has ended.
+    // `t` at which the march through it resumes; NEVER once it has ended.
     resume: f32,
-    // Components without bounds that were visited, and one; 0 while there are others.
+    // Number of visited components without bounds, plus one; 0 while others remain.
     unbounded: u32,
-    // Whether all is done. If not, `scene_march` is to be called again, with this, in another dispatch.
+    // Whether the march is complete. If not, another dispatch calls `scene_march` again with this
+    // state.
     ended: bool,
 }
 
-// A ray that leaves a surface at `p`, to which the path from the eye is `gone` long; `normal` and `direction` have unit length.
+// A ray that leaves a surface at `p`; the path from the eye to `p` has the length `gone`. `normal`
+// and `direction` have unit length.
 fn scene_surface_ray(p: vec3f, normal: vec3f, direction: vec3f, gone: f32) -> Ray {
     let side = select(normal, -normal, dot(normal, direction) < 0.0);
     return Ray(p + side * (SURFACE_BIAS * view.footprint * gone), gone, direction);
 }
 
-// The beginning of a march that ends at `far`.
+// A new march that ends at `far`.
 fn scene_march_begin(far: f32) -> SceneMarch {
     return SceneMarch(far, NO_COMPONENT, SceneVisit(-1.0, -1.0, 0u), NEVER, 0u, false);
 }
 
-// The next component to visit, and where to begin in it. Ended where there is none; as it was where the limit is reached.
+// Moves on to the next component. Ended if there is none; unchanged if the limit is reached.
 fn scene_march_next(ray: Ray, near: f32, begun: SceneMarch) -> SceneMarch {
     var march = begun;
     if march.unbounded == 0u {
@@ -55,8 +59,8 @@ fn scene_march_next(ray: Ray, near: f32, begun: SceneMarch) -> SceneMarch {
     return march;
 }
 
-// Follows the ray from `near` to the first surface, through one component after the other in the order of their bounds, each by
-// its own field.
+// Follows the ray from `near` to the first surface, through one component after the other in the
+// order of their bounds, each by its own field.
 fn scene_march(ray: Ray, near: f32, begun: SceneMarch) -> SceneMarch {
     var march = begun;
     while !march.ended && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits {

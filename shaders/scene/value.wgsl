@@ -1,4 +1,5 @@
-// The value of the scene at a point. Counterpart of `flat::scene_eval::SceneEvaluator::distance`.
+// The value of the scene at a point. Counterpart of `SceneEvaluator::distance` in
+// `src/field/scene_eval.rs`.
 
 #include "generated/value.wgsl"
 #include "scene/hierarchy.wgsl"
@@ -6,20 +7,23 @@
 struct SceneValue {
     // Never more than the distance to the nearest surface; negative inside.
     value: f32,
-    // NO_COMPONENT for a scene without any.
+    // NO_COMPONENT for an empty scene.
     component: u32,
-    // Whether the limits of an invocation were enough. If not, the value is still a lower bound outside.
+    // Whether the limits of the invocation sufficed. If not, the value is still a lower bound
+    // outside.
     complete: bool,
 }
 
-// How far a point in the component's space is from the half space that holds the component; 0 where nothing is known.
+// Lower bound of the distance from a point in the component's space to the half space that holds
+// the component; 0 if unknown.
 fn scene_half_space_bound(component: Component, p: vec3f) -> f32 {
     let plane = component.half_space;
     return max(dot(plane.xyz, p) + plane.w - 4.0 * SPACING * (length(p) + abs(plane.w)), 0.0);
 }
 
-// The value at `p`. Where it is not less than `within`, any lower bound that is not less than `within` either may stand for it:
-// then fields of what is farther are not evaluated. The field is evaluated in one place.
+// The value at `p`. If it is at least `within`, any lower bound that is also at least `within` may
+// replace it: then the fields of farther components need no evaluation. The source has one call of
+// the field.
 fn scene_value(p: vec3f, within: f32) -> SceneValue {
     var nearest = SceneValue(NEVER, NO_COMPONENT, true);
     var depth = select(0u, 1u, scene_limits.tree_nodes > 0u);

@@ -1,4 +1,4 @@
-// A cuboid: size a.xyz, rounding a.w inward. Formula: Quilez, "distance functions" (rounded box).
+// A box: size a.xyz, rounding a.w inward. Formula: Quilez, "distance functions" (rounded box).
 
 fn sdf_box(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let half_size = 0.5 * a.xyz;

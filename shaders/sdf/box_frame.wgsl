@@ -1,8 +1,8 @@
-// The twelve edges of a cuboid: size a.xyz, width of the bars a.w.
+// The twelve edges of a box: size a.xyz, width of the bars a.w.
 //
-// By symmetry in the octant of positive coordinates. `inner` is how deep the point lies within the
-// bars' width along each axis; where the bars reach the middle they have no inner side at all. A
-// point is in the solid where it is deep along two axes.
+// Computed in the octant of positive coordinates, by symmetry. `inner` is the depth of the point
+// within the bars' width along each axis; bars that reach the middle have no inner side. A point is
+// in the solid where it is deep along two axes.
 
 fn sdf_box_frame(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let outer = abs(p) - 0.5 * a.xyz;
@@ -14,7 +14,7 @@ fn sdf_box_frame(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     if outside > 0.0 {
         return outside;
     }
-    // The way out leads through an outer face, or along the two shallowest axes into the hollow.
+    // The nearest exit is an outer face, or the hollow along the two shallowest axes.
     let least = min(inner.x, min(inner.y, inner.z));
     let middle = max(min(inner.x, inner.y), min(max(inner.x, inner.y), inner.z));
     return max(max(outer.x, max(outer.y, outer.z)), -length(max(vec2f(least, middle), vec2f(0.0))));

@@ -1,8 +1,8 @@
-// A ring around Y of which an arc around X is left: major radius a.x, minor radius a.y, sine and cosine of half the arc
-// a.zw.
+// An arc of a torus around Y, centered on X: major radius a.x, minor radius a.y, sine and cosine of
+// half the arc a.zw.
 //
-// In the plane of the ring the nearest point of the arc lies in the same direction from the center, or is an end
-// (idea: Quilez, "distance functions").
+// In the plane of the ring, the nearest point of the arc has the same direction from the center, or
+// is an end (idea: Quilez, "distance functions").
 
 fn sdf_capped_torus(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let z = abs(p.z);

@@ -1,4 +1,4 @@
-// A cone that opens downward from its tip and has no end: sine and cosine of its half angle a.xy.
+// An infinite cone that opens downward from its tip: sine and cosine of its half angle a.xy.
 
 fn sdf_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let q = vec2f(length(p.xz), p.y);

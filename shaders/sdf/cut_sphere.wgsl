@@ -1,7 +1,7 @@
-// A ball cut flat: radius a.x, height of the cut a.y. What is above stays.
+// A sphere cut by a plane: radius a.x, height of the cut a.y. The part above the cut stays.
 //
-// Outside the nearest point lies on the ball where the way to its center says so, else on the flat or its rim;
-// inside the nearer of both is exact.
+// Outside, the nearest point is on the sphere if the direction to its center leads through the part
+// that stays, else on the flat or its rim; inside, the nearer of sphere and flat is exact.
 
 fn sdf_cut_sphere(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let radius = a.x;

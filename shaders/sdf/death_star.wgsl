@@ -1,7 +1,7 @@
-// A ball without another: radius a.x, radius of the other a.y, distance of the centers a.z along Y.
+// A sphere minus another: radius a.x, radius of the other a.y, distance of the centers a.z along Y.
 //
-// Outside the nearest point is that on the ball or that in the hollow, where such a point belongs to the surface,
-// else on the circle where both meet; inside the nearer of both is exact.
+// Outside, the nearest point is the one on the sphere or the one in the hollow if that belongs to
+// the surface, else one on the circle where both meet; inside, the nearer of both is exact.
 
 fn sdf_death_star(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let radius = a.x;

@@ -1,4 +1,4 @@
-// Constant for differentiation: what follows these values follows the point through other values only.
+// Detached values: differentiation treats the results of these functions as constants.
 
 fn detach_f32(v: f32) -> f32 {
     return v;

@@ -1,12 +1,12 @@
 // An ellipsoid: half axes a.xyz.
 //
-// The closest point is r² p / (t + r²) for the root t of |r p / (t + r²)| = 1. Newton's method on the
-// reciprocal of that length, nearly a straight line in t, climbs to the root from the left (Moré and
-// Sorensen, "Computing a trust region step", 1983). The unknown is s = t + (least r)², so that no two
-// large numbers are subtracted. From the normal n at the point so found, n·p − |r n| is the distance
-// to the tangent plane of that normal: wrong only by the square of the error in n, for zero half axes too.
-// At the best n the gradient is n itself, so n takes no part in differentiation.
-// The half axes are sorted first; points on the planes of symmetry are moved off them by 1e-7.
+// The closest point is r² p / (t + r²) for the root t of |r p / (t + r²)| = 1. Newton's method on
+// the reciprocal of that length, nearly a straight line in t, climbs to the root from the left
+// (Moré and Sorensen, "Computing a trust region step", 1983). The unknown is s = t + (least r)²,
+// which avoids the subtraction of two large numbers. With the normal n at this point, n·p − |r n|
+// is the distance to the tangent plane of that normal: its error is only the square of the error in
+// n, for zero half axes too. At the best n the gradient is n itself, so n is detached. The half
+// axes are sorted first; points on the planes of symmetry are moved off them by 1e-7.
 
 #include "sdf/detach.wgsl"
 
@@ -41,8 +41,8 @@ fn sdf_ellipsoid_step(s: f32, least: f32, w: vec3f, gap: vec3f) -> f32 {
     return max(s + (sqrt(square) - 1.0) * square / max(dot(v, v / (s + gap)), 1e-37), least);
 }
 
-// A lower bound of the root, near it where the term `w` / s is steep: the others are replaced by their
-// tangents at 0, which gives a cubic equation, and that by its larger summand.
+// A lower bound of the root, near it where the term `w` / s is steep. Replaces the other terms by
+// their tangents at 0, which gives a cubic equation, and that by its larger summand.
 fn sdf_ellipsoid_start(w: f32, others: vec2f, gaps: vec2f) -> f32 {
     let term = select(vec2f(0.0), others / max(gaps, vec2f(1e-9)), gaps > vec2f(1e-9));
     let rest = 1.0 - dot(term, term);

@@ -1,4 +1,5 @@
-// A profile between two faces: a.x groups, a.y whether overlaps are inside, half depth a.z, rounding a.w inward.
+// A profile extruded along Z: a.x groups, a.y whether overlaps are inside, half depth a.z, rounding
+// a.w inward.
 
 #include "sdf/profile.wgsl"
 

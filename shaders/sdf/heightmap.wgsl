@@ -1,5 +1,6 @@
-// A landscape from an image: b.y columns and b.z lines of heights; see `sdf_heightfield` for the rest. `data` is the first row,
-// behind which the heights stand, see `flat::prepare::heightfield` on the CPU; beyond the border the height of the border.
+// A heightfield from an image: b.y columns and b.z lines of heights; see `sdf_heightfield` for the
+// rest. `data` is the first row, and the heights follow it: see `src/field/prepare/heightfield.rs`.
+// Beyond the border, the height of the border applies.
 
 #include "sdf/heightfield.wgsl"
 #include "sdf/heights.wgsl"

@@ -1,6 +1,7 @@
-// The height of a grid of `size` columns and lines at a place, in cells from its first corner, within the grid: a quadratic
-// B-spline (de Boor, "A practical guide to splines", 1978). At `first` stand the heights, line by line, each with its
-// neighbors along X; beyond the border the heights of the border.
+// The height of a grid of `size` columns and lines at a place within the grid, in cells from its
+// first corner: a quadratic B-spline (de Boor, "A practical guide to splines", 1978). `first` is
+// the first row of the heights, which are stored line by line, each with its neighbors along X.
+// Beyond the border, the heights of the border apply.
 
 fn sdf_heights(place: vec2f, size: vec2f, first: u32) -> f32 {
     let cell = min(floor(place), size - 1.0);

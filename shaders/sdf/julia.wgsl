@@ -1,10 +1,12 @@
-// A Julia set of quaternions (Norton, "Julia sets in the quaternions", 1989): radius a.x of the ball that holds it,
-// constant c (a.yzw, b.x), steps b.y. Where z² + c, repeated, does not leave the ball of radius
-// R = (1 + sqrt(1 + 4|c|)) / 2, outside of which every step leads farther out.
+// A Julia set of quaternions (Norton, "Julia sets in the quaternions", 1989): radius a.x of the
+// sphere that holds it, constant c (a.yzw, b.x), steps b.y. The set where iterating z² + c does not
+// leave the sphere of radius R = (1 + sqrt(1 + 4|c|)) / 2, outside of which every step leads
+// farther out.
 //
-// The field is the radius of a ball around the point that is certainly on one side: |w² - z²| <= 2|z|s + s² where
-// |w - z| <= s. So if the ball of radius t around z² + c is on one side, that of radius sqrt(|z|² + t) - |z| around z
-// is; from the last step back to the first these radii follow from the orbit.
+// The field is the radius of a sphere around the point that is certainly on one side:
+// |w² - z²| <= 2|z|s + s² where |w - z| <= s. If the sphere of radius t around z² + c is on one side, so is the
+// sphere of radius sqrt(|z|² + t) - |z| around z. These radii follow from the orbit, from the last
+// step back to the first.
 
 fn sdf_julia(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let constant = vec4f(a.yzw, b.x);
@@ -15,7 +17,7 @@ fn sdf_julia(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     var last = 0;
     loop {
         radii[last] = length(at);
-        // So far out the distance to the ball is more than what later steps say.
+        // This far out, the distance to the sphere is more than the bound from later steps.
         if last == 16 || f32(last) + 0.5 > b.y || radii[last] > 4.0 * escape {
             break;
         }

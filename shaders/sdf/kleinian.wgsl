@@ -1,10 +1,12 @@
-// A pseudo-Kleinian set (Knighty, fractalforums.com, 2011): radius a.x of the ball that holds it, that ball in the set's
-// own unit a.y, box (a.zw, b.x), inversion b.y, thickness b.z, steps b.w. Space is folded at the box, turned inside out
-// within a ball, again and again; what then lies near a disc is the set.
+// A pseudo-Kleinian set (Knighty, fractalforums.com, 2011): radius a.x of the sphere that holds it,
+// that radius in the set's own unit a.y, box (a.zw, b.x), inversion b.y, thickness b.z, steps b.w.
+// Each step folds space at the box and inverts it within a sphere; the set is what ends near a
+// disc.
 //
-// The field is the radius of a ball around the point that is certainly on one side, from the distance to the disc back
-// through the steps. Folds bring points nearer to each other. The inversion stretches by k / r² where that is more than
-// 1, so a way of s from r inward becomes at most k / (r - s) - k / r; solved for s this is what it gives back.
+// The field is the radius of a sphere around the point that is certainly on one side, from the
+// distance to the disc back through the steps. Folds bring points nearer to each other. The
+// inversion stretches by k / r² where that is more than 1: a way of s from r inward becomes at most
+// k / (r - s) - k / r, which the code solves for s.
 
 fn sdf_kleinian(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let corner = vec3f(a.zw, b.x);

@@ -1,20 +1,24 @@
-// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): radius a.x of the ball that holds
-// it, power n a.y, steps a.z. Where z -> P(z) + c, from z = c on, does not leave the ball of radius B = 2^(1/(n-1)), outside
-// of which every step leads farther out. P raises the distance from the center to the power n, and makes n-fold the angle
-// from the Y axis and the angle around it.
+// A Mandelbulb (White and Nylander, "The unraveling of the real 3D Mandelbulb", 2009): radius a.x
+// of the sphere that holds it, power n a.y, steps a.z. The set where iterating z -> P(z) + c, from
+// z = c on, does not leave the sphere of radius B = 2^(1/(n-1)), outside of which every step leads
+// farther out. P raises the distance from the center to the power n, and multiplies the angle from
+// the Y axis and the angle around it by n.
 //
-// The field is the radius of a ball around the point that is certainly on one side (the idea: Hart, Sandin and Kauffman,
-// "Ray tracing deterministic 3-D fractals", 1989), from the last step back to the first: if the ball of radius t around
-// P(z) + c is on one side, so is that of radius e around z where e (1 + L) = t. L bounds how P stretches within that ball,
-// and c moves by no more than z. P stretches by n |z|^(n-1) max(1, |sin n a / sin a|), a being the angle from the axis; of
-// that quotient the least of n and 1 / sin a is taken. Balls within such a ball are so found too: the slope is at most 1.
+// The field is the radius of a sphere around the point that is certainly on one side (the idea:
+// Hart, Sandin and Kauffman, "Ray tracing deterministic 3-D fractals", 1989), from the last step
+// back to the first: if the sphere of radius t around P(z) + c is on one side, so is that of radius
+// e around z where e (1 + L) = t. L bounds the stretch of P within that sphere, and c moves by no
+// more than z. P stretches by n |z|^(n-1) max(1, |sin n a / sin a|), a being the angle from the
+// axis; the code bounds that quotient by the lesser of n and 1 / sin a. This also yields the
+// spheres within such a sphere: the slope is at most 1.
 
 #include "sdf/detach.wgsl"
 
 fn sdf_mandelbulb(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let power = clamp(floor(a.y + 0.5), 2.0, 16.0);
     let escape = exp2(1.0 / (power - 1.0));
-    // So far out the distance to the ball is more than what later steps say: (2r - B)^n >= 2 r^n.
+    // This far out, the distance to the sphere is more than the bound from later steps:
+    // (2r - B)^n >= 2 r^n.
     let reach = escape / (2.0 - exp2(1.0 / power));
     let scale = max(a.x, 1e-9) / escape;
     let start = p / scale;
@@ -56,9 +60,9 @@ fn sdf_mandelbulb_times(u: vec4f, v: vec4f) -> vec4f {
     return u.xxzz * v.xyzw + vec4f(-1.0, 1.0, -1.0, 1.0) * u.yyww * v.yxwz;
 }
 
-// The radius e at a place of the orbit (distance from the center, from the axis) for which e (1 + L) is the way. Newton's
-// method on logarithms, in which the slope only grows, comes down to it; what is left is taken off. Only the last step
-// takes part in differentiation.
+// The radius e at a place of the orbit (distance from the center, from the axis) for which
+// e (1 + L) is the way. Newton's method on logarithms, in which the slope only grows, descends to it; the
+// code subtracts the remainder. Only the last step takes part in differentiation.
 fn sdf_mandelbulb_back(spot: vec2f, way: f32, power: f32) -> f32 {
     let fixed = detach_vec2(spot);
     let goal = detach_f32(max(way, 1e-30));

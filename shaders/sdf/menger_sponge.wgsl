@@ -1,7 +1,8 @@
-// A Menger sponge (Menger, "Dimensionstheorie", 1928): edge length a.x, iterations a.y. A cube without bars that fill
-// the middle thirds of its cells along each axis.
+// A Menger sponge (Menger, "Dimensionstheorie", 1928): edge length a.x, iterations a.y. A cube
+// minus the bars that fill the middle thirds of its cells along each axis.
 //
-// The field is the greatest of the distance to the cube and of how deep the point is in the bars of each size.
+// The field is the greatest of the distance to the cube and the depths of the point in the bars of
+// each size.
 
 fn sdf_menger_sponge(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let d = abs(p) - 0.5 * a.x;
@@ -11,7 +12,8 @@ fn sdf_menger_sponge(p: vec3f, a: vec4f, b: vec4f) -> f32 {
         if f32(step) + 0.5 > a.y {
             break;
         }
-        // From the middle of the cell. The point is as deep in the bars as the second least coordinate says.
+        // Offset from the middle of the cell. The second least coordinate gives the depth in the
+        // bars.
         let t = abs(p - side * round(p / max(side, 1e-30)));
         let second = max(min(t.x, t.y), min(max(t.x, t.y), t.z));
         field = max(field, side / 6.0 - second);

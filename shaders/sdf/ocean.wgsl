@@ -1,5 +1,5 @@
-// Waves: a sum of b.y waves, half as sharp as b.z says; see `sdf_heightfield` for the rest. `data` is the first row, see
-// `flat::prepare::heightfield` on the CPU.
+// An ocean: a heightfield of b.y waves, each with a second harmonic of half of b.z; see
+// `sdf_heightfield` for the rest. `data` is the first row, see `src/field/prepare/heightfield.rs`.
 
 #include "sdf/heightfield.wgsl"
 
@@ -13,8 +13,8 @@ fn sdf_ocean(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     return sdf_heightfield(p, a, b, height);
 }
 
-// The cosine of so many turns, within 1e-7: drivers' own need not be that exact. With the quarter from which it is
-// counted chosen so that the series of the sine is short.
+// The cosine of a number of turns, within 1e-7: a driver's own function may be less exact. Counts
+// from a quarter turn, so that the series of the sine is short.
 fn sdf_ocean_cosine(turns: f32) -> f32 {
     let x = 6.2831853 * (0.25 - abs(turns - round(turns)));
     let s = x * x;

@@ -1,7 +1,7 @@
 // A regular octahedron: center to corner a.x.
 //
-// In the positive octant: on the face where the plane's foot lies within it, else on the nearest edge
-// (idea: Quilez, "octahedron distance").
+// In the positive octant: the nearest point is the foot on the face's plane if it lies within the
+// face, else on the nearest edge (idea: Quilez, "octahedron distance").
 
 #include "sdf/detach.wgsl"
 
@@ -12,14 +12,16 @@ fn sdf_octahedron(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     if 3.0 * least >= excess {
         return excess * 0.57735027;
     }
-    // The foot on the plane falls behind the least coordinate: the edge spanned by the two others.
+    // The foot lies beyond the face along the least coordinate: take the edge spanned by the two
+    // others.
     var edge = q.yz;
     if q.y == least {
         edge = q.xz;
     } else if q.z == least {
         edge = q.xy;
     }
-    // The nearest point of the edge: where it moves along the edge, the distance does not follow it.
+    // Detached: to first order, a move of the nearest point along the edge does not change the
+    // distance.
     let t = detach_f32(clamp(0.5 * (edge.y - edge.x + a.x), 0.0, a.x));
     return length(vec3f(least, edge.x - a.x + t, edge.y - t));
 }

@@ -1,10 +1,13 @@
-// Operators. `blend_params` is the first row of the operand that joins: x the support, z and w what else the operator or
-// the kernel needs. Those of `op_join` return (value, derivative by a, derivative by b, b's weight in the material);
-// union, intersection and difference return (value, weight of b): the weight is the size of the derivative by b,
-// and is also b's weight in the material; a has the rest. Counterpart: `flat::eval::op`.
+// Operators. `blend_params` is the first row of the joining operand: the support in x, further
+// values of the operator or the kernel in z and w. `op_join` and the functions that it calls for
+// extended operators return (value, derivative by a, derivative by b, b's weight in the material).
+// Union, intersection and difference return (value, weight of b): the weight is the size of the
+// derivative by b, and also b's weight in the material; a has the rest. Counterpart:
+// `src/field/eval/op.rs`.
 //
-// Beyond |a - b| >= support union, intersection and difference are exactly hard. Support 0 is hard everywhere.
-// The numbers of the joins and kernels are those of `Join` and `BlendKernel` on the CPU.
+// Beyond |a - b| >= support, union, intersection and difference are exactly hard. Support 0 is hard
+// everywhere. The numbers of the joins and kernels are those of `Join` and `BlendKernel` on the
+// CPU.
 
 const JOIN_FIRST: u32 = 0u;
 const JOIN_UNION: u32 = 1u;
@@ -29,8 +32,8 @@ const KERNEL_COLUMNS: u32 = 6u;
 
 const SQRT_2: f32 = 1.41421356;
 
-// The operand b joins what stands so far, a. `EXTENDED_JOINS` and `EXTENDED_KERNELS` say whether the component has
-// any beyond the first three: they are left out of all other kernels.
+// Joins the operand b to the result so far, a. `EXTENDED_JOINS` and `EXTENDED_KERNELS` say whether
+// the component has any beyond the first three; other pipelines leave them out.
 fn op_join(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
     if EXTENDED_JOINS && join > JOIN_DIFFERENCE {
         return op_extended(join, a, b, blend_params, kernel);
@@ -43,7 +46,7 @@ fn op_join(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f
 
 fn op_union(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     let blend = op_blend(abs(a - b), blend_params, kernel);
-    // Not `min`: for that lavapipe also asks whether either is no number.
+    // Not `min`: for that lavapipe also tests for NaN.
     return vec2f(select(a, b, b < a) - blend.x, select(blend.y, 1.0 - blend.y, b < a));
 }
 
@@ -52,18 +55,19 @@ fn op_intersection(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     return vec2f(-joined.x, joined.y);
 }
 
-// a without b.
+// a minus b.
 fn op_difference(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     let joined = op_union(-a, b, blend_params, kernel);
     return vec2f(-joined.x, joined.y);
 }
 
-// What a blend takes from the lesser of two operands that differ by `difference`, and the weight of the
-// greater. Kernels: Quilez, "smooth minimum", scaled by their supports to one thickening.
+// The amount that a blend takes from the lesser of two operands that differ by `difference`, and
+// the weight of the greater. Kernels: Quilez, "smooth minimum", scaled by their supports to the
+// same thickening.
 fn op_blend(difference: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     let support = blend_params.x;
     let h = (support - difference) * (1.0 / support);
-    // Beyond the support this may be no number; it is thrown away there.
+    // May be NaN beyond the support, where the `select` below discards it.
     var blend: vec2f;
     if EXTENDED_KERNELS && kernel >= KERNEL_SMOOTH_CHAMFER {
         blend = op_extended_blend(difference, h, blend_params, kernel);
@@ -78,8 +82,9 @@ fn op_blend(difference: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     return select(vec2f(0.0), blend, difference < support);
 }
 
-// The same for bevels. Steps and columns: Mercury's hg_sdf (2015) builds its stairs in the same coordinates, the
-// operands' sum and difference; here the columns are arcs of 90 degrees, so that no derivative exceeds 1.
+// The same for bevels. Steps and columns: Mercury's hg_sdf (2015) builds its stairs in the same
+// coordinates, the operands' sum and difference; the columns here are arcs of 90 degrees, so that
+// no derivative exceeds 1.
 fn op_extended_blend(difference: f32, h: f32, blend_params: vec4f, kernel: u32) -> vec2f {
     let support = blend_params.x;
     if kernel == KERNEL_SMOOTH_CHAMFER {
@@ -91,7 +96,8 @@ fn op_extended_blend(difference: f32, h: f32, blend_params: vec4f, kernel: u32) 
     if kernel == KERNEL_CHAMFER {
         return vec2f(0.5 * support * h, 0.5);
     }
-    // Each of blend_params.z steps is two `half` wide; u is where in its step the point is, from -1 to 1.
+    // Each of blend_params.z steps is two `half` wide; u is the position of the point in its step,
+    // from -1 to 1.
     let half = support / blend_params.z;
     let u = clamp(2.0 * fract(0.5 * h * blend_params.z), 0.0, 2.0);
     if kernel == KERNEL_STAIRS {
@@ -125,7 +131,7 @@ fn op_extended(join: u32, a: f32, b: f32, blend_params: vec4f, kernel: u32) -> v
     return op_groove(join, a, b, blend_params, kernel);
 }
 
-// What is in one but not in both.
+// The symmetric difference: all points in one but not in both.
 fn op_xor(a: f32, b: f32, blend_params: vec4f, kernel: u32) -> vec4f {
     let outer = op_union(a, b, blend_params, kernel);
     let inner = op_intersection(a, b, blend_params, kernel);
@@ -182,7 +188,7 @@ fn op_paint(b: f32, radius: f32) -> f32 {
     return h * h * (3.0 - 2.0 * h);
 }
 
-// The hard operators, for kernels that know that nothing is blended.
+// Hard operators, for pipelines without blends.
 fn op_hard_union(a: f32, b: f32) -> vec2f {
     return vec2f(min(a, b), select(0.0, 1.0, b < a));
 }

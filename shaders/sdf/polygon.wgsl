@@ -1,6 +1,7 @@
-// Regular polygons. `sides` is their number, then cosine and sine of half the angle that a side takes.
+// Regular polygons. `sides` is the number of sides, then cosine and sine of half the angle of a
+// side.
 
-// Turns and mirrors the plane so that all sides fall onto half of the one that faces X.
+// Rotates and mirrors the plane so that all sides coincide with half of the one that faces X.
 fn sdf_polygon_sector(q: vec2f, sides: vec3f) -> vec2f {
     let step = 6.2831853 / sides.x;
     let x = select(q.x, 1.0, q.x == 0.0 && q.y == 0.0);
@@ -8,12 +9,12 @@ fn sdf_polygon_sector(q: vec2f, sides: vec3f) -> vec2f {
     let c = cos(turn);
     let s = sin(turn);
     let turned = vec2f(c * q.x + s * q.y, abs(c * q.y - s * q.x));
-    // Arc tangents are not exact: what lies beyond the mirror comes back.
+    // Arc tangents are not exact: mirrors points beyond the mirror line back.
     let mirror = vec2f(-sides.z, sides.y);
     return turned - 2.0 * max(dot(turned, mirror), 0.0) * mirror;
 }
 
-// `radius` from the center to the middle of a side.
+// Distance to a polygon; `radius` is from the center to the middle of a side.
 fn sdf_polygon(q: vec2f, sides: vec3f, radius: f32) -> f32 {
     let t = sdf_polygon_sector(q, sides);
     let beside = vec2f(t.x - radius, max(t.y - radius * sides.z / sides.y, 0.0));

@@ -1,6 +1,6 @@
 // A ring around Y with a polygon as its section: sides a.xyz, major radius a.w, minor radius b.x.
 //
-// Where the polygon reaches over the axis, that of the other side counts too.
+// Where the polygon extends beyond the axis, the one on the other side counts too.
 
 #include "sdf/polygon.wgsl"
 

@@ -1,9 +1,9 @@
 // Profiles in the plane: the signed distance to closed curves made of arcs; exact. `data` is the shape's first row,
-// see `flat::prepare::profile` on the CPU.
+// see `src/field/prepare/profile.rs`.
 
 #include "sdf/detach.wgsl"
 
-// `overlaps`: inside is what the curves go around, else only what they go around an odd number of times.
+// `overlaps`: inside by the nonzero rule, else by the even-odd rule.
 fn sdf_profile(p: vec2f, groups: u32, overlaps: bool, data: u32) -> f32 {
     let found = detach_vec2(sdf_profile_nearest(p, groups, data));
     let row = u32(found.x);
@@ -14,8 +14,9 @@ fn sdf_profile(p: vec2f, groups: u32, overlaps: bool, data: u32) -> f32 {
     let y = w.y * first.z - w.x * first.w;
     let foot = detach_f32(sdf_profile_foot(x, y, second.x));
     let reach = abs(second.y);
-    // To the right of the piece. On the curve itself the point is counted to the right, at a level piece to above: the
-    // sign there is that of this side, so that the gradient is the one of the surface.
+    // Distance to the right of the piece. A point on the curve counts as on the right, at a level
+    // piece as above. The sign there is that of this side, so that the gradient is that of the
+    // surface.
     let u = 1.0 - second.x * y;
     let m = sqrt(u * u + second.x * x * second.x * x);
     let right = (second.x * dot(w, w) - 2.0 * y) / (m + 1.0);
@@ -29,7 +30,7 @@ fn sdf_profile(p: vec2f, groups: u32, overlaps: bool, data: u32) -> f32 {
     return select(d, -d, select((turns & 1) != 0, turns != 0, overlaps));
 }
 
-// The row of the nearest piece, and how many times the curves go around the point.
+// Row of the nearest piece, and winding number of the curves around the point.
 fn sdf_profile_nearest(p: vec2f, groups: u32, data: u32) -> vec2f {
     // No group is farther away than the far corner of its box.
     var least = 1e37;
@@ -44,7 +45,8 @@ fn sdf_profile_nearest(p: vec2f, groups: u32, data: u32) -> vec2f {
     for (var group = 0u; group < groups; group += 1u) {
         let box = scene_row(data + 1u + 2u * group);
         let chain = scene_row(data + 2u + 2u * group);
-        // A chain wholly to the right is crossed as its ends say; one wholly to the left is not.
+        // The ends of a chain wholly to the right decide its crossings; a chain wholly to the left
+        // has none.
         let is_right = p.x < box.x;
         turns += select(0.0, select(0.0, 1.0, chain.y > p.y) - select(0.0, 1.0, chain.x > p.y), is_right);
         let reached = length(max(max(box.xy - p, p - box.zw), vec2f(0.0))) <= least;
@@ -59,8 +61,8 @@ fn sdf_profile_nearest(p: vec2f, groups: u32, data: u32) -> vec2f {
             let d = sdf_profile_distance(x, y, arc);
             nearest = select(nearest, row, d < least);
             least = min(least, d);
-            // What bends to the left is the right side of a circle: left of it is what is left of the center, or in
-            // the circle.
+            // A piece that bends to the left is the right side of a circle: left of it is
+            // everything left of the center, or in the circle.
             let from_circle = arc.x * dot(w, w) - 2.0 * y;
             let from_center = arc.x * w.x + place.w;
             let is_in = from_circle < 0.0;
@@ -73,7 +75,7 @@ fn sdf_profile_nearest(p: vec2f, groups: u32, data: u32) -> vec2f {
     return vec2f(f32(nearest), turns);
 }
 
-// λ of the point of the circle nearest to a point, which is given from the piece's middle.
+// λ of the point of the circle nearest to (x, y), which is relative to the middle of the piece.
 fn sdf_profile_foot(x: f32, y: f32, bend: f32) -> f32 {
     let u = 1.0 - bend * y;
     let m = sqrt(u * u + bend * x * bend * x);

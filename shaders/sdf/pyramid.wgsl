@@ -1,7 +1,7 @@
 // A pyramid over a square: width a.x, height a.y.
 //
-// By symmetry in the sector of the face toward +X, where |z| < x: outside the nearer of face and square, each in its
-// own plane; inside the nearer of the planes.
+// Computed in the sector of the face toward +X, where |z| < x, by symmetry. Outside: the nearer of
+// face and square, each in its own plane. Inside: the nearer of the planes.
 
 #include "sdf/trapezoid.wgsl"
 
@@ -19,7 +19,7 @@ fn sdf_pyramid(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let beside = max(sdf_trapezoid(vec2f(z, dot(from_edge, up) - 0.5 * slope), half_width, 0.0, slope), 0.0);
     let to_face = select(abs(over), length(vec2f(over, beside)), beside > 0.0);
     let beyond = vec2f(max(from_edge.x, 0.0), max(z - half_width, 0.0));
-    // At the base itself the field rises downward.
+    // At the base itself the field increases downward.
     let below = select(from_edge.y, -from_edge.y, from_edge.y <= 0.0);
     let to_base = select(below, length(vec3f(beyond, from_edge.y)), beyond.x > 0.0);
     return min(to_face, to_base);

@@ -1,6 +1,6 @@
 // A parallelogram in the XZ plane: width a.x, depth a.y, skew a.z, thickness a.w.
 //
-// It is its own picture under a half turn, so only the half toward +Z is looked at.
+// A half turn maps it to itself, so the function computes only the half toward +Z.
 
 #include "sdf/edge.wgsl"
 

@@ -1,4 +1,4 @@
-// A profile turned around the Y axis: a.x groups, a.y whether overlaps are inside.
+// A profile revolved around the Y axis: a.x groups, a.y whether overlaps are inside.
 
 #include "sdf/profile.wgsl"
 

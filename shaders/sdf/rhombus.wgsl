@@ -1,6 +1,6 @@
 // A prism along Y over a rhombus: width a.x, depth a.y, height a.z, rounding a.w inward.
 //
-// The rhombus within, from whose sides those of the whole are as far as the rounding, is smaller by a factor.
+// The inner rhombus, whose sides lie inward by the rounding, is a scaled copy of the whole.
 
 #include "sdf/edge.wgsl"
 

@@ -1,4 +1,5 @@
-// The hull of two balls on Y: bottom radius a.x, top radius a.y, distance of the centers a.z.
+// The convex hull of two spheres on Y: bottom radius a.x, top radius a.y, distance of the centers
+// a.z.
 
 fn sdf_round_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let height = a.z;
@@ -7,10 +8,11 @@ fn sdf_round_cone(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let bottom = length(q) - a.x;
     let top = length(q - vec2f(0.0, height)) - a.y;
     if abs(narrowing) >= height {
-        // One ball holds the other.
+        // One sphere contains the other.
         return select(top, bottom, narrowing >= 0.0);
     }
-    // The unit normal of the slanted side; the balls touch it at `along` 0 and `normal.x * height`.
+    // The unit normal of the slanted side; the spheres touch it at `along` 0 and
+    // `normal.x * height`.
     let sine = narrowing / height;
     let normal = vec2f(sqrt((1.0 - sine) * (1.0 + sine)), sine);
     let along = dot(q, vec2f(-normal.y, normal.x));

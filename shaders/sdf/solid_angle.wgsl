@@ -1,4 +1,4 @@
-// The part of a ball within an angle around Y: radius a.x, sine and cosine of the angle a.yz.
+// The part of a sphere within an angle around Y: radius a.x, sine and cosine of the angle a.yz.
 
 fn sdf_solid_angle(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let q = vec2f(length(p.xz), p.y);

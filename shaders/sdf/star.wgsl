@@ -1,5 +1,5 @@
-// A prism along Y over a star: points a.xyz (see `sdf/polygon`), outer radius a.w, inner radius b.x, height b.y,
-// rounding b.z inward, by the smaller star within.
+// A prism along Y over a star: points a.xyz (see `sdf/polygon`), outer radius a.w, inner radius
+// b.x, height b.y, rounding b.z inward, which shrinks the star by a factor.
 
 #include "sdf/edge.wgsl"
 #include "sdf/polygon.wgsl"

@@ -1,5 +1,5 @@
-// Hills: a sum of b.y layers of noise with the seed b.z; see `sdf_heightfield` for the rest. `data` is the first row, see
-// `flat::prepare::heightfield` on the CPU.
+// Hills: a heightfield of b.y layers of noise with the seed b.z; see `sdf_heightfield` for the
+// rest. `data` is the first row, see `src/field/prepare/heightfield.rs`.
 
 #include "sdf/heightfield.wgsl"
 
@@ -12,8 +12,8 @@ fn sdf_terrain(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     return sdf_heightfield(p, a, b, height);
 }
 
-// Smooth noise between -1 and 1: random numbers at whole coordinates, between them t² (3 - 2 t) (value noise, Perlin, "An
-// image synthesizer", 1985). Nowhere steeper than 3.
+// Smooth noise between -1 and 1: random numbers at whole coordinates, interpolated by t² (3 - 2 t)
+// (value noise, Perlin, "An image synthesizer", 1985). Its slope is at most 3.
 fn sdf_terrain_noise(p: vec2f, seed: u32, salt: u32) -> f32 {
     let corner = floor(p);
     let t = p - corner;

@@ -1,4 +1,5 @@
-// A text: its profiles between two faces, as in `sdf_extrusion`; of its own, since each shape brings its gradient along.
+// A text: its profiles extruded, as in `sdf_extrusion`. A function of its own, since each shape has
+// its own gradient.
 
 #include "sdf/profile.wgsl"
 

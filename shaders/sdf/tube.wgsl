@@ -1,7 +1,9 @@
-// A tube: balls along arcs. a.x pieces in a.y groups; `data` is its first row, see `flat::prepare::tube` on the CPU.
+// A tube: spheres along arcs. a.x pieces in a.y groups; `data` is its first row, see
+// `src/field/prepare/tube.rs`.
 //
-// The field is the least of |p - c| - r over its balls. Around the nearest one it changes by the square of a change of
-// the ball, so its gradient is that of the ball alone, and the search for it takes no part.
+// The field is the least of |p - c| - r over its spheres. Around the nearest sphere, a change of
+// the sphere changes the field only by its square. So the gradient is that of the sphere alone, and
+// the search for it is detached.
 
 #include "sdf/detach.wgsl"
 
@@ -12,9 +14,9 @@ fn sdf_tube(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
     return length(p - ball.xyz) - ball.w;
 }
 
-// Center and radius of the nearest ball.
+// Center and radius of the nearest sphere.
 fn sdf_tube_nearest(p: vec3f, pieces: u32, groups: u32, data: u32) -> vec4f {
-    // No group is farther away than its ball's far side.
+    // No group is farther away than the far side of its bounding sphere.
     var least = 1e37;
     for (var group = 0u; group < groups; group += 1u) {
         let around = scene_row(data + group);
@@ -38,11 +40,12 @@ fn sdf_tube_nearest(p: vec3f, pieces: u32, groups: u32, data: u32) -> vec4f {
     return nearest;
 }
 
-// Of a piece the ball nearest to p: the one at its start, or the best elsewhere.
+// The sphere of a piece nearest to p: the one at its start, or the best elsewhere.
 //
-// Of the circle, the point nearest to p is the foot; over the way s from there the distance is sqrt(D² + m χ²), with χ the
-// chord. Where the radius grows by k s as well, the least of distance minus radius is at χ² = 2 k² D² / (B + sqrt(B² -
-// m² κ² k² D²)) with B = m (m - k²): a quadratic equation in χ².
+// The point of the circle nearest to p is the foot. At the distance s along the circle from there,
+// the distance to p is sqrt(D² + m χ²), with χ the chord. If the radius also grows by k s, the
+// least of distance minus radius is at χ² = 2 k² D² / (B + sqrt(B² - m² κ² k² D²)) with
+// B = m (m - k²), a quadratic equation in χ².
 fn sdf_tube_ball(p: vec3f, middle: vec4f, tangent: vec4f, bend: vec4f) -> vec4f {
     let w = p - middle.xyz;
     let square = dot(bend.xyz, bend.xyz);
@@ -68,15 +71,15 @@ fn sdf_tube_ball(p: vec3f, middle: vec4f, tangent: vec4f, bend: vec4f) -> vec4f 
     return select(best, start, distance(p, start.xyz) - start.w < distance(p, best.xyz) - best.w);
 }
 
-// The ball at a place of a piece.
+// The sphere at a place of a piece.
 fn sdf_tube_at(lambda: f32, middle: vec4f, tangent: vec4f, bend: vec4f, square: f32) -> vec4f {
     let share = 2.0 * lambda / (1.0 + square * lambda * lambda);
     let center = middle.xyz + (tangent.xyz + bend.xyz * lambda) * share;
     return vec4f(center, tangent.w + bend.w * 2.0 * lambda * sdf_tube_turn(square * lambda * lambda));
 }
 
-// atan(x) / x from x², within 2e-8 (Abramowitz and Stegun, "Handbook of mathematical functions", 4.4.49): drivers'
-// own need not be that exact.
+// atan(x) / x from x², within 2e-8 (Abramowitz and Stegun, "Handbook of mathematical functions",
+// 4.4.49): a driver's own function may be less exact.
 fn sdf_tube_turn(square: f32) -> f32 {
     let is_large = square > 1.0;
     let s = select(square, 1.0 / max(square, 1.0), is_large);

@@ -1,7 +1,8 @@
-// A spindle along Y, an arc turned about its chord: height a.x, width a.y.
+// A vesica along Y, an arc revolved about its chord: height a.x, width a.y.
 //
-// The arc's center may be very far away, so the distance to it less its radius is written as the difference of their
-// squares over their sum, all times `k`, the ratio of the half axes.
+// The arc's center may be very far away. The function therefore computes the distance to it minus
+// its radius as the difference of their squares over their sum, all times `k`, the ratio of the
+// half axes.
 
 fn sdf_vesica(p: vec3f, a: vec4f, b: vec4f) -> f32 {
     let half_height = 0.5 * a.x;
