@@ -96,7 +96,7 @@ mod tests {
     use isolith_wgsl::{FILES, assemble_plain};
 
     /// Files in `shaders/` that belong to no pass of a frame.
-    const NO_PASSES: &[&str] = 
+    const NO_PASSES: &[&str] =
         &["driver.wgsl", "probe.wgsl", "probe_lookahead.wgsl", "probe_scene.wgsl", "probe_surface.wgsl"];
 
     #[test]

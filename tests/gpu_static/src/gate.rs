@@ -1,7 +1,7 @@
 //! Limits and their exceptions.
 
 use crate::cards::{Card, Report};
-use crate::subjects::{Purpose, Subjects, EvaluatorKind};
+use crate::subjects::{EvaluatorKind, Purpose, Subjects};
 
 /// The compiler's figures for all pipelines of one purpose on a card: the worst of each.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,8 +156,14 @@ mod tests {
         }
     }
 
-    const FOR_PAWN: Exception =
-        Exception { scene: "pawn", way: EvaluatorKind::Straight, pass: "trace", vgprs: 192, spilled: 2, reason: "a sample" };
+    const FOR_PAWN: Exception = Exception {
+        scene: "pawn",
+        way: EvaluatorKind::Straight,
+        pass: "trace",
+        vgprs: 192,
+        spilled: 2,
+        reason: "a sample",
+    };
 
     #[test]
     fn what_spills_and_what_takes_too_many_registers_is_refused() {
