@@ -130,10 +130,8 @@ fn rust(path: &str, text: &str, found: &mut Vec<String>) {
     }
     // Tests may contain tables of samples.
     let longest = if path.starts_with("tests/") { MAX_LINES[2] + 10 } else { MAX_LINES[2] };
-    for (line, length) in functions(&words) {
-        if length > longest {
-            report(line, format!("a function of {length} lines is longer than {longest}"));
-        }
+    for (line, length) in functions(&words).into_iter().filter(|(_, length)| *length > longest) {
+        report(line, format!("a function of {length} lines is longer than {longest}"));
     }
     let module = module_of(path);
     let mut tests = test_ranges(&words);
