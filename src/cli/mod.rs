@@ -30,6 +30,7 @@ mod runtime_folder;
 mod shader;
 mod text;
 
+#[cfg(feature = "window")]
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -183,6 +184,7 @@ mod tests {
         Arguments::command().debug_assert();
     }
 
+    #[cfg(feature = "window")]
     #[test]
     #[cfg(target_os = "linux")]
     fn a_display_is_one_that_is_named() {
