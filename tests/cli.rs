@@ -446,7 +446,7 @@ fn shader_prints_what_naga_accepts_and_says_what_there_is() {
     let lines: Vec<&str> = list.succeeded().out.lines().collect();
     assert!(lines[0].starts_with("passes: ") && lines[0].contains("surface"), "{}", list.out);
     assert!(lines[1].starts_with("evaluator 0: interpreter; components: 2; "), "{}", list.out);
-    let straight = "evaluator 1: straight-line code for 1 entries; components: 1; shapes: ";
+    let straight = "evaluator 1: straight-line code for 1 entry; components: 1; shapes: ";
     assert!(lines.len() == 4 && lines[2].starts_with(straight), "{}", list.out);
     for (evaluator, pass) in [("0", "trace"), ("1", "surface"), ("2", "cone"), ("0", "shade")] {
         let run = place.run(&["shader", "scene.json", "--pass", pass, "--evaluator", evaluator]);

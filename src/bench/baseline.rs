@@ -74,6 +74,14 @@ impl Baseline {
         }
     }
 
+    /// The evaluation strategy of a method that chooses one and changes nothing else.
+    pub fn strategy(self) -> Option<EvalStrategy> {
+        match self {
+            Self::Thesis | Self::Limit => None,
+            _ => self.strategies().first().copied(),
+        }
+    }
+
     /// The options of its pipelines, derived from the default `options`.
     pub(super) fn options(self, options: Options) -> Options {
         let relaxed = self != Self::Thesis;

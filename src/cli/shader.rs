@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::failure::Failure;
 use super::input::{read_scene, shown};
 use super::text::say;
+use crate::bench::Baseline;
 use crate::field::flatten;
 use crate::render::{EvalStrategy, EvaluatorUse, evaluators_of};
 use crate::scene::ShapeKind;
@@ -36,33 +37,19 @@ pub struct ShaderArguments {
     counting: bool,
 }
 
-/// Names of methods on the command line.
-const METHODS: [(&str, EvalStrategy); 5] = [
-    ("auto", EvalStrategy::Auto),
-    ("interpreter", EvalStrategy::Interpreter),
-    ("tape", EvalStrategy::Tape),
-    ("straight-line", EvalStrategy::StraightLine),
-    ("baked", EvalStrategy::Baked),
-];
 /// Names of kinds of devices, and how their pipelines skip code that is out of reach.
 const DEVICES: [(&str, SkipMode); 2] = [("card", SkipMode::Branches), ("processor", SkipMode::Selects)];
 
 fn parse_method(name: &str) -> Result<EvalStrategy, String> {
-    parse(name, &METHODS)
+    name.parse().ok().and_then(Baseline::strategy).ok_or_else(|| {
+        let named = Baseline::ALL.into_iter().filter(|method| method.strategy().is_some()).map(Baseline::name);
+        format!("it is none of {}", named.collect::<Vec<_>>().join(", "))
+    })
 }
 
 fn parse_device(name: &str) -> Result<SkipMode, String> {
-    parse(name, &DEVICES)
-}
-
-/// The value with this name.
-fn parse<T: Copy>(name: &str, known: &[(&str, T)]) -> Result<T, String> {
-    let names = || known.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
-    known
-        .iter()
-        .find(|(other, _)| *other == name)
-        .map(|(_, value)| *value)
-        .ok_or_else(|| format!("it is none of {}", names()))
+    let device = DEVICES.iter().find(|(other, _)| *other == name).map(|(_, mode)| *mode);
+    device.ok_or_else(|| format!("it is none of {}", DEVICES.map(|(name, _)| name).join(", ")))
 }
 
 /// Prints the source of a pass, or lists passes and evaluators.
@@ -122,7 +109,9 @@ fn describe(evaluator: &Evaluator) -> (String, BTreeSet<ShapeKind>) {
         Evaluator::StraightLine(structure) | Evaluator::Baked(structure, _) => {
             let values = if matches!(evaluator, Evaluator::Baked(..)) { " with its values" } else { "" };
             let any = if structure.is_template() { " of any of its shapes" } else { "" };
-            let what = format!("straight-line code for {} entries{any}{values}", structure.entries.len());
+            let count = structure.entries.len();
+            let entries = if count == 1 { "entry" } else { "entries" };
+            let what = format!("straight-line code for {count} {entries}{any}{values}");
             (what, structure.shapes().shapes().collect())
         }
     }
@@ -131,14 +120,16 @@ fn describe(evaluator: &Evaluator) -> (String, BTreeSet<ShapeKind>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bench::Baseline;
 
     #[test]
     fn methods_have_the_names_that_the_bench_has_for_them() {
-        for (name, _) in METHODS {
-            assert!(name.parse::<Baseline>().is_ok_and(|baseline| baseline.name() == name), "{name}");
+        for (name, strategy) in [("straight-line", EvalStrategy::StraightLine), ("pruned", EvalStrategy::Tape)] {
+            assert_eq!(parse_method(name), Ok(strategy));
         }
-        assert!(parse_method("fastest").is_err_and(|reason| reason.contains("auto, interpreter, tape")));
+        for refused in ["fastest", "thesis", "limit"] {
+            let reason = parse_method(refused).expect_err(refused);
+            assert!(reason.contains("interpreter, tape") && !reason.contains("thesis"), "{reason}");
+        }
         assert!(parse_device("toaster").is_err_and(|reason| reason.contains("card, processor")));
     }
 }
