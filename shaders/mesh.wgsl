@@ -20,9 +20,9 @@ struct Instance {
     // Rows of the matrix from the vertices' texture coordinates to those of the texture.
     texture_x: vec4f,
     texture_y: vec4f,
-    albedo: vec3f,
+    base_color: vec3f,
     visibility: u32,
-    // 1: `albedo` replaces the mesh's own colors. Their cutouts remain.
+    // 1: `base_color` replaces the mesh's own colors. Their cutouts remain.
     overridden: u32,
     // 1: the transform mirrors the mesh, which reverses the order of a triangle's corners.
     mirrored: u32,
@@ -110,6 +110,6 @@ fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
     // Both sides are visible. The triangle decides which side faces the eye: near an outline the
     // interpolated normal may point away although the triangle faces the eye.
     normal = select(normal, -normal, front == (instance.mirrored == 1u));
-    let albedo = select(color.rgb, instance.albedo, instance.overridden == 1u);
-    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(albedo, 1.0));
+    let shown = select(color.rgb, instance.base_color, instance.overridden == 1u);
+    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(shown, 1.0));
 }

@@ -20,7 +20,8 @@
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
 #include "light/material.wgsl"
-#include "light/shade.wgsl"
+#include "light/lighting.wgsl"
+#include "light/display.wgsl"
 
 @fragment
 fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
@@ -28,24 +29,19 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let visibility = textureLoad(visibility_target, pixel, 0).x;
-    var color = shade_background(direction.y, view.sky, view.horizon);
+    var color = environment_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
         var material = mixture_material(select(textureLoad(material_target, pixel, 0), vec4u(0u), is_mesh));
         if is_mesh {
             material = mesh_materials[visibility & ~MESH_BIT];
-            material.albedo = textureLoad(base_color_target, pixel, 0).rgb;
+            material.base_color = textureLoad(base_color_target, pixel, 0).rgb;
         }
-        color = shade_surface(
-            material,
-            direction * depth,
-            textureLoad(normal_target, pixel, 0).xyz,
-            -direction,
-            view.ambient,
-            // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer
-            // that holds the count.
-            select(view.light_count, 0u, depth >= BACKGROUND),
-        );
+        let normal = textureLoad(normal_target, pixel, 0).xyz;
+        let point = ShadingPoint(material, direction * depth, normal, -direction);
+        // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
+        // holds the count.
+        color = lighting_surface(point, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));
     }
-    return vec4f(shade_encode(color), 1.0);
+    return vec4f(display_encode(color), 1.0);
 }

@@ -39,7 +39,7 @@ const CASES: &[Case] = &[
     (r#""isolith": 1,"#, "", "", "isolith", "is missing"),
     (r#""isolith": 1,"#, r#""isolith": null,"#, "", "isolith", "is missing"),
     (r#""isolith": 1,"#, r#""isolith": 0,"#, "", "isolith", "no version 0"),
-    (r#""isolith": 1,"#, r#""isolith": 2,"#, "", "isolith", "version 2 is newer"),
+    (r#""isolith": 1,"#, r#""isolith": 3,"#, "", "isolith", "version 3 is newer"),
     (r#""isolith": 1,"#, r#""isolith": "one","#, "", "isolith", "must be the number of a version"),
     (r#""isolith": 1,"#, r#""isolith": 1, "isolith": 1,"#, "", "isolith", "duplicate field"),
     // JSON syntax.

@@ -48,7 +48,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
     for (path, value) in [
         (format!("node.{id}.object.shape.radius").replace('#', ""), ParamValue::Scalar(2.0)),
         (format!("node.{id}.transform.translation[1]").replace('#', ""), ParamValue::Scalar(3.0)),
-        ("material.1.specular".into(), ParamValue::Scalar(0.5)),
+        ("material.1.specular_weight".into(), ParamValue::Scalar(0.5)),
         ("environment.sky".into(), ParamValue::Vector(DVec3::ONE)),
     ] {
         let revision = document.revision();
@@ -260,8 +260,8 @@ fn refused_values_name_the_node_and_the_field() {
     }
     let mut gold = Material::new(MaterialId(9), "Gold", [1.5, 0.5, 0.5]);
     let error = document.apply(Edit::InsertMaterial(gold.clone())).expect_err("refused").to_string();
-    assert_eq!(error, "material Gold #9: albedo[0]: must be 0 to 1, not 1.5");
-    gold.albedo[0] = 1.0;
+    assert_eq!(error, "material Gold #9: base_color[0]: must be 0 to 1, not 1.5");
+    gold.base_color[0] = 1.0;
     document.apply(Edit::InsertMaterial(gold)).expect("valid");
     assert_eq!(document.apply(Edit::RemoveMaterial(MaterialId(1))), Err(SceneError::MaterialInUse(MaterialId(1), id)));
     let nothing = Edit::Group { ids: Vec::new(), group: Group::UNION };

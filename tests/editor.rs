@@ -244,8 +244,8 @@ fn a_color_is_picked_by_dragging_and_by_typing() {
     }
     pointer(&mut harness, square.center() + vec2(60.0, 0.0), false);
     harness.run();
-    let albedo = |h: &Harness<'_, Editor>| h.state().document().scene().materials()[0].albedo;
-    assert_ne!(albedo(&harness), scene.materials()[0].albedo);
+    let albedo = |h: &Harness<'_, Editor>| h.state().document().scene().materials()[0].base_color;
+    assert_ne!(albedo(&harness), scene.materials()[0].base_color);
     let hex = field(&harness, "Hex").rect().center();
     click(&mut harness, hex);
     press(&mut harness, Modifiers::COMMAND, Key::A);

@@ -191,9 +191,9 @@ fn rotations_that_are_nearly_unit_are_settled_once() {
 #[test]
 fn the_schema_describes_the_format() {
     let schema = file::schema();
-    assert_eq!(schema["properties"]["isolith"]["const"], 1);
+    assert_eq!(schema["properties"]["isolith"]["const"], 2);
     assert_eq!(schema["additionalProperties"], false);
-    let node = &schema["$defs"]["NodeV1"];
+    let node = &schema["$defs"]["NodeFile"];
     assert_eq!(node["additionalProperties"], false);
     assert_eq!(node["oneOf"].as_array().map(Vec::len), Some(5));
     // The schema describes every written file.

@@ -143,9 +143,9 @@ impl Random {
     /// A material within its limits.
     pub fn material(&mut self, id: u64) -> Material {
         let mut material = Material::new(MaterialId(id), self.name(), self.numbers(&limits::UNIT));
-        material.specular = self.number(&limits::UNIT);
-        material.shininess = self.number(&limits::SHININESS);
-        material.emission = self.numbers(&limits::INTENSITY);
+        let (specular, shininess) = (self.number(&limits::UNIT), self.number(&limits::SHININESS));
+        material.model = isolith::scene::ReflectionModel::BlinnPhong { specular, shininess };
+        material.emission_color = self.numbers(&limits::INTENSITY);
         material
     }
 

@@ -157,11 +157,34 @@ fn dispatch_params() -> Layout {
     )
 }
 
+fn flat_material() -> Layout {
+    layout!(
+        "FlatMaterial" = FlatMaterial {
+            base_color,
+            metalness,
+            specular_color,
+            specular_weight,
+            emission,
+            opacity,
+            coat_color,
+            coat_weight,
+            roughness,
+            ior,
+            coat_roughness,
+            coat_ior,
+            diffuse_roughness,
+            phong_weight,
+            phong_specular,
+            phong_shininess
+        }
+    )
+}
+
 #[test]
 fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
         flat_node(),
-        layout!("FlatMaterial" = FlatMaterial { albedo, specular, emission, shininess }),
+        flat_material(),
         layout!(
             "Component" = GpuComponent {
                 eye,
@@ -195,7 +218,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 color,
                 texture_x,
                 texture_y,
-                albedo,
+                base_color,
                 visibility,
                 overridden,
                 mirrored,

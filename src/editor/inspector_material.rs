@@ -4,12 +4,11 @@ use egui::{Color32, Rgba, RichText, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_ADD, ICON_CONTENT_COPY};
 
 use super::multi_edit::MultiEdit;
-use super::numbers::{self, NumberField};
 use super::widgets::{self, MIXED};
 use super::{inspector_params, theme};
 use isolith_document::Edit;
-use isolith_scene::limits::{INTENSITY, MAX_NAME, SHININESS};
-use isolith_scene::{Limits, Material, MaterialId, Node, NodeKind, ParamPath, Params};
+use isolith_scene::limits::MAX_NAME;
+use isolith_scene::{Material, MaterialId, Node, NodeKind, ParamPath, Params};
 
 /// The materials of the edited nodes.
 #[derive(Clone, Copy, PartialEq)]
@@ -113,7 +112,7 @@ const MOST_LETTERS: usize = 32;
 fn swatch_label(ui: &mut Ui, material: &Material, selected: bool) -> egui::Response {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(14.0, 14.0), egui::Sense::hover());
-        ui.painter().rect_filled(rect, 3.0, display_color(material.albedo));
+        ui.painter().rect_filled(rect, 3.0, display_color(material.base_color));
         let short = widgets::elided(&material.name, MOST_LETTERS);
         let label = ui.selectable_label(selected, &short);
         ui.ctx().accesskit_node_builder(label.id, |node| node.set_label(material.name.clone()));
@@ -137,71 +136,9 @@ fn editor(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
     if response.changed() {
         edit.session().change_material(response.id, Material { name, ..material.clone() });
     }
-    for param in material.params() {
-        match param.name {
-            "shininess" => roughness(ui, edit, material),
-            name => inspector_params::single(ui, edit.session(), ParamPath::of_material(material.id, name)),
-        }
-    }
-    let strength = material.emission.iter().copied().fold(0.0, f64::max);
-    if strength > 0.0 {
-        emission_strength(ui, edit, material, strength);
-    }
-}
-
-/// The roughness, 0 to 1, whose GGX lobe is as wide as the Blinn-Phong lobe of this exponent: exponent = 2 / r⁴ − 2
-/// (Walter et al., "Microfacet models for refraction", 2007, with alpha = r²).
-fn roughness_of(shininess: f64) -> f64 {
-    (2.0 / (shininess + 2.0)).sqrt().sqrt()
-}
-
-/// The exponent of a roughness, within its limits.
-fn shininess_of(roughness: f64) -> f64 {
-    (2.0 / roughness.powi(4) - 2.0).clamp(SHININESS.hard[0], SHININESS.hard[1])
-}
-
-fn roughness(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material) {
-    let (label, help) = ("Roughness", "Small is a small, sharp highlight");
-    let range = [roughness_of(SHININESS.hard[1]), roughness_of(SHININESS.hard[0])];
-    let limits = Limits { soft: range, hard: range, unit: "", ..SHININESS };
-    let field = NumberField { label, help, limits, default: Some(roughness_of(48.0)) };
-    let answer = widgets::row(ui, label, help, |ui| {
-        let width = ui.available_width();
-        numbers::number(ui, &field, label, roughness_of(material.shininess), false, width)
-    });
-    if let Some(roughness) = answer.value {
-        let shininess = shininess_of(roughness);
-        edit.session().change_material(answer.widget, Material { shininess, ..material.clone() });
-    }
-}
-
-/// The picker cannot choose emission above 1: the brightest channel is a separate number.
-fn emission_strength(ui: &mut Ui, edit: &mut MultiEdit<'_>, material: &Material, strength: f64) {
-    let (label, help) = ("Emission strength", "Its brightest channel");
-    let field = NumberField { label, help, limits: INTENSITY, default: None };
-    let answer = widgets::row(ui, field.label, field.help, |ui| {
-        let width = ui.available_width();
-        numbers::number(ui, &field, field.label, strength, false, width)
-    });
-    if let Some(new) = answer.value {
-        let emission = material.emission.map(|v| v * new / strength);
-        edit.session().change_material(answer.widget, Material { emission, ..material.clone() });
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn roughness_is_the_other_way_to_write_the_exponent() {
-        for shininess in [1.0, 16.0, 48.0, 256.0, 1e4] {
-            let roughness = roughness_of(shininess);
-            assert!((0.0..1.0).contains(&roughness), "{roughness}");
-            assert!((shininess_of(roughness) / shininess - 1.0).abs() < 1e-9, "{shininess}");
-        }
-        assert!(roughness_of(256.0) < roughness_of(16.0));
-        assert_eq!(shininess_of(0.0), SHININESS.hard[1]);
-        assert_eq!(shininess_of(1.0), SHININESS.hard[0]);
+    let mut paths = Vec::new();
+    material.visit("", &mut |prefix, param, _| paths.push(format!("{prefix}{}", param.name)));
+    for path in paths {
+        inspector_params::single(ui, edit.session(), ParamPath::of_material(material.id, path));
     }
 }

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
+use super::flat_material::FlatMaterial;
 use super::hierarchy::Hierarchy;
 use isolith_geometry::{Aabb, Camera};
 use isolith_scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
@@ -201,20 +202,6 @@ pub(super) fn payload_at(params: &[ParamRow], row: usize) -> &[ParamRow] {
 /// Rows of a modifier before its own.
 pub const MODIFIER_ROWS: usize = GROUP_ROWS + 3;
 
-/// A material as the GPU reads it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct FlatMaterial {
-    /// Linear diffuse reflectance.
-    pub albedo: [f32; 3],
-    /// Strength of the highlight.
-    pub specular: f32,
-    /// Linear emitted color.
-    pub emission: [f32; 3],
-    /// Blinn-Phong exponent.
-    pub shininess: f32,
-}
-
 /// A light with its place in the world.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatLight {
@@ -240,11 +227,6 @@ pub struct FlatMesh {
     /// Index into [`FlatScene::materials`] instead of the file's own materials.
     pub material: Option<u32>,
 }
-
-/// Strength of the highlight of a mesh that keeps its file's colors.
-pub const FILE_SPECULAR: f64 = 0.2;
-/// Its Blinn-Phong exponent.
-pub const FILE_SHININESS: f64 = 32.0;
 
 /// A camera with its place in the world.
 #[derive(Clone, Debug, PartialEq)]

@@ -18,6 +18,7 @@ use super::collect::{Components, collect};
 use super::composition::size_of_fold;
 use super::emit::emit;
 use super::error::FlattenError;
+use super::flat_material::FlatMaterial;
 use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
@@ -173,12 +174,7 @@ impl Materials<'_> {
     fn resolve(&mut self, flat: &mut FlatScene, id: MaterialId) -> u32 {
         *self.index.entry(id).or_insert_with(|| {
             let material = self.scene.material(id).expect("the scene holds every material that a node names");
-            flat.materials.push(FlatMaterial {
-                albedo: material.albedo.map(|v| v as f32),
-                specular: material.specular as f32,
-                emission: material.emission.map(|v| v as f32),
-                shininess: material.shininess as f32,
-            });
+            flat.materials.push(FlatMaterial::new(material));
             flat.material_ids.push(id);
             flat.materials.len() as u32 - 1
         })

@@ -56,13 +56,9 @@ pub fn mixture_joined(before: Mixture, joins: Mixture, weight: f64) -> Mixture {
 /// The material that a mixture results in.
 pub fn mixture_material(mixture: &Mixture, materials: &[FlatMaterial]) -> SurfaceMaterial {
     let sum: f64 = mixture.weights.iter().sum();
-    let mut mixed = SurfaceMaterial { albedo: DVec3::ZERO, specular: 0.0, emission: DVec3::ZERO, shininess: 0.0 };
+    let mut mixed = SurfaceMaterial::default();
     for (id, weight) in mixture.ids.into_iter().zip(mixture.weights).filter(|(_, weight)| *weight > 0.0) {
-        let (material, share) = (SurfaceMaterial::from(&materials[id as usize]), weight / sum);
-        mixed.albedo += material.albedo * share;
-        mixed.specular += material.specular * share;
-        mixed.emission += material.emission * share;
-        mixed.shininess += material.shininess * share;
+        mixed.add(&SurfaceMaterial::from(&materials[id as usize]), weight / sum);
     }
     mixed
 }
@@ -72,42 +68,106 @@ pub fn mixture_decoded(encoded: [u32; MIXED]) -> Mixture {
     Mixture { ids: encoded.map(|word| word & 0xffff), weights: encoded.map(|word| f64::from(word >> 16) / WHOLE) }
 }
 
-/// A material at a point of a surface; see [`FlatMaterial`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SurfaceMaterial {
-    /// Linear diffuse reflectance.
-    pub albedo: DVec3,
-    /// Strength of the highlight.
-    pub specular: f64,
-    /// Linear emitted color.
-    pub emission: DVec3,
-    /// Blinn-Phong exponent.
-    pub shininess: f64,
+/// Declares [`SurfaceMaterial`] with the properties of [`FlatMaterial`]: a mixture adds each by its weight.
+macro_rules! surface_material {
+    ($($(#[$doc:meta])* $field:ident: $type:ty,)*) => {
+        /// A material at a point of a surface; see [`FlatMaterial`].
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct SurfaceMaterial {
+            $($(#[$doc])* pub $field: $type,)*
+        }
+
+        impl SurfaceMaterial {
+            /// Adds another material, times `weight`.
+            pub fn add(&mut self, other: &Self, weight: f64) {
+                $(self.$field += other.$field * weight;)*
+            }
+        }
+
+        impl From<&FlatMaterial> for SurfaceMaterial {
+            fn from(material: &FlatMaterial) -> Self {
+                Self { $($field: widened(material.$field),)* }
+            }
+        }
+    };
 }
 
-impl From<&FlatMaterial> for SurfaceMaterial {
-    fn from(m: &FlatMaterial) -> Self {
-        let color = |c: [f32; 3]| DVec3::from(c.map(f64::from));
-        Self {
-            albedo: color(m.albedo),
-            specular: m.specular.into(),
-            emission: color(m.emission),
-            shininess: m.shininess.into(),
-        }
+surface_material! {
+    /// Base color times its weight.
+    base_color: DVec3,
+    /// 0 for a dielectric, 1 for a metal.
+    metalness: f64,
+    /// Tint of the specular reflection.
+    specular_color: DVec3,
+    /// Strength of the specular reflection.
+    specular_weight: f64,
+    /// Emitted color times its luminance.
+    emission: DVec3,
+    /// Opacity.
+    opacity: f64,
+    /// Tint of the coat.
+    coat_color: DVec3,
+    /// Share of the surface under the coat.
+    coat_weight: f64,
+    /// Roughness of the specular reflection.
+    roughness: f64,
+    /// Index of refraction.
+    ior: f64,
+    /// Roughness of the coat.
+    coat_roughness: f64,
+    /// Index of refraction of the coat.
+    coat_ior: f64,
+    /// Roughness of the diffuse reflection.
+    diffuse_roughness: f64,
+    /// Share of the material that is by Blinn and Phong.
+    phong_weight: f64,
+    /// Strength of the highlight by Blinn and Phong.
+    phong_specular: f64,
+    /// Its exponent.
+    phong_shininess: f64,
+}
+
+/// A property in f64.
+fn widened<T: Widened>(value: T) -> T::Wide {
+    value.wide()
+}
+
+/// A property of f32 numbers.
+trait Widened {
+    /// The same in f64.
+    type Wide;
+
+    fn wide(self) -> Self::Wide;
+}
+
+impl Widened for f32 {
+    type Wide = f64;
+
+    fn wide(self) -> f64 {
+        self.into()
+    }
+}
+
+impl Widened for [f32; 3] {
+    type Wide = DVec3;
+
+    fn wide(self) -> DVec3 {
+        DVec3::from(self.map(f64::from))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use bytemuck::Zeroable as _;
 
     /// Materials with reflectances of 0 or 1, by the bits of their index.
     fn materials() -> Vec<FlatMaterial> {
         let of = |i: u32| FlatMaterial {
-            albedo: [0, 1, 2].map(|bit| (i >> bit & 1) as f32),
-            specular: (i % 2) as f32,
-            emission: [0.0; 3],
-            shininess: 8.0 * i as f32,
+            base_color: [0, 1, 2].map(|bit| (i >> bit & 1) as f32),
+            metalness: (i % 2) as f32,
+            phong_shininess: 8.0 * i as f32,
+            ..FlatMaterial::zeroed()
         };
         (0..8).map(of).collect()
     }
@@ -136,7 +196,7 @@ mod tests {
         for (id, meant) in [(4, 0.25), (2, 0.1875), (1, 0.140_625), (7, 0.421_875)] {
             assert!((weight(id) - meant).abs() < 1e-15, "{four:?}");
         }
-        let found = mixture_material(&four, &materials).albedo;
+        let found = mixture_material(&four, &materials).base_color;
         assert!((found - DVec3::new(0.5625, 0.609_375, 0.671_875)).length() < 1e-14, "{found}");
     }
 
@@ -156,8 +216,8 @@ mod tests {
                 }
                 assert!(!mixed.ids.contains(&(place as u32 + 1)), "{place}: {mixed:?}");
                 assert!((sum(&mixed) - (1.0 - lightest)).abs() < 1e-12, "{mixed:?}");
-                let meant: DVec3 = (0..5).map(|i| SurfaceMaterial::from(&materials[i + 1]).albedo * exact[i]).sum();
-                let off = (mixture_material(&mixed, &materials).albedo - meant).abs().max_element();
+                let meant: DVec3 = (0..5).map(|i| SurfaceMaterial::from(&materials[i + 1]).base_color * exact[i]).sum();
+                let off = (mixture_material(&mixed, &materials).base_color - meant).abs().max_element();
                 assert!(off <= lightest && off > 0.0, "{off} of {lightest}");
             }
         }

@@ -14,6 +14,7 @@
 //! | `moved` | the parameters of a component relative to a point near the eye |
 //! | `reflatten` | flattening after a small change |
 //! | `standpoint` | the choice of the point near the eye |
+//! | `light` | light and matter: reflection, lights, environment, display; counterpart of `shaders/light/` |
 //! | `lights` | lights relative to the eye |
 //! | `eval` | the field over the arrays, in f64, with exact derivatives: the reference |
 //! | `unflattened` | the field of a scene without flattening: a second opinion for tests |
@@ -65,11 +66,13 @@ pub mod debug_view;
 mod emit;
 mod error;
 pub mod eval;
+mod flat_material;
 mod flatten;
 mod fold;
 mod gbuffer;
 pub mod hierarchy;
 mod leaf;
+pub mod light;
 mod lights;
 mod lower_bound;
 pub mod mesh_rays;
@@ -95,6 +98,7 @@ pub mod view;
 pub use arrays::*;
 pub use budget::{Cancel, Usage};
 pub use error::FlattenError;
+pub use flat_material::FlatMaterial;
 pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};

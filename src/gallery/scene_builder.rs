@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use isolith_geometry::Camera;
 use isolith_scene::{
     Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    Node, NodeId, NodeKind, Object, Operator, ParamValue, Scene, Shape,
+    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
 };
 
 /// A scene under construction.
@@ -31,12 +31,12 @@ impl SceneBuilder {
 
     /// A material with a highlight.
     pub fn glossy(&mut self, name: &str, albedo: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
-        self.material(Material { specular, shininess, ..Material::new(MaterialId(0), name, albedo) })
+        self.phong(name, albedo, [specular, shininess], [0.0; 3])
     }
 
     /// A material with emission.
     pub fn glowing(&mut self, name: &str, albedo: [f64; 3], emission: [f64; 3]) -> MaterialId {
-        self.material(Material { specular: 0.0, emission, ..Material::new(MaterialId(0), name, albedo) })
+        self.phong(name, albedo, [0.0, 48.0], emission)
     }
 
     /// A material with a highlight and emission.
@@ -47,7 +47,23 @@ impl SceneBuilder {
         [specular, shininess]: [f64; 2],
         emission: [f64; 3],
     ) -> MaterialId {
-        self.material(Material { specular, shininess, emission, ..Material::new(MaterialId(0), name, albedo) })
+        self.phong(name, albedo, [specular, shininess], emission)
+    }
+
+    fn phong(
+        &mut self,
+        name: &str,
+        base_color: [f64; 3],
+        [specular, shininess]: [f64; 2],
+        emission: [f64; 3],
+    ) -> MaterialId {
+        let lit = emission.iter().any(|v| *v > 0.0);
+        self.material(Material {
+            emission_luminance: if lit { 1.0 } else { 0.0 },
+            emission_color: if lit { emission } else { [1.0; 3] },
+            model: ReflectionModel::BlinnPhong { specular, shininess },
+            ..Material::new(MaterialId(0), name, base_color)
+        })
     }
 
     fn material(&mut self, material: Material) -> MaterialId {

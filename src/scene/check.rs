@@ -63,8 +63,13 @@ pub fn node(node: &Node) -> Result<(), Fault> {
 
 /// Checks every value of a material.
 pub fn material(material: &Material) -> Result<(), Fault> {
-    name(&material.name)?;
-    values(material)
+    named(&material.name, material)
+}
+
+/// Checks a name and every value below it.
+pub(crate) fn named(name: &str, params: &dyn Params) -> Result<(), Fault> {
+    self::name(name)?;
+    values(params)
 }
 
 /// Checks every value of an environment.

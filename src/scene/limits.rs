@@ -128,6 +128,10 @@ pub const MAX_APART: usize = 64;
 pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
+/// Index of refraction.
+pub const IOR: Limits = Limits::new([1.0, 3.0], [1.0, 100.0], "");
+/// Strength of emitted light.
+pub const LUMINANCE: Limits = Limits::new([0.0, 20.0], [0.0, 1e6], "");
 /// Blinn-Phong exponent.
 pub const SHININESS: Limits = Limits::new([1.0, 256.0], [1.0, 1e4], "");
 /// Reach of a point or spot light.

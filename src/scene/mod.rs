@@ -50,7 +50,7 @@ pub use error::SceneError;
 pub use heights::Heights;
 pub use light::{Attenuation, Environment, Light, LightKind};
 pub use limits::Limits;
-pub use material::{Material, MaterialId};
+pub use material::{Material, MaterialId, ReflectionModel};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
 pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};

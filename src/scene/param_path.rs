@@ -1,7 +1,7 @@
 //! Paths: names for every parameter of a scene.
 //!
 //! In text a path is the owner and the field as files and their errors name it: `node.12.object.shape.radius`,
-//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.albedo`, `environment.sky`.
+//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`, `environment.sky`.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -322,7 +322,7 @@ impl FromStr for ParamPath {
     fn from_str(text: &str) -> Result<Self, SceneError> {
         parse(text).ok_or_else(|| SceneError::Param {
             path: text.to_owned(),
-            reason: "is not the path of a parameter, such as node.12.object.shape.radius, material.3.albedo[0] or environment.sky"
+            reason: "is not the path of a parameter, such as node.12.object.shape.radius, material.3.base_color[0] or environment.sky"
                 .into(),
         })
     }

@@ -52,7 +52,7 @@ fn places(flat: &FlatScene, component: &Component, random: &mut Random) -> [Vec<
         let here = at(*p);
         DVec3::AXES.iter().flat_map(|axis| [*axis, -*axis]).all(|way| {
             let beside = at(*p + way * NEAR);
-            (beside.gradient - here.gradient).length() < KINK && difference(&beside, here.material.albedo) < KINK
+            (beside.gradient - here.gradient).length() < KINK && difference(&beside, here.material.base_color) < KINK
         })
     };
     let rounded = |p: DVec3| p.as_vec3().as_dvec3();
@@ -70,7 +70,7 @@ fn places(flat: &FlatScene, component: &Component, random: &mut Random) -> [Vec<
 }
 
 fn difference(found: &SurfacePoint, albedo: DVec3) -> f64 {
-    (found.material.albedo - albedo).length()
+    (found.material.base_color - albedo).length()
 }
 
 /// The largest error of any material's weight.
@@ -91,7 +91,7 @@ fn compare(flat: &FlatScene, component: &Component, points: &[DVec3], found: &[P
         let apart = (gpu.gradient - cpu.gradient).length();
         // The form of the comparison makes NaN disagree.
         if !(apart < TOLERANCE
-            && difference(&cpu, gpu.albedo) < TOLERANCE
+            && difference(&cpu, gpu.base_color) < TOLERANCE
             && (gpu.distance - cpu.distance).abs() < 1e-5
             && weights_apart(&gpu.materials, &cpu.materials) < TOLERANCE)
         {
@@ -153,13 +153,13 @@ fn a_wrong_gradient_is_caught() {
             gradient: s.gradient,
             distance: s.distance,
             materials: s.materials,
-            albedo: s.material.albedo,
+            base_color: s.material.base_color,
         };
         assert_eq!(found(&right), Ok(()), "{name}");
         assert!(found(&|s| ProbedSurface { gradient: s.gradient * 1.01, ..right(s) }).is_err(), "{name}");
         assert!(found(&|s| ProbedSurface { gradient: -s.gradient, ..right(s) }).is_err(), "{name}");
         assert!(found(&|s| ProbedSurface { gradient: DVec3::NAN, ..right(s) }).is_err(), "{name}");
-        assert!(found(&|s| ProbedSurface { albedo: s.material.albedo.zxy(), ..right(s) }).is_err(), "{name}");
+        assert!(found(&|s| ProbedSurface { base_color: s.material.base_color.zxy(), ..right(s) }).is_err(), "{name}");
         let other = |m: Mixture| Mixture { ids: m.ids.map(|id| id.wrapping_add(1)), ..m };
         assert!(found(&|s| ProbedSurface { materials: other(s.materials), ..right(s) }).is_err(), "{name}");
         // Hard joins have different gradients inside the blend.
@@ -214,7 +214,7 @@ fn of_more_than_four_materials_the_heaviest_are_mixed_by_every_evaluator() {
         let mut close = 0;
         for (gpu, cpu) in found.iter().zip(&meant) {
             assert!((gpu.materials.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9, "{gpu:?}");
-            let apart = (gpu.albedo - cpu.material.albedo).abs().max_element();
+            let apart = (gpu.base_color - cpu.material.base_color).abs().max_element();
             assert!(apart < LEFT_OUT, "{evaluator:?}: {gpu:?}, {cpu:?}");
             close += usize::from(apart < TOLERANCE);
         }

@@ -124,7 +124,7 @@ fn paint_changes_only_the_material() {
     let flat = flatten(&scene, 0.0).unwrap();
     let component = &flat.components[0];
     assert_eq!(component.bounds.translated(component.origin).max.x, 0.5);
-    let red = |p: DVec3| surface(&flat, component, p - component.origin).material.albedo == DVec3::X;
+    let red = |p: DVec3| surface(&flat, component, p - component.origin).material.base_color == DVec3::X;
     assert!(red(DVec3::X * 0.5) && !red(DVec3::X * -0.5));
     assert!(same(at(&flat, DVec3::X), 0.5));
 }

@@ -231,7 +231,7 @@ fn the_weights_of_the_materials_sum_to_one() {
             let point = surface(flat, component, p);
             assert_eq!((point.distance, point.gradient), gradient(flat, component, p));
             // The materials are the primary colors, so a color is the list of weights.
-            let shares = point.material.albedo;
+            let shares = point.material.base_color;
             assert!((shares.element_sum() - 1.0).abs() < 1e-12 && shares.min_element() >= 0.0, "{shares}");
             mixed += usize::from(shares.max_element() < 0.99);
             let leaf = flat.nodes[point.leaf as usize];

@@ -172,7 +172,7 @@ fn a_click_beside_a_popup_takes_what_was_typed_in_it() {
     let viewport = harness.get_by_label("Viewport").rect().center();
     click(&mut harness, viewport);
     assert!(!is_open(&harness));
-    assert_eq!(harness.state().document().scene().materials()[0].albedo, [0.0, 1.0, 0.0]);
+    assert_eq!(harness.state().document().scene().materials()[0].base_color, [0.0, 1.0, 0.0]);
 }
 
 #[test]

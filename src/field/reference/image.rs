@@ -7,13 +7,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use glam::{DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 
-use super::shade::{shade_background, shade_decode, shade_encode, shade_surface};
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
 use crate::eval::{SurfaceMaterial, surface};
+use crate::light::brdf::ShadingPoint;
+use crate::light::display::{display_decode, display_encode};
+use crate::light::environment::environment_background;
+use crate::light::lighting::lighting_surface;
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_rays::{Meshes, trace_meshes};
-use crate::{BACKGROUND_DEPTH, FILE_SHININESS, FILE_SPECULAR, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
+use crate::{BACKGROUND_DEPTH, FlatMaterial, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, TriangleMesh};
 use isolith_scene::NodeId;
@@ -116,7 +119,7 @@ pub fn render_reference(
         buffers.depth[i] = pixel.depth;
         buffers.leaf[i] = pixel.leaf;
         buffers.normal[i] = pixel.normal.as_vec3().to_array();
-        let [r, g, b] = (shade_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
+        let [r, g, b] = (display_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
         buffers.color[i] = [r, g, b, 255];
         margin.push(pixel.margin);
         tied.push(pixel.tied);
@@ -168,7 +171,7 @@ impl View<'_> {
             (hit.t, MESH_BIT | index as u32, normal, material)
         } else {
             let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
-            let color = shade_background(ray.direction.y, sky, horizon);
+            let color = environment_background(ray.direction.y, sky, horizon);
             let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
@@ -204,7 +207,9 @@ impl View<'_> {
 
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
         let ambient = DVec3::from(self.flat.environment.ambient);
-        shade_surface(material, ray.direction * t, normal, -ray.direction, ambient, &self.lights)
+        let position = ray.direction * t;
+        let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
+        lighting_surface(&point, ambient, &self.lights)
     }
 
     fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {
@@ -217,22 +222,23 @@ impl View<'_> {
         let normal = if (normal_from_local * face).dot(direction) > 0.0 { -normal } else { normal };
         let material = match (placed.material, &self.meshes[index]) {
             (Some(material), _) => (&self.flat.materials[material as usize]).into(),
-            (None, Some(mesh)) => SurfaceMaterial { albedo: albedo(mesh, hit), ..FILE_MATERIAL },
-            (None, None) => FILE_MATERIAL,
+            (None, Some(mesh)) => SurfaceMaterial { base_color: base_color(mesh, hit), ..file_material() },
+            (None, None) => file_material(),
         };
         (normal, material)
     }
 }
 
 /// The material of a mesh that keeps its file's colors.
-pub const FILE_MATERIAL: SurfaceMaterial =
-    SurfaceMaterial { albedo: DVec3::ONE, specular: FILE_SPECULAR, emission: DVec3::ZERO, shininess: FILE_SHININESS };
+pub fn file_material() -> SurfaceMaterial {
+    (&FlatMaterial::of_file()).into()
+}
 
 /// The mesh's own color: the product of vertex, part and texture colors.
-fn albedo(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
+fn base_color(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
     let linear = |[r, g, b, a]: [u8; 4]| {
         let [r, g, b, a] = [r, g, b, a].map(|c| f64::from(c) / 255.0);
-        shade_decode(DVec3::new(r, g, b)).extend(a)
+        display_decode(DVec3::new(r, g, b)).extend(a)
     };
     let color: DVec4 = mesh.color(hit.triangle, hit.weights, linear);
     color.truncate()

@@ -10,6 +10,5 @@
 
 pub mod accuracy;
 pub mod image;
-pub mod shade;
 pub mod tolerance;
 pub mod trace;

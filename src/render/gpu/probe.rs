@@ -44,7 +44,7 @@ pub struct ProbedSurface {
     /// The materials, in the encoding that shading reads.
     pub materials: Mixture,
     /// Linear diffuse reflectance of their mixture.
-    pub albedo: DVec3,
+    pub base_color: DVec3,
 }
 
 /// The surface at the same points: gradients and materials, by the source of the surface pass.
@@ -64,8 +64,8 @@ pub fn surface(
     let read = |&[x, y, z, distance, materials @ ..]: &[u32; 8]| {
         let [x, y, z, distance] = [x, y, z, distance].map(|bits| f64::from(f32::from_bits(bits)));
         let materials = mixture_decoded(materials);
-        let albedo = mixture_material(&materials, &flat.materials).albedo;
-        ProbedSurface { gradient: DVec3::new(x, y, z), distance, materials, albedo }
+        let base_color = mixture_material(&materials, &flat.materials).base_color;
+        ProbedSurface { gradient: DVec3::new(x, y, z), distance, materials, base_color }
     };
     Ok(found.as_chunks().0.iter().map(read).collect())
 }

@@ -61,11 +61,11 @@ pub struct Instance {
     pub texture_x: [f32; 4],
     /// Row that computes the texture's V.
     pub texture_y: [f32; 4],
-    /// Albedo, used if `overridden` is 1.
-    pub albedo: [f32; 3],
+    /// Base color, used if `overridden` is 1.
+    pub base_color: [f32; 3],
     /// Value for the visibility target.
     pub visibility: u32,
-    /// 1: `albedo` replaces the mesh's own colors.
+    /// 1: `base_color` replaces the mesh's own colors.
     pub overridden: u32,
     /// 1: the placement mirrors the mesh, which reverses the winding of its triangles.
     pub mirrored: u32,
@@ -356,7 +356,7 @@ impl PlacedInstance {
             normal_x: normal_row(0),
             normal_y: normal_row(1),
             normal_z: normal_row(2),
-            albedo: material.map_or([1.0; 3], |m| m.albedo),
+            base_color: material.map_or([1.0; 3], |m| m.base_color),
             visibility: MESH_BIT | index as u32,
             overridden: u32::from(material.is_some()),
             mirrored: u32::from(m.matrix3.determinant() < 0.0),

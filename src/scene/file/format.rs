@@ -1,4 +1,5 @@
-//! Version 1 of the file format, as types for serde and the schema.
+//! The file format, as types for serde and the schema. What older versions have different is a parameter of the types;
+//! see [`super::old_version`].
 //!
 //! Values that most nodes share are left out, so that a file shows what is special.
 
@@ -20,37 +21,38 @@ use crate::{
 use isolith_geometry::Transform;
 
 /// The version that is written; every version up to it can be read.
-pub const VERSION: u64 = 1;
+pub const VERSION: u64 = 2;
 
 /// A scene of Isolith. Lengths are meters, angles degrees, colors linear; +Y is up.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a scene in braces")]
-pub(super) struct SceneV1 {
+#[serde(bound(deserialize = "M: Deserialize<'de>, E: Deserialize<'de>, L: Deserialize<'de>"))]
+pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// Location of this schema, for text editors; the program ignores it.
     #[serde(rename = "$schema", default, skip_serializing)]
-    #[expect(dead_code, reason = "read, so that it is no unknown field, and described in the schema")]
     pub schema: Option<String>,
     /// Version of the format.
     #[serde(deserialize_with = "whole::read")]
     pub isolith: u64,
     /// The environment.
     #[serde(default)]
-    pub environment: Environment,
+    pub environment: E,
     /// Materials, in the artist's order.
     #[serde(default, deserialize_with = "at_most::<_, _, MAX_MATERIALS>")]
-    pub materials: Vec<Material>,
+    pub materials: Vec<M>,
     /// The id of the next new node; ids are never reused.
     #[serde(default, deserialize_with = "whole::read")]
     pub next_id: u64,
     /// All nodes: each group is followed by its children, in the artist's order.
     #[serde(deserialize_with = "at_most::<_, _, MAX_NODES>")]
-    pub nodes: Vec<NodeV1>,
+    pub nodes: Vec<NodeFile<L>>,
 }
 
 /// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` gives its kind.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a node in braces")]
-pub(super) struct NodeV1 {
+#[serde(bound(deserialize = "L: Deserialize<'de>"))]
+pub(super) struct NodeFile<L = Light> {
     /// Identity; never changes.
     pub id: NodeId,
     /// Id of the group that contains it; none at the top.
@@ -75,8 +77,8 @@ pub(super) struct NodeV1 {
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_APART>")]
     pub apart: Vec<NodeId>,
     /// Its place in its group.
-    #[serde(default, skip_serializing_if = "TransformV1::is_identity")]
-    pub transform: TransformV1,
+    #[serde(default, skip_serializing_if = "TransformFile::is_identity")]
+    pub transform: TransformFile,
     /// Modifiers of the node and its subtree, in order of application.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
     pub modifiers: Vec<ModifierSlot>,
@@ -91,7 +93,7 @@ pub(super) struct NodeV1 {
     pub mesh: Option<MeshNode>,
     /// A light.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub light: Option<Light>,
+    pub light: Option<L>,
     /// A viewpoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub camera: Option<CameraNode>,
@@ -100,7 +102,7 @@ pub(super) struct NodeV1 {
 /// Scale first, then rotation, then translation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a transform in braces")]
-pub(super) struct TransformV1 {
+pub(super) struct TransformFile {
     /// The position of the origin.
     #[serde(default, skip_serializing_if = "is_origin")]
     pub translation: [f64; 3],
@@ -112,26 +114,26 @@ pub(super) struct TransformV1 {
     pub scale: [f64; 3],
 }
 
-impl TransformV1 {
+impl TransformFile {
     fn is_identity(&self) -> bool {
         *self == Self::default()
     }
 }
 
-impl Default for TransformV1 {
+impl Default for TransformFile {
     fn default() -> Self {
         Transform::IDENTITY.into()
     }
 }
 
-impl From<Transform> for TransformV1 {
+impl From<Transform> for TransformFile {
     fn from(t: Transform) -> Self {
         Self { translation: t.translation.to_array(), rotation: t.rotation.to_array(), scale: t.scale.to_array() }
     }
 }
 
-impl From<TransformV1> for Transform {
-    fn from(t: TransformV1) -> Self {
+impl From<TransformFile> for Transform {
+    fn from(t: TransformFile) -> Self {
         Self {
             translation: DVec3::from_array(t.translation),
             rotation: DQuat::from_array(t.rotation),
@@ -140,7 +142,7 @@ impl From<TransformV1> for Transform {
     }
 }
 
-impl From<&Node> for NodeV1 {
+impl From<&Node> for NodeFile {
     fn from(node: &Node) -> Self {
         let mut out = Self {
             id: node.id,
@@ -170,7 +172,7 @@ impl From<&Node> for NodeV1 {
     }
 }
 
-impl NodeV1 {
+impl NodeFile {
     /// The node, or `None` if it is not of exactly one kind.
     pub fn into_node(self) -> Option<Node> {
         let kinds = [
@@ -207,11 +209,11 @@ impl NodeV1 {
 /// The JSON Schema of the format, generated from the types that read it. It does not contain the limits of numbers;
 /// loading checks those.
 pub fn schema() -> serde_json::Value {
-    let mut schema = schemars::schema_for!(SceneV1).to_value();
+    let mut schema = schemars::schema_for!(SceneFile).to_value();
     schema["title"] = "Isolith scene".into();
     schema["properties"]["isolith"]["const"] = VERSION.into();
     let kinds = ["group", "object", "mesh", "light", "camera"];
-    schema["$defs"]["NodeV1"]["oneOf"] = kinds.iter().map(|kind| json!({ "required": [kind] })).collect();
+    schema["$defs"]["NodeFile"]["oneOf"] = kinds.iter().map(|kind| json!({ "required": [kind] })).collect();
     schema
 }
 

@@ -2,7 +2,8 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `format` | the types of version 1, for serde and the schema |
+//! | `format` | the types of the present version, for serde and the schema |
+//! | `old_version` | what older versions have different, and its conversion |
 //! | `read` | bytes → checked scene; every message names file, node and field |
 //! | `watch` | progress and cancellation of reading |
 //! | `weight` | counts the values of a text before it is parsed |
@@ -10,12 +11,13 @@
 //! | `write` | scene → bytes, always the same, one value per line |
 //! | `atomic` | bytes → file, so that a crash leaves the old file or the new one |
 //!
-//! The reader parses the version first and alone. A later version gets its own `format`, its own reader, and a
-//! conversion from the one before; readers are never removed.
+//! The reader parses the version first and alone. What a later version changes becomes a type in `old_version` with a
+//! conversion; readers are never removed.
 
 mod atomic;
 mod error;
 mod format;
+mod old_version;
 mod place;
 mod read;
 mod watch;

@@ -10,12 +10,13 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::error::{FileError, clipped};
-use super::format::{NodeV1, SceneV1, VERSION};
+use super::format::{NodeFile, SceneFile, VERSION};
+use super::old_version::{FileMaterial, SceneV1};
 use super::place;
 use super::watch;
 use super::weight::weigh;
 use crate::limits::{MAX_DEPTH, MAX_ENTRY_VALUES, MAX_FILE_BYTES, MAX_ID};
-use crate::{Material, Node, NodeId, Scene, check, decode_budget, whole};
+use crate::{Node, NodeId, Scene, check, decode_budget, whole};
 use isolith_jobs::Task;
 
 /// Reads a scene from the contents of a file; `file` is for messages only.
@@ -42,8 +43,14 @@ pub(super) fn parse_by(bytes: &[u8], file: &Path, task: &Task) -> Result<Scene, 
     })?;
     match version(text, file)? {
         1 => {
-            let scene = watch::within(task, nodes, || decode_budget::within(|| typed(text, file)))?;
-            scene_from_v1(scene, file)
+            let old: SceneV1 = watch::within(task, nodes, || decode_budget::within(|| typed(text, file)))?;
+            check_materials(&old.materials, file)?;
+            checked_scene(old.converted(), file)
+        }
+        2 => {
+            let scene: SceneFile = watch::within(task, nodes, || decode_budget::within(|| typed(text, file)))?;
+            check_materials(&scene.materials, file)?;
+            checked_scene(scene, file)
         }
         0 => Err(FileError::new(file, "there is no version 0 of the format").at("isolith")),
         newer => {
@@ -60,8 +67,13 @@ fn version(text: &str, file: &Path) -> Result<u64, FileError> {
         isolith: Option<Value>,
     }
     let header: Header = serde_json::from_str(text).map_err(|e| {
-        // Parsing the text as a scene locates the error better.
-        typed::<SceneV1>(text, file).err().unwrap_or_else(|| place::json_error(text, file, None, &e))
+        // Parsing the text as a scene locates the error better. The right version gets farthest.
+        let found = [located::<SceneV1>(text).err(), located::<SceneFile>(text).err()];
+        let farthest = found.into_iter().flatten().max_by_key(|e| (e.inner().line(), e.inner().column()));
+        match farthest {
+            Some(found) => place::json_error(text, file, Some(found.path()), found.inner()),
+            None => place::json_error(text, file, None, &e),
+        }
     })?;
     let Some(version) = header.isolith else {
         return Err(FileError::new(file, "is missing: this is not a scene of Isolith").at("isolith"));
@@ -74,18 +86,20 @@ fn version(text: &str, file: &Path) -> Result<u64, FileError> {
 
 /// Parses the text into the types of one version.
 fn typed<'a, T: Deserialize<'a>>(text: &'a str, file: &Path) -> Result<T, FileError> {
+    located(text).map_err(|e| place::json_error(text, file, Some(e.path()), e.inner()))
+}
+
+/// Parses the text; an error comes with its path.
+fn located<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, serde_path_to_error::Error<serde_json::Error>> {
     let mut reader = serde_json::Deserializer::from_str(text);
-    let value = serde_path_to_error::deserialize(&mut reader).map_err(|e| {
-        let path = e.path().clone();
-        place::json_error(text, file, Some(&path), e.inner())
-    })?;
-    reader.end().map_err(|e| place::json_error(text, file, None, &e))?;
+    let value = serde_path_to_error::deserialize(&mut reader)?;
+    let track = serde_path_to_error::Track::new();
+    reader.end().map_err(|e| serde_path_to_error::Error::new(track.path(), e))?;
     Ok(value)
 }
 
-fn scene_from_v1(scene: SceneV1, file: &Path) -> Result<Scene, FileError> {
+fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
-    check_materials(&scene.materials, file)?;
     if scene.next_id > MAX_ID + 1 {
         return Err(FileError::new(file, format!("must be at most {}", MAX_ID + 1)).at("next_id"));
     }
@@ -101,7 +115,7 @@ fn scene_from_v1(scene: SceneV1, file: &Path) -> Result<Scene, FileError> {
 }
 
 /// The node with its own values checked.
-fn checked(node: NodeV1, i: usize, file: &Path) -> Result<Node, FileError> {
+fn checked(node: NodeFile, i: usize, file: &Path) -> Result<Node, FileError> {
     let (name, id) = (node.name.clone(), node.id);
     let kinds = "must hold exactly one of group, object, mesh, light, camera";
     let node = node
@@ -114,24 +128,24 @@ fn checked(node: NodeV1, i: usize, file: &Path) -> Result<Node, FileError> {
     }
 }
 
-fn check_materials(materials: &[Material], file: &Path) -> Result<(), FileError> {
+fn check_materials<M: FileMaterial>(materials: &[M], file: &Path) -> Result<(), FileError> {
     let mut seen = HashSet::new();
     for (i, material) in materials.iter().enumerate() {
         let field = format!("materials[{i}]");
-        if material.id.0 > MAX_ID {
+        if material.id().0 > MAX_ID {
             return Err(FileError::new(file, format!("must be at most {MAX_ID}")).at(field + ".id"));
         }
-        if !seen.insert(material.id) {
-            let reason = format!("another material has the id {}", material.id);
+        if !seen.insert(material.id()) {
+            let reason = format!("another material has the id {}", material.id());
             return Err(FileError::new(file, reason).at(field + ".id"));
         }
-        check::material(material).map_err(|f| FileError::from_fault(file, &field, f))?;
+        material.check().map_err(|f| FileError::from_fault(file, &field, f))?;
     }
     Ok(())
 }
 
 /// Checks that ids are unique, that parents and materials exist, and that parents are groups.
-fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
+fn check_references(scene: &SceneFile, file: &Path) -> Result<(), FileError> {
     let materials: HashSet<_> = scene.materials.iter().map(|m| m.id).collect();
     let mut holds: HashMap<NodeId, bool> = HashMap::with_capacity(scene.nodes.len());
     let fail = |i: usize, field: &str, reason: String| {
@@ -163,7 +177,7 @@ fn check_references(scene: &SceneV1, file: &Path) -> Result<(), FileError> {
 
 /// The indices of the nodes in depth-first pre-order. Siblings keep the order of the file, so a file in pre-order stays
 /// unchanged. All parents exist.
-fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
+fn pre_order(nodes: &[NodeFile], file: &Path) -> Result<Vec<usize>, FileError> {
     let mut children: HashMap<Option<NodeId>, Vec<usize>> = HashMap::new();
     for (i, node) in nodes.iter().enumerate().rev() {
         children.entry(node.parent).or_default().push(i);
@@ -196,7 +210,7 @@ fn pre_order(nodes: &[NodeV1], file: &Path) -> Result<Vec<usize>, FileError> {
 }
 
 /// The first node of the cycle that the parents of `start` lead into.
-fn on_cycle(nodes: &[NodeV1], start: usize) -> usize {
+fn on_cycle(nodes: &[NodeFile], start: usize) -> usize {
     let index: HashMap<NodeId, usize> = nodes.iter().enumerate().map(|(i, n)| (n.id, i)).collect();
     let mut seen = HashSet::new();
     let mut at = start;

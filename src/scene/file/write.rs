@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::ser::Formatter;
 
 use super::FileError;
-use super::format::{NodeV1, SceneV1, VERSION};
+use super::format::{NodeFile, SceneFile, VERSION};
 use crate::{Material, Scene, check};
 
 /// The text of a scene. Floating-point numbers use the shortest form that reads back as the same number, so reading and
@@ -24,13 +24,13 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         check::node(node)
             .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
     }
-    let table = SceneV1 {
+    let table = SceneFile {
         schema: None,
         isolith: VERSION,
         environment: scene.environment,
         materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),
         next_id: scene.next_id(),
-        nodes: scene.nodes().iter().map(|n| NodeV1::from(&check::settled((**n).clone()))).collect(),
+        nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
     };
     let mut out = Vec::new();
     let written = table.serialize(&mut serde_json::Serializer::with_formatter(&mut out, OneValuePerLine::default()));

@@ -38,13 +38,13 @@ pub(crate) use param_rows;
 /// }
 /// ```
 macro_rules! param_struct {
-    ($(#[$meta:meta])* pub struct $name:ident $([ $(
+    ($(#[$meta:meta])* $scope:vis struct $name:ident $([ $(
         $(#[doc = $about:literal])+ $field:ident: $field_type:ty = $value:expr;
     )* ])? { $(
         $(#[doc = $help:literal])+ $(#[serde($($serde:tt)*)])? $param:ident: $type:ty = $default:expr, $spec:expr;
     )* }) => {
         $(#[$meta])*
-        pub struct $name {
+        $scope struct $name {
             $( $( $(#[doc = $about])+ pub $field: $field_type, )* )?
             $( $(#[doc = $help])+ $(#[serde($($serde)*)])? pub $param: $type, )*
         }

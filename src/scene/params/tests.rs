@@ -199,7 +199,7 @@ fn what_is_no_path_and_what_is_not_there_are_errors_that_name_it() {
         (path("group.blend.radius.x"), "there is no such parameter"),
         (path("group.blend.radius[0]"), "no such element"),
         (path("transform.translation[3]"), "no such element"),
-        ("material.1.color".into(), "there is albedo, specular"),
+        ("material.1.color".into(), "there is base_color, base_weight"),
         ("environment.fog".into(), "there is sky, horizon, ambient"),
     ] {
         let error = text.parse::<ParamPath>().expect(&text).get(&scene).expect_err(&text).to_string();
@@ -265,7 +265,8 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
         params.visit("", &mut |prefix, param, _| names.push(format!("{prefix}{}", param.name)));
         names
     };
-    assert_eq!(names(&material), ["albedo", "specular", "shininess", "emission"]);
+    assert_eq!(names(&material)[..3], ["base_color", "base_weight", "base_metalness"]);
+    assert_eq!(names(&material).last().map(String::as_str), Some("model.type"));
     assert_eq!(names(&Environment::default()), ["sky", "horizon", "ambient"]);
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];

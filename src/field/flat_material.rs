@@ -1,0 +1,78 @@
+//! Materials as the GPU reads them. `shaders/light/material.wgsl` is the counterpart.
+
+use bytemuck::{Pod, Zeroable};
+
+use isolith_scene::{Material, ReflectionModel};
+
+/// A material as the GPU reads it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct FlatMaterial {
+    /// Base color times its weight.
+    pub base_color: [f32; 3],
+    /// 0 for a dielectric, 1 for a metal.
+    pub metalness: f32,
+    /// Tint of the specular reflection.
+    pub specular_color: [f32; 3],
+    /// Strength of the specular reflection.
+    pub specular_weight: f32,
+    /// Emitted color times its luminance.
+    pub emission: [f32; 3],
+    /// Opacity.
+    pub opacity: f32,
+    /// Tint of the coat.
+    pub coat_color: [f32; 3],
+    /// Share of the surface under the coat.
+    pub coat_weight: f32,
+    /// Roughness of the specular reflection.
+    pub roughness: f32,
+    /// Index of refraction.
+    pub ior: f32,
+    /// Roughness of the coat.
+    pub coat_roughness: f32,
+    /// Index of refraction of the coat.
+    pub coat_ior: f32,
+    /// Roughness of the diffuse reflection.
+    pub diffuse_roughness: f32,
+    /// 1 for a material by Blinn and Phong, 0 for the layers of OpenPBR.
+    pub phong_weight: f32,
+    /// Strength of the highlight by Blinn and Phong.
+    pub phong_specular: f32,
+    /// Its exponent.
+    pub phong_shininess: f32,
+}
+
+impl FlatMaterial {
+    /// The material of a mesh that keeps its file's colors; the colors themselves stand in a target.
+    pub fn of_file() -> Self {
+        let model = ReflectionModel::BlinnPhong { specular: 0.2, shininess: 32.0 };
+        Self::new(&Material { model, base_color: [1.0; 3], ..Material::default() })
+    }
+
+    /// The material as the GPU reads it.
+    pub fn new(material: &Material) -> Self {
+        let color = |c: [f64; 3], by: f64| c.map(|v| (v * by) as f32);
+        let (phong_weight, [phong_specular, phong_shininess]) = match material.model {
+            ReflectionModel::OpenPbr {} => (0.0, [0.0, 0.0]),
+            ReflectionModel::BlinnPhong { specular, shininess } => (1.0, [specular, shininess]),
+        };
+        Self {
+            base_color: color(material.base_color, material.base_weight),
+            metalness: material.base_metalness as f32,
+            specular_color: color(material.specular_color, 1.0),
+            specular_weight: material.specular_weight as f32,
+            emission: color(material.emission_color, material.emission_luminance),
+            opacity: material.geometry_opacity as f32,
+            coat_color: color(material.coat_color, 1.0),
+            coat_weight: material.coat_weight as f32,
+            roughness: material.specular_roughness as f32,
+            ior: material.specular_ior as f32,
+            coat_roughness: material.coat_roughness as f32,
+            coat_ior: material.coat_ior as f32,
+            diffuse_roughness: material.base_diffuse_roughness as f32,
+            phong_weight,
+            phong_specular: phong_specular as f32,
+            phong_shininess: phong_shininess as f32,
+        }
+    }
+}
