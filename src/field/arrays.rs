@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use super::flat_material::FlatMaterial;
 use super::hierarchy::Hierarchy;
 use isolith_geometry::{Aabb, Camera};
-use isolith_scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
+use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -354,6 +354,8 @@ pub struct FlatScene {
     pub cameras: Vec<FlatCamera>,
     /// Surroundings.
     pub environment: Environment,
+    /// How the light becomes the colors of a screen.
+    pub display: DisplaySettings,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].

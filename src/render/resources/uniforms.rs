@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, Component, FlatScene};
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, pixel_jitter};
 
 /// The camera, the background and the lights of a frame.
 #[repr(C)]
@@ -35,6 +35,20 @@ pub struct GpuView {
     pub ambient: [f32; 3],
     /// Height of the picture, in pixels.
     pub height: u32,
+    /// Offset from pixel centers to the place of this sample, in pixels.
+    pub jitter: [f32; 2],
+    /// Factor of the exposure.
+    pub exposure: f32,
+    /// Index of the sample; see [`crate::Renderer::next_sample`].
+    pub sample_index: u32,
+    /// 1: the background is without color and coverage.
+    pub transparent: u32,
+    /// Padding.
+    pub padding_0: u32,
+    /// Padding.
+    pub padding_1: u32,
+    /// Padding.
+    pub padding_2: u32,
 }
 
 impl GpuView {
@@ -57,7 +71,15 @@ impl GpuView {
             width: size[0],
             ambient: color(flat.environment.ambient),
             height: size[1],
+            exposure: flat.display.exposure.exp2() as f32,
+            ..Self::zeroed()
         }
+    }
+
+    /// The same view for another sample.
+    pub fn of_sample(self, sample_index: u32, is_transparent: bool) -> Self {
+        let jitter = pixel_jitter(sample_index).as_vec2().to_array();
+        Self { jitter, sample_index, transparent: is_transparent.into(), ..self }
     }
 }
 
