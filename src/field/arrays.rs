@@ -264,6 +264,9 @@ pub struct Component {
     /// where no two of their faces can cancel each other. Where a cut ends flush with a face, the remainder is the
     /// rounding of numbers of this size.
     pub flush_extent: f64,
+    /// The same without the sizes of shapes that are evaluated in numbers no larger than the distances of the point
+    /// and of the shape from `origin`: less for a large face, and right where that point is near.
+    pub flush_placement: f64,
     /// Stack depth: the accumulators that an evaluator must be able to put aside.
     pub stack: u32,
     /// Domains of its modifiers, in the order of their entries.
