@@ -8,8 +8,8 @@ use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 
 use crate::editor::{Editor, Message, Picture, ViewSettings};
-use crate::field::FlatScene;
 use crate::field::debug_view::{DepthRange, ViewMode};
+use crate::field::{FlatScene, Shading};
 use crate::mesh::TriangleMesh;
 use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;
@@ -35,6 +35,8 @@ pub(super) struct ViewportRenderer {
     textures: [Option<(TextureId, [u32; 2])>; 2],
     shown: Option<Slot>,
     request: Option<RenderRequest>,
+    /// The last scene, its shading, and what that makes of it.
+    shaded: Option<(Arc<FlatScene>, Shading, Arc<FlatScene>)>,
     in_flight: Option<(Frame, Instant)>,
     elapsed: Duration,
     /// The last measured time for painting the window.
@@ -103,6 +105,7 @@ impl ViewportRenderer {
             textures: [None, None],
             shown: None,
             request: None,
+            shaded: None,
             in_flight: None,
             elapsed: Duration::ZERO,
             painting: PER_FRAME[0],
@@ -148,7 +151,7 @@ impl ViewportRenderer {
         // Not an input of the picture: the end of a drag changes nothing in it.
         let view = ViewSettings { navigating: false, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
-        let flat = editor.flat().clone();
+        let flat = self.shaded(editor.flat(), view.shading);
         let meshes = flat.known_meshes(editor.meshes());
         let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
         let request = RenderRequest { view, flat, meshes: addresses, outline };
@@ -190,6 +193,22 @@ impl ViewportRenderer {
             }
         }
         Ok(())
+    }
+
+    /// The scene in this shading: the same arrays until one of them changes.
+    fn shaded(&mut self, flat: &Arc<FlatScene>, shading: Shading) -> Arc<FlatScene> {
+        if shading == Shading::Rendered {
+            self.shaded = None;
+            return Arc::clone(flat);
+        }
+        match &self.shaded {
+            Some((of, by, shown)) if Arc::ptr_eq(of, flat) && *by == shading => Arc::clone(shown),
+            _ => {
+                let shown = flat.shaded(shading);
+                self.shaded = Some((Arc::clone(flat), shading, Arc::clone(&shown)));
+                shown
+            }
+        }
     }
 
     /// Whether the full picture is complete and only the grid, the outline or the view mode differ, and the hits at

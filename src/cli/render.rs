@@ -16,7 +16,7 @@ use super::text::{complain, say};
 use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::mesh_rays::Meshes;
 use crate::field::reference::image::render_reference;
-use crate::field::{FlatScene, GBuffer, Warning};
+use crate::field::{FlatScene, GBuffer, Shading, Warning};
 use crate::geometry::Camera;
 use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
@@ -60,6 +60,9 @@ pub struct RenderArguments {
     /// components
     #[arg(long, value_name = "MODE", default_value = "shaded", value_parser = ViewMode::from_str, conflicts_with = "reference")]
     view: ViewMode,
+    /// How the scene is lit: rendered by its own lights, material by a studio light, or solid, everything in clay
+    #[arg(long, value_name = "NAME", default_value = "rendered", value_parser = Shading::from_str)]
+    shading: Shading,
     /// Render the reference: on the processor, in double precision, every ray to certainty. Slow
     #[arg(long, alias = "truth")]
     reference: bool,
@@ -90,6 +93,7 @@ impl RenderArguments {
             normal: None,
             node_id: None,
             view: ViewMode::Shaded,
+            shading: Shading::Rendered,
             reference: false,
             strict: false,
             json: false,
@@ -166,6 +170,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
         return Err(Failure::Canceled);
     }
     let camera = choose_camera(&flat, &meshes, arguments)?;
+    let flat = flat.shaded(arguments.shading);
     let buffers = if arguments.reference {
         reference_picture(arguments, scene, &flat, &meshes, &camera)?
     } else {

@@ -90,7 +90,8 @@ impl Default for EditorState {
 impl EditorState {
     /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
-        let ViewState { navigation, view_mode, show_grid, show_outline, size_px, is_navigating, .. } = &self.view;
+        let ViewState { navigation, shading, view_mode, show_grid, show_outline, size_px, is_navigating, .. } =
+            &self.view;
         ViewSettings {
             camera: navigation.camera(),
             size_px: *size_px,
@@ -101,6 +102,7 @@ impl EditorState {
         }
     }
 
+            shading: *shading,
     /// The flat scene; the last valid one if the document exceeds a limit.
     pub fn flat(&self) -> &Arc<FlatScene> {
         self.derived.flat()

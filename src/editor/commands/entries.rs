@@ -29,6 +29,17 @@ pub fn menu_entries(ui: &mut Ui, state: &EditorState, menu: Menu) -> Option<Comm
     chosen
 }
 
+/// Shows the shadings, and the views for debugging in a submenu; returns the chosen command.
+pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
+    let chosen = menu_entries(ui, state, Menu::Shading);
+    ui.separator();
+    let debug = ui.menu_button("Debug", |ui| {
+        ui.set_min_width(190.0);
+        menu_entries(ui, state, Menu::Debug)
+    });
+    debug.inner.flatten().or(chosen)
+}
+
 /// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{
