@@ -27,6 +27,7 @@
 //! | `meshes` | the loaded meshes of a scene |
 //! | `mesh_rays` | intersections of rays with meshes |
 //! | `view` | the default view of a scene |
+//! | `shading` | the scene in clay, or under a studio light |
 //! | `debug_view` | view modes besides shading, and their colors |
 //!
 //! # Example
@@ -89,6 +90,7 @@ mod prepare;
 pub mod reference;
 mod reflatten;
 pub mod scene_eval;
+mod shading;
 mod stack;
 pub mod standpoint;
 mod survey;
@@ -112,5 +114,6 @@ pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;
 pub use reflatten::Flattener;
+pub use shading::Shading;
 pub use survey::is_quick;
 pub use tape::*;
