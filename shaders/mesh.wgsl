@@ -5,6 +5,8 @@
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
 #include "common/mesh_look.wgsl"
+#include "common/coverage.wgsl"
+#include "common/tangent.wgsl"
 
 struct Instance {
     // Rows of the matrix from the mesh's space to world space, relative to the eye or to the point
@@ -44,7 +46,8 @@ struct Instance {
     occlusion_strength: f32,
     // 1: emits its base color, and reflects nothing.
     unlit: u32,
-    padding_0: u32,
+    // 1: covers samples by its opacity.
+    blended: u32,
     padding_1: u32,
     padding_2: u32,
     // Pairs of rows as `texture_x` and `texture_y`, for metalness and roughness, normals, occlusion,
@@ -80,6 +83,8 @@ struct Varying {
     @location(2) color: vec4f,
     // In the base color texture.
     @location(3) place: vec2f,
+    // Its first vertex tells a triangle from others.
+    @location(6) @interpolate(flat) vertex: u32,
 }
 
 // The varying of surfaces with further textures.
@@ -92,6 +97,7 @@ struct MappedVarying {
     @location(4) uv: vec4f,
     // In the world. The last number is the sign of the bitangent, or 0 if the file has no tangents.
     @location(5) tangent: vec4f,
+    @location(6) @interpolate(flat) vertex: u32,
 }
 
 struct Written {
@@ -108,11 +114,11 @@ struct Written {
 const NEAR_SHARE: f32 = 1.0 / 16777216.0;
 
 @vertex
-fn mesh_vertex(vertex: Vertex) -> Varying {
-    return mesh_placed(vertex);
+fn mesh_vertex(vertex: Vertex, @builtin(vertex_index) index: u32) -> Varying {
+    return mesh_placed(vertex, index);
 }
 
-fn mesh_placed(vertex: Vertex) -> Varying {
+fn mesh_placed(vertex: Vertex, index: u32) -> Varying {
     let p = vec4f(vertex.position, 1.0);
     let position = vec3f(
         dot(instance.eye_from_local_x, p),
@@ -129,12 +135,14 @@ fn mesh_placed(vertex: Vertex) -> Varying {
         dot(position, view.forward) + instance.ray_origin_depth,
     );
     let place = mesh_place(instance.texture_x, instance.texture_y, vertex.uv);
-    return Varying(clip, position, normal, vertex.color, place);
+    return Varying(clip, position, normal, vertex.color, place, index);
 }
 
 @vertex
-fn mesh_mapped_vertex(vertex: Vertex, @location(4) tangent: vec4f) -> MappedVarying {
-    let plain = mesh_placed(vertex);
+fn mesh_mapped_vertex(
+    vertex: Vertex, @location(4) tangent: vec4f, @builtin(vertex_index) index: u32,
+) -> MappedVarying {
+    let plain = mesh_placed(vertex, index);
     let t = tangent.xyz;
     let turned = vec3f(
         dot(instance.eye_from_local_x.xyz, t),
@@ -144,6 +152,7 @@ fn mesh_mapped_vertex(vertex: Vertex, @location(4) tangent: vec4f) -> MappedVary
     let side = select(tangent.w, -tangent.w, instance.mirrored == 1u);
     return MappedVarying(
         plain.clip, plain.position, plain.normal, plain.color, plain.place, vertex.uv, vec4f(turned, side),
+        index,
     );
 }
 
@@ -177,10 +186,11 @@ fn mesh_mapped_fragment(in: MappedVarying, @builtin(front_facing) front: bool) -
     let metal_rough = textureSample(metal_rough_map, metal_rough_sampler, mesh_place(rows[0], rows[1], in.uv));
     let bump_place = mesh_place(rows[2], rows[3], in.uv);
     let bump = textureSample(normal_map, normal_sampler, bump_place).xyz * 2.0 - 1.0;
+    let scaled = bump * vec3f(instance.normal_scale, instance.normal_scale, 1.0);
     let occlusion = textureSample(occlusion_map, occlusion_sampler, mesh_place(rows[4], rows[5], in.uv)).x;
     let emissive = textureSample(emissive_map, emissive_sampler, mesh_place(rows[6], rows[7], in.uv)).rgb;
-    let plain = Varying(in.clip, in.position, in.normal, in.color, in.place);
-    let normal = mesh_mapped_normal(mesh_normal(plain), in.tangent, in.position, bump_place, bump);
+    let plain = Varying(in.clip, in.position, in.normal, in.color, in.place, in.vertex);
+    let normal = tangent_turned(mesh_normal(plain), in.tangent, in.position, bump_place, scaled);
     let arriving = 1.0 + instance.occlusion_strength * (occlusion - 1.0);
     let surface = vec3f(instance.metalness * metal_rough.b, instance.roughness * metal_rough.g, arriving);
     return mesh_written(plain, front, color, normal, surface, instance.emission * emissive);
@@ -193,28 +203,9 @@ fn mesh_normal(in: Varying) -> vec3f {
     return select(-normalize(away), in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
 }
 
-// The normal turned by that of a texture. The tangent is the file's, or the direction in which the
-// texture's first coordinate grows along the triangle; V points down.
-fn mesh_mapped_normal(normal: vec3f, given: vec4f, position: vec3f, place: vec2f, bump: vec3f) -> vec3f {
-    let right = dpdx(position);
-    let below = dpdy(position);
-    let place_right = dpdx(place);
-    let place_below = dpdy(place);
-    let area = place_right.x * place_below.y - place_right.y * place_below.x;
-    let across = (right * place_below.y - below * place_right.y) * sign(area);
-    let upward = (right * place_below.x - below * place_right.x) * sign(area);
-    var tangent = across - normal * dot(normal, across);
-    var side = select(1.0, -1.0, dot(cross(normal, tangent), upward) < 0.0);
-    if given.w != 0.0 {
-        tangent = given.xyz;
-        side = sign(given.w);
-    }
-    let longness = length(tangent);
-    tangent /= max(longness, 1e-30);
-    let bitangent = cross(normal, tangent) * side;
-    let turned = (tangent * bump.x + bitangent * bump.y) * instance.normal_scale + normal * bump.z;
-    let is_turned = longness > 0.0 && dot(turned, turned) > 0.0;
-    return select(normal, turned / max(length(turned), 1e-30), is_turned);
+// The opacity above which the fragment covers this sample of its pixel.
+fn mesh_threshold(in: Varying) -> f32 {
+    return coverage_threshold(vec2u(in.clip.xy), 0u, in.vertex + coverage_hash(instance.visibility));
 }
 
 // `surface` is metalness, roughness and the share of the ambient light that arrives.
@@ -223,6 +214,9 @@ fn mesh_written(
 ) -> Written {
     let t = mesh_distance(in.position);
     if t < view.near || t > view.far || color.a < instance.alpha_cutoff {
+        discard;
+    }
+    if instance.blended == 1u && color.a <= mesh_threshold(in) {
         discard;
     }
     // Both sides are visible. The triangle decides which side faces the eye: near an outline the

@@ -162,7 +162,7 @@ fn instance() -> Layout {
             normal_scale,
             occlusion_strength,
             unlit,
-            padding_0,
+            blended,
             padding_1,
             padding_2,
             map_rows

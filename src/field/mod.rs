@@ -61,6 +61,7 @@ mod blends;
 mod budget;
 mod collect;
 mod composition;
+pub mod coverage;
 mod cuts;
 pub mod debug_view;
 mod emit;

@@ -85,7 +85,6 @@ impl Remarks {
             (coat.is_some_and(|c| c.clearcoat_texture.is_some()), "textures of KHR_materials_clearcoat"),
             (coat.is_some_and(|c| c.clearcoat_roughness_texture.is_some()), "textures of KHR_materials_clearcoat"),
             (coat.is_some_and(|c| c.clearcoat_normal_texture.is_some()), "textures of KHR_materials_clearcoat"),
-            (material.alpha_mode.as_deref() == Some("BLEND"), "transparency (alphaMode BLEND, drawn as opaque)"),
         ];
         for (has, what) in things {
             if has {

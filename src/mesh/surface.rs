@@ -19,6 +19,8 @@ pub struct Surface {
     pub color: [f32; 4],
     /// There is no surface where the opacity is below this; `None` for a surface everywhere.
     pub alpha_cutoff: Option<f32>,
+    /// Covers what lies behind by its opacity.
+    pub is_blended: bool,
     /// The base color texture, in sRGB; multiplied with `color` after conversion to linear.
     pub base_color: Option<TextureUse>,
     /// 0 for a dielectric, 1 for a metal.
@@ -83,6 +85,7 @@ impl Default for Surface {
         Self {
             color: [1.0; 4],
             alpha_cutoff: None,
+            is_blended: false,
             base_color: None,
             metalness: 1.0,
             roughness: 1.0,
@@ -144,6 +147,7 @@ impl Surface {
         Self {
             color: color.unwrap_or([1.0; 4]).map(|c| share(Some(c), 1.0)),
             alpha_cutoff,
+            is_blended: material.alpha_mode.as_deref() == Some("BLEND"),
             metalness,
             roughness,
             emission: emission.map(|c| c.min(MAX_EMISSION) as f32),

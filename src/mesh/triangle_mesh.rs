@@ -104,10 +104,17 @@ impl TriangleMesh {
         &self.parts[after - 1]
     }
 
-    /// The nearest hit with 0 ≤ t ≤ `max_t`, from either side; points that the opacity cuts out do not count. The ray
-    /// is in the mesh's own space; its direction may have any length but zero, and `t` is in its units.
+    /// The nearest hit with 0 ≤ t ≤ `max_t`, from either side; points that the opacity cuts out do not count, nor do
+    /// blended ones without any. The ray is in the mesh's own space; its direction may have any length but zero, and
+    /// `t` is in its units.
     pub fn hit(&self, ray_local: &Ray, max_t: f64) -> Option<MeshHit> {
-        let is_there = |triangle, weights| !self.is_cut_out(triangle, weights);
+        self.hit_covering(ray_local, max_t, |_, opacity| opacity > 0.0)
+    }
+
+    /// The same, with a rule for blended surfaces: whether a point covers what lies behind, by the first vertex of its
+    /// triangle and its opacity.
+    pub fn hit_covering(&self, ray_local: &Ray, max_t: f64, covers: impl Fn(u32, f64) -> bool) -> Option<MeshHit> {
+        let is_there = |triangle, weights| self.is_there(triangle, weights, &covers);
         let corners = |triangle| self.corners(triangle);
         let (t, triangle, weights) = self.bvh().hit(ray_local, max_t, corners, is_there)?;
         Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
@@ -208,10 +215,13 @@ impl TriangleMesh {
         if slot == 0 { DVec2::new(u, v) } else { DVec2::new(u2, v2) }
     }
 
-    fn is_cut_out(&self, triangle: u32, weights: [f64; 3]) -> bool {
-        let Some(cutoff) = self.part(triangle).surface.alpha_cutoff else { return false };
-        let opacity = self.color(triangle, weights, |[.., a]| DVec4::splat(f64::from(a) / 255.0)).w;
-        opacity < f64::from(cutoff)
+    fn is_there(&self, triangle: u32, weights: [f64; 3], covers: &impl Fn(u32, f64) -> bool) -> bool {
+        let opacity = || self.color(triangle, weights, |[.., a]| DVec4::splat(f64::from(a) / 255.0)).w;
+        match self.part(triangle).surface {
+            Surface { is_blended: true, .. } => covers(self.indices[3 * triangle as usize], opacity()),
+            Surface { alpha_cutoff: Some(cutoff), .. } => opacity() >= f64::from(cutoff),
+            _ => true,
+        }
     }
 
     /// The hierarchy over the triangles, built on first use.

@@ -157,9 +157,10 @@ fn what_is_not_drawn_is_said() {
 fn what_of_materials_is_not_drawn_is_said_once_for_all() {
     let said = warnings(|json| {
         let coat = |i: usize| if i == 0 { json!({}) } else { json!({ "clearcoatTexture": { "index": 0 } }) };
+        let specular = json!({ "specularColorTexture": { "index": 0 } });
         let material = |i: usize| {
-            let extensions = json!({ "KHR_materials_clearcoat": coat(i) });
-            json!({ "name": format!("M{i}"), "alphaMode": "BLEND", "extensions": extensions })
+            let extensions = json!({ "KHR_materials_clearcoat": coat(i), "KHR_materials_specular": specular });
+            json!({ "name": format!("M{i}"), "extensions": extensions })
         };
         json["materials"] = json!((0..5).map(material).collect::<Vec<_>>());
         let primitive = |i: usize| json!({ "attributes": { "POSITION": 0 }, "material": i % 5 });
@@ -169,7 +170,7 @@ fn what_of_materials_is_not_drawn_is_said_once_for_all() {
     let coated = "materials[1] “M1”, materials[2] “M2”, materials[3] “M3” and 1 more";
     let want = [
         format!("textures of KHR_materials_clearcoat not drawn: {coated}"),
-        format!("transparency (alphaMode BLEND, drawn as opaque) not drawn: {named}"),
+        format!("textures of KHR_materials_specular not drawn: {named}"),
     ];
     assert_eq!(said, want);
 }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
+use crate::coverage::PixelSample;
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_decode, display_encode};
@@ -16,7 +17,7 @@ use crate::light::environment::environment_background;
 use crate::light::lighting::lighting_surface;
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_material::mesh_material;
-use crate::mesh_rays::{Meshes, trace_meshes};
+use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
 use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, MeshLook, TriangleMesh};
@@ -157,7 +158,8 @@ impl View<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
         let size = DVec2::new(self.size[0].into(), self.size[1].into());
         let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
-        let (march, mesh) = self.meet(tracer, &ray)?;
+        let at = PixelSample { pixel: [x, y], sample: 0 };
+        let (march, mesh) = self.meet(tracer, &ray, at)?;
         let footprint = self.camera.footprint(size.y);
         let margin = (march.margin / footprint) as f32;
         let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
@@ -173,30 +175,31 @@ impl View<'_> {
         } else {
             let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
             let color = environment_background(ray.direction.y, sky, horizon);
-            let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+            let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
         };
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
-        let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+        let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
         let color = self.shade(&ray, t, normal, &material, occlusion);
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
 
-    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Met, TraceError> {
-        let mesh = trace_meshes(self.flat, self.meshes, ray, self.camera.near, self.camera.far);
+    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray, at: PixelSample) -> Result<Met, TraceError> {
+        let range = [self.camera.near, self.camera.far];
+        let mesh = trace_meshes_of_pixel(self.flat, self.meshes, ray, range, at);
         let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
         Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
     }
 
     /// What rays turned by [`GRAZING_ANGLE`] to all sides show.
-    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Vec<Glimpse>, TraceError> {
+    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray, at: PixelSample) -> Result<Vec<Glimpse>, TraceError> {
         let (right, up) = ray.direction.any_orthonormal_pair();
         let glimpse = |i: u32| {
             let (sine, cosine) = (TAU * f64::from(i) / f64::from(TURNS)).sin_cos();
             let direction = ray.direction + (right * cosine + up * sine) * GRAZING_ANGLE;
-            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray })?;
+            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray }, at)?;
             Ok(match (march.hit, mesh) {
                 (Some(hit), _) => Glimpse { depth: hit.t as f32, node: node_of(self.flat, hit.leaf) },
                 (None, Some((index, hit))) => Glimpse { depth: hit.t as f32, node: Some(self.flat.meshes[index].id) },

@@ -57,8 +57,8 @@ pub struct Instance {
     pub occlusion_strength: f32,
     /// 1: emits its base color, and reflects nothing.
     pub unlit: u32,
-    /// Unused.
-    pub padding_0: u32,
+    /// 1: covers samples by its opacity, see `shaders/common/coverage.wgsl`.
+    pub blended: u32,
     /// Unused.
     pub padding_1: u32,
     /// Unused.
@@ -122,6 +122,7 @@ impl PlacedInstance {
             texture_x,
             texture_y,
             alpha_cutoff: surface.alpha_cutoff.unwrap_or(-1.0),
+            blended: u32::from(surface.is_blended),
             material,
             ..self.common
         };
