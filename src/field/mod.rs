@@ -63,6 +63,7 @@ mod blends;
 mod budget;
 mod collect;
 mod composition;
+pub mod coverage;
 mod cuts;
 pub mod debug_view;
 mod emit;
@@ -77,6 +78,7 @@ mod leaf;
 pub mod light;
 mod lights;
 mod lower_bound;
+mod mesh_material;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
@@ -106,6 +108,7 @@ pub use flat_material::FlatMaterial;
 pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
+pub use mesh_material::mesh_material;
 pub use modifier_table::{
     changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
 };
