@@ -38,7 +38,7 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
             material.base_color = textureLoad(base_color_target, pixel, 0).rgb;
         }
         let normal = textureLoad(normal_target, pixel, 0).xyz;
-        let point = ShadingPoint(material, direction * depth, normal, -direction);
+        let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
         color = lighting_surface(point, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));

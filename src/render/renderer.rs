@@ -6,7 +6,7 @@ pub(super) mod evaluation;
 mod frame;
 mod going_on;
 mod measure;
-mod mesh_materials;
+pub(super) mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
@@ -19,9 +19,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::passes::Passes;
-use super::passes::frame_pass::Building;
-use super::passes::overlay_settings::OverlaySettings;
+use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
 use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
@@ -251,6 +249,7 @@ impl Renderer {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(device, queue, flat, meshes, camera, size);
+        self.passes.shade.prepare(device, flat)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }

@@ -6,11 +6,13 @@ use wgpu::{BindGroup, BindGroupLayout};
 
 use super::frame_pass::{Building, FramePass};
 use crate::recipe::Pass;
+use crate::renderer::mesh_materials::mesh_materials;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
-use isolith_wgsl::{ShaderError, assemble_plain};
+use isolith_field::FlatScene;
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble};
 
 bindings! {
     /// Group 1.
@@ -32,10 +34,14 @@ bindings! {
     }
 }
 
-/// The pass.
+/// The pass. It has a pipeline for each kind of scene, built when such a scene comes.
 #[derive(Debug)]
 pub struct ShadePass {
-    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::PipelineLayout,
+    /// Without and with the layers of OpenPBR.
+    pipelines: [Option<wgpu::RenderPipeline>; 2],
+    /// Whether the scene has materials with layers.
+    has_layers: bool,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
 }
@@ -43,13 +49,8 @@ pub struct ShadePass {
 impl FramePass for ShadePass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let (lights, targets) = (LightBindings::layout(device), ShadeBindings::layout(device));
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(Pass::Shade.label()),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
-        });
         let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
-        let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
-        Ok(Self { pipeline, lights, targets })
+        Ok(Self { layout, pipelines: [None, None], has_layers: false, lights, targets })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -74,7 +75,8 @@ impl FramePass for ShadePass {
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
         let mut pass = screen_pass(encoder, Pass::Shade.label(), &targets.color.view, stamps);
-        pass.set_pipeline(&self.pipeline);
+        let pipeline = self.pipelines[usize::from(self.has_layers)].as_ref();
+        pass.set_pipeline(pipeline.expect("the frame has prepared it"));
         for (at, group) in (0..).zip([view, lights, textures]) {
             pass.set_bind_group(at, group, &[]);
         }
@@ -84,5 +86,27 @@ impl FramePass for ShadePass {
             pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
             pass.draw(0..3, 0..1);
         }
+    }
+}
+
+impl ShadePass {
+    /// Makes the pipeline for the materials of this scene current.
+    ///
+    /// # Errors
+    /// A shader file is missing.
+    pub fn prepare(&mut self, device: &wgpu::Device, flat: &FlatScene) -> Result<(), ShaderError> {
+        let meshes = mesh_materials(flat);
+        self.has_layers = flat.materials.iter().chain(&meshes).any(|material| material.phong_weight < 1.0);
+        let pipeline = &mut self.pipelines[usize::from(self.has_layers)];
+        if pipeline.is_none() {
+            let options = Options { layers: self.has_layers, ..Options::default() };
+            let text = assemble(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options)?;
+            let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(Pass::Shade.label()),
+                source: wgpu::ShaderSource::Wgsl(text.into()),
+            });
+            *pipeline = Some(screen_pipeline(device, &module, "shade_fragment", &self.layout, None));
+        }
+        Ok(())
     }
 }
