@@ -72,7 +72,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
             ambient *= surface.z;
         }
         let normal = textureLoad(normal_target, pixel, 0).xyz;
-        let point = ShadingPoint(material, direction * depth, normal, -direction);
+        let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
         color = lighting_surface(point, ambient, select(view.light_count, 0u, depth >= BACKGROUND));

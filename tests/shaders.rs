@@ -226,7 +226,7 @@ fn flat_material() -> Layout {
             specular_color,
             specular_weight,
             emission,
-            opacity,
+            coat_darkening,
             coat_color,
             coat_weight,
             roughness,

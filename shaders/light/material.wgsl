@@ -7,7 +7,7 @@ struct FlatMaterial {
     specular_color: vec3f,
     specular_weight: f32,
     emission: vec3f,
-    opacity: f32,
+    coat_darkening: f32,
     coat_color: vec3f,
     coat_weight: f32,
     roughness: f32,
@@ -32,7 +32,7 @@ fn mixture_material(encoded: vec4u) -> FlatMaterial {
         mixed.specular_color += material.specular_color * weight;
         mixed.specular_weight += material.specular_weight * weight;
         mixed.emission += material.emission * weight;
-        mixed.opacity += material.opacity * weight;
+        mixed.coat_darkening += material.coat_darkening * weight;
         mixed.coat_color += material.coat_color * weight;
         mixed.coat_weight += material.coat_weight * weight;
         mixed.roughness += material.roughness * weight;

@@ -126,6 +126,8 @@ pub const STEPS: Limits = Limits::new([1.0, 12.0], [1.0, 64.0], "").whole();
 pub const MAX_APART: usize = 64;
 /// Weights and reflectances.
 pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
+/// Strength of a specular reflection; above 1 a dielectric reflects more than its index of refraction says.
+pub const SPECULAR: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
 /// Index of refraction.

@@ -38,6 +38,7 @@ mod node;
 mod operator;
 mod param_path;
 mod params;
+mod presets;
 mod shape;
 mod table;
 mod whole;
@@ -60,5 +61,6 @@ pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
 };
+pub use presets::material_presets;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;

@@ -3,11 +3,19 @@
 //! | module | what it does |
 //! |---|---|
 //! | `brdf` | the light that a surface reflects toward the eye |
+//! | `layers` | the layers of OpenPBR |
+//! | `albedo` | the light that a GGX lobe reflects in all |
 //! | `lighting` | the sum over all lights |
 //! | `environment` | light from everywhere, and the background |
 //! | `display` | linear light to the colors of a screen |
 
+pub mod albedo;
 pub mod brdf;
 pub mod display;
+#[cfg(test)]
+mod energy;
 pub mod environment;
+pub mod layers;
 pub mod lighting;
+#[cfg(test)]
+mod lobes;
