@@ -1,5 +1,7 @@
 //! The program from outside: every command and exit code, its files and its messages.
 
+mod light;
+
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
@@ -151,6 +153,9 @@ fn what_is_not_understood_is_refused_with_a_reason() {
         ("--time", "nan", "finite"),
         ("--depth", "depth.jpg", ".exr or .png"),
         ("-o", "picture.bmp", ".png"),
+        ("--samples", "0", "1..=4096"),
+        ("--exposure", "99", "-20 to 20"),
+        ("--view-transform", "filmic", "none, agx, pbr_neutral"),
         ("--view", "heat", "shaded, steps, evaluations"),
     ] {
         let mut arguments = vec!["render", "scene.json", flag, value];
@@ -381,7 +386,7 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
     let place = Place::new();
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_isolith"))
         .current_dir(place.folder.path())
-        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192"])
+        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192", "--samples", "1"])
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::piped())
         .spawn()

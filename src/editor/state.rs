@@ -90,7 +90,8 @@ impl Default for EditorState {
 impl EditorState {
     /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
-        let ViewState { navigation, view_mode, show_grid, show_outline, size_px, is_navigating, .. } = &self.view;
+        let ViewState { navigation, view_mode, samples, show_grid, show_outline, size_px, is_navigating, .. } =
+            &self.view;
         ViewSettings {
             camera: navigation.camera(),
             size_px: *size_px,
@@ -98,6 +99,7 @@ impl EditorState {
             show_grid: *show_grid,
             show_outline: *show_outline,
             view_mode: *view_mode,
+            samples: *samples,
         }
     }
 

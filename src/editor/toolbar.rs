@@ -125,6 +125,7 @@ fn view_modes(state: &EditorState, ui: &mut Ui, chosen: &mut Option<Command>) {
             ui.set_min_width(190.0);
             *chosen = menu_entries(ui, state, Menu::Debug).or(*chosen);
         });
+        ui.menu_button("Samples", |ui| *chosen = menu_entries(ui, state, Menu::Samples).or(*chosen));
     });
 }
 

@@ -9,6 +9,7 @@
 //! | `operand`, `composition` | operands of folds, and their composition |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modifier_reach` | what modifiers read of their content, and how fine their patterns may be |
 //! | `modifier_table` | all facts about a kind of modifier, in one row |
 //! | `modify` | effects of modifiers on bounds and steps |
 //! | `moved` | the parameters of a component relative to a point near the eye |
@@ -78,6 +79,7 @@ mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
+mod modifier_reach;
 mod modifier_table;
 mod modify;
 mod moved;

@@ -89,4 +89,6 @@ pub enum Command {
     ShowMessages,
     /// Switch to this view mode.
     ShowLook(ViewMode),
+    /// Accumulate this many samples per pixel.
+    Samples(u32),
 }

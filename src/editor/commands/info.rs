@@ -26,6 +26,8 @@ pub enum Menu {
     ViewMode,
     /// View modes for debugging; a submenu of [`Menu::ViewMode`].
     Debug,
+    /// Samples per pixel; a submenu of [`Menu::ViewMode`].
+    Samples,
 }
 
 /// An icon of a command.
@@ -122,8 +124,8 @@ impl CommandInfo {
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
         match (self.menu, on) {
-            (Menu::ViewMode | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Menu::ViewMode | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Menu::ViewMode | Menu::Debug | Menu::Samples, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::ViewMode | Menu::Debug | Menu::Samples, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

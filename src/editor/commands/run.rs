@@ -65,6 +65,7 @@ impl Editor {
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
             Command::ShowLook(view_mode) => state.view.view_mode = view_mode,
+            Command::Samples(samples) => state.view.samples = samples,
         }
     }
 

@@ -62,8 +62,15 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = info.switch(|state, command| command == Command::ShowLook(state.view.view_mode));
         if matches!(view_mode, ViewMode::Slope | ViewMode::Nodes) { info.group() } else { info }
     }));
+    all.extend([1, 16, 64, 256, 1024].map(|samples| {
+        let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
+        CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
+            .switch(|state, command| command == Command::Samples(state.view.samples))
+    }));
     all
 }
+
+const SAMPLES: &str = "Smooth edges: samples per pixel that the viewport adds up while nothing changes";
 
 /// Whether the view mode shows the renderer's work rather than the scene.
 fn is_diagnostic(view_mode: ViewMode) -> bool {
