@@ -6,16 +6,17 @@
 #include "common/depth.wgsl"
 #include "common/screen.wgsl"
 #include "common/light.wgsl"
+#include "common/mesh_look.wgsl"
 
 @group(1) @binding(0) var<storage, read> lights: array<Light>;
 @group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
-// Material of each mesh, without its color.
+// Materials of the meshes, without what their textures change.
 @group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 // Of meshes.
 @group(2) @binding(2) var base_color_target: texture_2d<f32>;
-// Of fields: mixtures.
+// Of fields: mixtures. Of meshes: see `common/mesh_look.wgsl`.
 @group(2) @binding(3) var material_target: texture_2d<u32>;
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
@@ -58,16 +59,23 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
     var color = environment_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
-        var material = mixture_material(select(textureLoad(material_target, pixel, 0), vec4u(0u), is_mesh));
+        let stored = textureLoad(material_target, pixel, 0);
+        var material = mixture_material(select(stored, vec4u(0u), is_mesh));
+        var ambient = view.ambient;
         if is_mesh {
-            material = mesh_materials[visibility & ~MESH_BIT];
+            let surface = mesh_encoded_surface(stored);
+            material = mesh_materials[stored.x];
             material.base_color = textureLoad(base_color_target, pixel, 0).rgb;
+            material.metalness = surface.x;
+            material.roughness = surface.y;
+            material.emission = mesh_encoded_emission(stored);
+            ambient *= surface.z;
         }
         let normal = textureLoad(normal_target, pixel, 0).xyz;
         let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
-        color = lighting_surface(point, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));
+        color = lighting_surface(point, ambient, select(view.light_count, 0u, depth >= BACKGROUND));
     }
     let is_empty = view.transparent == 1u && depth >= BACKGROUND;
     return select(vec4f(color, 1.0), vec4f(0.0), is_empty);

@@ -9,8 +9,8 @@ use egui::TextureId;
 
 use super::samples::Samples;
 use crate::editor::{Editor, Message, Picture, ViewSettings};
-use crate::field::FlatScene;
 use crate::field::debug_view::{DepthRange, ViewMode};
+use crate::field::{FlatScene, Shading};
 use crate::mesh::TriangleMesh;
 use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;
@@ -36,6 +36,8 @@ pub(super) struct ViewportRenderer {
     textures: [Option<(TextureId, [u32; 2])>; 2],
     shown: Option<Slot>,
     request: Option<RenderRequest>,
+    /// The last scene, its shading, and what that makes of it.
+    shaded: Option<(Arc<FlatScene>, Shading, Arc<FlatScene>)>,
     in_flight: Option<(Frame, Instant)>,
     /// Samples of the complete picture.
     samples: Samples,
@@ -108,6 +110,7 @@ impl ViewportRenderer {
             textures: [None, None],
             shown: None,
             request: None,
+            shaded: None,
             in_flight: None,
             samples: Samples::default(),
             wanted: 1,
@@ -159,7 +162,7 @@ impl ViewportRenderer {
         // Not inputs of the picture: the end of a drag and the number of samples change nothing in it.
         let view = ViewSettings { navigating: false, samples: 0, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
-        let flat = editor.flat().clone();
+        let flat = self.shaded(editor.flat(), view.shading);
         let meshes = flat.known_meshes(editor.meshes());
         let addresses = meshes.iter().map(|m| m.as_ref().map(|m| Arc::as_ptr(m) as usize)).collect();
         let request = RenderRequest { view, flat, meshes: addresses, outline };
@@ -206,6 +209,22 @@ impl ViewportRenderer {
             self.painting_since = Some(Instant::now());
         }
         Ok(())
+    }
+
+    /// The scene in this shading: the same arrays until one of them changes.
+    fn shaded(&mut self, flat: &Arc<FlatScene>, shading: Shading) -> Arc<FlatScene> {
+        if shading == Shading::Rendered {
+            self.shaded = None;
+            return Arc::clone(flat);
+        }
+        match &self.shaded {
+            Some((of, by, shown)) if Arc::ptr_eq(of, flat) && *by == shading => Arc::clone(shown),
+            _ => {
+                let shown = flat.shaded(shading);
+                self.shaded = Some((Arc::clone(flat), shading, Arc::clone(&shown)));
+                shown
+            }
+        }
     }
 
     /// Whether the full picture is complete and only the grid, the outline or the view mode differ, and the hits at

@@ -17,7 +17,7 @@ use super::text::{complain, say};
 use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::mesh_rays::Meshes;
 use crate::field::reference::image::render_reference;
-use crate::field::{FlatScene, GBuffer, Warning};
+use crate::field::{FlatScene, GBuffer, Shading, Warning};
 use crate::geometry::Camera;
 use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
@@ -64,6 +64,9 @@ pub struct RenderArguments {
     view: ViewMode,
     #[command(flatten)]
     film: FilmArguments,
+    /// How the scene is lit: rendered by its own lights, material by a studio light, or solid, everything in clay
+    #[arg(long, value_name = "NAME", default_value = "rendered", value_parser = Shading::from_str)]
+    shading: Shading,
     /// Render the reference: on the processor, in double precision, every ray to certainty. Slow
     #[arg(long, alias = "truth")]
     reference: bool,
@@ -95,6 +98,7 @@ impl RenderArguments {
             node_id: None,
             view: ViewMode::Shaded,
             film: FilmArguments::default(),
+            shading: Shading::Rendered,
             reference: false,
             strict: false,
             json: false,
@@ -187,6 +191,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
         return Err(Failure::Canceled);
     }
     let camera = choose_camera(&flat, &meshes, arguments)?;
+    let flat = flat.shaded(arguments.shading);
     let buffers = if arguments.reference {
         reference_picture(arguments, film, scene, &flat, &meshes, &camera)?
     } else {

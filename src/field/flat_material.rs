@@ -43,12 +43,6 @@ pub struct FlatMaterial {
 }
 
 impl FlatMaterial {
-    /// The material of a mesh that keeps its file's colors; the colors themselves stand in a target.
-    pub fn of_file() -> Self {
-        let model = ReflectionModel::BlinnPhong { specular: 0.2, shininess: 32.0 };
-        Self::new(&Material { model, base_color: [1.0; 3], ..Material::default() })
-    }
-
     /// The material as the GPU reads it.
     pub fn new(material: &Material) -> Self {
         let color = |c: [f64; 3], by: f64| c.map(|v| (v * by) as f32);

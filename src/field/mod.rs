@@ -27,6 +27,7 @@
 //! | `meshes` | the loaded meshes of a scene |
 //! | `mesh_rays` | intersections of rays with meshes |
 //! | `view` | the default view of a scene |
+//! | `shading` | the scene in clay, or under a studio light |
 //! | `debug_view` | view modes besides shading, and their colors |
 //!
 //! # Example
@@ -62,6 +63,7 @@ mod blends;
 mod budget;
 mod collect;
 mod composition;
+pub mod coverage;
 mod cuts;
 pub mod debug_view;
 mod emit;
@@ -76,6 +78,7 @@ mod leaf;
 pub mod light;
 mod lights;
 mod lower_bound;
+mod mesh_material;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
@@ -89,6 +92,7 @@ mod prepare;
 pub mod reference;
 mod reflatten;
 pub mod scene_eval;
+mod shading;
 mod stack;
 pub mod standpoint;
 mod survey;
@@ -104,6 +108,7 @@ pub use flat_material::FlatMaterial;
 pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
+pub use mesh_material::mesh_material;
 pub use modifier_table::{
     changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
 };
@@ -112,5 +117,6 @@ pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;
 pub use reflatten::Flattener;
+pub use shading::Shading;
 pub use survey::is_quick;
 pub use tape::*;

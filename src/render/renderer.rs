@@ -243,15 +243,15 @@ impl Renderer {
         };
         let _span = tracing::debug_span!("upload").entered();
         self.gpu.check()?;
-        let Gpu { device, queue, .. } = &self.gpu;
+        let (Gpu { device, queue, .. }, materials) = (&self.gpu, mesh_materials::MeshMaterials::new(flat, meshes));
         self.resources.resize(device, slot, size, &overlay);
         let standpoints = Standpoints::new(flat, camera, size);
         let (scene_is_new, template_rows) =
             self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
-        if self.resources.upload(&self.gpu, flat, camera, size, &plan) || scene_is_new {
+        if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new {
             self.resources.forget_groups();
         }
-        self.passes.mesh.prepare(device, queue, flat, meshes, camera, size);
+        self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }

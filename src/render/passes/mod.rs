@@ -6,6 +6,8 @@ pub mod field;
 pub mod frame_pass;
 pub mod hiz;
 pub mod mesh;
+mod mesh_instance;
+mod mesh_textures;
 pub mod overlay;
 pub mod overlay_settings;
 pub mod shade;

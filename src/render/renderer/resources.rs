@@ -5,7 +5,7 @@ use bytemuck::Zeroable as _;
 use wgpu::BindGroup;
 
 use super::frame::Frame;
-use super::mesh_materials::mesh_materials;
+use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::slot::Slot;
@@ -152,14 +152,22 @@ impl FrameResources {
     }
 
     /// Uploads changed data and reserves space for the plan. Returns whether a buffer was replaced.
-    pub fn upload(&mut self, gpu: &Gpu, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &FramePlan) -> bool {
+    pub fn upload(
+        &mut self,
+        gpu: &Gpu,
+        flat: &FlatScene,
+        meshes: &MeshMaterials,
+        camera: &Camera,
+        size: [u32; 2],
+        plan: &FramePlan,
+    ) -> bool {
         let Gpu { device, queue, .. } = gpu;
         let lights = gpu_lights(flat, camera);
         self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
-            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&mesh_materials(flat))),
+            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
             self.set_work(gpu, &plan.dispatches),
             self.subtiles.reserve(device, bytes_of_subtiles(plan.subtiles.into()) as usize),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
