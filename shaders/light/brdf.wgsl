@@ -41,20 +41,20 @@ fn brdf_point(material: FlatMaterial, position: vec3f, normal: vec3f, to_eye: ve
 // faces the light gives 1.
 fn brdf_direct(point: ShadingPoint, to_light: vec3f) -> vec3f {
     let toward = to_light + point.to_eye;
-    let halfway = toward / max(length(toward), 1e-6);
-    let phong = brdf_phong(point, to_light, halfway);
+    let scale = max(length(toward), 1e-6);
+    let phong = brdf_phong(point, to_light, max(dot(point.normal, toward), 0.0) / scale);
     if LAYERS {
-        let layers = layers_direct(point.layers, point.normal, point.to_eye, to_light, halfway);
+        let layers = layers_direct(point.layers, point.normal, point.to_eye, to_light, toward / scale);
         return phong + (1.0 - point.material.phong_weight) * layers;
     }
     return phong;
 }
 
-// The part by Blinn and Phong. A mixture holds the highlight and its exponent times the weight.
-fn brdf_phong(point: ShadingPoint, to_light: vec3f, halfway: vec3f) -> vec3f {
+// The part by Blinn and Phong; `alignment` is the cosine between normal and halfway direction. A
+// mixture holds the highlight and its exponent times the weight.
+fn brdf_phong(point: ShadingPoint, to_light: vec3f, alignment: f32) -> vec3f {
     let material = point.material;
     let facing = max(dot(point.normal, to_light), 0.0);
-    let alignment = max(dot(point.normal, halfway), 0.0);
     let exponent = max(material.phong_shininess / max(material.phong_weight, 1e-4), 1.0);
     let highlight = material.phong_specular * pow(alignment, exponent);
     return (material.base_color * material.phong_weight + highlight) * facing;

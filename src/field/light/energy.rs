@@ -15,13 +15,13 @@ use isolith_scene::Material;
 const SAMPLES: u32 = 80;
 
 /// The direction to the eye at this cosine from the normal, which is Z.
-fn eye(cosine: f64) -> DVec3 {
+pub(super) fn eye(cosine: f64) -> DVec3 {
     DVec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine)
 }
 
 /// The light that arrives at the eye under uniform light of 1: the integral of `reflected` / π over the hemisphere, by
 /// samples of both lobes and of the cosine, each weighted by the sum of the densities (Veach 1997).
-fn energy(to_eye: DVec3, alphas: [f64; 2], reflected: impl Fn(DVec3) -> DVec3) -> DVec3 {
+pub(super) fn energy(to_eye: DVec3, alphas: [f64; 2], reflected: impl Fn(DVec3) -> DVec3) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let mut add = |to_light: DVec3| {
         if to_light.z > 0.0 {

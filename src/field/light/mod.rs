@@ -19,3 +19,5 @@ pub mod layers;
 pub mod lighting;
 #[cfg(test)]
 mod lobes;
+#[cfg(test)]
+mod walk;
