@@ -19,6 +19,12 @@
 @group(2) @binding(3) var material_target: texture_2d<u32>;
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
+#if TEXTURES
+@group(3) @binding(0) var<storage, read> placed_textures: array<GpuPlacedTextures>;
+@group(3) @binding(1) var<storage, read> texture_sets: array<TextureSet>;
+@group(3) @binding(2) var texels: texture_storage_2d<r32uint, read>;
+#end
+
 #include "light/material.wgsl"
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
@@ -32,12 +38,20 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     var color = environment_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
+#if TEXTURES
+        let surface_normal = textureLoad(normal_target, pixel, 0).xyz;
+        mixture_point = textured_point(direction, depth, surface_normal, view.footprint);
+        mixture_bend = vec3f(0.0);
+#end
         var material = mixture_material(select(textureLoad(material_target, pixel, 0), vec4u(0u), is_mesh));
         if is_mesh {
             material = mesh_materials[visibility & ~MESH_BIT];
             material.base_color = textureLoad(base_color_target, pixel, 0).rgb;
         }
-        let normal = textureLoad(normal_target, pixel, 0).xyz;
+        var normal = textureLoad(normal_target, pixel, 0).xyz;
+#if TEXTURES
+        normal = textured_normal(normal, mixture_bend);
+#end
         let point = ShadingPoint(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.

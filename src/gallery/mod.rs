@@ -19,6 +19,7 @@ mod random_groups;
 mod scene_builder;
 mod shapes;
 mod showcase;
+mod textures;
 mod write;
 
 use isolith_scene::Scene;
@@ -56,6 +57,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("fractals", fractals::scene()),
         ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
+        ("textures", textures::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -66,7 +66,8 @@ impl SceneBuilder {
         })
     }
 
-    fn material(&mut self, material: Material) -> MaterialId {
+    /// Any material, under a new id.
+    pub fn material(&mut self, material: Material) -> MaterialId {
         let id = self.scene.next_material_id();
         self.scene.insert_material(Material { id, ..material }).expect("the id is new");
         id

@@ -29,6 +29,7 @@ mod error;
 pub mod file;
 mod heights;
 mod image_budget;
+mod image_file;
 mod light;
 pub mod limits;
 mod material;
@@ -39,6 +40,9 @@ mod param_path;
 mod params;
 mod shape;
 mod table;
+mod texture;
+mod texture_image;
+mod texture_source;
 mod whole;
 
 pub use attached::Attached;
@@ -60,3 +64,6 @@ pub use params::{
 };
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
+pub use texture::{NormalTexture, TextureSpace, Textures};
+pub use texture_image::{ColorSpace, Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_source::{ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap};

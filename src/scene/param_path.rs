@@ -233,7 +233,7 @@ impl ParamPath {
                 if !self.set_value(&mut material, value.clone()) {
                     return Err(refusal(&material));
                 }
-                Ok(Changed::Material(material))
+                Ok(Changed::Material(Box::new(material)))
             }
             ParamOwner::Environment => {
                 let mut environment = scene.environment;
@@ -300,7 +300,7 @@ pub enum Changed {
     /// A node.
     Node(Box<Node>),
     /// A material.
-    Material(Material),
+    Material(Box<Material>),
     /// The environment.
     Environment(Environment),
 }

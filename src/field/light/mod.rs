@@ -5,9 +5,11 @@
 //! | `brdf` | the light that a surface reflects toward the eye |
 //! | `lighting` | the sum over all lights |
 //! | `environment` | light from everywhere, and the background |
+//! | `texture` | colors and values that vary over a surface |
 //! | `display` | linear light to the colors of a screen |
 
 pub mod brdf;
 pub mod display;
 pub mod environment;
 pub mod lighting;
+pub mod texture;

@@ -66,6 +66,11 @@ impl<'a> Recorder<'a> {
         [&self.groups.view, &self.groups.own[self.current as usize][own]]
     }
 
+    /// How many own bind groups the pass has.
+    pub fn own_groups(&self) -> usize {
+        self.groups.own[self.current as usize].len()
+    }
+
     /// The bind group of the view.
     pub fn view(&self) -> &'a wgpu::BindGroup {
         &self.groups.view
