@@ -88,7 +88,7 @@ impl SceneBuilder {
         self.material(Material { model, ..Material::new(MaterialId(0), name, base_color) })
     }
 
-    /// Adds a material.
+    /// Any material, under a new id.
     pub fn material(&mut self, material: Material) -> MaterialId {
         let id = self.scene.next_material_id();
         self.scene.insert_material(Material { id, ..material }).expect("the id is new");

@@ -6,13 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use wgpu::{BindGroup, BindGroupLayout, RenderPipeline, ShaderModule};
 
-use super::display::SumBindings;
 use super::frame_pass::{Building, FramePass};
-use super::shade_features::{ShadeFeatures, ShadeOutput};
+use super::shade_features::{ShadeExtras, ShadeFeatures, ShadeOutput};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
-use crate::resources::accumulation::SUM_FORMAT;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
 use isolith_wgsl::ShaderError;
@@ -43,11 +41,17 @@ pub struct ShadePass {
     view: BindGroupLayout,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
-    sum: BindGroupLayout,
     /// The sources that pictures have needed so far.
     modules: HashMap<ShadeFeatures, ShaderModule>,
     /// Their pipelines, built on first use.
-    pipelines: Mutex<HashMap<(ShadeFeatures, ShadeOutput), RenderPipeline>>,
+    pipelines: Mutex<HashMap<(ShadeFeatures, ShadeOutput), ShadePipeline>>,
+}
+
+/// A pipeline with the layout of its group 3.
+#[derive(Clone, Debug)]
+struct ShadePipeline {
+    pipeline: RenderPipeline,
+    extras_layout: BindGroupLayout,
 }
 
 impl FramePass for ShadePass {
@@ -56,7 +60,6 @@ impl FramePass for ShadePass {
             view: layouts.view.clone(),
             lights: LightBindings::layout(device),
             targets: ShadeBindings::layout(device),
-            sum: SumBindings::layout(device),
             modules: HashMap::new(),
             pipelines: Mutex::default(),
         })
@@ -83,23 +86,22 @@ impl FramePass for ShadePass {
         let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
         let device = &recorder.gpu.device;
         let sampled = frame.sampling.zip(recorder.accumulation);
-        let sum = sampled.map(|(sampling, accumulation)| {
-            SumBindings { sum: accumulation.sum_before(sampling.index).binding() }.bind(device, &self.sum)
-        });
+        let extras = ShadeExtras {
+            sum: sampled.map(|(sampling, accumulation)| accumulation.sum_before(sampling.index).binding()),
+            textures: recorder.resources.textures(),
+        };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),
             None => (ShadeOutput::Picture(frame.view_transform), &targets.color),
         };
-        let pipeline = self.pipeline(device, frame.shade_features, output);
+        let ShadePipeline { pipeline, extras_layout } = self.pipeline(device, frame.shade_features, output);
+        let extras = extras.bind(device, &extras_layout);
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
         let mut pass = screen_pass(encoder, Pass::Shade.label(), &target.view, stamps);
         pass.set_pipeline(&pipeline);
-        for (at, group) in (0..).zip([view, lights, textures]) {
+        for (at, group) in (0..).zip([view, lights, textures, &extras]) {
             pass.set_bind_group(at, group, &[]);
-        }
-        if let Some(sum) = &sum {
-            pass.set_bind_group(3, sum, &[]);
         }
         for DispatchParams { origin, end, .. } in
             frame.plan.dispatches[dispatches].iter().map(|dispatch| dispatch.params)
@@ -125,17 +127,16 @@ impl ShadePass {
     }
 
     /// The pipeline; the frame has prepared its features.
-    fn pipeline(&self, device: &wgpu::Device, features: ShadeFeatures, output: ShadeOutput) -> RenderPipeline {
+    fn pipeline(&self, device: &wgpu::Device, features: ShadeFeatures, output: ShadeOutput) -> ShadePipeline {
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         let build = || {
-            let mut groups = vec![&self.view, &self.lights, &self.targets];
-            let mut format = wgpu::TextureFormat::Rgba8Unorm;
-            if output == ShadeOutput::Sum {
-                groups.push(&self.sum);
-                format = SUM_FORMAT;
-            }
+            let extras_layout = features.extras_layout(device, output);
+            let groups = [&self.view, &self.lights, &self.targets, &extras_layout];
             let layout = pipeline_layout(device, Pass::Shade.label(), &groups);
-            screen_pipeline_to(format, device, &self.modules[&features], output.entry_point(), &layout, None)
+            let format = output.format();
+            let module = &self.modules[&features];
+            let pipeline = screen_pipeline_to(format, device, module, output.entry_point(), &layout, None);
+            ShadePipeline { pipeline, extras_layout }
         };
         pipelines.entry((features, output)).or_insert_with(build).clone()
     }

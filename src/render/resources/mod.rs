@@ -6,4 +6,5 @@ pub mod hierarchy;
 pub mod layouts;
 pub mod tape_texture;
 pub mod targets;
+pub mod texture_resources;
 pub mod uniforms;

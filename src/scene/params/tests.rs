@@ -64,7 +64,7 @@ fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, cra
     let mut scene = scene.clone();
     match path.changed(&scene, value)? {
         Changed::Node(node) => scene.replace(*node)?,
-        Changed::Material(material) => scene.replace_material(material)?,
+        Changed::Material(material) => scene.replace_material(*material)?,
         Changed::Environment(environment) => scene.environment = environment,
         Changed::Display(display) => scene.display = display,
     }
