@@ -32,16 +32,26 @@ pub(super) fn check(nodes: &[Arc<Node>], old: Option<&Node>, new: &[Node]) -> Re
         return Ok(());
     }
     let others = nodes.iter().filter(|node| old.is_none_or(|old| old.id != node.id)).flat_map(|node| images(node));
+    if pixels(others.chain(added)) > MAX_SCENE_PIXELS {
+        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
+    }
+    Ok(())
+}
+
+/// The pixels of images, each file counted once.
+fn pixels(images: impl Iterator<Item = Attachment<Heights>>) -> u64 {
     let mut counted: Vec<Attachment<Heights>> = Vec::new();
     let mut pixels = 0;
-    for image in others.chain(added) {
+    for image in images {
         if !counted.iter().any(|known| known.is_same(&image)) {
             pixels += image.content().map_or(0, |heights| heights.pixels);
             counted.push(image);
         }
     }
-    if pixels > MAX_SCENE_PIXELS {
-        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
-    }
-    Ok(())
+    pixels
+}
+
+/// The pixels of all images of these nodes.
+pub(super) fn used(nodes: &[Arc<Node>]) -> u64 {
+    pixels(nodes.iter().flat_map(|node| images(node)))
 }
