@@ -89,6 +89,14 @@ pub(super) fn check_material(
 }
 
 fn check_sum(images: impl Iterator<Item = Attached>) -> Result<(), SceneError> {
+    if sum(images) > MAX_SCENE_PIXELS {
+        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
+    }
+    Ok(())
+}
+
+/// The pixels of images, each file counted once.
+fn sum(images: impl Iterator<Item = Attached>) -> u64 {
     let mut counted: Vec<Attached> = Vec::new();
     let mut sum = 0;
     for image in images {
@@ -97,8 +105,11 @@ fn check_sum(images: impl Iterator<Item = Attached>) -> Result<(), SceneError> {
             counted.push(image);
         }
     }
-    if sum > MAX_SCENE_PIXELS {
-        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
-    }
-    Ok(())
+    sum
+}
+
+/// The pixels of all images of these nodes and materials.
+pub(super) fn used(nodes: &[Arc<Node>], materials: &[Arc<Material>]) -> u64 {
+    let of_materials = materials.iter().flat_map(|material| images_of_material(material));
+    sum(nodes.iter().flat_map(|node| images(node)).chain(of_materials))
 }

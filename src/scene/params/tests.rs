@@ -276,3 +276,52 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
     assert_eq!(names(&Group::default()), group);
 }
+
+/// A table with parameters that old files do not have.
+#[allow(dead_code, reason = "a sample uses only what it shows")]
+mod sample {
+    use schemars::JsonSchema;
+    use serde::Serialize;
+
+    use crate::limits::SIZE;
+    use crate::params::param_kinds;
+
+    param_kinds! {
+        /// A sample.
+        #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+        pub enum Sample;
+
+        /// Its kinds.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum SampleKind;
+
+        /// A ring.
+        Ring = "Ring" {
+            /// Its radius.
+            radius: f64 = 1.0, SIZE;
+            /// Came later.
+            #[serde(default)]
+            thickness: f64 = 0.25, SIZE;
+            /// Came later, too.
+            #[serde(default)]
+            sides: u32 = 6, SIZE;
+        }
+    }
+}
+
+#[test]
+fn a_parameter_that_a_file_does_not_have_is_its_default() {
+    use sample::Sample;
+    let read = |text: &str| serde_json::from_str::<Sample>(text).map_err(|error| error.to_string());
+    let old = read(r#"{"type": "ring", "radius": 2.0}"#);
+    assert_eq!(old, Ok(Sample::Ring { radius: 2.0, thickness: 0.25, sides: 6 }));
+    let new = read(r#"{"type": "ring", "radius": 2.0, "thickness": 0.0, "sides": 3}"#);
+    assert_eq!(new, Ok(Sample::Ring { radius: 2.0, thickness: 0.0, sides: 3 }));
+    for (wrong, part) in [
+        (r#"{"type": "ring"}"#, "missing field `radius`"),
+        (r#"{"type": "ring", "radius": 2.0, "thickness": null}"#, "invalid type"),
+        (r#"{"type": "ring", "radius": 2.0, "width": 1.0}"#, "unknown field `width`"),
+    ] {
+        assert!(read(wrong).is_err_and(|error| error.contains(part)), "{wrong}");
+    }
+}
