@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{
-    BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamOwner, ParamPath, Part, RadiusUnit,
-    Scene, Shape, ShapeKind, check,
+    BlendKernel, BlendOverride, CameraNode, ColorTexture, Environment, Group, HeightTexture, Light, LightKind,
+    Material, MaterialId, MeshNode, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, NormalTexture, Object,
+    Operator, ParamOwner, ParamPath, Part, RadiusUnit, RoughnessTexture, Scene, Shape, ShapeKind, Textures, check,
 };
 
 /// A node of each kind, and objects with every shape and every modifier.
@@ -32,7 +32,28 @@ fn scene() -> Scene {
         let end = scene.nodes().len();
         scene.insert(None, end, node).expect("valid");
     }
+    for material in textured() {
+        scene.insert_material(Material { id: scene.next_material_id(), ..material }).expect("valid");
+    }
     scene
+}
+
+/// Materials with every kind of texture.
+fn textured() -> Vec<Material> {
+    let normals: Vec<_> = NormalTexture::variants().into_iter().map(|(normal, ..)| normal).collect();
+    let colors = ColorTexture::variants().into_iter().map(|(color, ..)| color);
+    let roughnesses = RoughnessTexture::variants().into_iter().map(|(roughness, ..)| roughness);
+    let heights = HeightTexture::variants().into_iter().map(|(height, ..)| height);
+    let all = colors.zip(roughnesses).zip(heights).enumerate();
+    all.map(|(i, ((new_color, new_roughness), new_height))| {
+        let mut textures = Textures::triplanar();
+        if let Textures::Triplanar { color, roughness, normal, height, .. } = &mut textures {
+            (*color, *roughness, *height) = (new_color, new_roughness, new_height);
+            *normal = normals[i % normals.len()].clone();
+        }
+        Material { textures, ..Material::default() }
+    })
+    .collect()
 }
 
 /// Another value of the same type; passes the checks wherever one can.
