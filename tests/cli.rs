@@ -291,7 +291,7 @@ fn without_a_driver_it_says_so() {
 fn check_counts_what_is_there() {
     let place = Place::new();
     let report = place.run(&["check", "scene.json", "--json"]).succeeded().object();
-    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "limits", "warnings"];
+    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "clips", "limits", "warnings"];
     assert_eq!(keys(&report), all);
     assert_eq!(report["cameras"], serde_json::json!(["front", "above"]));
     assert_eq!((&report["nodes"], &report["components"], &report["tree_depth"]), (&5.into(), &2.into(), &2.into()));

@@ -2,6 +2,7 @@
 
 mod asset;
 mod broken;
+mod clips;
 mod escapes;
 mod gallery;
 mod hostile;
