@@ -5,6 +5,7 @@ mod broken;
 mod clips;
 mod escapes;
 mod gallery;
+mod gpu_rays;
 mod hostile;
 mod mutated;
 mod poses;

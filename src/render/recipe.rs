@@ -96,8 +96,14 @@ mod tests {
     use isolith_wgsl::{FILES, assemble_plain};
 
     /// Files in `shaders/` that belong to no pass of a frame.
-    const NO_PASSES: &[&str] =
-        &["driver.wgsl", "probe.wgsl", "probe_lookahead.wgsl", "probe_scene.wgsl", "probe_surface.wgsl"];
+    const NO_PASSES: &[&str] = &[
+        "driver.wgsl",
+        "probe.wgsl",
+        "probe_lookahead.wgsl",
+        "probe_mesh_rays.wgsl",
+        "probe_scene.wgsl",
+        "probe_surface.wgsl",
+    ];
 
     #[test]
     fn every_pass_has_a_label_and_a_file_with_an_entry_point() {

@@ -4,6 +4,7 @@ pub mod adapter;
 mod device;
 pub mod driver;
 mod error;
+pub mod mesh_ray_probe;
 pub mod probe;
 pub mod readback;
 pub mod scene_probe;
