@@ -128,11 +128,13 @@ fn mesh_placed(vertex: Vertex, index: u32) -> Varying {
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
     // `right` and `up` span half the picture at distance 1; their squares cancel these lengths.
+    let depth = dot(position, view.forward) + instance.ray_origin_depth;
+    let jitter = view.jitter / vec2f(f32(view.width), f32(view.height)) * (2.0 * depth);
     let clip = vec4f(
-        dot(position, view.right) / dot(view.right, view.right),
-        dot(position, view.up) / dot(view.up, view.up),
+        dot(position, view.right) / dot(view.right, view.right) - jitter.x,
+        dot(position, view.up) / dot(view.up, view.up) + jitter.y,
         view.near * NEAR_SHARE,
-        dot(position, view.forward) + instance.ray_origin_depth,
+        depth,
     );
     let place = mesh_place(instance.texture_x, instance.texture_y, vertex.uv);
     return Varying(clip, position, normal, vertex.color, place, index);
@@ -205,7 +207,7 @@ fn mesh_normal(in: Varying) -> vec3f {
 
 // The opacity above which the fragment covers this sample of its pixel.
 fn mesh_threshold(in: Varying) -> f32 {
-    return coverage_threshold(vec2u(in.clip.xy), 0u, in.vertex + coverage_hash(instance.visibility));
+    return coverage_threshold(vec2u(in.clip.xy), view.sample_index, in.vertex + coverage_hash(instance.visibility));
 }
 
 // `surface` is metalness, roughness and the share of the ambient light that arrives.

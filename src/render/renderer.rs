@@ -10,8 +10,10 @@ mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
+mod samples;
 pub(super) mod scene;
 mod slot;
+mod still;
 pub(super) mod timings;
 mod unfinished;
 
@@ -47,6 +49,7 @@ use recorder::{Recorder, meet};
 use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 pub use slot::Slot;
+pub use still::Film;
 pub use timings::PassTime;
 use timings::PassTimings;
 
@@ -403,41 +406,6 @@ impl Renderer {
             }
         }
         Ok(false)
-    }
-
-    /// Renders a whole scene. Between dispatches it calls `progress` with the fraction that is done; `progress` returns
-    /// whether to continue.
-    pub fn render(
-        &mut self,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
-    }
-
-    /// Renders with another view mode. View modes that show counts need a renderer that counts.
-    pub fn render_as(
-        &mut self,
-        view_mode: ViewMode,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
-        while !frame.is_done() {
-            if !progress(frame.progress()) {
-                return Err(RenderError::Canceled);
-            }
-            self.advance(&mut frame, Duration::ZERO)?;
-        }
-        progress(1.0);
-        Ok((self.read(&frame)?, self.unfinished_rays(&frame)?))
     }
 
     /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the

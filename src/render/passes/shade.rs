@@ -1,15 +1,19 @@
 //! Pass `shade`: lighting of the hits, and the background.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
-use wgpu::{BindGroup, BindGroupLayout};
+use wgpu::{BindGroup, BindGroupLayout, RenderPipeline};
 
+use super::display::SumBindings;
 use super::frame_pass::{Building, FramePass};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
+use crate::resources::accumulation::SUM_FORMAT;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
+use isolith_scene::ViewTransform;
 use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
@@ -35,10 +39,22 @@ bindings! {
 /// The pass.
 #[derive(Debug)]
 pub struct ShadePass {
-    pipeline: wgpu::RenderPipeline,
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    /// Layout of [`Self::sample`].
+    sample_layout: wgpu::PipelineLayout,
+    /// For pictures of a single sample, by view transform; built on first use.
+    pipelines: [OnceLock<RenderPipeline>; ViewTransform::ALL.len()],
+    /// For one of several samples.
+    sample: OnceLock<RenderPipeline>,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
+    sum: BindGroupLayout,
 }
+
+/// Entry points by view transform.
+const ENTRY_POINTS: [&str; ViewTransform::ALL.len()] =
+    ["shade_fragment", "shade_agx_fragment", "shade_neutral_fragment"];
 
 impl FramePass for ShadePass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
@@ -47,9 +63,11 @@ impl FramePass for ShadePass {
             label: Some(Pass::Shade.label()),
             source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
         });
+        let sum = SumBindings::layout(device);
         let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
-        let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
-        Ok(Self { pipeline, lights, targets })
+        let sample_layout = pipeline_layout(device, "shade sample", &[&layouts.view, &lights, &targets, &sum]);
+        let (pipelines, sample) = (Default::default(), OnceLock::new());
+        Ok(Self { module, layout, sample_layout, pipelines, sample, lights, targets, sum })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -71,10 +89,22 @@ impl FramePass for ShadePass {
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
         let (frame, targets) = (recorder.frame, recorder.targets);
         let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
+        let device = &recorder.gpu.device;
+        let sampled = frame.sampling.zip(recorder.accumulation);
+        let sum = sampled.map(|(sampling, accumulation)| {
+            SumBindings { sum: accumulation.sum_before(sampling.index).binding() }.bind(device, &self.sum)
+        });
+        let (pipeline, target) = match sampled {
+            Some((sampling, accumulation)) => (self.sample(device), accumulation.sum(sampling.index)),
+            None => (self.single(device, frame.view_transform), &targets.color),
+        };
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
-        let mut pass = screen_pass(encoder, Pass::Shade.label(), &targets.color.view, stamps);
-        pass.set_pipeline(&self.pipeline);
+        let mut pass = screen_pass(encoder, Pass::Shade.label(), &target.view, stamps);
+        pass.set_pipeline(pipeline);
+        if let Some(sum) = &sum {
+            pass.set_bind_group(3, sum, &[]);
+        }
         for (at, group) in (0..).zip([view, lights, textures]) {
             pass.set_bind_group(at, group, &[]);
         }
@@ -84,5 +114,18 @@ impl FramePass for ShadePass {
             pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
             pass.draw(0..3, 0..1);
         }
+    }
+}
+
+impl ShadePass {
+    fn single(&self, device: &wgpu::Device, transform: ViewTransform) -> &RenderPipeline {
+        let at = transform as usize;
+        self.pipelines[at].get_or_init(|| screen_pipeline(device, &self.module, ENTRY_POINTS[at], &self.layout, None))
+    }
+
+    fn sample(&self, device: &wgpu::Device) -> &RenderPipeline {
+        let entry_point = "shade_sample_fragment";
+        let build = || screen_pipeline_to(SUM_FORMAT, device, &self.module, entry_point, &self.sample_layout, None);
+        self.sample.get_or_init(build)
     }
 }
