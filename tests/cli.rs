@@ -353,7 +353,7 @@ fn check_lists_every_parameter_with_unit_limits_and_default() {
 fn check_warns_about_meshes_that_are_missing() {
     let place = Place::new();
     let mut scene = sample();
-    let mesh = NodeKind::Mesh(MeshNode { path: "no.glb".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("no.glb"));
     scene.insert(None, 0, Node::new("statue", mesh)).expect("the scene has room");
     place.write("mesh.json", &scene);
     let report = place.run(&["check", "mesh.json", "--json"]).succeeded().object();
