@@ -39,10 +39,10 @@ const MAX_MESH_VISITS: u32 = 12000u;
 // The depth of a hierarchy is below this: `src/mesh/bvh.rs`.
 const MESH_STACK: u32 = 80u;
 
-@group(3) @binding(3) var<storage, read> ray_meshes: array<RayMesh>;
-// Nodes of two words: lower corner and link; upper corner and count. Triangles of three: corner and
-// number; first edge, and 1 if it stops rays; second edge.
-@group(3) @binding(4) var<storage, read> mesh_ray_words: array<vec4u>;
+// The placed meshes, of four words each, up to one of the number NO_MESH. Then nodes of two words:
+// lower corner and link; upper corner and count. Triangles of three: corner and number; first edge,
+// and 1 if it stops rays; second edge.
+@group(3) @binding(3) var<storage, read> mesh_ray_words: array<vec4u>;
 
 // Never reset.
 var<private> mesh_visits: u32;
@@ -61,14 +61,26 @@ fn mesh_rays_blocked(ray: Ray, near: f32, far: f32) -> bool {
 // `is_any`: the first triangle found ends the search.
 fn mesh_rays_search(ray: Ray, near: f32, far: f32, is_any: bool) -> MeshRayHit {
     var best = MeshRayHit(far, NO_MESH, 0u, true);
-    // A buffer is never empty: without meshes it has one without nodes.
-    for (var i = 0u; i < arrayLength(&ray_meshes) && ray_meshes[i].index != NO_MESH; i++) {
-        best = mesh_rays_through(ray_meshes[i], ray, near, best, is_any);
+    for (var at = 0u; mesh_ray_words[at + 3u].z != NO_MESH; at += 4u) {
+        best = mesh_rays_through(mesh_rays_placed(at), ray, near, best, is_any);
         if is_any && best.mesh != NO_MESH {
             break;
         }
     }
     return best;
+}
+
+fn mesh_rays_placed(at: u32) -> RayMesh {
+    let last = mesh_ray_words[at + 3u];
+    return RayMesh(
+        bitcast<vec4f>(mesh_ray_words[at]),
+        bitcast<vec4f>(mesh_ray_words[at + 1u]),
+        bitcast<vec4f>(mesh_ray_words[at + 2u]),
+        last.x,
+        last.y,
+        last.z,
+        0u,
+    );
 }
 
 // The search through one mesh, for what is nearer than the best hit so far.

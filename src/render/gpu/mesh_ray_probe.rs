@@ -10,7 +10,7 @@ use crate::gpu::readback::read_words;
 use crate::renderer::RenderError;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{bind, compute_pipeline, entry, layout, read_storage, uniform, write_storage};
-use crate::resources::mesh_rays::MeshRayBuffers;
+use crate::resources::mesh_rays::MeshRayBuffer;
 use isolith_field::FlatScene;
 use isolith_geometry::Ray;
 use isolith_mesh::TriangleMesh;
@@ -52,7 +52,7 @@ impl MeshRayProbe {
         };
         let none = of("nothing", 0, &[]);
         let own = of("mesh ray probe", 0, &[uniform(false), read_storage(), write_storage()]);
-        let rays = of("mesh rays", 3, &[read_storage(), read_storage()]);
+        let rays = of("mesh rays", 3, &[read_storage()]);
         let groups = [&none, &none, &own, &rays];
         let text = assemble_plain("probe_mesh_rays.wgsl")?;
         let pipeline = compute_pipeline(device, "mesh ray probe", text, "probe_mesh_rays", &groups);
@@ -72,8 +72,8 @@ impl MeshRayProbe {
         [near, far]: [f64; 2],
     ) -> Result<Vec<ProbedMeshHit>, RenderError> {
         let Gpu { device, queue, .. } = gpu;
-        let mut buffers = MeshRayBuffers::new(device);
-        buffers.set(gpu, flat, meshes, origin);
+        let mut buffer = MeshRayBuffer::new(device);
+        buffer.set(gpu, flat, meshes, origin);
         let inputs: Vec<[f32; 4]> = rays
             .iter()
             .flat_map(|ray| {
@@ -90,14 +90,10 @@ impl MeshRayProbe {
         let none = bind(device, "nothing", &self.none, &[]);
         let own =
             bind(device, "mesh ray probe", &self.own, &[settings.binding(), queries.binding(), results.binding()]);
-        let entries: Vec<_> = (3..)
-            .zip(buffers.bindings())
-            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-            .collect();
         let of_rays = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("mesh rays"),
             layout: &self.rays,
-            entries: &entries,
+            entries: &[wgpu::BindGroupEntry { binding: 3, resource: buffer.binding() }],
         });
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         {

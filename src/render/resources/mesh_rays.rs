@@ -1,5 +1,5 @@
-//! Input of `shaders/scene/mesh_rays.wgsl`: the placed meshes, their hierarchies and their triangles. Only scenes with
-//! meshes whose light asks for rays create these resources.
+//! Input of `shaders/scene/mesh_rays.wgsl`: the placed meshes, their hierarchies and their triangles, in one buffer. Only
+//! passes that follow rays through meshes make it.
 
 use std::sync::Arc;
 
@@ -36,31 +36,36 @@ pub struct RayMesh {
 pub const MAX_MESH_VISITS: u32 = 12_000;
 /// The number of the entry that ends the list.
 const NO_MESH: u32 = u32::MAX;
-/// Words of a triangle and of a node.
+/// Bytes of a word, and words of a placed mesh, of a triangle and of a node.
+const WORD: u64 = 16;
+const MESH_WORDS: usize = 4;
 const TRIANGLE_WORDS: usize = 3;
 const NODE_WORDS: usize = 2;
 
-/// The buffers.
+/// The buffer.
 #[derive(Debug)]
-pub struct MeshRayBuffers {
-    meshes: SyncedBuffer,
+pub struct MeshRayBuffer {
     words: SyncedBuffer,
+    /// The list of placed meshes, as it stands at the beginning of the buffer.
+    placed: Vec<RayMesh>,
+    /// Room for entries of the list.
+    room: usize,
     /// The meshes whose triangles are held, each with its first node and its first triangle.
     held: Vec<(Arc<TriangleMesh>, [u32; 2])>,
     left_out: Vec<usize>,
 }
 
-impl MeshRayBuffers {
-    /// Empty buffers.
+impl MeshRayBuffer {
+    /// A buffer without meshes.
     pub fn new(device: &wgpu::Device) -> Self {
-        let [meshes, words] = ["meshes of rays", "triangles of rays"].map(|label| SyncedBuffer::storage(device, label));
-        Self { meshes, words, held: Vec::new(), left_out: Vec::new() }
+        let words = SyncedBuffer::storage(device, "meshes of rays");
+        Self { words, placed: Vec::new(), room: 0, held: Vec::new(), left_out: Vec::new() }
     }
 
     /// Uploads changed data. `meshes` is parallel to `flat.meshes`; `origin` is that of the queries. Returns whether
     /// bind groups must be rebuilt. Builds the hierarchy of a mesh on its first use.
     pub fn set(&mut self, gpu: &Gpu, flat: &FlatScene, meshes: &[Option<Arc<TriangleMesh>>], origin: DVec3) -> bool {
-        let geometry_is_new = self.hold(gpu, meshes);
+        let is_replaced = self.hold(gpu, meshes);
         let mut placed = Vec::new();
         self.left_out.clear();
         for (index, (placement, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
@@ -76,7 +81,11 @@ impl MeshRayBuffers {
             }
         }
         placed.push(RayMesh { index: NO_MESH, ..RayMesh::zeroed() });
-        self.meshes.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&placed)) || geometry_is_new
+        if self.placed != placed {
+            gpu.queue.write_buffer(self.words.buffer(), 0, bytemuck::cast_slice(&placed));
+            self.placed = placed;
+        }
+        is_replaced
     }
 
     /// The meshes, by their numbers in the scene, that the device has no room for: they stop no rays.
@@ -84,9 +93,9 @@ impl MeshRayBuffers {
         &self.left_out
     }
 
-    /// The two bindings.
-    pub fn bindings(&self) -> [wgpu::BindingResource<'_>; 2] {
-        [self.meshes.binding(), self.words.binding()]
+    /// The binding.
+    pub fn binding(&self) -> wgpu::BindingResource<'_> {
+        self.words.binding()
     }
 
     /// Holds the triangles of exactly these meshes, as far as they fit. Returns whether the buffer was replaced.
@@ -98,22 +107,30 @@ impl MeshRayBuffers {
             }
         }
         let limits = gpu.device.limits();
-        let room = (limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 16) as usize;
-        let mut used = 0;
+        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        // Buffers grow by powers of two.
+        let room = bytes.checked_ilog2().map_or(0, |bits| ((1_u64 << bits) / WORD) as usize);
+        let entries = (meshes.len() + 1).next_power_of_two();
+        let mut used = entries * MESH_WORDS;
         wanted.retain(|mesh| {
             let words = words_of(mesh);
             let fits = used + words <= room;
             used += if fits { words } else { 0 };
             fits
         });
-        let is_held = wanted.len() == self.held.len()
+        let is_held = self.room == entries
+            && wanted.len() == self.held.len()
             && wanted.iter().zip(&self.held).all(|(mesh, (held, _))| Arc::ptr_eq(mesh, held));
         if is_held {
             return false;
         }
-        let mut words: Vec<[u32; 4]> = Vec::with_capacity(used);
+        let mut words = vec![[0; 4]; entries * MESH_WORDS];
+        words.reserve(used - words.len());
         self.held = wanted.into_iter().map(|mesh| (mesh.clone(), write_words(mesh, &mut words))).collect();
-        self.words.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
+        (self.room, self.placed) = (entries, Vec::new());
+        let is_replaced = self.words.reserve(&gpu.device, words.len() * WORD as usize);
+        gpu.queue.write_buffer(self.words.buffer(), 0, bytemuck::cast_slice(&words));
+        is_replaced
     }
 }
 
