@@ -13,7 +13,7 @@ fn nodes() -> Vec<Node> {
     let light = |light| NodeKind::Light(Light { light, ..Light::default() });
     let mut all = vec![
         NodeKind::Group(Group::default()),
-        NodeKind::Mesh(MeshNode { path: "a.glb".into(), material: None }),
+        NodeKind::Mesh(MeshNode::new("a.glb")),
         NodeKind::Camera(CameraNode::default()),
     ];
     all.extend(LightKind::variants().into_iter().map(|(kind, ..)| light(kind)));
