@@ -11,6 +11,8 @@
 @group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
 // Material of each mesh, without its color.
 @group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
+// The environment, unless it is a gradient.
+@group(1) @binding(3) var<storage, read> environment_map: array<u32>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 // Of meshes.
@@ -29,7 +31,7 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let visibility = textureLoad(visibility_target, pixel, 0).x;
-    var color = environment_background(direction.y, view.sky, view.horizon);
+    var color = environment_background(direction, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
         var material = mixture_material(select(textureLoad(material_target, pixel, 0), vec4u(0u), is_mesh));

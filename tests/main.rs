@@ -16,6 +16,7 @@ mod embed;
 mod files;
 mod golden;
 mod gpu;
+mod lights;
 mod meshes;
 mod overlay;
 mod random_scene;

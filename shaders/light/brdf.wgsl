@@ -26,3 +26,34 @@ fn brdf_direct(point: ShadingPoint, to_light: vec3f) -> vec3f {
 fn brdf_ambient(point: ShadingPoint) -> vec3f {
     return point.material.base_color;
 }
+
+// Factors on the light of the environment.
+struct EnvironmentShares {
+    // On the light that arrives from all around.
+    diffuse: vec3f,
+    // On the light from about `direction`, blurred by `roughness`.
+    specular: vec3f,
+    roughness: f32,
+    direction: vec3f,
+    // The same of the coat.
+    coat: f32,
+    coat_roughness: f32,
+}
+
+// The shares of the light of the environment: a split sum, with the fit of Karis, "Physically based
+// shading on mobile" (2014).
+fn brdf_environment(point: ShadingPoint) -> EnvironmentShares {
+    let material = point.material;
+    let layered = 1.0 - material.phong_weight;
+    let dielectric = pow((material.ior - 1.0) / (material.ior + 1.0), 2.0) * material.specular_weight;
+    let facing = mix(material.specular_color * dielectric, material.base_color, material.metalness);
+    let cosine = max(dot(point.normal, point.to_eye), 0.0);
+    let r = material.roughness;
+    let smoothness = 1.0 - r;
+    let a = min(smoothness * smoothness, exp2(-9.28 * cosine)) * smoothness + 0.0425 - 0.0275 * r;
+    let scale = 1.04 - 0.572 * r - 1.04 * a;
+    let bias = 1.04 * a + 0.022 * r - 0.04;
+    let diffuse = material.base_color * (1.0 - material.metalness * layered);
+    let specular = max(facing * scale + bias, vec3f(0.0)) * layered;
+    return EnvironmentShares(diffuse, specular, r, reflect(-point.to_eye, point.normal), 0.0, 0.0);
+}

@@ -23,6 +23,7 @@ use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
+use crate::light::environment_map::PlacedMap;
 use isolith_geometry::Camera;
 use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
 
@@ -135,7 +136,8 @@ fn flatten_surveyed(
         nodes: Vec::with_capacity(scene.nodes().len()),
         params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
-        environment: scene.environment,
+        environment: scene.environment.clone(),
+        environment_map: PlacedMap::of(&scene.environment),
         ..FlatScene::default()
     };
     let mut materials = Materials { scene, index: HashMap::new() };
@@ -188,6 +190,8 @@ fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Nod
             id: node.id,
             position: world_from_local.translation,
             direction: forward,
+            axes: [world_from_local.matrix3.x_axis, world_from_local.matrix3.y_axis],
+            scale: world_from_local.matrix3.determinant().abs().cbrt(),
             light: *light,
         }),
         NodeKind::Mesh(mesh) => {

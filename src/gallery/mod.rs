@@ -12,6 +12,8 @@ mod deep_tree;
 mod drawn;
 mod ellipsoid_and_plane;
 mod fractals;
+mod image_lit;
+mod lights;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
@@ -56,6 +58,8 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("fractals", fractals::scene()),
         ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
+        ("lights", lights::scene()),
+        ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

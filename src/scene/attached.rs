@@ -1,6 +1,7 @@
 //! Attachments of any kind.
 
 use super::attachment::{Attachment, Content};
+use super::environment_image::EnvironmentImage;
 use super::heights::Heights;
 use isolith_font::Face;
 
@@ -11,6 +12,8 @@ pub enum Attached {
     Heights(Attachment<Heights>),
     /// A font.
     Font(Attachment<Face>),
+    /// An image of everything around the scene.
+    Environment(Attachment<EnvironmentImage>),
 }
 
 impl Attached {
@@ -19,6 +22,7 @@ impl Attached {
         match self {
             Self::Heights(file) => file.name(),
             Self::Font(file) => file.name(),
+            Self::Environment(file) => file.name(),
         }
     }
 
@@ -27,6 +31,7 @@ impl Attached {
         let without = match self {
             Self::Heights(_) => Heights::WITHOUT,
             Self::Font(_) => Face::WITHOUT,
+            Self::Environment(_) => EnvironmentImage::WITHOUT,
         };
         self.name().unwrap_or(without)
     }
@@ -36,6 +41,7 @@ impl Attached {
         match self {
             Self::Heights(_) => Heights::ENDINGS,
             Self::Font(_) => Face::ENDINGS,
+            Self::Environment(_) => EnvironmentImage::ENDINGS,
         }
     }
 
@@ -44,6 +50,7 @@ impl Attached {
         match self {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
             Self::Font(_) => Self::Font(Attachment::NONE),
+            Self::Environment(_) => Self::Environment(Attachment::NONE),
         }
     }
 
@@ -52,6 +59,7 @@ impl Attached {
         Ok(match self {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
             Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
+            Self::Environment(_) => Self::Environment(Attachment::new(name, bytes)?),
         })
     }
 }

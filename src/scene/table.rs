@@ -180,7 +180,7 @@ impl Scene {
             Some(id) => self.depths[self.group_index(id)?] as usize + 1,
         };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
-        image_budget::check(&self.nodes, None, &subtree)?;
+        image_budget::check(&self.nodes, &self.environment, None, &subtree)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
@@ -252,7 +252,7 @@ impl Scene {
         if has_children && !matches!(node.kind, NodeKind::Group(_)) {
             return Err(SceneError::NotAGroup(node.id));
         }
-        image_budget::check(&self.nodes, Some(&self.nodes[index]), std::slice::from_ref(&node))?;
+        image_budget::check(&self.nodes, &self.environment, Some(&self.nodes[index]), std::slice::from_ref(&node))?;
         let parent = self.nodes[index].parent;
         self.nodes[index] = Arc::new(Node { parent, ..node });
         Ok(())
@@ -297,6 +297,13 @@ impl Scene {
             return Err(SceneError::MaterialInUse(id, node.id));
         }
         self.materials.remove(at);
+        Ok(())
+    }
+
+    /// Replaces the environment.
+    pub fn set_environment(&mut self, environment: Environment) -> Result<(), SceneError> {
+        image_budget::check_environment(&self.nodes, &environment)?;
+        self.environment = environment;
         Ok(())
     }
 

@@ -61,6 +61,10 @@ pub struct Options {
     pub relaxed: bool,
     /// Tolerance of the march at the surface.
     pub quality: Quality,
+    /// Whether a light has a size.
+    pub area_lights: bool,
+    /// Whether the environment is not a gradient.
+    pub image_lit: bool,
 }
 
 impl Default for Options {
@@ -71,6 +75,8 @@ impl Default for Options {
             cones: true,
             relaxed: true,
             quality: Quality::default(),
+            area_lights: false,
+            image_lit: false,
         }
     }
 }

@@ -12,7 +12,7 @@ use super::trace::{March, TraceError, Tracer};
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_decode, display_encode};
-use crate::light::environment::environment_background;
+use crate::light::environment::{EnvironmentLight, environment_background};
 use crate::light::lighting::lighting_surface;
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_rays::{Meshes, trace_meshes};
@@ -100,7 +100,7 @@ pub fn render_reference(
     [width, height]: [u32; 2],
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceImage, TraceError> {
-    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height] };
+    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera, [width, height]), size: [width, height] };
     let tracer = Tracer::new(flat);
     let done = AtomicU32::new(0);
     let rows: Vec<Vec<Pixel>> = (0..height)
@@ -170,8 +170,7 @@ impl View<'_> {
             let (normal, material) = self.mesh_surface(index, &hit, ray.direction);
             (hit.t, MESH_BIT | index as u32, normal, material)
         } else {
-            let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
-            let color = environment_background(ray.direction.y, sky, horizon);
+            let color = environment_background(ray.direction, &EnvironmentLight::of(self.flat));
             let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
@@ -206,10 +205,9 @@ impl View<'_> {
     }
 
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
-        let ambient = DVec3::from(self.flat.environment.ambient);
         let position = ray.direction * t;
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, ambient, &self.lights)
+        lighting_surface(&point, &EnvironmentLight::of(self.flat), &self.lights)
     }
 
     fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {

@@ -1,16 +1,17 @@
 //! Pass `shade`: lighting of the hits, and the background.
 
 use std::ops::Range;
+use std::sync::OnceLock;
 
 use wgpu::{BindGroup, BindGroupLayout};
 
 use super::frame_pass::{Building, FramePass};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
-use crate::renderer::resources::Bound;
+use crate::renderer::resources::{Bound, FrameResources};
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
-use isolith_wgsl::{ShaderError, assemble_plain};
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble};
 
 bindings! {
     /// Group 1.
@@ -18,6 +19,7 @@ bindings! {
         lights: read_storage(),
         materials: read_storage(),
         mesh_materials: read_storage(),
+        environment_map: read_storage(),
     }
 }
 
@@ -32,24 +34,47 @@ bindings! {
     }
 }
 
+/// A pipeline of the pass.
+fn pipeline(
+    device: &wgpu::Device,
+    layout: &wgpu::PipelineLayout,
+    options: Options,
+) -> Result<wgpu::RenderPipeline, ShaderError> {
+    let text = assemble(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options)?;
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(Pass::Shade.label()),
+        source: wgpu::ShaderSource::Wgsl(text.into()),
+    });
+    Ok(screen_pipeline(device, &module, "shade_fragment", layout, None))
+}
+
 /// The pass.
 #[derive(Debug)]
 pub struct ShadePass {
-    pipeline: wgpu::RenderPipeline,
+    /// Without area lights or with them, and both for gradients, then for other environments. Those after the first
+    /// are built when a scene needs them.
+    pipelines: [OnceLock<wgpu::RenderPipeline>; 4],
+    layout: wgpu::PipelineLayout,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
+}
+
+impl ShadePass {
+    fn pipeline(&self, device: &wgpu::Device, [area_lights, image_lit]: [bool; 2]) -> &wgpu::RenderPipeline {
+        self.pipelines[usize::from(area_lights) + 2 * usize::from(image_lit)].get_or_init(|| {
+            let options = Options { area_lights, image_lit, ..Options::default() };
+            pipeline(device, &self.layout, options).expect("the files of the other pipeline are there")
+        })
+    }
 }
 
 impl FramePass for ShadePass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let (lights, targets) = (LightBindings::layout(device), ShadeBindings::layout(device));
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(Pass::Shade.label()),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
-        });
         let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
-        let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
-        Ok(Self { pipeline, lights, targets })
+        let first = pipeline(device, &layout, Options::default())?;
+        let pipelines = [OnceLock::from(first), OnceLock::new(), OnceLock::new(), OnceLock::new()];
+        Ok(Self { pipelines, layout, lights, targets })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -57,6 +82,7 @@ impl FramePass for ShadePass {
             lights: bound.resources.lights(),
             materials: bound.materials.clone(),
             mesh_materials: bound.resources.mesh_materials(),
+            environment_map: bound.resources.environment_map(),
         };
         let targets = ShadeBindings {
             depth: bound.targets.depth.binding(),
@@ -71,10 +97,12 @@ impl FramePass for ShadePass {
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
         let (frame, targets) = (recorder.frame, recorder.targets);
         let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
+        let FrameResources { has_area_lights, is_image_lit, .. } = *recorder.resources;
+        let pipeline = self.pipeline(&recorder.gpu.device, [has_area_lights, is_image_lit]);
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
         let mut pass = screen_pass(encoder, Pass::Shade.label(), &targets.color.view, stamps);
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(pipeline);
         for (at, group) in (0..).zip([view, lights, textures]) {
             pass.set_bind_group(at, group, &[]);
         }

@@ -17,7 +17,8 @@ use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
 use crate::resources::targets::{Target, Targets};
 use crate::resources::uniforms::{DispatchParams, GpuView, strided};
-use isolith_field::{FlatScene, gpu_lights};
+use isolith_field::light::environment_map::{PlacedMap, map_words};
+use isolith_field::{FlatScene, GpuLight, gpu_lights};
 use isolith_geometry::Camera;
 
 /// Bytes of a subtile in a list.
@@ -80,6 +81,13 @@ pub struct FrameResources {
     layouts: Layouts,
     view: SyncedBuffer,
     lights: SyncedBuffer,
+    /// Whether a light has a size.
+    pub has_area_lights: bool,
+    /// Whether the environment is not a gradient.
+    pub is_image_lit: bool,
+    environment_map: SyncedBuffer,
+    /// The environment in that buffer.
+    held_map: Option<Option<PlacedMap>>,
     mesh_materials: SyncedBuffer,
     dispatch_params: SyncedBuffer,
     subtiles: SyncedBuffer,
@@ -99,6 +107,10 @@ impl FrameResources {
             layouts,
             view: SyncedBuffer::uniform(device, "view"),
             lights: storage("lights"),
+            has_area_lights: false,
+            is_image_lit: false,
+            environment_map: storage("environment map"),
+            held_map: None,
             mesh_materials: storage("mesh materials"),
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
             subtiles: storage("subtiles"),
@@ -144,9 +156,12 @@ impl FrameResources {
         let Gpu { device, queue, .. } = gpu;
         let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
         let no_rays = vec![NO_RAYS; plan.lists as usize];
-        let lights = gpu_lights(flat, camera);
+        let lights = gpu_lights(flat, camera, size);
+        self.has_area_lights = lights.iter().any(GpuLight::has_size);
         let view = GpuView::new(camera, size, flat, lights.len() as u32);
+        self.is_image_lit = flat.environment_map.is_some();
         let uploads = [
+            self.upload_map(gpu, flat),
             self.view.set(device, queue, bytemuck::bytes_of(&view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_materials.set(device, queue, bytemuck::cast_slice(&mesh_materials(flat))),
@@ -158,6 +173,16 @@ impl FrameResources {
             self.counts.reset(gpu, flat.components.len(), size),
         ];
         uploads.contains(&true)
+    }
+
+    /// Uploads the environment, if it is another one. Returns whether the buffer was replaced.
+    fn upload_map(&mut self, gpu: &Gpu, flat: &FlatScene) -> bool {
+        if self.held_map.as_ref() == Some(&flat.environment_map) {
+            return false;
+        }
+        self.held_map = Some(flat.environment_map.clone());
+        let words = map_words(flat.environment_map.as_ref());
+        self.environment_map.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
     }
 
     /// Uploads dispatches. Returns whether the buffer was replaced.
@@ -212,6 +237,11 @@ impl FrameResources {
     /// The lights.
     pub fn lights(&self) -> wgpu::BindingResource<'_> {
         self.lights.binding()
+    }
+
+    /// The environment.
+    pub fn environment_map(&self) -> wgpu::BindingResource<'_> {
+        self.environment_map.binding()
     }
 
     /// The materials of the meshes.

@@ -27,7 +27,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     let table = SceneFile {
         schema: None,
         isolith: VERSION,
-        environment: scene.environment,
+        environment: scene.environment.clone(),
         materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),
         next_id: scene.next_id(),
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),

@@ -128,6 +128,8 @@ const OPTIONS: Options = Options {
     cones: true,
     relaxed: true,
     quality: isolith::wgsl::Quality::Default,
+    area_lights: true,
+    image_lit: true,
 };
 
 /// Passes that evaluate a field, with their entry points.
