@@ -20,6 +20,7 @@
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
 #include "light/material.wgsl"
+#include "generated/shares.wgsl"
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
 
@@ -41,7 +42,7 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         let point = ShadingPoint(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
-        color = lighting_surface(point, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));
+        color = lighting_surface(point, pixel, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));
     }
     return vec4f(display_encode(color), 1.0);
 }

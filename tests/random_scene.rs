@@ -152,7 +152,7 @@ impl Random {
     /// An environment within its limits.
     pub fn environment(&mut self) -> Environment {
         let mut color = || self.numbers(&limits::INTENSITY);
-        Environment { sky: color(), horizon: color(), ambient: color() }
+        Environment { sky: color(), horizon: color(), ambient: color(), ..Environment::default() }
     }
 
     fn light(&mut self) -> Light {

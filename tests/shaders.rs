@@ -5,7 +5,7 @@ use std::mem::{offset_of, size_of};
 use isolith::field::{FlatMaterial, FlatNode, GpuLight, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits, ShadowSettings};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -45,7 +45,10 @@ fn sources() -> Vec<(&'static str, String)> {
     let text =
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
-    passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
+    let shadowed = Options { shadowed: true, ..Options::default() };
+    let shade = assemble("shade.wgsl", &all[0], shadowed).unwrap_or_else(|error| panic!("{error}"));
+    let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
+    plain.chain([("shade.wgsl", shade)]).collect()
 }
 
 /// The module of a source, or the error in it.
@@ -227,6 +230,18 @@ fn rust_and_wgsl_agree_about_every_struct() {
             }
         ),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
+        layout!(
+            "ShadowSettings" = ShadowSettings {
+                lights,
+                stride,
+                cones,
+                sample,
+                fineness,
+                occlusion_radius,
+                occlusion_strength,
+                padding
+            }
+        ),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(

@@ -1,15 +1,17 @@
 // The light of a surface point: the sum over all lights, and the environment. Counterpart of
-// `src/field/light/lighting.rs`. Needs `lights: array<Light>`. Colors are linear.
+// `src/field/light/lighting.rs`. Needs `lights: array<Light>`, `shadow_share` and `occlusion_at`.
+// Colors are linear.
 
 #include "light/brdf.wgsl"
 #include "light/environment.wgsl"
 
-fn lighting_surface(point: ShadingPoint, ambient: vec3f, light_count: u32) -> vec3f {
-    var color = point.material.emission + brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
+fn lighting_surface(point: ShadingPoint, pixel: vec2u, ambient: vec3f, light_count: u32) -> vec3f {
+    let free = occlusion_at(pixel, point.normal);
+    var color = point.material.emission + brdf_ambient(point) * environment_ambient(free.y, ambient) * free.w;
     for (var i = 0u; i < light_count; i++) {
         let light = lights[i];
         let incoming = lighting_incoming(light, point.position);
-        color += brdf_direct(point, incoming.xyz) * light.color * incoming.w;
+        color += brdf_direct(point, incoming.xyz) * light.color * (incoming.w * shadow_share(i, pixel));
     }
     return color;
 }

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use isolith_geometry::Camera;
 use isolith_scene::{
     Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
+    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shading, Shape,
 };
 
 /// A scene under construction.
@@ -19,9 +19,19 @@ pub(super) struct SceneBuilder {
 impl SceneBuilder {
     /// An empty scene with this environment.
     pub fn new(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
-        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment { sky, horizon, ambient }, 1)
-            .expect("an empty scene is within every limit");
+        let scene = Scene::from_tables(
+            Vec::new(),
+            Vec::new(),
+            Environment { sky, horizon, ambient, ..Environment::default() },
+            1,
+        )
+        .expect("an empty scene is within every limit");
         Self { scene }
+    }
+
+    /// Switches shadows and occlusion on.
+    pub fn shade(&mut self, shading: Shading) {
+        self.scene.environment.shading = shading;
     }
 
     /// A matte material.

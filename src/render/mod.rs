@@ -47,5 +47,6 @@ pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
 pub use renderer::{Counts, Distribution, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
+pub use resources::shadows::ShadowSettings;
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::limits::{ATTENUATION, CONE, INTENSITY, NO_LIMITS, RANGE};
+use super::limits::{ATTENUATION, CONE, INTENSITY, NO_LIMITS, OCCLUSION_RADIUS, RANGE, SHADOW_QUALITY, UNIT};
 use super::params::{Variants, nested_params, nested_variants, param_rows, param_struct, param_variants};
 
 param_struct! {
@@ -124,5 +124,39 @@ param_struct! {
         horizon: [f64; 3] = [0.16, 0.175, 0.20], INTENSITY.color();
         /// Light from everywhere, times the albedo; from above in full, from below at half strength.
         ambient: [f64; 3] = [0.26, 0.28, 0.32], INTENSITY.color();
+        /// Shadows and occlusion.
+        #[serde(default = "Shading::off")]
+        shading: Shading = Shading::off(), NO_LIMITS;
+    }
+}
+
+param_struct! {
+    /// How objects of a scene take light from each other.
+    #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+    #[serde(deny_unknown_fields)]
+    pub struct Shading {
+        /// Lights cast shadows.
+        shadows: bool = true, NO_LIMITS;
+        /// Quality of soft shadows while the picture moves; the highest costs up to twice as much as the lowest.
+        shadow_quality: f64 = 2.0, SHADOW_QUALITY;
+        /// Light from everywhere reaches hollows and contacts less.
+        occlusion: bool = true, NO_LIMITS;
+        /// Nothing farther away occludes.
+        occlusion_radius: f64 = 1.0, OCCLUSION_RADIUS;
+        /// 1 for the occlusion that the shapes cause, 0 for none.
+        occlusion_strength: f64 = 1.0, UNIT;
+    }
+}
+nested_params!(Shading);
+
+impl Shading {
+    /// Neither shadows nor occlusion, as in scenes of version 1.
+    pub fn off() -> Self {
+        Self { shadows: false, occlusion: false, ..Self::default() }
+    }
+
+    /// Whether anything is on.
+    pub fn is_on(&self) -> bool {
+        self.shadows || self.occlusion
     }
 }

@@ -48,7 +48,7 @@ pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
 pub use empty_set::EmptyOperandResult;
 pub use error::SceneError;
 pub use heights::Heights;
-pub use light::{Attenuation, Environment, Light, LightKind};
+pub use light::{Attenuation, Environment, Light, LightKind, Shading};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};

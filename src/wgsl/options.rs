@@ -61,6 +61,8 @@ pub struct Options {
     pub relaxed: bool,
     /// Tolerance of the march at the surface.
     pub quality: Quality,
+    /// Whether light is shadowed or occluded.
+    pub shadowed: bool,
 }
 
 impl Default for Options {
@@ -71,6 +73,7 @@ impl Default for Options {
             cones: true,
             relaxed: true,
             quality: Quality::default(),
+            shadowed: false,
         }
     }
 }

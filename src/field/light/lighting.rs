@@ -3,16 +3,18 @@
 
 use glam::DVec3;
 
+use super::arriving::Arriving;
 use super::brdf::{ShadingPoint, brdf_ambient, brdf_direct};
 use super::environment::environment_ambient;
 use crate::lights::GpuLight;
 
 /// Color of a surface point.
-pub fn lighting_surface(point: &ShadingPoint, ambient: DVec3, lights: &[GpuLight]) -> DVec3 {
-    let mut color = point.material.emission + brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
-    for light in lights {
+pub fn lighting_surface(point: &ShadingPoint, ambient: DVec3, lights: &[GpuLight], arriving: &Arriving) -> DVec3 {
+    let ambient = environment_ambient(arriving.bent.y, ambient) * arriving.visibility;
+    let mut color = point.material.emission + brdf_ambient(point) * ambient;
+    for (index, light) in lights.iter().enumerate() {
         let (to_light, share) = lighting_incoming(light, point.position);
-        color += brdf_direct(point, to_light) * vector(light.color) * share;
+        color += brdf_direct(point, to_light) * vector(light.color) * (share * arriving.shadow_share(index));
     }
     color
 }
@@ -74,7 +76,8 @@ mod tests {
 
     /// A surface without ambient light.
     fn lit(material: SurfaceMaterial, position: DVec3, normal: DVec3, to_eye: DVec3, lights: &[GpuLight]) -> DVec3 {
-        lighting_surface(&ShadingPoint { material, position, normal, to_eye }, DVec3::ZERO, lights)
+        let point = ShadingPoint { material, position, normal, to_eye };
+        lighting_surface(&point, DVec3::ZERO, lights, &Arriving::all(normal))
     }
 
     /// A floor 2 below the light's height over the eye, viewed from the side.

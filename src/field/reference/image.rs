@@ -10,12 +10,14 @@ use rayon::prelude::*;
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
 use crate::eval::{SurfaceMaterial, surface};
+use crate::light::arriving::{Arriving, SeenPoint};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_decode, display_encode};
 use crate::light::environment::environment_background;
 use crate::light::lighting::lighting_surface;
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_rays::{Meshes, trace_meshes};
+use crate::scene_eval::SceneEvaluator;
 use crate::{BACKGROUND_DEPTH, FlatMaterial, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, TriangleMesh};
@@ -179,7 +181,7 @@ impl View<'_> {
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
         let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
-        let color = self.shade(&ray, t, normal, &material);
+        let color = self.shade(&ray, t, normal, &material, [x, y])?;
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
 
@@ -205,11 +207,26 @@ impl View<'_> {
         (0..TURNS).map(glimpse).collect()
     }
 
-    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
+    fn shade(
+        &self,
+        ray: &Ray,
+        t: f64,
+        normal: DVec3,
+        material: &SurfaceMaterial,
+        pixel: [u32; 2],
+    ) -> Result<DVec3, TraceError> {
         let ambient = DVec3::from(self.flat.environment.ambient);
         let position = ray.direction * t;
+        let arriving = if self.flat.environment.shading.is_on() {
+            let footprint = self.camera.footprint(self.size[1].into()) * t;
+            let eye = self.camera.position;
+            let seen = SeenPoint { eye, position, normal, footprint, pixel, sample: 0 };
+            Arriving::at(&mut SceneEvaluator::new(self.flat), &self.lights, &seen)?
+        } else {
+            Arriving::all(normal)
+        };
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, ambient, &self.lights)
+        Ok(lighting_surface(&point, ambient, &self.lights, &arriving))
     }
 
     fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {

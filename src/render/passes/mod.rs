@@ -8,6 +8,7 @@ pub mod mesh;
 pub mod overlay;
 pub mod overlay_settings;
 pub mod shade;
+pub mod shadow;
 
 use std::ops::Range;
 
@@ -22,6 +23,7 @@ use isolith_wgsl::ShaderError;
 use mesh::MeshPass;
 use overlay::OverlayPass;
 use shade::ShadePass;
+use shadow::ShadowPass;
 
 /// Declares [`Passes`] from the recipe.
 macro_rules! passes {

@@ -3,6 +3,7 @@
 pub mod buffers;
 pub mod hierarchy;
 pub mod layouts;
+pub mod shadows;
 pub mod tape_texture;
 pub mod targets;
 pub mod uniforms;
