@@ -76,11 +76,13 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
     // `right` and `up` span half the picture at distance 1; their squares cancel these lengths.
+    let depth = dot(position, view.forward) + instance.ray_origin_depth;
+    let jitter = view.jitter / vec2f(f32(view.width), f32(view.height)) * (2.0 * depth);
     let clip = vec4f(
-        dot(position, view.right) / dot(view.right, view.right),
-        dot(position, view.up) / dot(view.up, view.up),
+        dot(position, view.right) / dot(view.right, view.right) - jitter.x,
+        dot(position, view.up) / dot(view.up, view.up) + jitter.y,
         view.near * NEAR_SHARE,
-        dot(position, view.forward) + instance.ray_origin_depth,
+        depth,
     );
     let uv = vec3f(vertex.uv, 1.0);
     let place = vec2f(dot(instance.texture_x.xyz, uv), dot(instance.texture_y.xyz, uv));

@@ -24,9 +24,35 @@
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
 
+// A picture of a single sample is encoded at once, by one entry point for each view transform.
 @fragment
 fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return vec4f(display_encode(shade_pixel(vec2u(at.xy)).rgb * view.exposure), 1.0);
+}
+
+@fragment
+fn shade_agx_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return vec4f(display_encode(display_agx(shade_pixel(vec2u(at.xy)).rgb * view.exposure)), 1.0);
+}
+
+@fragment
+fn shade_neutral_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
+    return vec4f(display_encode(display_neutral(shade_pixel(vec2u(at.xy)).rgb * view.exposure)), 1.0);
+}
+
+// Sum of the samples so far.
+@group(3) @binding(0) var sum_target: texture_2d<f32>;
+
+// One of several samples: adds linear light and coverage to the sum. Pass `display` shows their mean.
+@fragment
+fn shade_sample_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let pixel = vec2u(at.xy);
+    let sum = textureLoad(sum_target, pixel, 0);
+    return shade_pixel(pixel) + select(sum, vec4f(0.0), view.sample_index == 0u);
+}
+
+// Linear light of a pixel, and its coverage.
+fn shade_pixel(pixel: vec2u) -> vec4f {
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let visibility = textureLoad(visibility_target, pixel, 0).x;
@@ -44,5 +70,6 @@ fn shade_fragment(@builtin(position) at: vec4f) -> @location(0) vec4f {
         // holds the count.
         color = lighting_surface(point, pixel, view.ambient, select(view.light_count, 0u, depth >= BACKGROUND));
     }
-    return vec4f(display_encode(color), 1.0);
+    let is_empty = view.transparent == 1u && depth >= BACKGROUND;
+    return select(vec4f(color, 1.0), vec4f(0.0), is_empty);
 }

@@ -53,7 +53,11 @@ fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
     let width = select(spread, 0.0, is_ray);
     let least = 0.25 * view.footprint * point.depth;
     let fineness = select(settings.fineness, 0.0, is_ray);
-    return SceneCone(start.origin, 0.0, select(toward.xyz, ray, is_ray), far, width, width, least, fineness);
+    let along = select(toward.xyz, ray, is_ray);
+    let climb = dot(point.normal, along);
+    let is_above = climb > width * sqrt(max(1.0 - climb * climb, 0.0)) + 1e-6;
+    let above = select(vec3f(0.0), point.normal, is_above);
+    return SceneCone(start.origin, 0.0, along, far, width, width, least, fineness, above);
 }
 
 // The point of an invocation; BACKGROUND deep if there is nothing to do.

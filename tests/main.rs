@@ -20,6 +20,7 @@ mod meshes;
 mod overlay;
 mod random_scene;
 mod renderer;
+mod samples;
 mod saving;
 mod scene_eval;
 mod settle;

@@ -142,6 +142,32 @@ fn flat_node() -> Layout {
     layout!("FlatNode" = FlatNode { code, extent, params, material })
 }
 
+fn view() -> Layout {
+    layout!(
+        "View" = GpuView {
+            right,
+            near,
+            up,
+            far,
+            forward,
+            footprint,
+            sky,
+            light_count,
+            horizon,
+            width,
+            ambient,
+            height,
+            jitter,
+            exposure,
+            sample_index,
+            transparent,
+            padding_0,
+            padding_1,
+            padding_2
+        }
+    )
+}
+
 fn dispatch_params() -> Layout {
     layout!(
         "DispatchParams" = DispatchParams {
@@ -205,10 +231,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 flush
             }
         ),
-        layout!(
-            "View" =
-                GpuView { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
-        ),
+        view(),
         dispatch_params(),
         layout!(
             "Instance" = Instance {

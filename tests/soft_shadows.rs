@@ -2,17 +2,20 @@
 
 #![allow(clippy::print_stdout, reason = "the figures are for whoever runs this with `--nocapture`")]
 
+use std::time::Duration;
+
 use glam::{DVec2, DVec3};
-use isolith::field::light::display::display_decode;
-use isolith::field::light::shadow::{ShadowCone, light_extent, light_toward, shadow_by_rays};
+use isolith::field::eval::gradient;
+use isolith::field::light::shadow::{ShadowCone, light_extent, light_is_seen, light_sample, light_toward};
 use isolith::field::reference::image::render_reference;
-use isolith::field::scene_eval::{SceneEvaluator, surface_ray};
+use isolith::field::scene_eval::{RayLimits, SceneEvaluator, surface_ray};
 use isolith::field::{GBuffer, flatten, gpu_lights};
 use isolith::gallery;
-use isolith::geometry::Camera;
-use isolith::render::EvalStrategy;
+use isolith::geometry::{Camera, pixel_jitter};
+use isolith::render::{EvalStrategy, Frame, OverlaySettings, Renderer, Slot};
 use isolith::scene::{
-    Attenuation, Light, LightKind, Material, MaterialId, Node, NodeKind, Object, ReflectionModel, Scene, Shading, Shape,
+    Attenuation, Light, LightKind, Material, MaterialId, Node, NodeKind, Object, ReflectionModel, Scene, Shadowing,
+    Shape,
 };
 
 use crate::gpu::{BenchScene, shared};
@@ -20,14 +23,14 @@ use crate::gpu::{BenchScene, shared};
 /// A scene of the gallery with shadows and occlusion.
 fn shaded(name: &str) -> BenchScene {
     let mut scene = gallery::all().into_iter().find(|(other, _)| *other == name).expect("it is shipped").1;
-    scene.environment.shading = Shading::default();
+    scene.environment.shadowing = Shadowing::default();
     BenchScene::new(name, &scene, None)
 }
 
 /// The same scene without shadows and occlusion.
 fn unshaded(scene: &BenchScene) -> BenchScene {
     let mut flat = scene.flat.clone();
-    flat.environment.shading = Shading::off();
+    flat.environment.shadowing = Shadowing::off();
     BenchScene { name: scene.name.clone(), flat, meshes: scene.meshes.clone(), camera: scene.camera }
 }
 
@@ -67,7 +70,7 @@ fn ball_and_box() -> BenchScene {
     scene.environment.ambient = [0.0; 3];
     scene.environment.sky = [0.0; 3];
     scene.environment.horizon = [0.0; 3];
-    scene.environment.shading = Shading { occlusion: false, ..Shading::default() };
+    scene.environment.shadowing = Shadowing { occlusion: false, ..Shadowing::default() };
     let white = Material {
         model: ReflectionModel::BlinnPhong { specular: 0.0, shininess: 1.0 },
         ..Material::new(MaterialId(9), "White", [1.0; 3])
@@ -88,65 +91,71 @@ fn ball_and_box() -> BenchScene {
     BenchScene { name: "ball and box".into(), flat, meshes: Vec::new(), camera }
 }
 
-/// The visible share of the lamp in each pixel by many rays; `None` where it hardly lights.
-fn true_shares(scene: &BenchScene, drawn: &GBuffer, side: u32) -> Vec<Option<f64>> {
+/// The light of a white surface under the lamp alone: what arrives at the place of a sample, and what would without
+/// shadows. The ray to the lamp goes to another point of its disc for each sample.
+fn true_light(scene: &BenchScene, evaluator: &mut SceneEvaluator<'_>, [x, y]: [u32; 2], index: u32) -> [f64; 2] {
     let BenchScene { flat, camera, .. } = scene;
     let light = gpu_lights(flat, camera)[0];
-    let mut evaluator = SceneEvaluator::new(flat);
-    let size = DVec2::splat(side.into());
-    let share = |i: u32| {
-        let (x, y) = (i % side, i / side);
-        let depth = f64::from(drawn.depth[i as usize]);
-        let ray = camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
-        let position = ray.direction * depth;
-        let normal = DVec3::from(drawn.normal[i as usize].map(f64::from));
-        let (to_light, distance) = light_toward(&light, position).filter(|_| depth < 1e9)?;
-        if normal.dot(to_light) < 0.2 {
-            return None;
-        }
-        let footprint = camera.footprint(side.into()) * depth;
-        let start = surface_ray(camera.position + position, normal, to_light, footprint);
-        let cone = ShadowCone::new(start.origin, to_light, distance, light_extent(&light), footprint);
-        Some(shadow_by_rays(&mut evaluator, &cone, 768).unwrap())
+    let place = DVec2::new(x.into(), y.into()) + 0.5 + pixel_jitter(index);
+    let ray = camera.ray(place, DVec2::splat(SIDE.into()));
+    let Some(hit) = evaluator.ray(&ray, RayLimits { near: camera.near, far: camera.far }).unwrap() else {
+        return [0.0; 2];
     };
-    (0..side * side).map(share).collect()
+    let component = &flat.components[hit.component as usize];
+    let (point, position) = (ray.at(hit.t), ray.direction * hit.t);
+    let normal = gradient(flat, component, point - component.origin).1.normalize();
+    let Some((to_light, distance)) = light_toward(&light, position) else { return [0.0; 2] };
+    let whole = normal.dot(to_light).max(0.0);
+    if whole == 0.0 {
+        return [0.0; 2];
+    }
+    let footprint = camera.footprint(SIDE.into()) * hit.t;
+    let start = surface_ray(point, normal, to_light, footprint);
+    let cone = ShadowCone::new(start.origin, to_light, distance, light_extent(&light), footprint);
+    let seen = light_is_seen(evaluator, &cone, light_sample([x + 1000, y], 0, index)).unwrap();
+    [whole * f64::from(u8::from(seen)), whole]
 }
+
+/// Side of the still picture.
+const SIDE: u32 = 20;
 
 #[test]
 fn still_pictures_converge_to_the_truth() {
-    const SIDE: u32 = 28;
     const SAMPLES: u32 = 256;
     let scene = ball_and_box();
-    let lit = unshaded(&scene);
-    let linear = |buffers: &GBuffer| -> Vec<f64> {
-        let decode = |c: &[u8; 4]| display_decode(DVec3::splat(f64::from(c[0]) / 255.0)).x;
-        buffers.color.iter().map(decode).collect()
-    };
-    let whole = lit.render(SIDE, EvalStrategy::Interpreter);
-    let truth = true_shares(&scene, &whole, SIDE);
-    let whole = linear(&whole);
-    let error_of = |sum: &[f64], count: f64| {
-        let shares = sum.iter().zip(&whole).zip(&truth);
-        let errors = shares.filter_map(|((sum, whole), truth)| Some((sum / count / whole - (*truth)?).abs()));
-        let mut errors: Vec<f64> = errors.collect();
+    let mut evaluator = SceneEvaluator::new(&scene.flat);
+    let pixels = (0..SIDE * SIDE).map(|i| [i % SIDE, i / SIDE]);
+    let truth: Vec<[f64; 2]> = pixels
+        .map(|pixel| {
+            let samples = (0..SAMPLES).map(|index| true_light(&scene, &mut evaluator, pixel, index));
+            samples.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]).map(|sum| sum / f64::from(SAMPLES))
+        })
+        .collect();
+    let renderer = &mut shared().renderer;
+    renderer.set_strategy(EvalStrategy::Interpreter);
+    let none = OverlaySettings::default();
+    let mut frame = renderer.begin(Slot::Full, &scene.flat, &[], &scene.camera, [SIDE; 2], none).unwrap();
+    renderer.accumulate(&mut frame, false);
+    let errors_after = |renderer: &mut Renderer, frame: &mut Frame| {
+        while !frame.is_done() {
+            renderer.advance(frame, Duration::ZERO).unwrap();
+        }
+        let radiance = renderer.read_radiance(frame).unwrap();
+        let lit = radiance.iter().zip(&truth).filter(|(_, truth)| truth[1] > 0.2);
+        // The lamp's intensity is 0.9.
+        let mut errors: Vec<_> =
+            lit.map(|(found, truth)| (f64::from(found[0]) / 0.9 - truth[0]).abs() / truth[1]).collect();
         errors.sort_by(f64::total_cmp);
-        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-        [mean, errors[errors.len() * 99 / 100], errors.len() as f64]
+        (errors.iter().sum::<f64>() / errors.len() as f64, errors[errors.len() * 99 / 100], errors.len())
     };
-    let [mean, p99, _] = error_of(&linear(&scene.render(SIDE, EvalStrategy::Interpreter)), 1.0);
-    println!("cones alone: mean {mean:.4}, p99 {p99:.4}");
-    assert!(mean <= 0.02, "{mean}");
-    let mut sum = vec![0.0; whole.len()];
-    for sample in 1..=SAMPLES {
-        shared().renderer.set_sample(sample);
-        let one = linear(&scene.render(SIDE, EvalStrategy::Interpreter));
-        sum.iter_mut().zip(&one).for_each(|(sum, one)| *sum += one);
+    for _ in 1..SAMPLES {
+        errors_after(renderer, &mut frame);
+        renderer.next_sample(&mut frame).unwrap();
     }
-    shared().renderer.set_sample(0);
-    let [mean, p99, count] = error_of(&sum, SAMPLES.into());
-    let penumbra = truth.iter().flatten().filter(|share| (0.01..0.99).contains(*share)).count();
-    println!("{SAMPLES} samples: mean {mean:.4}, p99 {p99:.4} of {count} pixels, {penumbra} of them in penumbras");
-    assert!(p99 <= 0.02 && penumbra > 20, "p99 {p99}, {penumbra} pixels in penumbras");
+    let (mean, p99, count) = errors_after(renderer, &mut frame);
+    let partly = truth.iter().filter(|[lit, whole]| *whole > 0.2 && (0.01..0.99).contains(&(lit / whole))).count();
+    println!("{SAMPLES} samples: mean {mean:.4}, p99 {p99:.4} of {count} pixels, {partly} of them partly lit");
+    assert!(p99 <= 0.02 && partly > 20, "p99 {p99}, {partly} pixels partly lit");
 }
 
 /// Seconds of visibility and of shadows with occlusion in the best of some frames.
@@ -155,7 +164,7 @@ fn seconds(scene: &BenchScene, side: u32) -> [f64; 2] {
     let renderer = &mut shared().renderer;
     renderer.set_strategy(EvalStrategy::Auto);
     renderer.set_timing(true);
-    for _ in 0..12 {
+    for _ in 0..8 {
         let picture = renderer.render(&scene.flat, &scene.meshes, &scene.camera, [side, side], &mut |_| true);
         assert!(picture.unwrap().1.is_empty(), "{}: warnings", scene.name);
         let of = |labels: &[&str]| {
@@ -179,7 +188,7 @@ fn shadows_cost_a_few_times_what_visibility_costs() {
     const SIDE: u32 = 160;
     for name in ["shadows", "random-145", "random-577"] {
         let mut ratios = Vec::new();
-        let changes: [(&str, fn(&mut Shading)); 5] = [
+        let changes: [(&str, fn(&mut Shadowing)); 5] = [
             ("all", |_| ()),
             ("shadows", |s| s.occlusion = false),
             ("occlusion", |s| s.shadows = false),
@@ -189,12 +198,12 @@ fn shadows_cost_a_few_times_what_visibility_costs() {
         for (what, change) in changes {
             let mut scene = shaded(name);
             scene.flat.lights.truncate(1);
-            change(&mut scene.flat.environment.shading);
+            change(&mut scene.flat.environment.shadowing);
             let [visibility, shadow] = seconds(&scene, SIDE);
             println!("{name} {what}: visibility {:.1} ms, shadow {:.1} ms", visibility * 1e3, shadow * 1e3);
             ratios.push(shadow / visibility);
         }
         println!("{name}: {ratios:.2?} times visibility");
-        assert!(ratios.iter().all(|ratio| *ratio < 40.0), "{name}: {ratios:?}");
+        assert!(ratios.iter().all(|ratio| *ratio < 60.0), "{name}: {ratios:?}");
     }
 }

@@ -20,6 +20,9 @@ struct SceneCone {
     // Least step, in meters and in radii.
     least_step: f32,
     fineness: f32,
+    // Of the surface that it leaves, if the whole cone is above the tangent plane; else 0. Nothing
+    // below that plane is in the way.
+    above: vec3f,
 }
 
 // The march of a cone through one component after the other, in the order of the hierarchy.
@@ -103,8 +106,10 @@ fn cone_leaf(cone: SceneCone, after: u32, interval: ptr<function, vec2f>) -> u32
         scene_visits += 1u;
         let met = hierarchy_interval(node, ray, cone.far, cone.spread);
         let range = vec2f(max(met.x, cone.near), min(met.y, cone.far));
+        let half = 0.5 * (node.high - node.low);
+        let height = dot(node.low + half - cone.origin, cone.above) + dot(half, abs(cone.above));
         let is_leaf = node.axis == HIERARCHY_LEAF;
-        if range.x > range.y || (is_leaf && index < after) {
+        if height < 0.0 || range.x > range.y || (is_leaf && index < after) {
             continue;
         }
         if is_leaf {

@@ -12,7 +12,7 @@ use super::messages::Message;
 use super::root::Editor;
 use isolith_document::{Document, OverwriteRisk};
 use isolith_jobs::{JobEnd, Task};
-use isolith_scene::{Light, Node, NodeKind, Scene, Shading};
+use isolith_scene::{Light, Node, NodeKind, Scene, Shadowing};
 use isolith_session::{folder_of, read_file};
 
 impl Editor {
@@ -177,7 +177,7 @@ fn name_of(path: &Path) -> String {
 /// The document of "New": only a sun, with shadows and occlusion.
 pub fn new_document() -> Document {
     let mut scene = Scene::new();
-    scene.environment.shading = Shading::default();
+    scene.environment.shadowing = Shadowing::default();
     let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
     // Keep bright clay below white on its lit side.
     let light = Light { intensity: 1.2, ..Light::sun() };

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use isolith_scene::{Environment, ParamPath, Params, Shading};
+use isolith_scene::{DisplaySettings, Environment, ParamPath, Params, Shadowing};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
@@ -15,8 +15,13 @@ pub fn show(ui: &mut Ui, session: &mut EditSession) {
         }
     });
     widgets::card(ui, "Shadows and occlusion", |ui| {
-        for param in Shading::default().params() {
-            inspector_params::single(ui, session, ParamPath::of_environment(format!("shading.{}", param.name)));
+        for param in Shadowing::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_environment(format!("shadowing.{}", param.name)));
+        }
+    });
+    widgets::card(ui, "Display", |ui| {
+        for param in DisplaySettings::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_display(param.name));
         }
     });
     widgets::card(ui, "First steps", |ui| {

@@ -9,7 +9,7 @@ use glam::{DAffine3, DVec3};
 use super::flat_material::FlatMaterial;
 use super::hierarchy::Hierarchy;
 use isolith_geometry::{Aabb, Camera};
-use isolith_scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
+use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -264,6 +264,9 @@ pub struct Component {
     /// where no two of their faces can cancel each other. Where a cut ends flush with a face, the remainder is the
     /// rounding of numbers of this size.
     pub flush_extent: f64,
+    /// The same without the sizes of shapes that are evaluated in numbers no larger than the distances of the point
+    /// and of the shape from `origin`: less for a large face, and right where that point is near.
+    pub flush_placement: f64,
     /// Stack depth: the accumulators that an evaluator must be able to put aside.
     pub stack: u32,
     /// Domains of its modifiers, in the order of their entries.
@@ -354,6 +357,8 @@ pub struct FlatScene {
     pub cameras: Vec<FlatCamera>,
     /// Surroundings.
     pub environment: Environment,
+    /// How the light becomes the colors of a screen.
+    pub display: DisplaySettings,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].

@@ -12,6 +12,7 @@ use super::composition::{apart, begin_with, group_of, polar_copies, size_of_fold
 use super::cuts::{self, Cut};
 use super::leaf::leaf;
 use super::lower_bound::{LowerBound, fold_bounds};
+use super::modifier_reach::read_within;
 use super::modify::{MAX_NEIGHBORS, ModifierRefusal, Splines, modify};
 use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
@@ -95,6 +96,9 @@ pub(super) struct Collector<'a, 'b> {
     warned: HashSet<(NodeId, String)>,
     /// Whether the collector is inside a modifier, whose lights, cameras and meshes are already collected.
     is_muted: bool,
+    /// The greatest value of the field from which modifiers around make surfaces, in meters of the space that
+    /// transforms lead to.
+    read_to: f64,
     /// Prepared shapes with a payload, by the node's index: copies share them, wherever they stand.
     drawn: HashMap<usize, Rc<PreparedShape>>,
     splines: Splines,
@@ -117,6 +121,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             warnings: Vec::new(),
             warned: HashSet::new(),
             is_muted: false,
+            read_to: 0.0,
             drawn: HashMap::new(),
             splines: Splines::default(),
             refused: HashSet::new(),
@@ -322,12 +327,17 @@ impl<'a, 'b> Collector<'a, 'b> {
         if self.refused.contains(&(index, rest.len())) {
             return self.modified(index, rest, world, outermost);
         }
-        let content = begin_with(self.modified(index, rest, &DAffine3::IDENTITY, outermost)?);
+        let (least, greatest) = singular_values(&world.matrix3);
+        let read_to = if self.read_to > 0.0 { self.read_to / least } else { 0.0 };
+        let outside = std::mem::replace(&mut self.read_to, read_within(last, read_to));
+        let content = self.modified(index, rest, &DAffine3::IDENTITY, outermost);
+        self.read_to = outside;
+        let content = begin_with(content?);
         let lower_bound = fold_bounds(&content);
         if lower_bound.bounds.is_empty() || !self.budget.take_entries(outermost, 1) {
             return None;
         }
-        let modified = match modify(last, &lower_bound, &mut self.splines) {
+        let modified = match modify(last, &lower_bound, read_to, &mut self.splines) {
             Ok(modified) => modified,
             Err(ModifierRefusal::Cannot(reason)) => {
                 self.warn(node, reason);
@@ -348,7 +358,6 @@ impl<'a, 'b> Collector<'a, 'b> {
         if let Some(warning) = &modified.warning {
             self.warn(node, warning.clone());
         }
-        let (least, greatest) = singular_values(&world.matrix3);
         let cull_box = modified.cull_box.transformed(world);
         let bounds = modified.bounds.transformed(world);
         let bound_slope = if cull_box.is_finite() { modified.bound_slope * least / greatest } else { 0.0 };

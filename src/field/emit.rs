@@ -26,6 +26,7 @@ pub(super) fn emit(
     let stack = emit_fold(flat, operands, origin, material);
     let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
+    let can_cancel = can_cancel(operands);
     let mut modifier_domains = Vec::new();
     let entries = || (first..).map(|at| (at - first, flat.nodes[at].is_run()));
     collect_domains(operands, 1, &mut entries(), &mut modifier_domains);
@@ -43,7 +44,8 @@ pub(super) fn emit(
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
-        flush_extent: if can_cancel(operands) { extent(operands, origin) } else { 0.0 },
+        flush_extent: if can_cancel { extent(operands, origin, &extent_of_leaf) } else { 0.0 },
+        flush_placement: if can_cancel { extent(operands, origin, &placement_of_leaf) } else { 0.0 },
         stack,
         modifier_domains,
         copies: operands.iter().map(copies).max().unwrap_or(1),
@@ -113,24 +115,43 @@ fn can_cancel(operands: &[Operand<'_>]) -> bool {
     })
 }
 
-/// The largest coordinate of the leaves' bounds, relative to `origin` or to the local space of the enclosing
-/// modifier; for an unbounded leaf its distance from there.
-fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
+/// The greatest number of `of_leaf` for all leaves, relative to `origin` or to the local space of the enclosing
+/// modifier.
+fn extent(operands: &[Operand<'_>], origin: DVec3, of_leaf: &dyn Fn(&Operand<'_>, DVec3) -> f64) -> f64 {
     let of = |operand: &Operand<'_>| match &operand.value {
-        Value::Leaf { .. } if operand.bounds.is_finite() => {
-            let bounds = operand.bounds.translated(-origin);
-            bounds.min.abs().max(bounds.max.abs()).max_element()
-        }
-        Value::Leaf { local_from_world, distance_scale, prepared, .. } => {
-            let local = local_from_world.transform_point3(origin);
-            // The position along a plane does not count.
-            let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
-            far * distance_scale
-        }
-        Value::Fold(inner) => extent(inner, origin),
-        Value::Modified { content, .. } => extent(content, DVec3::ZERO),
+        Value::Leaf { .. } => of_leaf(operand, origin),
+        Value::Fold(inner) => extent(inner, origin, of_leaf),
+        // How far a point is from the origin of this space is not known.
+        Value::Modified { content, .. } => extent(content, DVec3::ZERO, &extent_of_leaf),
     };
     operands.iter().map(of).fold(0.0, f64::max)
+}
+
+/// The largest coordinate of a leaf's bounds; for an unbounded leaf its distance.
+fn extent_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    if !operand.bounds.is_finite() {
+        return distance_of_leaf(operand, origin);
+    }
+    let bounds = operand.bounds.translated(-origin);
+    bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
+/// The distance of shapes that compare a coordinate of the point with their size; for others, which subtract points of
+/// their own, their extent.
+fn placement_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    let Value::Leaf { prepared, .. } = &operand.value else { return 0.0 };
+    match prepared.kind {
+        ShapeKind::Box | ShapeKind::Sphere | ShapeKind::Cylinder => distance_of_leaf(operand, origin),
+        _ => extent_of_leaf(operand, origin),
+    }
+}
+
+/// The distance of a leaf's own origin; of a plane, the distance to it.
+fn distance_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    let Value::Leaf { local_from_world, distance_scale, prepared, .. } = &operand.value else { return 0.0 };
+    let local = local_from_world.transform_point3(origin);
+    let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
+    far * distance_scale
 }
 
 /// Appends the payloads of all leaves and modifiers; `entries` are the entries from here on, in the order of writing.

@@ -136,6 +136,7 @@ fn flatten_surveyed(
         params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
         environment: scene.environment,
+        display: scene.display,
         ..FlatScene::default()
     };
     let mut materials = Materials { scene, index: HashMap::new() };

@@ -9,6 +9,7 @@
 //! | `operand`, `composition` | operands of folds, and their composition |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modifier_reach` | what modifiers read of their content, and how fine their patterns may be |
 //! | `modifier_table` | all facts about a kind of modifier, in one row |
 //! | `modify` | effects of modifiers on bounds and steps |
 //! | `moved` | the parameters of a component relative to a point near the eye |
@@ -26,6 +27,7 @@
 //! | `meshes` | the loaded meshes of a scene |
 //! | `mesh_rays` | intersections of rays with meshes |
 //! | `view` | the default view of a scene |
+//! | `shading` | the scene in clay, or under a studio light |
 //! | `debug_view` | view modes besides shading, and their colors |
 //!
 //! # Example
@@ -78,6 +80,7 @@ mod lower_bound;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
+mod modifier_reach;
 mod modifier_table;
 mod modify;
 mod moved;
@@ -87,6 +90,7 @@ mod prepare;
 pub mod reference;
 mod reflatten;
 pub mod scene_eval;
+mod shading;
 mod stack;
 pub mod standpoint;
 mod survey;
@@ -110,5 +114,6 @@ pub use moved::move_params;
 pub use prepare::PreparedShape;
 pub use reference::accuracy::Accuracy;
 pub use reflatten::Flattener;
+pub use shading::Shading;
 pub use survey::is_quick;
 pub use tape::*;

@@ -105,6 +105,9 @@ impl Last {
             }
             self.nodes[index] = scene.nodes()[index].clone();
         }
+        if self.flat.display != scene.display {
+            Arc::make_mut(&mut self.flat).display = scene.display;
+        }
         true
     }
 

@@ -5,7 +5,7 @@ use glam::{DQuat, DVec3};
 use isolith_geometry::Camera;
 use isolith_scene::{
     Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shading, Shape,
+    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shadowing, Shape,
 };
 
 /// A scene under construction.
@@ -30,8 +30,8 @@ impl SceneBuilder {
     }
 
     /// Switches shadows and occlusion on.
-    pub fn shade(&mut self, shading: Shading) {
-        self.scene.environment.shading = shading;
+    pub fn shade(&mut self, shadowing: Shadowing) {
+        self.scene.environment.shadowing = shadowing;
     }
 
     /// A matte material.

@@ -1,14 +1,14 @@
 //! Soft shadows and occlusion: corners, thin rods, contact, and penumbras that grow with the distance.
 
 use super::scene_builder::{SceneBuilder, capsule, cuboid, object, sphere, turn_x, v};
-use isolith_scene::{Attenuation, Scene, Shading};
+use isolith_scene::{Attenuation, Scene, Shadowing};
 
 /// Number of rods.
 const RODS: usize = 7;
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.32, 0.42, 0.55], [0.62, 0.63, 0.62], [0.30, 0.32, 0.36]);
-    builder.shade(Shading::default());
+    builder.shade(Shadowing::default());
     let plaster = builder.matte("Plaster", [0.62, 0.60, 0.56]);
     let clay = builder.matte("Clay", [0.66, 0.34, 0.22]);
     let steel = builder.matte("Steel", [0.30, 0.33, 0.37]);

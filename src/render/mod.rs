@@ -45,7 +45,9 @@ pub use passes::overlay_settings::OverlaySettings;
 pub use pipelines::cache::PipelineCache;
 pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
-pub use renderer::{Counts, Distribution, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
+pub use renderer::{
+    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts,
+};
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
 pub use resources::shadows::ShadowSettings;
 pub use resources::targets::BACKGROUND;

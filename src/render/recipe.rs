@@ -21,6 +21,8 @@ macro_rules! recipe {
             Shadow: shadow = ShadowPass, "shadow.wgsl", over Shaded;
             /// Lighting and background.
             Shade: shade = ShadePass, "shade.wgsl", over Light;
+            /// The mean of accumulated samples as a picture.
+            Display: display = DisplayPass, "display.wgsl", over Finished;
             /// Hits or counts as colors over the picture, for view modes that ask for it.
             DebugView: debug_view = DebugViewPass, "debug_view.wgsl", over Finished;
             /// Grid and selection outline, if the editor asks for them.

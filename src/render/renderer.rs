@@ -10,9 +10,11 @@ mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
+mod samples;
 pub(super) mod scene;
 mod shadows;
 mod slot;
+mod still;
 pub(super) mod timings;
 mod unfinished;
 
@@ -48,6 +50,7 @@ use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 use shadows::{SeenScene, ShadowWork};
 pub use slot::Slot;
+pub use still::Film;
 pub use timings::PassTime;
 use timings::PassTimings;
 
@@ -67,8 +70,6 @@ pub struct Renderer {
     cost_model: CostModel,
     timings: PassTimings,
     cancel: Cancel,
-    /// Number of the sample of a still picture; 0 while it moves.
-    sample: u32,
 }
 
 /// The plan of a picture, before any upload.
@@ -114,7 +115,6 @@ impl Renderer {
             cost_model: CostModel::new(gpu.is_software()),
             timings: PassTimings::default(),
             cancel: Cancel::default(),
-            sample: 0,
             gpu: gpu.clone(),
         };
         gpu.check()?;
@@ -124,11 +124,6 @@ impl Renderer {
     /// Sets the strategy for the evaluation of components from now on.
     pub fn set_strategy(&mut self, strategy: EvalStrategy) {
         self.strategy = strategy;
-    }
-
-    /// Sets the number of the sample: 0 for shadows by cones alone; otherwise one ray decides where these prove nothing.
-    pub fn set_sample(&mut self, sample: u32) {
-        self.sample = sample;
     }
 
     /// Sets the token that stops the preparation of a picture with [`RenderError::Canceled`].
@@ -213,7 +208,7 @@ impl Renderer {
                 RenderError::ListBytes { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
             }
         };
-        let shadows = ShadowWork::of(flat, &chosen, gpu_lights(flat, camera).len(), size, limit, self.sample);
+        let shadows = ShadowWork::of(flat, &chosen, gpu_lights(flat, camera).len(), size, limit);
         let per_pixel = shadows.map_or(0.0, |shadows| shadows.per_pixel());
         let plan = plan(flat, camera, size, &chosen.evaluations, per_pixel, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
@@ -416,41 +411,6 @@ impl Renderer {
             }
         }
         Ok(false)
-    }
-
-    /// Renders a whole scene. Between dispatches it calls `progress` with the fraction that is done; `progress` returns
-    /// whether to continue.
-    pub fn render(
-        &mut self,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
-    }
-
-    /// Renders with another view mode. View modes that show counts need a renderer that counts.
-    pub fn render_as(
-        &mut self,
-        view_mode: ViewMode,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
-        while !frame.is_done() {
-            if !progress(frame.progress()) {
-                return Err(RenderError::Canceled);
-            }
-            self.advance(&mut frame, Duration::ZERO)?;
-        }
-        progress(1.0);
-        Ok((self.read(&frame)?, self.unfinished_rays(&frame)?))
     }
 
     /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the

@@ -125,8 +125,8 @@ param_struct! {
         /// Light from everywhere, times the albedo; from above in full, from below at half strength.
         ambient: [f64; 3] = [0.26, 0.28, 0.32], INTENSITY.color();
         /// Shadows and occlusion.
-        #[serde(default = "Shading::off")]
-        shading: Shading = Shading::off(), NO_LIMITS;
+        #[serde(default = "Shadowing::off")]
+        shadowing: Shadowing = Shadowing::off(), NO_LIMITS;
     }
 }
 
@@ -134,7 +134,7 @@ param_struct! {
     /// How objects of a scene take light from each other.
     #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
     #[serde(deny_unknown_fields)]
-    pub struct Shading {
+    pub struct Shadowing {
         /// Lights cast shadows.
         shadows: bool = true, NO_LIMITS;
         /// Quality of soft shadows while the picture moves; the highest costs up to twice as much as the lowest.
@@ -147,9 +147,9 @@ param_struct! {
         occlusion_strength: f64 = 1.0, UNIT;
     }
 }
-nested_params!(Shading);
+nested_params!(Shadowing);
 
-impl Shading {
+impl Shadowing {
     /// Neither shadows nor occlusion, as in scenes of version 1.
     pub fn off() -> Self {
         Self { shadows: false, occlusion: false, ..Self::default() }

@@ -132,6 +132,8 @@ pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
 pub const IOR: Limits = Limits::new([1.0, 3.0], [1.0, 100.0], "");
 /// Strength of emitted light.
 pub const LUMINANCE: Limits = Limits::new([0.0, 20.0], [0.0, 1e6], "");
+/// Exposure of a picture.
+pub const EXPOSURE: Limits = Limits::new([-5.0, 5.0], [-20.0, 20.0], "stops");
 /// Blinn-Phong exponent.
 pub const SHININESS: Limits = Limits::new([1.0, 256.0], [1.0, 1e4], "");
 /// Reach of a point or spot light.

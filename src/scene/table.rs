@@ -8,7 +8,7 @@ use glam::DAffine3;
 
 use super::image_budget;
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
-use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
+use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
 /// A scene.
 ///
@@ -25,6 +25,8 @@ pub struct Scene {
     next_id: u64,
     /// The environment.
     pub environment: Environment,
+    /// How its light becomes the colors of a screen.
+    pub display: DisplaySettings,
 }
 
 impl PartialEq for Scene {
@@ -35,6 +37,7 @@ impl PartialEq for Scene {
         }
         self.next_id == other.next_id
             && self.environment == other.environment
+            && self.display == other.display
             && same(&self.materials, &other.materials)
             && same(&self.nodes, &other.nodes)
     }
@@ -56,6 +59,7 @@ impl Scene {
             materials: vec![Arc::new(Material::new(MaterialId(1), "Clay", [0.62, 0.56, 0.50]))],
             next_id: 1,
             environment: Environment::default(),
+            display: DisplaySettings::default(),
         }
     }
 

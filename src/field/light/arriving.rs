@@ -53,21 +53,22 @@ impl Arriving {
     /// # Errors
     /// A ray could not be followed to its end.
     pub fn at(evaluator: &mut SceneEvaluator<'_>, lights: &[GpuLight], point: &SeenPoint) -> Result<Self, TraceError> {
-        let shading = evaluator.flat().environment.shading;
+        let shadowing = evaluator.flat().environment.shadowing;
         let mut arriving = Self::all(point.normal);
-        if shading.shadows {
-            let fineness = cone_fineness(shading.shadow_quality);
+        if shadowing.shadows {
+            let fineness = cone_fineness(shadowing.shadow_quality);
             for (index, light) in (0..).zip(lights) {
                 arriving.shares.push(light_share(evaluator, light, index, point, fineness)?);
             }
         }
-        if shading.occlusion {
+        if shadowing.occlusion {
             let origin = start(point, point.normal);
             let least = OCCLUSION_FOOTPRINTS * point.footprint;
             let Occlusion { bent, visibility } =
-                scene_occlusion(evaluator, origin, point.normal, shading.occlusion_radius, least);
-            arriving.bent = point.normal.lerp(bent * visibility, shading.occlusion_strength).normalize_or(point.normal);
-            arriving.visibility = 1.0 + (visibility - 1.0) * shading.occlusion_strength;
+                scene_occlusion(evaluator, origin, point.normal, shadowing.occlusion_radius, least);
+            arriving.bent =
+                point.normal.lerp(bent * visibility, shadowing.occlusion_strength).normalize_or(point.normal);
+            arriving.visibility = 1.0 + (visibility - 1.0) * shadowing.occlusion_strength;
         }
         Ok(arriving)
     }

@@ -12,7 +12,7 @@ use super::trace::{March, TraceError, Tracer};
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::arriving::{Arriving, SeenPoint};
 use crate::light::brdf::ShadingPoint;
-use crate::light::display::{display_decode, display_encode};
+use crate::light::display::{display_color, display_decode};
 use crate::light::environment::environment_background;
 use crate::light::lighting::lighting_surface;
 use crate::lights::{GpuLight, gpu_lights};
@@ -99,10 +99,23 @@ pub fn render_reference(
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
+    size: [u32; 2],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<ReferenceImage, TraceError> {
+    render_reference_at(DVec2::ZERO, flat, meshes, camera, size, progress)
+}
+
+/// The same beside the centers of the pixels, by `jitter` pixels.
+pub fn render_reference_at(
+    jitter: DVec2,
+    flat: &FlatScene,
+    meshes: &Meshes,
+    camera: &Camera,
     [width, height]: [u32; 2],
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceImage, TraceError> {
-    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height] };
+    let center = jitter + 0.5;
+    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height], center };
     let tracer = Tracer::new(flat);
     let done = AtomicU32::new(0);
     let rows: Vec<Vec<Pixel>> = (0..height)
@@ -121,8 +134,9 @@ pub fn render_reference(
         buffers.depth[i] = pixel.depth;
         buffers.leaf[i] = pixel.leaf;
         buffers.normal[i] = pixel.normal.as_vec3().to_array();
-        let [r, g, b] = (display_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
+        let [r, g, b] = (display_color(pixel.color, &flat.display) * 255.0).round().to_array().map(|v| v as u8);
         buffers.color[i] = [r, g, b, 255];
+        buffers.radiance.push(pixel.color.as_vec3().extend(1.0).to_array());
         margin.push(pixel.margin);
         tied.push(pixel.tied);
         if !pixel.turned.is_empty() {
@@ -139,6 +153,8 @@ struct View<'a> {
     camera: &'a Camera,
     lights: Vec<GpuLight>,
     size: [u32; 2],
+    /// The place within each pixel.
+    center: DVec2,
 }
 
 struct Pixel {
@@ -157,7 +173,7 @@ type Met = (March, Option<(usize, MeshHit)>);
 impl View<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
         let size = DVec2::new(self.size[0].into(), self.size[1].into());
-        let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
+        let ray = self.camera.ray(DVec2::new(x.into(), y.into()) + self.center, size);
         let (march, mesh) = self.meet(tracer, &ray)?;
         let footprint = self.camera.footprint(size.y);
         let margin = (march.margin / footprint) as f32;
@@ -217,7 +233,7 @@ impl View<'_> {
     ) -> Result<DVec3, TraceError> {
         let ambient = DVec3::from(self.flat.environment.ambient);
         let position = ray.direction * t;
-        let arriving = if self.flat.environment.shading.is_on() {
+        let arriving = if self.flat.environment.shadowing.is_on() {
             let footprint = self.camera.footprint(self.size[1].into()) * t;
             let eye = self.camera.position;
             let seen = SeenPoint { eye, position, normal, footprint, pixel, sample: 0 };

@@ -1,6 +1,7 @@
 //! The passes, each with its shader of the same name. [`super::recipe`] defines their order.
 
 pub mod debug_view;
+pub mod display;
 pub mod field;
 pub mod frame_pass;
 pub mod hiz;
@@ -16,6 +17,7 @@ use super::recipe::{Pass, recipe};
 use super::renderer::recorder::Recorder;
 use super::renderer::resources::Bound;
 use debug_view::DebugViewPass;
+use display::DisplayPass;
 use field::{ConePass, SurfacePass, TracePass};
 use frame_pass::{Building, FramePass};
 use hiz::HizPass;

@@ -40,7 +40,7 @@ impl Evaluators<'_> {
         let Self { pipelines, tape_cache, strategy, mut room } = self;
         let mut keys = pipelines.keys(flat, strategy, &[]);
         // Only components without a specialized pipeline need tapes, and scenes that are queried as a whole.
-        let is_queried = flat.environment.shading.is_on() && strategy != EvalStrategy::StraightLine;
+        let is_queried = flat.environment.shadowing.is_on() && strategy != EvalStrategy::StraightLine;
         let needs = |key: &Option<PipelineKey>| key.is_none() || is_queried;
         let wanted: Vec<bool> = keys.iter().map(|key| needs(key) && strategy != EvalStrategy::Interpreter).collect();
         let mut trees = match strategy {

@@ -67,17 +67,10 @@ pub struct ShadowWork {
 
 impl ShadowWork {
     /// The work for a scene with this many lights; `None` without shadows and occlusion. `bytes`: the largest buffer.
-    pub fn of(
-        flat: &FlatScene,
-        chosen: &Chosen,
-        lights: usize,
-        size: [u32; 2],
-        bytes: u64,
-        sample: u32,
-    ) -> Option<Self> {
+    pub fn of(flat: &FlatScene, chosen: &Chosen, lights: usize, size: [u32; 2], bytes: u64) -> Option<Self> {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        let settings = ShadowSettings::new(flat, lights, pixels, bytes, sample);
-        let left = if flat.environment.shading.shadows { lights - settings.lights as usize } else { 0 };
+        let settings = ShadowSettings::new(flat, lights, pixels, bytes);
+        let left = if flat.environment.shadowing.shadows { lights - settings.lights as usize } else { 0 };
         settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), left })
     }
 

@@ -186,6 +186,18 @@ pub fn screen_pipeline(
     layout: &wgpu::PipelineLayout,
     blend: Option<wgpu::BlendState>,
 ) -> wgpu::RenderPipeline {
+    screen_pipeline_to(Format::Rgba8Unorm, device, module, entry_point, layout, blend)
+}
+
+/// The same for a target of another format.
+pub fn screen_pipeline_to(
+    format: Format,
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layout: &wgpu::PipelineLayout,
+    blend: Option<wgpu::BlendState>,
+) -> wgpu::RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
         layout: Some(layout),
@@ -203,7 +215,7 @@ pub fn screen_pipeline(
             entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
-                format: wgpu::TextureFormat::Rgba8Unorm,
+                format,
                 blend,
                 // Drawing over the picture must leave it opaque.
                 write_mask: if blend.is_some() { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },

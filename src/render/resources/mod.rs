@@ -1,5 +1,6 @@
 //! Resources on the device: buffers, textures, targets, layouts of bind groups, and the structs of the shaders.
 
+pub mod accumulation;
 pub mod buffers;
 pub mod hierarchy;
 pub mod layouts;

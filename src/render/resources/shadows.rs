@@ -26,9 +26,9 @@ pub struct ShadowSettings {
     pub sample: u32,
     /// Least step of a cone in radii.
     pub fineness: f32,
-    /// See the scene's `Shading`.
+    /// See the scene's `Shadowing`.
     pub occlusion_radius: f32,
-    /// See the scene's `Shading`.
+    /// See the scene's `Shadowing`.
     pub occlusion_strength: f32,
     /// Padding.
     pub padding: f32,
@@ -42,20 +42,20 @@ pub const SHADOW_STATE: usize = 12;
 impl ShadowSettings {
     /// The settings of a scene with `light_count` lights, for a picture of `pixels` pixels and buffers of at most
     /// `bytes` bytes. Lights whose shares do not fit cast no shadows.
-    pub fn new(flat: &FlatScene, light_count: usize, pixels: u64, bytes: u64, sample: u32) -> Self {
-        let shading = &flat.environment.shading;
-        let cones = if shading.occlusion { OCCLUSION_CONES } else { 0 };
+    pub fn new(flat: &FlatScene, light_count: usize, pixels: u64, bytes: u64) -> Self {
+        let shadowing = &flat.environment.shadowing;
+        let cones = if shadowing.occlusion { OCCLUSION_CONES } else { 0 };
         let cone_words = cones.div_ceil(BYTES as u32);
         let most = (bytes / (4 * pixels.max(1))).saturating_sub(cone_words.into()) * BYTES;
-        let lights = if shading.shadows { (light_count as u64).min(most) as u32 } else { 0 };
+        let lights = if shadowing.shadows { (light_count as u64).min(most) as u32 } else { 0 };
         Self {
             lights,
             stride: lights.div_ceil(BYTES as u32) + cone_words,
             cones,
-            sample,
-            fineness: cone_fineness(shading.shadow_quality) as f32,
-            occlusion_radius: shading.occlusion_radius as f32,
-            occlusion_strength: shading.occlusion_strength as f32,
+            sample: 0,
+            fineness: cone_fineness(shadowing.shadow_quality) as f32,
+            occlusion_radius: shadowing.occlusion_radius as f32,
+            occlusion_strength: shadowing.occlusion_strength as f32,
             padding: 0.0,
         }
     }
@@ -136,6 +136,14 @@ impl ShadowBuffers {
         changed.contains(&true)
     }
 
+    /// Uploads the number of the sample.
+    pub fn set_sample(&mut self, gpu: &Gpu, sample: u32) {
+        if self.used.is_on() {
+            self.used.sample = sample;
+            self.settings.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&self.used));
+        }
+    }
+
     /// No shadows in this frame. Returns whether bind groups must be rebuilt.
     pub fn switch_off(&mut self) -> bool {
         std::mem::take(&mut self.used).is_on()
@@ -149,11 +157,11 @@ mod tests {
     #[test]
     fn lights_whose_shares_do_not_fit_cast_no_shadows() {
         let mut flat = FlatScene::default();
-        assert!(!ShadowSettings::new(&flat, 3, 100, 1 << 20, 0).is_on());
-        flat.environment.shading = isolith_scene::Shading::default();
-        let all = ShadowSettings::new(&flat, 3, 100, 1 << 20, 0);
+        assert!(!ShadowSettings::new(&flat, 3, 100, 1 << 20).is_on());
+        flat.environment.shadowing = isolith_scene::Shadowing::default();
+        let all = ShadowSettings::new(&flat, 3, 100, 1 << 20);
         assert_eq!((all.lights, all.cones, all.stride), (3, OCCLUSION_CONES, 3));
-        let few = ShadowSettings::new(&flat, 30, 100, 1600, 0);
+        let few = ShadowSettings::new(&flat, 30, 100, 1600);
         assert_eq!((few.lights, few.stride), (8, 4));
     }
 }

@@ -106,7 +106,14 @@ impl Target {
         [size.width, size.height]
     }
 
-    fn new(device: &wgpu::Device, label: &str, size: [u32; 2], format: TextureFormat, usage: TextureUsages) -> Self {
+    /// A new target of `size` pixels.
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        size: [u32; 2],
+        format: TextureFormat,
+        usage: TextureUsages,
+    ) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },

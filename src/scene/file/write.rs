@@ -17,6 +17,7 @@ use crate::{Material, Scene, check};
 pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     let file = Path::new("scene");
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
+    check::display(&scene.display).map_err(|f| FileError::from_fault(file, "display", f))?;
     for (i, material) in scene.materials().iter().enumerate() {
         check::material(material).map_err(|f| FileError::from_fault(file, &format!("materials[{i}]"), f))?;
     }
@@ -28,6 +29,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         schema: None,
         isolith: VERSION,
         environment: scene.environment,
+        display: scene.display,
         materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),
         next_id: scene.next_id(),
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
