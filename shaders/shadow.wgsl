@@ -149,7 +149,9 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
     let p = scene_surface_ray(point.position, point.normal, point.normal, point.depth).origin;
     let near = max(OCCLUSION_NEAR * settings.occlusion_radius, 2.0 * footprint);
     let far = OCCLUSION_FAR * settings.occlusion_radius;
-    var ratios = array<f32, OCCLUSION_CONES>(1.0, 1.0, 1.0, 1.0, 1.0, 1.0);
+    // The least ratios of the six cones.
+    var low = vec3f(1.0);
+    var high = vec3f(1.0);
     var after = 0u;
     // The cone in the component of the node before `after`; OCCLUSION_CONES for the next component.
     var cone = OCCLUSION_CONES;
@@ -160,9 +162,8 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
         cone = states[own + 1u];
         t = bitcast<f32>(states[own + 2u]);
         ended = states[own + 3u] == 1u;
-        for (var i = 0u; i < OCCLUSION_CONES; i += 1u) {
-            ratios[i] = bitcast<f32>(states[own + 4u + i]);
-        }
+        low = bitcast<vec3f>(vec3u(states[own + 4u], states[own + 5u], states[own + 6u]));
+        high = bitcast<vec3f>(vec3u(states[own + 7u], states[own + 8u], states[own + 9u]));
     }
     while !ended && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits {
         if cone == OCCLUSION_CONES {
@@ -188,17 +189,17 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
                 f = field(q);
                 f += select(0.0, field_slack(), f > 0.0);
             }
-            if t <= far {
-                ratios[cone] = min(ratios[cone], f / size);
-            }
+            let ratio = select(1.0, f / size, t <= far);
+            low = select(low, min(low, vec3f(ratio)), vec3u(0u, 1u, 2u) == vec3u(cone));
+            high = select(high, min(high, vec3f(ratio)), vec3u(3u, 4u, 5u) == vec3u(cone));
             t += max(abs(f), OCCLUSION_GROWTH * t);
-            if t > far || ratios[cone] <= -1.0 {
+            if t > far || ratio <= -1.0 {
                 cone += 1u;
                 t = near;
             }
         }
     }
     if exists {
-        shadow_leave_occlusion(own, after, cone, t, ended, ratios, (pixel.y * view.width + pixel.x) * settings.stride);
+        shadow_leave_occlusion(own, after, cone, t, ended, low, high, (pixel.y * view.width + pixel.x) * settings.stride);
     }
 }

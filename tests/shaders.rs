@@ -228,7 +228,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 grid_counts,
                 tapes,
                 ray_origin_depth,
-                flush
+                flush,
+                flush_near
             }
         ),
         view(),

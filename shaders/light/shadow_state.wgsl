@@ -36,21 +36,27 @@ fn shadow_load(own: u32) -> ConeMarch {
     return march;
 }
 
-// Stores the shares of the cones, or the state if they have not ended.
-fn shadow_leave_occlusion(own: u32, after: u32, cone: u32, t: f32, ended: bool, found: array<f32, OCCLUSION_CONES>, first: u32) {
-    var ratios = found;
+// Stores the shares of the cones of occlusion, or the state if they have not ended.
+fn shadow_leave_occlusion(own: u32, after: u32, cone: u32, t: f32, ended: bool, low: vec3f, high: vec3f, first: u32) {
     states[own + 3u] = select(0u, 1u, ended);
     if ended {
-        for (var i = 0u; i < OCCLUSION_CONES; i += 1u) {
-            shadow_store(first, (settings.lights + 3u) / 4u * 4u + i, cone_share(ratios[i]));
-        }
+        let slot = (settings.lights + 3u) / 4u * 4u;
+        shadow_store(first, slot, cone_share(low.x));
+        shadow_store(first, slot + 1u, cone_share(low.y));
+        shadow_store(first, slot + 2u, cone_share(low.z));
+        shadow_store(first, slot + 3u, cone_share(high.x));
+        shadow_store(first, slot + 4u, cone_share(high.y));
+        shadow_store(first, slot + 5u, cone_share(high.z));
         return;
     }
     atomicAdd(&unfinished[0], 1u);
     states[own] = after;
     states[own + 1u] = cone;
     states[own + 2u] = bitcast<u32>(t);
-    for (var i = 0u; i < OCCLUSION_CONES; i += 1u) {
-        states[own + 4u + i] = bitcast<u32>(ratios[i]);
-    }
+    states[own + 4u] = bitcast<u32>(low.x);
+    states[own + 5u] = bitcast<u32>(low.y);
+    states[own + 6u] = bitcast<u32>(low.z);
+    states[own + 7u] = bitcast<u32>(high.x);
+    states[own + 8u] = bitcast<u32>(high.y);
+    states[own + 9u] = bitcast<u32>(high.z);
 }
