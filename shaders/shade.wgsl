@@ -29,6 +29,7 @@
 #end
 
 #include "light/material.wgsl"
+#include "generated/shares.wgsl"
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
 
@@ -91,7 +92,8 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
         let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
-        color = lighting_surface(point, view.ambient, open, select(view.light_count, 0u, depth >= BACKGROUND));
+        let light_count = select(view.light_count, 0u, depth >= BACKGROUND);
+        color = lighting_surface(point, pixel, view.ambient, open, light_count);
     }
     let is_empty = view.transparent == 1u && depth >= BACKGROUND;
     return select(vec4f(color, 1.0), vec4f(0.0), is_empty);

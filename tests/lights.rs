@@ -124,7 +124,7 @@ fn an_image_lights_and_surrounds_the_scene_as_in_the_reference() {
         let node = Node::new("Ball", NodeKind::Object(object)).at(DVec3::new(0.1, -0.2, 0.8));
         scene.insert(None, usize::MAX, node).expect("room for it");
         let background = EnvironmentKind::Image { image: image.clone(), strength: 0.8, rotation };
-        scene.set_environment(Environment { background }).expect("a small image");
+        scene.set_environment(Environment { background, ..Environment::default() }).expect("a small image");
         add_light(&mut scene, LightKind::Sun { strength: 0.0, angle: 0.0 }, DVec3::Y, DVec3::ZERO);
         let (gpu, reference) = pictures(&scene);
         let off = difference(&gpu, &reference);

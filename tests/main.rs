@@ -27,6 +27,7 @@ mod saving;
 mod scene_eval;
 mod settle;
 mod shaders;
+mod soft_shadows;
 mod strategies;
 mod stress;
 mod textures;

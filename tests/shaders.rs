@@ -5,7 +5,7 @@ use std::mem::{offset_of, size_of};
 use isolith::field::{FlatMaterial, FlatNode, FlatTexture, GpuLight, GpuPlacedTextures, TextureSet, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits, ShadowSettings};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{
     Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
@@ -47,8 +47,10 @@ fn sources() -> Vec<(&'static str, String)> {
     let text =
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
+    let shadowed = Options { shadowed: true, ..Options::default() };
+    let shade = assemble("shade.wgsl", &all[0], shadowed).unwrap_or_else(|error| panic!("{error}"));
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
-    plain.chain([("shade.wgsl", textured())]).collect()
+    plain.chain([("shade.wgsl", textured()), ("shade.wgsl", shade)]).collect()
 }
 
 /// The pass `shade` for scenes with textures.
@@ -292,7 +294,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 grid_counts,
                 tapes,
                 ray_origin_depth,
-                flush
+                flush,
+                flush_near
             }
         ),
         view(),
@@ -300,6 +303,18 @@ fn rust_and_wgsl_agree_about_every_struct() {
         instance(),
         layout!("RayMesh" = RayMesh { local_x, local_y, local_z, nodes, triangles, index, padding_0 }),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
+        layout!(
+            "ShadowSettings" = ShadowSettings {
+                lights,
+                stride,
+                cones,
+                sample,
+                fineness,
+                occlusion_radius,
+                occlusion_strength,
+                padding
+            }
+        ),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(

@@ -36,6 +36,8 @@ struct TapeGrid {
 var<private> tape_component: Component;
 var<private> tape_range: vec2u;
 var<private> tape_bound: f32;
+// Distance from the middle of an empty cell, else 0.
+var<private> tape_slack: f32;
 
 // The grid of the component's own space.
 fn tape_own_grid() -> TapeGrid {
@@ -79,6 +81,7 @@ fn tape_find(grid: TapeGrid, p: vec3f) {
     let bound = bitcast<f32>(cell.y);
     let away = distance(q, low + 0.5 * side);
     tape_bound = select(select(bound + away, bound - away, bound > 0.0), beyond + grid.clear, beyond > 0.0);
+    tape_slack = select(0.0, away, beyond == 0.0 && kind == CELL_EMPTY);
     let first = tapes + (cell.x & 0x3fffffffu);
     tape_range = select(vec2u(0u), vec2u(first, first + cell.y), beyond == 0.0 && kind != CELL_EMPTY);
     if COUNTING {

@@ -1,28 +1,34 @@
 // The light of a surface point: the sum over all lights, and the environment. Counterpart of
-// `src/field/light/lighting.rs`. Needs `lights: array<Light>`. Colors are linear.
+// `src/field/light/lighting.rs`. Needs `lights: array<Light>`, `shadow_share` and `occlusion_at`.
+// Colors are linear.
 
 #include "light/brdf.wgsl"
 #include "light/area.wgsl"
 #include "light/environment.wgsl"
 
-// `open` is the share of the environment's light that arrives.
-fn lighting_surface(point: ShadingPoint, ambient: vec3f, open: f32, light_count: u32) -> vec3f {
-    var color = point.material.emission + lighting_around(point, ambient) * open;
+// `open` is the share of the environment's light that arrives through the surface's own texture.
+fn lighting_surface(point: ShadingPoint, pixel: vec2u, ambient: vec3f, open: f32, light_count: u32) -> vec3f {
+    let free = occlusion_at(pixel, point.normal);
+    var color = point.material.emission + lighting_around(point, free.xyz, ambient) * (open * free.w);
     for (var i = 0u; i < light_count; i++) {
-        color += lighting_reflected(point, lights[i]);
+        let share = shadow_share(i, pixel);
+        if share > 0.0 {
+            color += lighting_reflected(point, lights[i]) * share;
+        }
     }
     return color;
 }
 
-// The light of the environment that the surface reflects toward the eye.
-fn lighting_around(point: ShadingPoint, ambient: vec3f) -> vec3f {
+// The light of the environment that the surface reflects toward the eye; `free` is the mean direction
+// from which it arrives.
+fn lighting_around(point: ShadingPoint, free: vec3f, ambient: vec3f) -> vec3f {
     if IMAGE_LIT {
         let shares = brdf_environment(point);
-        return shares.diffuse * environment_irradiance(point.normal)
+        return shares.diffuse * environment_irradiance(free)
             + shares.specular * environment_reflected(shares.direction, shares.roughness)
             + shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
     }
-    return brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
+    return brdf_ambient(point) * environment_ambient(free.y, ambient);
 }
 
 // The light of one source that the surface reflects toward the eye, without shadows.

@@ -44,15 +44,20 @@ fn hierarchy_distance(node: HierarchyNode, p: vec3f) -> f32 {
     return length(max(max(node.low - p, p - node.high), vec3f(0.0)));
 }
 
-// Entry and exit of the ray through the node's box.
-fn hierarchy_interval(node: HierarchyNode, ray: Ray) -> vec2f {
+// Entry and exit of the cone around the ray through the node's box, up to `far`. The cone has the
+// radius `spread` at distance 1; 0 for the ray alone.
+fn hierarchy_interval(node: HierarchyNode, ray: Ray, far: f32, spread: f32) -> vec2f {
     // A zero component of the direction would yield 0 times infinity.
     let d = select(ray.direction, vec3f(1e-9), abs(ray.direction) < vec3f(1e-9));
-    let a = (node.low - ray.origin) / d;
-    let b = (node.high - ray.origin) / d;
+    // Nothing of the box is farther along the ray than `reach`.
+    let center = 0.5 * (node.low + node.high) - ray.origin;
+    let reach = dot(center, ray.direction) + dot(0.5 * (node.high - node.low), abs(ray.direction));
+    let by = spread * clamp(reach, 0.0, far - ray.skipped);
+    let a = (node.low - by - ray.origin) / d;
+    let b = (node.high + by - ray.origin) / d;
     let near = min(a, b);
-    let far = max(a, b);
-    return vec2f(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z)) + ray.skipped;
+    let exit = max(a, b);
+    return vec2f(max(max(near.x, near.y), near.z), min(min(exit.x, exit.y), exit.z)) + ray.skipped;
 }
 
 // A component, with entry and exit of a ray through its bounds.
@@ -75,7 +80,7 @@ fn scene_next(ray: Ray, near: f32, far: f32, after: SceneVisit) -> SceneVisit {
         let index = hierarchy_stack[depth];
         let node = hierarchy[index];
         scene_visits += 1u;
-        let interval = hierarchy_interval(node, ray);
+        let interval = hierarchy_interval(node, ray, far, 0.0);
         let entry = max(interval.x, near);
         let exit = min(interval.y, far);
         // The entry of a leaf is no later than its exit.

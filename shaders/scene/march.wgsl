@@ -6,10 +6,7 @@
 
 #include "common/march.wgsl"
 #include "scene/hierarchy.wgsl"
-
-// Distance above a surface at which a ray that leaves it begins, in footprints; `SURFACE_BIAS` on
-// the CPU.
-const SURFACE_BIAS: f32 = 0.25;
+#include "scene/surface_ray.wgsl"
 
 struct SceneMarch {
     // The nearest hit, or the far limit.
@@ -25,13 +22,6 @@ struct SceneMarch {
     // Whether the march is complete. If not, another dispatch calls `scene_march` again with this
     // state.
     ended: bool,
-}
-
-// A ray that leaves a surface at `p`; the path from the eye to `p` has the length `gone`. `normal`
-// and `direction` have unit length.
-fn scene_surface_ray(p: vec3f, normal: vec3f, direction: vec3f, gone: f32) -> Ray {
-    let side = select(normal, -normal, dot(normal, direction) < 0.0);
-    return Ray(p + side * (SURFACE_BIAS * view.footprint * gone), gone, direction);
 }
 
 // A new march that ends at `far`.

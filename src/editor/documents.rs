@@ -12,7 +12,7 @@ use super::messages::Message;
 use super::root::Editor;
 use isolith_document::{Document, OverwriteRisk};
 use isolith_jobs::{JobEnd, Task};
-use isolith_scene::{Light, LightKind, Node, NodeKind, Scene};
+use isolith_scene::{Light, LightKind, Node, NodeKind, Scene, Shadowing};
 use isolith_session::{folder_of, read_file};
 
 impl Editor {
@@ -174,9 +174,10 @@ fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
 }
 
-/// The document of "New": only a sun.
+/// The document of "New": only a sun, with shadows and occlusion.
 pub fn new_document() -> Document {
     let mut scene = Scene::new();
+    scene.environment.shadowing = Shadowing::default();
     let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
     // Keep bright clay below white on its lit side.
     let light = Light::new(LightKind::Sun { strength: 3.7, angle: 0.53 });

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use isolith_scene::{DisplaySettings, ParamPath, Params};
+use isolith_scene::{DisplaySettings, ParamPath, Params, Shadowing};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
@@ -13,8 +13,13 @@ pub fn show(ui: &mut Ui, session: &mut EditSession) {
         let mut names = Vec::new();
         let environment = &session.document.scene().environment;
         environment.visit("", &mut |prefix, param, _| names.push(format!("{prefix}{}", param.name)));
-        for name in names {
+        for name in names.into_iter().filter(|name| !name.starts_with("shadowing")) {
             inspector_params::single(ui, session, ParamPath::of_environment(name));
+        }
+    });
+    widgets::card(ui, "Shadows and occlusion", |ui| {
+        for param in Shadowing::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_environment(format!("shadowing.{}", param.name)));
         }
     });
     widgets::card(ui, "Display", |ui| {

@@ -167,7 +167,10 @@ pub fn gpu_lights(flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Vec<GpuL
     }
     let sides = view_sides(camera, size);
     let lights = flat.lights.iter().map(|light| GpuLight::new(light, camera.position));
-    lights.filter(|light| may_reach(light, &sides, camera)).collect()
+    let mut lights: Vec<_> = lights.filter(|light| may_reach(light, &sides, camera)).collect();
+    // Those with shadows first: shares exist for these alone.
+    lights.sort_by_key(|light| 1 - light.cast_shadows);
+    lights
 }
 
 /// Unit normals, inward, of the planes through the eye that bound the view: its four sides, and the plane before the

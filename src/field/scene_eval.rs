@@ -41,6 +41,17 @@ pub struct RayLimits {
     pub far: f64,
 }
 
+/// A component that a cone may meet, with entry and exit of the cone through its bounds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneVisit {
+    /// Where it enters.
+    pub entry: f64,
+    /// Where it leaves.
+    pub exit: f64,
+    /// Index into [`FlatScene::components`].
+    pub component: u32,
+}
+
 /// Counters of work.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneCounts {
@@ -147,6 +158,40 @@ impl<'a> SceneEvaluator<'a> {
         }
         let hit = |(t, component)| Hit { t, component, leaf: leaf_at(self.flat, component, ray, t) };
         Ok(nearest.map(hit))
+    }
+
+    /// The scene.
+    pub fn flat(&self) -> &'a FlatScene {
+        self.flat
+    }
+
+    /// The components whose bounds meet the cone of radius `spread` at distance 1 around the ray, in the order in which
+    /// the cone enters them.
+    pub fn visits(&mut self, ray: &Ray, limits: RayLimits, spread: f64) -> Vec<SceneVisit> {
+        let mut found = Vec::new();
+        let mut open: Vec<usize> = if self.hierarchy.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(index) = open.pop() {
+            let node = &self.hierarchy.nodes[index];
+            self.counts.boxes += 1;
+            // Nothing of the box is farther along the ray than this.
+            let middle = node.bounds.center() - ray.origin;
+            let reach = middle.dot(ray.direction) + node.bounds.half().dot(ray.direction.abs());
+            let bounds = widened(&node.bounds, ray).expanded(spread * reach.clamp(0.0, limits.far));
+            let Some((entry, exit)) = bounds.ray_interval(ray) else { continue };
+            let (entry, exit) = (entry.max(limits.near), exit.min(limits.far));
+            if entry > exit {
+                continue;
+            }
+            if node.is_leaf() {
+                found.push(SceneVisit { entry, exit, component: node.link });
+            } else {
+                open.extend([index + 1, node.link as usize]);
+            }
+        }
+        found.sort_unstable_by(|a, b| a.entry.total_cmp(&b.entry).then(a.component.cmp(&b.component)));
+        let unbounded = |component: &u32| SceneVisit { entry: limits.near, exit: limits.far, component: *component };
+        found.extend(self.hierarchy.unbounded.iter().map(unbounded));
+        found
     }
 
     /// Adds a node to the open ones if the ray meets it.

@@ -20,6 +20,7 @@ mod modifiers;
 mod operators;
 mod random_groups;
 mod scene_builder;
+mod shadows;
 mod shapes;
 mod showcase;
 mod textures;
@@ -65,6 +66,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("lights", lights::scene()),
         ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
+        ("shadows", shadows::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),

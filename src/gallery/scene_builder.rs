@@ -7,7 +7,8 @@ use glam::{DQuat, DVec3};
 use isolith_geometry::Camera;
 use isolith_scene::{
     Blend, BlendKernel, CameraNode, Environment, EnvironmentKind, Falloff, Group, Light, LightKind, Material,
-    MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
+    MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shadowing,
+    Shape,
 };
 
 /// A scene under construction.
@@ -24,6 +25,11 @@ impl SceneBuilder {
         let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment::sky(sky, horizon, ambient), 1)
             .expect("an empty scene is within every limit");
         Self { scene }
+    }
+
+    /// Switches shadows and occlusion on.
+    pub fn shade(&mut self, shadowing: Shadowing) {
+        self.scene.environment.shadowing = shadowing;
     }
 
     /// A dry material without a visible highlight.
@@ -150,7 +156,8 @@ impl SceneBuilder {
 
     /// Replaces the environment.
     pub fn environment(&mut self, background: EnvironmentKind) {
-        self.scene.set_environment(Environment { background }).expect("its image is small");
+        let environment = Environment { background, ..self.scene.environment.clone() };
+        self.scene.set_environment(environment).expect("its image is small");
     }
 
     /// Adds the camera.

@@ -50,5 +50,6 @@ pub use renderer::{
 };
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
 pub use resources::mesh_rays::{MAX_MESH_VISITS, RayMesh};
+pub use resources::shadows::ShadowSettings;
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

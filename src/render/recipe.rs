@@ -17,6 +17,8 @@ macro_rules! recipe {
             Trace: trace = TracePass, "trace.wgsl", over Rounds;
             /// Normals and materials of the pixels that remain visible after all components are traced.
             Surface: surface = SurfacePass, "surface.wgsl", over Hits;
+            /// Soft shadows and occlusion, by cones against the whole scene.
+            Shadow: shadow = ShadowPass, "shadow.wgsl", over Shaded;
             /// Lighting and background.
             Shade: shade = ShadePass, "shade.wgsl", over Light;
             /// The mean of accumulated samples as a picture.
@@ -43,6 +45,9 @@ pub enum Extent {
     Rounds,
     /// The parts again, after all components have been traced.
     Hits,
+    /// The picture, in parts, each in two dispatches, if the scene has shadows or occlusion. The second one is
+    /// repeated until no cone is left.
+    Shaded,
     /// The picture, in parts whose size depends on the number of lights.
     Light,
     /// The finished picture: recorded with the last dispatch of a frame.

@@ -12,6 +12,7 @@ pub(super) mod recorder;
 pub(super) mod resources;
 mod samples;
 pub(super) mod scene;
+mod shadows;
 mod slot;
 mod still;
 pub(super) mod timings;
@@ -31,7 +32,6 @@ use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::PipelineCache;
 use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
-use crate::resources::uniforms::UNIFORM_STRIDE;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning, gpu_lights};
@@ -47,6 +47,7 @@ pub use pixel_counts::{Distribution, PixelCounts, TraceCounts};
 use recorder::{Recorder, meet};
 use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
+use shadows::{SeenScene, ShadowWork};
 pub use slot::Slot;
 pub use still::Film;
 pub use timings::PassTime;
@@ -74,6 +75,7 @@ pub struct Renderer {
 struct Prepared {
     chosen: Chosen,
     plan: FramePlan,
+    shadows: Option<ShadowWork>,
 }
 
 impl Renderer {
@@ -197,7 +199,7 @@ impl Renderer {
     /// of a thousand leaves has no tapes and the driver ends loops early.
     fn prepare(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Prepared, RenderError> {
         let chosen = self.choose(flat, camera)?;
-        let (room, limit) = self.room();
+        let (room, limit) = Room::of(&self.gpu.device.limits());
         let node = |component: usize| flat.ids[flat.components[component].first as usize];
         let refused = |error| match error {
             TooMuch::Pieces { component } => RenderError::TooManyDispatches(size[0], size[1], node(component)),
@@ -205,19 +207,12 @@ impl Renderer {
                 RenderError::ListBytes { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
             }
         };
-        let plan = plan(flat, camera, size, &chosen.evaluations, &self.cost_model, room).map_err(refused)?;
+        let casters = gpu_lights(flat, camera, size).iter().filter(|light| light.cast_shadows == 1).count();
+        let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
+        let per_pixel = shadows.map_or(0.0, |shadows| shadows.per_pixel());
+        let plan = plan(flat, camera, size, &chosen.evaluations, per_pixel, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
-        Ok(Prepared { chosen, plan })
-    }
-
-    /// The capacity of the device for one frame, and the bytes of lists that it can bind.
-    fn room(&self) -> (Room, u64) {
-        let limits = self.gpu.device.limits();
-        // Buffers grow by powers of two.
-        let whole = |bytes: u64| bytes.checked_ilog2().map_or(0, |bits| 1_u64 << bits);
-        let bound = whole(limits.max_buffer_size.min(limits.max_storage_buffer_binding_size));
-        let dispatches = whole(limits.max_buffer_size) as usize / UNIFORM_STRIDE;
-        (Room { dispatches, subtiles: bound / bytes_of_subtiles(1) }, bound)
+        Ok(Prepared { chosen, plan, shadows })
     }
 
     /// Uploads changed data and plans the dispatches. `meshes` is parallel to `flat.meshes`.
@@ -238,7 +233,7 @@ impl Renderer {
         if !self.resources.counts.fit(flat.components.len(), size, limits.max_storage_buffer_binding_size) {
             return Err(RenderError::Counts(size[0], size[1]));
         }
-        let Prepared { chosen, plan } = {
+        let Prepared { chosen, plan, shadows } = {
             let _span = tracing::debug_span!("plan", components = flat.components.len()).entered();
             self.prepare(flat, camera, size)?
         };
@@ -249,11 +244,15 @@ impl Renderer {
         let standpoints = Standpoints::new(flat, camera, size);
         let (scene_is_new, template_rows) =
             self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
-        if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new {
+        let parts = (&mut self.passes, &self.scene, &mut self.resources);
+        let seen = SeenScene { flat, camera, size, standpoints: &standpoints };
+        let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), Self::options(&self.gpu))?;
+        if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new || shadows_are_new {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
-        let features = ShadeFeatures::new(flat, &gpu_lights(flat, camera, size), &materials.all);
+        let shadowed = self.resources.shadows.used.is_on();
+        let features = ShadeFeatures::new(flat, &gpu_lights(flat, camera, size), &materials.all, shadowed);
         self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
@@ -263,6 +262,7 @@ impl Renderer {
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
         frame.shade_features = features;
+        frame.shadowed_lights = shadows.map_or([0, 0], |shadows| shadows.lights());
         if slot == Slot::Preview {
             // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();
@@ -299,6 +299,7 @@ impl Renderer {
         }
         loop {
             let (dispatches, cost, relaunches) = frame.next_batch(&self.cost_model);
+            let is_shadow = shadows::begin(&self.gpu, &mut self.resources, frame, dispatches.start);
             let submitted = Instant::now();
             frame.seconds_done += frame.cost_model.seconds(cost);
             self.submit(frame, dispatches.clone())?;
@@ -307,13 +308,16 @@ impl Renderer {
             // The first dispatch of a pipeline may include its compilation, and a later relaunch marches an unknown
             // number of remaining rays: neither shows that the device is slow.
             let foreseen = relaunches == 0 || elapsed.as_secs_f64() < self.cost_model.seconds(cost);
-            let is_typical = !frame.uses_fresh_pipelines(dispatches.clone());
+            let is_typical = !is_shadow && !frame.uses_fresh_pipelines(dispatches.clone());
             if is_typical && foreseen {
                 self.cost_model.learn(cost, elapsed);
             }
             frame.measured = frame.measured.filter(|_| is_typical).map(|before| before + elapsed);
             frame.learn_relaunches(relaunches, elapsed);
             frame.next = dispatches.end;
+            if is_shadow {
+                shadows::go_on(&self.gpu, &self.resources, frame, dispatches.start)?;
+            }
             if frame.is_done() {
                 self.go_on(frame)?;
             }
@@ -360,7 +364,9 @@ impl Renderer {
             return Ok(());
         }
         let unfinished = self.count_unfinished(frame)?;
-        let Some((planned, meant)) = unfinished::go_on(frame, unfinished, self.room().0.dispatches) else {
+        let Some((planned, meant)) =
+            unfinished::go_on(frame, unfinished, Room::of(&self.gpu.device.limits()).0.dispatches)
+        else {
             return Ok(());
         };
         if self.resources.restart(&self.gpu, frame, planned, &|component| meant[component as usize]) {
@@ -378,10 +384,11 @@ impl Renderer {
 
     /// Warnings about components with rays that did not end within the step limit.
     pub fn unfinished_rays(&self, frame: &Frame) -> Result<Vec<Warning>, RenderError> {
-        Ok(match frame.unfinished() {
+        let of_rays = match frame.unfinished() {
             Some(counts) => frame.warnings(counts),
             None => frame.warnings(&self.count_unfinished(frame)?),
-        })
+        };
+        Ok([of_rays, frame.shadow_warnings()].concat())
     }
 
     /// Prewarms pipelines that have become ready, for about this time: lavapipe compiles a pipeline, or loads the
@@ -429,25 +436,12 @@ impl Renderer {
     /// The minimal work for the picture of a finished frame: every ray starts at its true depth and evaluates the field
     /// once to confirm it; normals and lighting follow as usual. For measurements only.
     pub fn begin_limit(&mut self, frame: &Frame) -> Frame {
-        let limit = measure::limit(frame);
-        self.resources.set_work(&self.gpu, &limit.plan.dispatches);
-        let targets = &self.resources.slot(frame.slot).targets;
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("depths of the limit") };
-        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        let [from, to] = [&targets.depth, &targets.march].map(|target| target.texture.as_image_copy());
-        encoder.copy_texture_to_texture(from, to, targets.depth.texture.size());
-        self.gpu.queue.submit([encoder.finish()]);
-        limit
+        measure::begin_limit(&self.gpu, &mut self.resources, frame)
     }
 
     /// Resets the counters of a frame.
     pub fn forget_counts(&mut self, frame: &Frame) {
-        let size = self.resources.slot(frame.slot).targets.size;
-        self.resources.counts.reset(&self.gpu, frame.origins.len(), size);
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("forget counts") };
-        let mut encoder = self.gpu.device.create_command_encoder(&descriptor);
-        self.resources.counts.clear_pixels(&mut encoder, size);
-        self.gpu.queue.submit([encoder.finish()]);
+        measure::forget_counts(&self.gpu, &mut self.resources, frame);
     }
 
     /// The counters of a frame, if the pipelines count.

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::Shadowing;
 use super::attachment::Attachment;
 use super::environment_image::EnvironmentImage;
 use super::limits::{ENVIRONMENT_STRENGTH, INTENSITY, NO_LIMITS, TURN};
@@ -103,13 +104,16 @@ param_struct! {
     pub struct Environment {
         /// What is seen behind the scene, and lights it.
         background: EnvironmentKind = EnvironmentKind::SKY, NO_LIMITS;
+        /// Shadows and occlusion.
+        #[serde(default = "Shadowing::off")]
+        shadowing: Shadowing = Shadowing::off(), NO_LIMITS;
     }
 }
 
 impl Environment {
     /// A sky with these colors.
     pub fn sky(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
-        Self { background: EnvironmentKind::Gradient { sky, horizon, ambient } }
+        Self { background: EnvironmentKind::Gradient { sky, horizon, ambient }, ..Self::default() }
     }
 
     /// Its image, if it has one.

@@ -163,6 +163,10 @@ pub const EXPOSURE: Limits = Limits::new([-5.0, 5.0], [-20.0, 20.0], "stops");
 pub const SHININESS: Limits = Limits::new([1.0, 256.0], [1.0, 1e4], "");
 /// Reach of a point or spot light.
 pub const RANGE: Limits = Limits::new([0.1, 100.0], [1e-3, 1e9], "m");
+/// Quality of shadows: low, middle, high.
+pub const SHADOW_QUALITY: Limits = Limits::new([1.0, 3.0], [1.0, 3.0], "").whole();
+/// Reach of occlusion.
+pub const OCCLUSION_RADIUS: Limits = Limits::new([0.05, 5.0], [1e-3, 1e4], "m");
 /// Attenuation coefficients.
 pub const ATTENUATION: Limits = Limits::new([0.0, 2.0], [0.0, 1e6], "");
 /// Half angle of a spot light's cone, in degrees.

@@ -42,6 +42,7 @@ mod operator;
 mod param_path;
 mod params;
 mod presets;
+mod shadowing;
 mod shape;
 mod table;
 mod texture;
@@ -70,6 +71,7 @@ pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
 };
 pub use presets::material_presets;
+pub use shadowing::Shadowing;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
 pub use texture::{NormalTexture, TextureSpace, Textures};

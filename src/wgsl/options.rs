@@ -67,6 +67,8 @@ pub struct Options {
     pub area_lights: bool,
     /// Whether the environment is not a gradient.
     pub image_lit: bool,
+    /// Whether light is shadowed or occluded.
+    pub shadowed: bool,
 }
 
 impl Default for Options {
@@ -80,6 +82,7 @@ impl Default for Options {
             layers: true,
             area_lights: false,
             image_lit: false,
+            shadowed: false,
         }
     }
 }

@@ -37,14 +37,15 @@ pub fn environment_background(direction: DVec3, environment: &EnvironmentLight<'
     horizon.lerp(sky, height * (2.0 - height))
 }
 
-/// The light of the environment that a surface reflects toward the eye.
-pub fn environment_on(point: &ShadingPoint, environment: &EnvironmentLight<'_>) -> DVec3 {
+/// The light of the environment that a surface reflects toward the eye; `free` is the mean direction from which it
+/// arrives.
+pub fn environment_on(point: &ShadingPoint, environment: &EnvironmentLight<'_>, free: DVec3) -> DVec3 {
     let Some(placed) = environment.map else {
-        return brdf_ambient(point) * environment_ambient(point.normal.y, environment.gradient[2]);
+        return brdf_ambient(point) * environment_ambient(free.y, environment.gradient[2]);
     };
     let shares = brdf_environment(point);
     let mirrored = placed.map_from_world(shares.direction);
-    let diffuse = shares.diffuse * placed.map.irradiance(placed.map_from_world(point.normal));
+    let diffuse = shares.diffuse * placed.map.irradiance(placed.map_from_world(free));
     let specular = shares.specular * placed.map.reflected(mirrored, shares.roughness);
     let coat = placed.map.reflected(mirrored, shares.coat_roughness) * shares.coat;
     (diffuse + specular + coat) * placed.strength

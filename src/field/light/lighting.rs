@@ -4,19 +4,23 @@
 use glam::DVec3;
 
 use super::area::{IncomingLight, area_rectangle, area_reflected};
+use super::arriving::Arriving;
 use super::brdf::ShadingPoint;
 use super::environment::{EnvironmentLight, environment_on};
 use crate::lights::GpuLight;
 
-/// Color of a surface point, where the share `open` of the environment's light arrives.
+/// Color of a surface point, where the share `open` of the environment's light arrives through its own texture.
 pub fn lighting_surface(
     point: &ShadingPoint,
     environment: &EnvironmentLight<'_>,
     open: f64,
     lights: &[GpuLight],
+    arriving: &Arriving,
 ) -> DVec3 {
-    let sum: DVec3 = lights.iter().map(|light| lighting_reflected(point, light)).sum();
-    point.material.emission + environment_on(point, environment) * open + sum
+    let lit = |(index, light)| lighting_reflected(point, light) * arriving.shadow_share(index);
+    let sum: DVec3 = lights.iter().enumerate().map(lit).sum();
+    let around = environment_on(point, environment, arriving.bent) * (open * arriving.visibility);
+    point.material.emission + around + sum
 }
 
 /// The light of one source that the surface reflects toward the eye, without shadows.
@@ -108,12 +112,8 @@ mod tests {
 
     /// A surface without ambient light.
     fn lit(material: SurfaceMaterial, position: DVec3, normal: DVec3, to_eye: DVec3, lights: &[GpuLight]) -> DVec3 {
-        lighting_surface(
-            &ShadingPoint { material, position, normal, to_eye },
-            &EnvironmentLight::default(),
-            1.0,
-            lights,
-        )
+        let point = ShadingPoint { material, position, normal, to_eye };
+        lighting_surface(&point, &EnvironmentLight::default(), 1.0, lights, &Arriving::all(normal))
     }
 
     /// A floor 2 below the light's height over the eye, viewed from the side.

@@ -7,6 +7,9 @@
 //! | `albedo` | the light that a GGX lobe reflects in all |
 //! | `lighting` | the sum over all lights |
 //! | `area` | lights with a size |
+//! | `arriving` | what of the lights and the environment arrives at a point |
+//! | `shadow` | the visible share of a light, by a signed cone and by rays |
+//! | `occlusion` | the visible share of the environment, by six cones and by rays |
 //! | `environment` | light from everywhere, and the background |
 //! | `environment_map` | images of it, prepared for lighting |
 //! | `texture` | colors and values that vary over a surface |
@@ -14,6 +17,7 @@
 
 pub mod albedo;
 pub mod area;
+pub mod arriving;
 pub mod brdf;
 pub mod display;
 #[cfg(test)]
@@ -24,6 +28,8 @@ pub mod layers;
 pub mod lighting;
 #[cfg(test)]
 mod lobes;
+pub mod occlusion;
+pub mod shadow;
 pub mod texture;
 #[cfg(test)]
 mod walk;

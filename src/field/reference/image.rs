@@ -11,6 +11,7 @@ use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
 use crate::coverage::PixelSample;
 use crate::eval::{SurfaceMaterial, surface};
+use crate::light::arriving::{Arriving, SeenPoint};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_color, display_decode};
 use crate::light::environment::{EnvironmentLight, environment_background};
@@ -19,6 +20,7 @@ use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_material::mesh_material;
 use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
+use crate::scene_eval::SceneEvaluator;
 use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, GpuPlacedTextures, HitTarget, MESH_BIT, NO_LEAF, gpu_textures};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, MeshLook, TriangleMesh};
@@ -209,7 +211,13 @@ impl View<'_> {
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
         let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
-        let color = self.shade(&ray, t, shading_normal.unwrap_or(normal), &material, occlusion);
+        let point = ShadingPoint {
+            material,
+            position: ray.direction * t,
+            normal: shading_normal.unwrap_or(normal),
+            to_eye: -ray.direction,
+        };
+        let color = self.shade(&point, occlusion, normal, [x, y])?;
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
 
@@ -236,10 +244,17 @@ impl View<'_> {
         (0..TURNS).map(glimpse).collect()
     }
 
-    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial, occlusion: f64) -> DVec3 {
-        let position = ray.direction * t;
-        let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, &EnvironmentLight::of(self.flat), occlusion, &self.lights)
+    /// The light of a point. `open`: see [`lighting_surface`]. `normal` is that of the surface without bumps.
+    fn shade(&self, point: &ShadingPoint, open: f64, normal: DVec3, pixel: [u32; 2]) -> Result<DVec3, TraceError> {
+        let arriving = if self.flat.environment.shadowing.is_on() {
+            let footprint = self.camera.footprint(self.size[1].into()) * point.position.length();
+            let (eye, position) = (self.camera.position, point.position);
+            let seen = SeenPoint { eye, position, normal, footprint, pixel, sample: 0 };
+            Arriving::at(&mut SceneEvaluator::new(self.flat), &self.lights, &seen)?
+        } else {
+            Arriving::all(point.normal)
+        };
+        Ok(lighting_surface(point, &EnvironmentLight::of(self.flat), open, &self.lights, &arriving))
     }
 
     /// Normal, material and the share of the ambient light at a hit on a mesh.

@@ -40,6 +40,9 @@ const MOST_PIXELS: f64 = 1048576.0;
 /// took two seconds in a single dispatch.
 pub const STEPS_UNBOUNDED: u32 = 512;
 
+/// Most pixels of a part of the pass `shadow`: their states take 12 MiB.
+pub const MOST_SHADOW_PIXELS: f64 = 262_144.0;
+
 /// A dispatch of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dispatch {
@@ -107,7 +110,8 @@ pub enum TooMuch {
     },
 }
 
-/// Plans a frame that fits the device. `evaluations` is parallel to the components.
+/// Plans a frame that fits the device. `evaluations` is parallel to the components; `shadows` is the expected number of
+/// leaves of a pixel's shadows and occlusion, 0 without them.
 ///
 /// # Errors
 /// The frame would exceed `room`. The check precedes the first dispatch, since there may be millions.
@@ -116,6 +120,7 @@ pub fn plan(
     camera: &Camera,
     size: [u32; 2],
     evaluations: &[EvaluationCost],
+    shadows: f64,
     cost_model: &CostModel,
     room: Room,
 ) -> Result<FramePlan, TooMuch> {
@@ -132,7 +137,9 @@ pub fn plan(
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
     let shading = 0.3 + 0.2 * gpu_lights(flat, camera, size).len() as f64;
     let most_shading = cost_model.cost_in(DISPATCH_TARGET, false);
-    let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading);
+    let most_shadows = most_shading.min(shadows * MOST_SHADOW_PIXELS);
+    let shadow_parts = if shadows > 0.0 { 2 * whole.parts(shadows, most_shadows) } else { 0 };
+    let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading) + shadow_parts;
     if seen.iter().map(dispatches).fold(others, usize::saturating_add) > room.dispatches {
         let component = seen.iter().max_by_key(|one| dispatches(one)).map_or(0, |one| one.0);
         return Err(TooMuch::Pieces { component });
@@ -155,6 +162,15 @@ pub fn plan(
             Extent::Parts | Extent::Rounds | Extent::Hits => {
                 parts.iter().for_each(|part| stages.iter().for_each(|pass| plan.part(*pass, part)));
             }
+            Extent::Shaded if shadows == 0.0 => {}
+            Extent::Shaded => whole.cut(shadows, most_shadows, |rect| {
+                for relaunch in [0, 1] {
+                    let params = DispatchParams { relaunch, ..rect.params(0) };
+                    // Few cones are left for the second one.
+                    let share = if relaunch == 0 { 1.0 } else { 0.05 };
+                    plan.push(stages[0], params, Cost::new(false, rect.pixels() * shadows * share));
+                }
+            }),
             Extent::Light => whole.cut(shading, most_shading, |rect| {
                 plan.push(stages[0], rect.params(0), Cost::new(false, rect.pixels() * shading));
             }),
@@ -237,7 +253,7 @@ impl FramePlan {
             }));
         }
         let surfaces = self.dispatches.iter().filter(|dispatch| dispatch.pass == Pass::Surface).filter(is_meant);
-        let shading = self.dispatches.iter().filter(|dispatch| dispatch.pass == Pass::Shade);
+        let shading = self.dispatches.iter().filter(|dispatch| matches!(dispatch.pass, Pass::Shadow | Pass::Shade));
         dispatches.extend(surfaces.chain(shading).copied());
         dispatches
     }

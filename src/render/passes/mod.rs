@@ -12,6 +12,7 @@ pub mod overlay;
 pub mod overlay_settings;
 pub mod shade;
 pub mod shade_features;
+pub mod shadow;
 
 use std::ops::Range;
 
@@ -27,6 +28,7 @@ use isolith_wgsl::ShaderError;
 use mesh::MeshPass;
 use overlay::OverlayPass;
 use shade::ShadePass;
+use shadow::ShadowPass;
 
 /// Declares [`Passes`] from the recipe.
 macro_rules! passes {

@@ -91,6 +91,7 @@ impl FramePass for ShadePass {
         let extras = ShadeExtras {
             sum: sampled.map(|(sampling, accumulation)| accumulation.sum_before(sampling.index).binding()),
             textures: recorder.resources.textures(),
+            shares: recorder.resources.shadows.bindings(),
         };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),

@@ -7,7 +7,7 @@ use wgpu::{
 
 use crate::recipe::Pass;
 use crate::resources::accumulation::SUM_FORMAT;
-use crate::resources::layouts::{TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture};
+use crate::resources::layouts::{TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture, uniform};
 use crate::resources::texture_resources::TextureBindings;
 use isolith_field::{FlatMaterial, FlatScene, GpuLight};
 use isolith_scene::ViewTransform;
@@ -24,17 +24,20 @@ pub struct ShadeFeatures {
     pub area_lights: bool,
     /// The environment is not a gradient.
     pub image_lit: bool,
+    /// Light is shadowed or occluded.
+    pub shadowed: bool,
 }
 
 impl ShadeFeatures {
     /// What a scene with these materials of its meshes needs.
-    pub fn new(flat: &FlatScene, lights: &[GpuLight], of_meshes: &[FlatMaterial]) -> Self {
+    pub fn new(flat: &FlatScene, lights: &[GpuLight], of_meshes: &[FlatMaterial], shadowed: bool) -> Self {
         let layers = flat.materials.iter().chain(of_meshes).any(|material| material.phong_weight < 1.0);
         Self {
             layers,
             textures: !flat.textures.sets.is_empty(),
             area_lights: lights.iter().any(GpuLight::has_size),
             image_lit: flat.environment_map.is_some(),
+            shadowed,
         }
     }
 
@@ -43,8 +46,8 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, area_lights, image_lit } = self;
-        let options = Options { layers, area_lights, image_lit, ..Options::default() };
+        let Self { layers, textures, area_lights, image_lit, shadowed } = self;
+        let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
         let features: &[&str] = if textures { &["TEXTURES"] } else { &[] };
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, features)
     }
@@ -82,6 +85,7 @@ impl ShadeOutput {
 /// Places in group 3, whose resources depend on the features: `shaders/shade.wgsl` declares them.
 const SUM: u32 = 0;
 const TEXTURES: [u32; 3] = [1, 2, 3];
+const SHARES: [u32; 2] = [4, 5];
 
 /// The resources of group 3.
 #[derive(Clone, Debug, Default)]
@@ -90,6 +94,8 @@ pub struct ShadeExtras<'a> {
     pub sum: Option<BindingResource<'a>>,
     /// The textures, if the scene has some.
     pub textures: Option<TextureBindings<'a>>,
+    /// Settings and shares of shadows and occlusion, if there are some.
+    pub shares: Option<[BindingResource<'a>; 2]>,
 }
 
 impl ShadeFeatures {
@@ -98,8 +104,9 @@ impl ShadeFeatures {
         let sum = (output == ShadeOutput::Sum).then(|| (SUM, read_texture(false)));
         let of_textures = [read_storage(), read_storage(), read_only_texture(TEXELS_FORMAT)];
         let textures = TEXTURES.into_iter().zip(of_textures).filter(|_| self.textures);
-        let entries: Vec<_> =
-            sum.into_iter().chain(textures).map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
+        let shares = SHARES.into_iter().zip([uniform(false), read_storage()]).filter(|_| self.shadowed);
+        let all = sum.into_iter().chain(textures).chain(shares);
+        let entries: Vec<_> = all.map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
         layout(device, "shade extras", &entries)
     }
 }
@@ -110,8 +117,9 @@ impl ShadeExtras<'_> {
         let sum = self.sum.map(|sum| (SUM, sum));
         let textures = self.textures.map(|TextureBindings { placed, sets, texels }| [placed, sets, texels]);
         let textures = textures.into_iter().flat_map(|resources| TEXTURES.into_iter().zip(resources));
-        let entries: Vec<_> =
-            sum.into_iter().chain(textures).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        let shares = self.shares.into_iter().flat_map(|resources| SHARES.into_iter().zip(resources));
+        let all = sum.into_iter().chain(textures).chain(shares);
+        let entries: Vec<_> = all.map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
     }
 }

@@ -39,8 +39,10 @@ impl Evaluators<'_> {
     pub fn choose(self, flat: &FlatScene, camera: &Camera, cancel: &Cancel) -> Result<Chosen, RenderError> {
         let Self { pipelines, tape_cache, strategy, mut room } = self;
         let mut keys = pipelines.keys(flat, strategy, &[]);
-        // Only components without a specialized pipeline need tapes.
-        let wanted: Vec<bool> = keys.iter().map(|key| key.is_none() && strategy != EvalStrategy::Interpreter).collect();
+        // Only components without a specialized pipeline need tapes, and scenes that are queried as a whole.
+        let is_queried = flat.environment.shadowing.is_on() && strategy != EvalStrategy::StraightLine;
+        let needs = |key: &Option<PipelineKey>| key.is_none() || is_queried;
+        let wanted: Vec<bool> = keys.iter().map(|key| needs(key) && strategy != EvalStrategy::Interpreter).collect();
         let mut trees = match strategy {
             EvalStrategy::Auto => tape_cache.ready_trees(flat, &wanted, TAPES_AT_ONCE),
             _ => tape_cache.trees(flat, &wanted),
@@ -48,7 +50,10 @@ impl Evaluators<'_> {
         check(cancel)?;
         if strategy == EvalStrategy::Auto && trees.iter().any(Option::is_some) {
             // Components with long tapes get straight-line code instead.
-            let lengths: Vec<_> = trees.iter().map(|tree| tree.as_ref().map(|tree| tree.mean_length())).collect();
+            let length = |(tree, key): (&Option<Arc<CellTree>>, &Option<PipelineKey>)| {
+                tree.as_ref().filter(|_| key.is_none()).map(|tree| tree.mean_length())
+            };
+            let lengths: Vec<_> = trees.iter().zip(&keys).map(length).collect();
             keys = pipelines.keys(flat, strategy, &lengths);
         }
         // Components whose tapes do not fit on the device fall back to the interpreter.
@@ -99,7 +104,7 @@ fn largest_first(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
 }
 
 /// Upper bound of the loop iterations of the component's leaves together.
-fn loop_trips(flat: &FlatScene, component: &Component) -> u32 {
+pub fn loop_trips(flat: &FlatScene, component: &Component) -> u32 {
     let entries = &flat.nodes[component.first as usize..(component.first + component.count) as usize];
     let of_leaf = |node: &FlatNode| {
         let kind = ShapeKind::ALL[(node.code & 0xffff) as usize];

@@ -55,6 +55,12 @@ pub struct Frame {
     /// Offset of the template rows of each component with such a pipeline; parallel to the components.
     pub(super) template_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<isolith_scene::NodeId>,
+    /// Dispatches of the current part of the pass `shadow` so far.
+    pub(super) shadow_relaunches: u32,
+    /// Pixels whose shadows were given up.
+    pub(super) unfinished_shadows: u32,
+    /// Numbers of lights with and without shadows.
+    pub(super) shadowed_lights: [usize; 2],
 }
 
 /// Limit of [`Frame::relaunches_at_once`]; more would save nothing.
@@ -90,12 +96,15 @@ impl Frame {
             template_rows: Vec::new(),
             rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
+            shadow_relaunches: 0,
+            unfinished_shadows: 0,
+            shadowed_lights: [0, 0],
         }
     }
 
     /// Fraction that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
-        if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)) as f32 }
+        if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)).min(1.0) as f32 }
     }
 
     /// Offset of a component's rows among the template rows, in bytes; `None` if its pipeline is not for a template.
@@ -112,10 +121,15 @@ impl Frame {
             let more_relaunches = relaunches + u32::from(dispatch.params.relaunch > 0);
             let fits =
                 more_relaunches <= self.relaunches_at_once && cost_model.seconds(more) <= DISPATCH_TARGET.as_secs_f64();
-            if end > self.next && !fits {
+            // What follows a dispatch of this pass depends on its result.
+            let is_alone = dispatch.pass == Pass::Shadow;
+            if end > self.next && (!fits || is_alone) {
                 break;
             }
             (cost, relaunches, end) = (more, more_relaunches, end + 1);
+            if is_alone {
+                break;
+            }
         }
         (self.next..end, cost, relaunches)
     }
@@ -140,17 +154,17 @@ impl Frame {
         pipelines.fold(false, |fresh, (dispatch, choice)| choice.pipelines.first_use(dispatch.pass as usize) | fresh)
     }
 
-    /// Skips all passes but lighting and overlay, for a picture of the same scene from the same place that is already
+    /// Skips all passes but shadows, lighting and overlay, for a picture of the same scene from the same place that is already
     /// complete in its slot.
     pub fn skip_to_shading(&mut self) {
-        let shading = self.plan.dispatches.iter().position(|p| p.pass == Pass::Shade);
+        let shading = self.plan.dispatches.iter().position(|p| matches!(p.pass, Pass::Shadow | Pass::Shade));
         self.next = shading.unwrap_or(self.plan.dispatches.len());
         self.measured = None;
     }
 
     /// Skips lighting and overlay, if only depth, normals and materials are needed.
     pub fn skip_shading(&mut self) {
-        self.plan.dispatches.retain(|dispatch| dispatch.pass != Pass::Shade);
+        self.plan.dispatches.retain(|dispatch| !matches!(dispatch.pass, Pass::Shadow | Pass::Shade));
         self.overlay = OverlaySettings::default();
     }
 

@@ -2,8 +2,9 @@
 
 use super::frame::Frame;
 use super::pixel_counts::COMPONENT_COUNTS;
-use super::resources::SUBTILE_COUNTS;
+use super::resources::{FrameResources, SUBTILE_COUNTS};
 use crate::frame::plan::Dispatch;
+use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::recipe::Pass;
 use crate::resources::uniforms::DispatchParams;
@@ -27,9 +28,32 @@ pub struct Counts {
     pub entries: Vec<u64>,
 }
 
+/// Prepares [`limit`].
+pub(super) fn begin_limit(gpu: &Gpu, resources: &mut FrameResources, frame: &Frame) -> Frame {
+    let limit = limit(frame);
+    resources.set_work(gpu, &limit.plan.dispatches);
+    let targets = &resources.slot(frame.slot).targets;
+    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("depths of the limit") };
+    let mut encoder = gpu.device.create_command_encoder(&descriptor);
+    let [from, to] = [&targets.depth, &targets.march].map(|target| target.texture.as_image_copy());
+    encoder.copy_texture_to_texture(from, to, targets.depth.texture.size());
+    gpu.queue.submit([encoder.finish()]);
+    limit
+}
+
+/// Resets the counters of a frame.
+pub(super) fn forget_counts(gpu: &Gpu, resources: &mut FrameResources, frame: &Frame) {
+    let size = resources.slot(frame.slot).targets.size;
+    resources.counts.reset(gpu, frame.origins.len(), size);
+    let descriptor = wgpu::CommandEncoderDescriptor { label: Some("forget counts") };
+    let mut encoder = gpu.device.create_command_encoder(&descriptor);
+    resources.counts.clear_pixels(&mut encoder, size);
+    gpu.queue.submit([encoder.finish()]);
+}
+
 /// The minimal work for the picture of a finished frame: every ray starts at its true depth and evaluates the field
 /// once to confirm it; normals and lighting follow as usual. For measurements only.
-pub(super) fn limit(frame: &Frame) -> Frame {
+fn limit(frame: &Frame) -> Frame {
     let confirm = |dispatch: &Dispatch| {
         let dispatch_params =
             DispatchParams { relaunch: 1, last_relaunch: 1, max_steps: 1, compacted: 0, ..dispatch.params };

@@ -74,6 +74,11 @@ impl<'a> Recorder<'a> {
         &self.groups.view
     }
 
+    /// The bind group of the scene.
+    pub fn scene(&self) -> &'a wgpu::BindGroup {
+        &self.groups.scene
+    }
+
     /// The compute pass for the dispatch `at` of the frame. Group 0 is the view, group 3 the dispatch.
     pub fn compute(&mut self, at: usize) -> &mut wgpu::ComputePass<'static> {
         let groups = self.groups;

@@ -9,7 +9,7 @@ use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::slot::Slot;
-use crate::frame::plan::{Dispatch, FramePlan, TILE};
+use crate::frame::plan::{Dispatch, FramePlan, Room, TILE};
 use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::field::FieldBuffers;
@@ -17,9 +17,10 @@ use crate::recipe::Pass;
 use crate::resources::accumulation::Accumulation;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
+use crate::resources::shadows::ShadowBuffers;
 use crate::resources::targets::{Target, Targets};
 use crate::resources::texture_resources::{TextureBindings, TextureResources};
-use crate::resources::uniforms::{DispatchParams, GpuView, strided};
+use crate::resources::uniforms::{DispatchParams, GpuView, UNIFORM_STRIDE, strided};
 use isolith_field::light::environment_map::{PlacedMap, map_words};
 use isolith_field::{FlatScene, gpu_lights};
 use isolith_geometry::Camera;
@@ -29,6 +30,17 @@ const SUBTILE_BYTES: usize = 12;
 /// Bytes of the lists for `subtiles` subtiles: those that the cones keep, and again those with hits.
 pub fn bytes_of_subtiles(subtiles: u64) -> u64 {
     2 * subtiles * SUBTILE_BYTES as u64
+}
+
+impl Room {
+    /// The capacity of a device for one frame, and the bytes of lists that it can bind.
+    pub fn of(limits: &wgpu::Limits) -> (Self, u64) {
+        // Buffers grow by powers of two.
+        let whole = |bytes: u64| bytes.checked_ilog2().map_or(0, |bits| 1_u64 << bits);
+        let bound = whole(limits.max_buffer_size.min(limits.max_storage_buffer_binding_size));
+        let dispatches = whole(limits.max_buffer_size) as usize / UNIFORM_STRIDE;
+        (Self { dispatches, subtiles: bound / bytes_of_subtiles(1) }, bound)
+    }
 }
 
 /// Words of the counts of a subtile list, and of its list of unfinished rays: see `shaders/common/subtiles.wgsl`.
@@ -100,6 +112,7 @@ pub struct FrameResources {
     pub ray_counts: SyncedBuffer,
     nothing: SyncedBuffer,
     pub counts: MarchCounts,
+    pub shadows: ShadowBuffers,
     slots: [Option<SlotState>; 2],
 }
 
@@ -123,6 +136,7 @@ impl FrameResources {
             nothing: storage("nothing"),
             ray_counts: SyncedBuffer::indirect(device, "ray counts"),
             counts: MarchCounts::new(device, counting),
+            shadows: ShadowBuffers::new(device),
             slots: [None, None],
         }
     }
@@ -204,6 +218,7 @@ impl FrameResources {
     pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
         let view = self.first_view.of_sample(index, is_transparent);
         self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
+        self.shadows.set_sample(gpu, index);
     }
 
     /// Uploads the environment, if it is another one. Returns whether the buffer was replaced.
@@ -283,6 +298,11 @@ impl FrameResources {
         self.environment_map.binding()
     }
 
+    /// The parameters of all dispatches.
+    pub fn dispatch_params(&self) -> &wgpu::Buffer {
+        self.dispatch_params.buffer()
+    }
+
     /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
@@ -324,6 +344,8 @@ mod tests {
     use crate::frame::plan::{SUBTILES, TILE};
     use crate::renderer::pixel_counts::{COMPONENT_COUNTS, PIXEL_COUNTS};
     use crate::resources::buffers::DataTexture;
+    use crate::resources::shadows::SHADOW_STATE;
+    use isolith_field::light::occlusion::OCCLUSION_CONES;
     use isolith_field::{FlatNode, LEAF_ROWS, MESH_BIT, MODIFIER_ROWS, NO_LEAF};
     use isolith_wgsl::assemble_plain;
 
@@ -353,6 +375,8 @@ mod tests {
             ("common/scene.wgsl", "RUN", FlatNode::RUN),
             ("common/scene.wgsl", "MODIFIER", FlatNode::MODIFIER),
             ("common/scene.wgsl", "LINE", DataTexture::LINE as u32),
+            ("light/shadow_settings.wgsl", "SHADOW_STATE", SHADOW_STATE as u32),
+            ("light/occlusion.wgsl", "OCCLUSION_CONES", OCCLUSION_CONES),
             ("common/counts.wgsl", "COMPONENT_COUNTS", COMPONENT_COUNTS as u32),
             ("common/counts.wgsl", "PIXEL_COUNTS", PIXEL_COUNTS as u32),
         ];

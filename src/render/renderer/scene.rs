@@ -97,6 +97,11 @@ impl SceneResources {
         (is_new || uploads.contains(&true), windows)
     }
 
+    /// First word of the tapes of a component.
+    pub fn place(&self, tree: &Arc<CellTree>) -> Option<u32> {
+        self.tapes.place(tree)
+    }
+
     /// All materials.
     pub fn materials(&self) -> wgpu::BindingResource<'_> {
         self.materials.binding()

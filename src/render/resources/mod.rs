@@ -5,6 +5,7 @@ pub mod buffers;
 pub mod hierarchy;
 pub mod layouts;
 pub mod mesh_rays;
+pub mod shadows;
 pub mod tape_texture;
 pub mod targets;
 pub mod texture_resources;

@@ -131,6 +131,7 @@ const OPTIONS: Options = Options {
     layers: true,
     area_lights: true,
     image_lit: true,
+    shadowed: false,
 };
 
 /// Passes that evaluate a field, with their entry points.
@@ -202,8 +203,9 @@ pub fn of_file(name: &str, text: &str) -> Result<Vec<Pipeline>, Error> {
 /// Pipelines of all passes without a field.
 fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
     let mut all = Vec::new();
-    let evaluates_fields =
-        |pass: &str| FIELD_PASSES.iter().any(|[field, _]| *field == pass) || pass.starts_with("probe");
+    let evaluates_fields = |pass: &str| {
+        FIELD_PASSES.iter().any(|[field, _]| *field == pass) || pass.starts_with("probe") || pass == "shadow"
+    };
     let passes = FILES.iter().filter_map(|(file, _)| file.strip_suffix(".wgsl").filter(|name| !name.contains('/')));
     for pass in passes.filter(|pass| !evaluates_fields(pass)) {
         let failed = |error| Error::Refused { what: pass.to_owned(), reason: format!("{error}") };

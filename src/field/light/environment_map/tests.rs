@@ -103,7 +103,8 @@ fn reflections_are_near_the_integral_of_their_lobe() {
 
 #[test]
 fn one_color_lights_and_reflects_that_color() {
-    let environment = Environment { background: EnvironmentKind::Color { color: [0.5, 0.25, 0.125] } };
+    let environment =
+        Environment { background: EnvironmentKind::Color { color: [0.5, 0.25, 0.125] }, ..Environment::default() };
     let placed = PlacedMap::of(&environment).expect("a color has a map");
     for direction in directions(50) {
         let color = DVec3::new(0.5, 0.25, 0.125);

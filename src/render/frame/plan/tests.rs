@@ -34,8 +34,8 @@ fn what_is_traced_again_has_more_relaunches_of_the_components_that_are_meant() {
     let camera = flat.default_camera(&[], 1.0);
     let slow = EvaluationCost { straight: false, iterations: MAX_ITERATIONS / 2, leaves: 8.0 };
     let evaluations = vec![slow; flat.components.len()];
-    let plan =
-        plan(&flat, &camera, [64, 64], &evaluations, &CostModel::new(true), Room::UNLIMITED).expect("room for all");
+    let plan = plan(&flat, &camera, [64, 64], &evaluations, 0.0, &CostModel::new(true), Room::UNLIMITED)
+        .expect("room for all");
     let of = |dispatches: &[Dispatch], pass: Pass| dispatches.iter().filter(|dispatch| dispatch.pass == pass).count();
     let again = plan.again(|component| component == 2, 8);
     let meant: Vec<Dispatch> =
@@ -60,7 +60,7 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     // A dispatch has room for only a few steps of the third component.
     let mut evaluations = vec![cheap; flat.components.len()];
     evaluations[2].iterations = MAX_ITERATIONS / 4;
-    let planned = |room| plan(&flat, &camera, [640, 480], &evaluations, &CostModel::new(true), room);
+    let planned = |room| plan(&flat, &camera, [640, 480], &evaluations, 0.0, &CostModel::new(true), room);
     let whole = planned(Room::UNLIMITED).expect("room for all");
     let (count, subtiles) = (whole.dispatches.len(), u64::from(whole.subtiles));
     assert!(count > 1_000, "{count}");
@@ -78,4 +78,25 @@ fn more_dispatches_than_there_is_room_for_are_refused_with_the_component() {
     assert_eq!(needed, subtiles);
     let longest = (0..flat.components.len()).map(of_component).max().expect("there are some");
     assert_eq!(of_component(component), longest);
+}
+
+#[test]
+fn only_pictures_with_shadows_have_dispatches_for_them_two_for_each_part() {
+    let flat = isolith_field::flatten(&isolith_gallery::random(8, 1), 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.0);
+    let cheap = EvaluationCost { straight: true, iterations: 10, leaves: 8.0 };
+    let evaluations = vec![cheap; flat.components.len()];
+    let of = |shadows: f64| {
+        let model = CostModel::new(true);
+        let plan = plan(&flat, &camera, [320, 200], &evaluations, shadows, &model, Room::UNLIMITED).expect("room");
+        let shadows = plan.dispatches.into_iter().filter(|dispatch| dispatch.pass == Pass::Shadow);
+        shadows.map(|dispatch| dispatch.params).collect::<Vec<_>>()
+    };
+    assert!(of(0.0).is_empty());
+    let parts = of(1e4);
+    assert!(parts.len() > 2);
+    for pair in parts.chunks(2) {
+        assert_eq!((pair[0].origin, pair[0].end), (pair[1].origin, pair[1].end));
+        assert_eq!((pair[0].relaunch, pair[1].relaunch), (0, 1));
+    }
 }

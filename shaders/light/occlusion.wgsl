@@ -1,0 +1,25 @@
+// The cones of occlusion. Counterpart of `src/field/light/occlusion.rs`.
+
+const OCCLUSION_CONES: u32 = 6u;
+
+// Two vectors that form an orthonormal basis with a unit vector (Duff et al., "Building an
+// Orthonormal Basis, Revisited", 2017).
+fn occlusion_right(normal: vec3f) -> vec3f {
+    let sign = select(-1.0, 1.0, normal.z >= 0.0);
+    let a = -1.0 / (sign + normal.z);
+    return vec3f(1.0 + sign * normal.x * normal.x * a, sign * normal.x * normal.y * a, -sign * normal.x);
+}
+
+fn occlusion_up(normal: vec3f) -> vec3f {
+    let sign = select(-1.0, 1.0, normal.z >= 0.0);
+    let a = -1.0 / (sign + normal.z);
+    return vec3f(normal.x * normal.y * a, sign + normal.y * normal.y * a, -normal.y);
+}
+
+// Direction (xyz) and weight of a cone of occlusion around a unit normal. Counterpart of
+// `occlusion_cone` in `src/field/light/occlusion.rs`.
+fn occlusion_cone(normal: vec3f, index: u32) -> vec4f {
+    let angle = 6.2831853 * (f32(index) - 1.0) / f32(OCCLUSION_CONES - 1u);
+    let around = occlusion_right(normal) * cos(angle) + occlusion_up(normal) * sin(angle);
+    return select(vec4f(normal * 0.5 + around * 0.8660254, 0.15), vec4f(normal, 0.25), index == 0u);
+}

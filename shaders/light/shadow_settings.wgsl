@@ -1,0 +1,21 @@
+// Settings of shadows and occlusion, and the layout of their shares: per pixel one byte for each
+// light, in whole words, then one for each cone of occlusion.
+
+struct ShadowSettings {
+    // Lights with shadows: the first ones.
+    lights: u32,
+    // Words per pixel.
+    stride: u32,
+    // 6, or 0 without occlusion.
+    cones: u32,
+    // 0: cones alone. Else the number of the sample: where a cone proves nothing, one ray decides.
+    sample: u32,
+    // Least step of a cone in radii.
+    fineness: f32,
+    occlusion_radius: f32,
+    occlusion_strength: f32,
+    padding: f32,
+}
+
+// Words of the state of an unfinished pixel: of its shadows, and again of its occlusion.
+const SHADOW_STATE: u32 = 12u;

@@ -1,0 +1,169 @@
+//! Shadows and occlusion of a frame: what the pass `shadow` needs, and its relaunches.
+
+use super::choice::{Chosen, loop_trips};
+use super::error::RenderError;
+use super::evaluation::EvaluationCost;
+use super::frame::Frame;
+use super::resources::FrameResources;
+use super::scene::SceneResources;
+use crate::gpu::Gpu;
+use crate::gpu::readback::read_words;
+use crate::passes::Passes;
+use crate::recipe::Pass;
+use crate::resources::hierarchy::query_components;
+use crate::resources::shadows::{SceneQuery, ShadowSettings};
+use isolith_field::standpoint::Standpoints;
+use isolith_field::{Component, FlatScene, Warning};
+use isolith_geometry::Camera;
+use isolith_wgsl::{OpSet, Options};
+
+/// Expected evaluations per pixel for a light, and for the cones of occlusion.
+const LIGHT_EVALUATIONS: f64 = 6.0;
+const OCCLUSION_EVALUATIONS: f64 = 16.0;
+/// Most dispatches of a part before its unfinished cones are given up and reported.
+const MOST_RELAUNCHES: u32 = 4_096;
+
+/// Cost of one evaluation of a component by the evaluator that serves all components.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct QueryCost {
+    /// Whether all components have tapes.
+    pub by_tapes: bool,
+    /// Upper bound of the loop iterations.
+    pub iterations: u32,
+    /// Mean number of leaves.
+    pub leaves: f64,
+}
+
+impl QueryCost {
+    /// The cost for a scene: by tapes if every component has them, else by the interpreter.
+    pub fn of(flat: &FlatScene, chosen: &Chosen) -> Self {
+        let loops = OpSet::of(flat).loops();
+        let by_tapes = !chosen.trees.is_empty() && chosen.trees.iter().all(Option::is_some);
+        let cost = |index: usize| {
+            let component: &Component = &flat.components[index];
+            let trips = loop_trips(flat, component);
+            match &chosen.trees[index] {
+                Some(tree) if by_tapes => EvaluationCost::of_tapes(component, tree, loops, trips),
+                _ => EvaluationCost::of_entries(component, loops, trips),
+            }
+        };
+        let costs: Vec<_> = (0..flat.components.len()).map(cost).collect();
+        Self {
+            by_tapes,
+            iterations: costs.iter().map(|cost| cost.iterations).max().unwrap_or(1),
+            leaves: costs.iter().map(|cost| cost.leaves).sum::<f64>() / costs.len().max(1) as f64,
+        }
+    }
+}
+
+/// The shadows of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowWork {
+    settings: ShadowSettings,
+    cost: QueryCost,
+    /// Lights beyond those with shadows.
+    left: usize,
+}
+
+impl ShadowWork {
+    /// The work for a scene with this many lights; `None` without shadows and occlusion. `bytes`: the largest buffer.
+    pub fn of(flat: &FlatScene, chosen: &Chosen, lights: usize, size: [u32; 2], bytes: u64) -> Option<Self> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let settings = ShadowSettings::new(flat, lights, pixels, bytes);
+        let left = if flat.environment.shadowing.shadows { lights - settings.lights as usize } else { 0 };
+        settings.is_on().then(|| Self { settings, cost: QueryCost::of(flat, chosen), left })
+    }
+
+    /// Expected leaves per pixel.
+    pub fn per_pixel(&self) -> f64 {
+        let occlusion = if self.settings.cones > 0 { OCCLUSION_EVALUATIONS } else { 0.0 };
+        self.cost.leaves * (f64::from(self.settings.lights) * LIGHT_EVALUATIONS + occlusion)
+    }
+
+    /// Numbers of lights with and without shadows.
+    pub fn lights(&self) -> [usize; 2] {
+        [self.settings.lights as usize, self.left]
+    }
+}
+
+/// A scene as a frame sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct SeenScene<'a> {
+    /// The scene.
+    pub flat: &'a FlatScene,
+    /// The eye.
+    pub camera: &'a Camera,
+    /// Size of the picture.
+    pub size: [u32; 2],
+    /// The points that rows are relative to.
+    pub standpoints: &'a Standpoints<'a>,
+}
+
+/// Uploads what the pass needs. Returns whether bind groups must be rebuilt.
+///
+/// # Errors
+/// A shader file is missing.
+pub fn upload(
+    gpu: &Gpu,
+    (passes, scene, resources): (&mut Passes, &SceneResources, &mut FrameResources),
+    seen: SeenScene<'_>,
+    (chosen, work): (&Chosen, Option<ShadowWork>),
+    options: Options,
+) -> Result<bool, RenderError> {
+    let Some(ShadowWork { settings, cost, .. }) = work else { return Ok(resources.shadows.switch_off()) };
+    let SeenScene { flat, camera, size, standpoints } = seen;
+    passes.shadow.prepare(&gpu.device, flat, cost.by_tapes, settings.parts(), options)?;
+    let mut components = query_components(flat, camera.position, &standpoints.all);
+    if cost.by_tapes {
+        for ((component, tree), at) in components.iter_mut().zip(&chosen.trees).zip(&standpoints.all) {
+            if let Some((tree, place)) = tree.as_ref().and_then(|tree| Some((tree, scene.place(tree)?))) {
+                *component = component.with_grid(tree, place, at);
+            }
+        }
+    }
+    let query = SceneQuery { components, origin: camera.position, iterations: cost.iterations };
+    Ok(resources.shadows.upload(gpu, flat, &query, settings, size))
+}
+
+/// Whether the dispatch `at` belongs to the pass. If so, sets the number of unfinished pixels to 0.
+pub fn begin(gpu: &Gpu, resources: &mut FrameResources, frame: &Frame, at: usize) -> bool {
+    let is_shadow = frame.plan.dispatches.get(at).is_some_and(|dispatch| dispatch.pass == Pass::Shadow);
+    if is_shadow {
+        resources.shadows.unfinished.reset(&gpu.device, &gpu.queue, bytemuck::bytes_of(&0_u32));
+    }
+    is_shadow
+}
+
+/// After the dispatch `at` of the pass: repeats the second dispatch of the part until all of its pixels have ended.
+///
+/// # Errors
+/// The device fails.
+pub fn go_on(gpu: &Gpu, resources: &FrameResources, frame: &mut Frame, at: usize) -> Result<(), RenderError> {
+    let unfinished = read_words(gpu, resources.shadows.unfinished.buffer(), 1)?[0];
+    let is_first = frame.plan.dispatches[at].params.relaunch == 0;
+    frame.shadow_relaunches = if is_first { 1 } else { frame.shadow_relaunches + 1 };
+    if unfinished > 0 && frame.shadow_relaunches < MOST_RELAUNCHES {
+        frame.next = if is_first { at + 1 } else { at };
+        frame.measured = None;
+    } else {
+        frame.unfinished_shadows += unfinished;
+        frame.next = if is_first { at + 2 } else { at + 1 };
+    }
+    Ok(())
+}
+
+impl Frame {
+    /// Warnings about shadows that are missing or not complete.
+    pub(super) fn shadow_warnings(&self) -> Vec<Warning> {
+        let [used, left] = self.shadowed_lights;
+        let pixels = self.unfinished_shadows;
+        let reasons = [
+            (pixels > 0).then(|| format!("the shadows of {pixels} pixels did not come to an end; they are too light")),
+            (left > 0)
+                .then(|| format!("the last {left} lights cast no shadows: a picture of this size has room for {used}")),
+        ];
+        let node = self.origins.first().copied();
+        let warning = |reason| Some(Warning { node: node?, name: String::new(), reason });
+        reasons.into_iter().flatten().filter_map(warning).collect()
+    }
+}
