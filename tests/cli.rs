@@ -1,5 +1,7 @@
 //! The program from outside: every command and exit code, its files and its messages.
 
+mod light;
+
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;
@@ -151,7 +153,11 @@ fn what_is_not_understood_is_refused_with_a_reason() {
         ("--time", "nan", "finite"),
         ("--depth", "depth.jpg", ".exr or .png"),
         ("-o", "picture.bmp", ".png"),
+        ("--samples", "0", "1..=4096"),
+        ("--exposure", "99", "-20 to 20"),
+        ("--view-transform", "filmic", "none, agx, pbr_neutral"),
         ("--view", "heat", "shaded, steps, evaluations"),
+        ("--shading", "matcap", "solid, material, rendered"),
     ] {
         let mut arguments = vec!["render", "scene.json", flag, value];
         if flag != "-o" {
@@ -239,6 +245,24 @@ fn pictures_show_what_the_view_says() {
     assert!(said.contains("wrote out.png\n"), "{said}");
     assert_ne!(shaded, normals);
     place.run(&["render", "scene.json", "-o", "out.png", "--view", "steps", "--reference"]).failed(2, &["--reference"]);
+}
+
+#[test]
+fn shadings_differ_in_light_and_matter_only() {
+    let place = Place::new();
+    let render = |arguments: &[&str]| {
+        let outputs = ["render", "scene.json", "-o", "out.png", "--depth", "depth.exr", "--size", "24x16"];
+        place.run(&[&outputs, arguments].concat()).succeeded();
+        (open(&place.path("out.png")).into_rgb8(), std::fs::read(place.path("depth.exr")).expect("a depth"))
+    };
+    let plain = render(&[]);
+    assert_eq!(plain, render(&["--shading", "rendered"]));
+    let [solid, material] = ["solid", "material"].map(|shading| render(&["--shading", shading]));
+    assert!(solid.1 == plain.1 && material.1 == plain.1, "the same shapes");
+    assert!(solid.0 != plain.0 && material.0 != plain.0 && solid.0 != material.0);
+    let reference = render(&["--shading", "solid", "--reference"]).0;
+    let [ball, other] = [&solid.0, &reference].map(|picture| picture.get_pixel(12, 8).0.map(i32::from));
+    assert!((0..3).all(|c| (ball[c] - other[c]).abs() < 4), "{ball:?} {other:?}");
 }
 
 #[test]
@@ -383,7 +407,7 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
     let place = Place::new();
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_isolith"))
         .current_dir(place.folder.path())
-        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192"])
+        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192", "--samples", "1"])
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::piped())
         .spawn()

@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Blend, BlendKernel, BlendOverride, CameraNode, Environment, Falloff, Group, Light, LightKind, Limits, Material,
-    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamValue,
-    RadiusUnit, Scene, Shape, ShapeKind, limits,
+    Blend, BlendKernel, BlendOverride, CameraNode, DisplaySettings, Environment, Falloff, Group, Light, LightKind,
+    Limits, Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object,
+    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, ViewTransform, limits,
 };
 
 use crate::contract::samples::image;
@@ -155,6 +155,11 @@ impl Random {
         Environment::sky(color(), color(), color())
     }
 
+    /// Display settings within their limits.
+    pub fn display(&mut self) -> DisplaySettings {
+        DisplaySettings { exposure: self.number(&limits::EXPOSURE), view_transform: self.pick(&ViewTransform::ALL) }
+    }
+
     fn light(&mut self) -> Light {
         let falloff = Falloff::Attenuation {
             constant: 0.5 + self.number(&limits::UNIT),
@@ -255,5 +260,8 @@ pub fn random_scene(seed: u64, count: usize) -> Scene {
         nodes.push(node);
     }
     let environment = random.environment();
-    Scene::from_tables(nodes, materials, environment, random.bits() >> 20).expect("random scenes keep the rules")
+    let tables = Scene::from_tables(nodes, materials, environment, random.bits() >> 20);
+    let mut scene = tables.expect("random scenes keep the rules");
+    scene.display = random.display();
+    scene
 }

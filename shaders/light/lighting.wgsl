@@ -17,9 +17,10 @@ fn lighting_surface(point: ShadingPoint, ambient: vec3f, light_count: u32) -> ve
 fn lighting_around(point: ShadingPoint, ambient: vec3f) -> vec3f {
     if IMAGE_LIT {
         let shares = brdf_environment(point);
-        return shares.diffuse * environment_irradiance(point.normal)
-            + shares.specular * environment_reflected(shares.direction, shares.roughness)
-            + shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
+        let diffuse = shares.diffuse * environment_irradiance(point.normal);
+        let specular = shares.specular * environment_reflected(shares.direction, shares.roughness);
+        let coat = shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
+        return (diffuse + specular + coat) * ambient;
     }
     return brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
 }

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use isolith_scene::{ParamPath, Params};
+use isolith_scene::{DisplaySettings, ParamPath, Params};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
@@ -15,6 +15,11 @@ pub fn show(ui: &mut Ui, session: &mut EditSession) {
         environment.visit("", &mut |prefix, param, _| names.push(format!("{prefix}{}", param.name)));
         for name in names {
             inspector_params::single(ui, session, ParamPath::of_environment(name));
+        }
+    });
+    widgets::card(ui, "Display", |ui| {
+        for param in DisplaySettings::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_display(param.name));
         }
     });
     widgets::card(ui, "First steps", |ui| {

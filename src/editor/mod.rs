@@ -15,6 +15,7 @@
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
+//! | `shading_bar` | the choice of the shading, over the picture |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
@@ -67,6 +68,7 @@ mod recovery;
 mod root;
 mod safekeeping;
 mod selection;
+mod shading_bar;
 mod shape_change;
 mod shape_icons;
 mod shell;

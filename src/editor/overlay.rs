@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::navigation::Side;
 use super::projection::Projection;
 use super::state::EditorState;
-use super::{bounds, icons, theme};
+use super::{bounds, icons, shading_bar, theme};
 use isolith_scene::{Node, NodeId, NodeKind};
 
 /// Maximum number of selection boxes.
@@ -106,9 +106,9 @@ impl Compass {
     const ARM: f32 = 28.0;
     const BALL: f32 = 8.0;
 
-    /// The compass in the upper right corner of the viewport.
+    /// The compass in the upper right corner of the viewport, below the bar of shadings.
     pub fn new(rect: Rect, rotation: glam::DQuat) -> Self {
-        let center = rect.right_top() + vec2(-50.0, 50.0);
+        let center = rect.right_top() + vec2(-50.0, 50.0 + shading_bar::HEIGHT);
         let inverse = rotation.inverse();
         let sides = [Side::Right, Side::Top, Side::Front, Side::Left, Side::Bottom, Side::Back];
         let mut balls = sides.map(|side| {

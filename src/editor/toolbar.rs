@@ -1,16 +1,14 @@
 //! The bar at the top: menus and the most common buttons.
 
 use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
-use egui_material_icons::icons::ICON_VISIBILITY;
 
 use super::commands::command::Command;
-use super::commands::entries::menu_entries;
+use super::commands::entries::{menu_entries, shading_entries};
 use super::commands::info::{Icon, Menu};
 use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
-use super::{icons, legend, theme, widgets};
-use isolith_field::debug_view::ViewMode;
+use super::{icons, theme, widgets};
 use isolith_scene::{Operator, ShapeKind};
 
 /// The panel of the toolbar.
@@ -77,13 +75,6 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         buttons(state, ui, theme::TEXT, &[Command::Duplicate, Command::Delete], &mut chosen);
         divider(ui);
         buttons(state, ui, theme::TEXT, &[Command::FrameAll, Command::FrameSelected], &mut chosen);
-        divider(ui);
-        let color = if state.view.view_mode == ViewMode::Shaded { theme::TEXT } else { theme::ACCENT };
-        let name = legend::capitalized(state.view.view_mode.name());
-        let text = (ICON_VISIBILITY.rich_text().size(17.0).color(color), RichText::new(name).color(color));
-        let button = ui.menu_button(text, |ui| view_modes(state, ui, &mut chosen)).response;
-        ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Viewport shading"));
-        button.on_hover_text("Viewport shading");
     });
     chosen
 }
@@ -101,7 +92,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.separator();
-        ui.menu_button("Viewport shading", |ui| view_modes(state, ui, chosen));
+        *chosen = shading_entries(ui, state).or(*chosen);
     }
 }
 
@@ -112,20 +103,6 @@ fn panels(state: &mut EditorState, ui: &mut Ui) {
             state.requests.push(Request::TogglePanel(id));
         }
     }
-}
-
-/// The choice of the view mode.
-fn view_modes(state: &EditorState, ui: &mut Ui, chosen: &mut Option<Command>) {
-    ui.set_min_width(190.0);
-    let room = widgets::room_below(ui);
-    widgets::scrolling(ui, room, |ui| {
-        *chosen = menu_entries(ui, state, Menu::ViewMode).or(*chosen);
-        ui.separator();
-        ui.menu_button("Debug", |ui| {
-            ui.set_min_width(190.0);
-            *chosen = menu_entries(ui, state, Menu::Debug).or(*chosen);
-        });
-    });
 }
 
 fn divider(ui: &mut Ui) {

@@ -4,6 +4,7 @@ use egui::{Pos2, Rect, TextureId, vec2};
 use glam::DVec3;
 
 use super::navigation::Navigation;
+use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
 
@@ -18,6 +19,10 @@ pub struct Picture {
     pub progress: Option<f32>,
     /// Whether the full picture waits for pipelines or tapes.
     pub is_waiting: bool,
+    /// Number of accumulated samples, and of those that are wanted; `None` if the picture has no samples.
+    pub samples: Option<[u32; 2]>,
+    /// Whether samples are being added.
+    pub is_sampling: bool,
     /// Text for the status bar: adapter, milliseconds.
     pub status: String,
 }
@@ -35,9 +40,16 @@ pub struct ViewSettings {
     pub show_grid: bool,
     /// Whether to outline the selection.
     pub show_outline: bool,
+    /// The shading of the lit picture.
+    pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Samples per pixel that accumulate while nothing changes.
+    pub samples: u32,
 }
+
+/// Samples per pixel of a new view.
+const SAMPLES: u32 = 64;
 
 /// The action of the pointer in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,8 +73,12 @@ pub enum PointerActivity {
 pub struct ViewState {
     /// The camera.
     pub navigation: Navigation,
+    /// The shading of the lit picture.
+    pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Samples per pixel that accumulate while nothing changes.
+    pub samples: u32,
     /// Whether to show the ground grid.
     pub show_grid: bool,
     /// Whether to outline the selection.
@@ -83,7 +99,9 @@ impl Default for ViewState {
     fn default() -> Self {
         Self {
             navigation: Navigation::default(),
+            shading: Shading::default(),
             view_mode: ViewMode::Shaded,
+            samples: SAMPLES,
             show_grid: true,
             show_outline: true,
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
@@ -100,5 +118,31 @@ impl ViewState {
     pub fn aspect(&self) -> f64 {
         let [width, height] = self.size_px.map(f64::from);
         width / height
+    }
+
+    /// The shading that the picture has; `None` while a view for debugging hides it.
+    pub fn lit_by(&self) -> Option<Shading> {
+        (self.view_mode == ViewMode::Shaded).then_some(self.shading)
+    }
+
+    /// Shows the lit picture in this shading.
+    pub fn show_shading(&mut self, shading: Shading) {
+        (self.shading, self.view_mode) = (shading, ViewMode::Shaded);
+    }
+
+    /// Shows the next shading; the first after the last.
+    pub fn cycle_shading(&mut self) {
+        let next = match self.lit_by() {
+            None => self.shading,
+            Some(Shading::Solid) => Shading::Material,
+            Some(Shading::Material) => Shading::Rendered,
+            Some(Shading::Rendered) => Shading::Solid,
+        };
+        self.show_shading(next);
+    }
+
+    /// Shows a view for debugging, or the lit picture again if that view is open.
+    pub fn toggle_view_mode(&mut self, view_mode: ViewMode) {
+        self.view_mode = if self.view_mode == view_mode { ViewMode::Shaded } else { view_mode };
     }
 }

@@ -10,7 +10,7 @@ use super::picking::pick_node;
 use super::projection::Projection;
 use super::state::EditorState;
 use super::view_state::PointerActivity;
-use super::{legend, selection, theme};
+use super::{legend, selection, shading_bar, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The current drag.
@@ -55,6 +55,7 @@ impl Panel for Viewport {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Viewport"));
         self.navigate(state, ui, &response);
         self.paint(state, ui, &response);
+        shading_bar::show(state, ui);
     }
 }
 

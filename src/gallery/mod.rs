@@ -14,6 +14,7 @@ mod ellipsoid_and_plane;
 mod fractals;
 mod image_lit;
 mod lights;
+mod materials;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
@@ -21,6 +22,7 @@ mod random_groups;
 mod scene_builder;
 mod shapes;
 mod showcase;
+mod textures;
 mod write;
 
 use isolith_scene::Scene;
@@ -60,6 +62,8 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("drawn", drawn::scene()),
         ("lights", lights::scene()),
         ("image-lit", image_lit::scene()),
+        ("materials", materials::scene()),
+        ("textures", textures::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -1,4 +1,4 @@
-//! Base color textures: decoded within a budget, and sampled as a renderer does.
+//! Textures: decoded within a budget, and sampled as a renderer does.
 
 use std::io::Cursor;
 
@@ -14,7 +14,7 @@ pub struct Texture {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Rows from the top, four bytes per pixel, sRGB with straight alpha.
+    /// Rows from the top, four bytes per pixel; colors are sRGB with straight alpha.
     pub rgba: Vec<u8>,
 }
 

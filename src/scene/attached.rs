@@ -3,6 +3,7 @@
 use super::attachment::{Attachment, Content};
 use super::environment_image::EnvironmentImage;
 use super::heights::Heights;
+use super::texture_image::TextureImage;
 use isolith_font::Face;
 
 /// An attachment of any kind, as the value of a parameter.
@@ -10,6 +11,8 @@ use isolith_font::Face;
 pub enum Attached {
     /// An image of heights.
     Heights(Attachment<Heights>),
+    /// An image of a texture.
+    Texture(Attachment<TextureImage>),
     /// A font.
     Font(Attachment<Face>),
     /// An image of everything around the scene.
@@ -21,6 +24,7 @@ impl Attached {
     pub fn name(&self) -> Option<&str> {
         match self {
             Self::Heights(file) => file.name(),
+            Self::Texture(file) => file.name(),
             Self::Font(file) => file.name(),
             Self::Environment(file) => file.name(),
         }
@@ -30,6 +34,7 @@ impl Attached {
     pub fn label(&self) -> &str {
         let without = match self {
             Self::Heights(_) => Heights::WITHOUT,
+            Self::Texture(_) => TextureImage::WITHOUT,
             Self::Font(_) => Face::WITHOUT,
             Self::Environment(_) => EnvironmentImage::WITHOUT,
         };
@@ -40,6 +45,7 @@ impl Attached {
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::Heights(_) => Heights::ENDINGS,
+            Self::Texture(_) => TextureImage::ENDINGS,
             Self::Font(_) => Face::ENDINGS,
             Self::Environment(_) => EnvironmentImage::ENDINGS,
         }
@@ -49,6 +55,7 @@ impl Attached {
     pub fn without(&self) -> Self {
         match self {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
+            Self::Texture(_) => Self::Texture(Attachment::NONE),
             Self::Font(_) => Self::Font(Attachment::NONE),
             Self::Environment(_) => Self::Environment(Attachment::NONE),
         }
@@ -58,6 +65,7 @@ impl Attached {
     pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
         Ok(match self {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
+            Self::Texture(_) => Self::Texture(Attachment::new(name, bytes)?),
             Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
             Self::Environment(_) => Self::Environment(Attachment::new(name, bytes)?),
         })

@@ -61,6 +61,8 @@ pub struct Options {
     pub relaxed: bool,
     /// Tolerance of the march at the surface.
     pub quality: Quality,
+    /// Whether materials may have the layers of OpenPBR. Without them, shading knows Blinn and Phong only.
+    pub layers: bool,
     /// Whether a light has a size.
     pub area_lights: bool,
     /// Whether the environment is not a gradient.
@@ -75,6 +77,7 @@ impl Default for Options {
             cones: true,
             relaxed: true,
             quality: Quality::default(),
+            layers: true,
             area_lights: false,
             image_lit: false,
         }

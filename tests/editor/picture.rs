@@ -4,8 +4,12 @@ use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isolith::editor::Editor;
+use isolith::document::Document;
+use isolith::editor::{Editor, Picture};
+use isolith::field::Shading;
 use isolith::field::debug_view::ViewMode;
+
+use crate::settle::Settle;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
 
@@ -115,38 +119,69 @@ fn a_monkey_finds_no_panic_and_undo_leads_back() {
     assert_eq!(*harness.state().document().scene(), scene);
 }
 
+/// Opens the menu of shadings and chooses an entry.
+fn choose(harness: &mut Harness<'_, Editor>, path: &[&str]) {
+    for name in [&["Viewport shading"], path].concat() {
+        harness.get_by_label(name).click();
+        harness.run();
+    }
+}
+
 #[test]
-fn the_view_mode_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
+fn the_view_for_debugging_chosen_in_the_menu_is_what_the_picture_is_asked_for() {
     let (scene, _) = scene();
     let mut harness = open(scene.clone());
     assert_eq!(harness.state().view().view_mode, ViewMode::Shaded);
-    for (name, view_mode) in [
-        ("Shading: steps", ViewMode::Steps),
-        ("Shading: normals", ViewMode::Normals),
-        ("Shading: shaded", ViewMode::Shaded),
-    ] {
-        harness.get_by_label("Viewport shading").click();
-        harness.run();
-        if view_mode.counts() {
-            harness.get_by_label("Debug").click();
-            harness.run();
-        }
-        harness.get_by_label(name).click();
-        harness.run();
+    for (name, view_mode) in [("Debug: steps", ViewMode::Steps), ("Debug: normals", ViewMode::Normals)] {
+        choose(&mut harness, &["Debug", name]);
         assert_eq!(harness.state().view().view_mode, view_mode);
     }
+    choose(&mut harness, &["Debug", "Debug: normals"]);
+    assert_eq!(harness.state().view().view_mode, ViewMode::Shaded, "the same again leads back");
     harness.get_by_label("View").click();
     harness.run();
     let is_on = |name| harness.get_by_label(name).accesskit_node().toggled() == Some(Toggled::True);
     assert!(is_on("Grid"), "a check mark shows what is on");
+    assert!(is_on("Shading: Rendered") && !is_on("Shading: Solid"));
     press(&mut harness, Modifiers::NONE, Key::Escape);
     press(&mut harness, Modifiers::NONE, Key::F3);
-    harness.event(Event::Text("shading slope".into()));
+    harness.event(Event::Text("debug slope".into()));
     harness.run();
     press(&mut harness, Modifiers::NONE, Key::Enter);
     assert_eq!(harness.state().view().view_mode, ViewMode::Slope);
     assert_eq!(undo_all(&mut harness), 0, "looking changes nothing");
     assert_eq!(*harness.state().document().scene(), scene);
+}
+
+#[test]
+fn a_shading_is_chosen_by_button_menu_and_key_and_stays_with_the_next_document() {
+    let (scene, _) = scene();
+    let mut harness = open(scene.clone());
+    let shown = |harness: &Harness<'_, Editor>| (harness.state().view().shading, harness.state().view().view_mode);
+    let is_on = |harness: &Harness<'_, Editor>, name| {
+        harness.get_by_label(name).accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert_eq!(shown(&harness), (Shading::Rendered, ViewMode::Shaded), "a new window shows the scene as it is lit");
+    let camera = harness.state().view().camera;
+    for (name, shading) in [("Solid", Shading::Solid), ("Material Preview", Shading::Material)] {
+        harness.get_by_label(name).click();
+        harness.run();
+        assert_eq!(shown(&harness), (shading, ViewMode::Shaded));
+        assert!(is_on(&harness, name) && !is_on(&harness, "Rendered"));
+    }
+    choose(&mut harness, &["Shading: Solid"]);
+    assert_eq!(shown(&harness).0, Shading::Solid);
+    for shading in [Shading::Material, Shading::Rendered, Shading::Solid] {
+        press(&mut harness, Modifiers::NONE, Key::Z);
+        assert_eq!(shown(&harness).0, shading);
+    }
+    choose(&mut harness, &["Debug", "Debug: steps"]);
+    assert!(!is_on(&harness, "Solid"), "a view for debugging hides the shading");
+    press(&mut harness, Modifiers::NONE, Key::Z);
+    assert_eq!(shown(&harness), (Shading::Solid, ViewMode::Shaded), "the key leads back to it");
+    press(&mut harness, Modifiers::COMMAND, Key::N);
+    assert_eq!(shown(&harness).0, Shading::Solid, "it belongs to the window, not to the document");
+    assert_eq!(camera.rotation, harness.state().view().camera.rotation, "a button over the picture moves nothing");
 }
 
 #[test]
@@ -191,4 +226,26 @@ fn an_idle_editor_asks_for_no_frames() {
         let viewport = &harness.output().viewport_output[&egui::ViewportId::ROOT];
         assert!(viewport.repaint_delay > std::time::Duration::from_secs(1), "{:?}", viewport.repaint_delay);
     }
+}
+
+#[test]
+fn samples_are_counted_chosen_and_stopped() {
+    let sampling = || Picture { samples: Some([16, 64]), is_sampling: true, ..Picture::default() };
+    let mut harness =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).with_context_setup(Editor::setup).build_ui_state(
+            move |ui, editor: &mut Editor| editor.show(ui, &sampling()),
+            Editor::new(Document::new(scene().0)),
+        );
+    harness.settle();
+    harness.get_by_label("16 / 64 samples");
+    assert!(!harness.state_mut().take_stop_drawing());
+    harness.get_by_label("Stop drawing").click();
+    harness.run();
+    assert!(harness.state_mut().take_stop_drawing());
+    assert_eq!(harness.state().view().samples, 64);
+    for name in ["Viewport shading", "Samples", "256 samples"] {
+        harness.get_by_label(name).click();
+        harness.run();
+    }
+    assert_eq!(harness.state().view().samples, 256);
 }

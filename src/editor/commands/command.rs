@@ -1,6 +1,7 @@
 //! The names of the commands, without their conditions and effects.
 
 use crate::navigation::Side;
+use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{Operator, ShapeKind};
 
@@ -89,6 +90,12 @@ pub enum Command {
     FindCommand,
     /// Toggle the log.
     ShowMessages,
-    /// Switch to this view mode.
-    ShowLook(ViewMode),
+    /// Switch to this shading.
+    ShowShading(Shading),
+    /// Switch to the next shading.
+    CycleShading,
+    /// Switch to this view for debugging, or back.
+    ShowView(ViewMode),
+    /// Accumulate this many samples per pixel.
+    Samples(u32),
 }

@@ -29,6 +29,18 @@ pub fn menu_entries(ui: &mut Ui, state: &EditorState, menu: Menu) -> Option<Comm
     chosen
 }
 
+/// Shows the shadings, with the views for debugging and the samples in submenus; returns the chosen command.
+pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
+    let chosen = menu_entries(ui, state, Menu::Shading);
+    ui.separator();
+    let debug = ui.menu_button("Debug", |ui| {
+        ui.set_min_width(190.0);
+        menu_entries(ui, state, Menu::Debug)
+    });
+    let samples = ui.menu_button("Samples", |ui| menu_entries(ui, state, Menu::Samples));
+    debug.inner.flatten().or(samples.inner.flatten()).or(chosen)
+}
+
 /// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{

@@ -22,10 +22,12 @@ pub enum Menu {
     Add,
     /// The camera and the picture.
     View,
-    /// View modes; a submenu of View.
-    ViewMode,
-    /// View modes for debugging; a submenu of [`Menu::ViewMode`].
+    /// Shadings; a part of View.
+    Shading,
+    /// Views for debugging; a submenu of View.
     Debug,
+    /// Samples per pixel; a submenu of View.
+    Samples,
 }
 
 /// An icon of a command.
@@ -122,8 +124,8 @@ impl CommandInfo {
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
         match (self.menu, on) {
-            (Menu::ViewMode | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Menu::ViewMode | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Menu::Shading | Menu::Debug | Menu::Samples, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::Shading | Menu::Debug | Menu::Samples, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

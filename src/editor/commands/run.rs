@@ -65,7 +65,10 @@ impl Editor {
             Command::ToggleOutline => state.view.show_outline ^= true,
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
-            Command::ShowLook(view_mode) => state.view.view_mode = view_mode,
+            Command::ShowShading(shading) => state.view.show_shading(shading),
+            Command::CycleShading => state.view.cycle_shading(),
+            Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
+            Command::Samples(samples) => state.view.samples = samples,
         }
     }
 

@@ -39,6 +39,7 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
+    use isolith_field::Shading;
     use isolith_field::debug_view::ViewMode;
     use isolith_scene::{Operator, ShapeKind};
 
@@ -58,10 +59,12 @@ mod tests {
     }
 
     #[test]
-    fn every_shape_operator_and_look_has_a_command() {
+    fn every_shape_operator_shading_and_view_has_a_command() {
         let all: Vec<_> = Command::all().collect();
         assert!(ShapeKind::ALL.iter().all(|kind| all.contains(&Command::AddShape(*kind))));
         assert!(Operator::ALL.iter().all(|operator| all.contains(&Command::Join(*operator))));
-        assert!(ViewMode::ALL.into_iter().all(|view_mode| all.contains(&Command::ShowLook(view_mode))));
+        assert!(Shading::ALL.into_iter().all(|shading| all.contains(&Command::ShowShading(shading))));
+        let mut views = ViewMode::ALL.into_iter().filter(|view_mode| *view_mode != ViewMode::Shaded);
+        assert!(views.all(|view_mode| all.contains(&Command::ShowView(view_mode))));
     }
 }

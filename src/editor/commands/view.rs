@@ -3,12 +3,14 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA, ICON_SEARCH, ICON_SELECT,
+    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA, ICON_SEARCH,
+    ICON_SELECT,
 };
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::navigation::Side;
+use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 
 fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> CommandInfo {
@@ -55,17 +57,28 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .group(),
         row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
     ]);
-    all.extend(ViewMode::ALL.into_iter().map(|view_mode| {
-        let label = format!("Shading: {}", view_mode.name());
-        let menu = if is_diagnostic(view_mode) { Menu::Debug } else { Menu::ViewMode };
-        let info = CommandInfo::new(menu, Command::ShowLook(view_mode), None, label, view_mode.help());
-        let info = info.switch(|state, command| command == Command::ShowLook(state.view.view_mode));
-        if matches!(view_mode, ViewMode::Slope | ViewMode::Nodes) { info.group() } else { info }
+    all.extend(Shading::ALL.into_iter().map(|shading| {
+        let label = format!("Shading: {}", shading.label());
+        CommandInfo::new(Menu::Shading, Command::ShowShading(shading), None, label, shading.help())
+            .switch(|state, command| state.view.lit_by().map(Command::ShowShading) == Some(command))
+    }));
+    let cycle = "Solid, Material Preview and Rendered in turn";
+    all.push(
+        CommandInfo::new(Menu::Shading, Command::CycleShading, Icon::from(ICON_CONTRAST), "Next shading", cycle)
+            .key(NONE, Key::Z),
+    );
+    all.extend(ViewMode::ALL.into_iter().filter(|view_mode| *view_mode != ViewMode::Shaded).map(|view_mode| {
+        let label = format!("Debug: {}", view_mode.name());
+        let info = CommandInfo::new(Menu::Debug, Command::ShowView(view_mode), None, label, view_mode.help());
+        let info = info.switch(|state, command| command == Command::ShowView(state.view.view_mode));
+        if matches!(view_mode, ViewMode::Distance | ViewMode::Nodes) { info.group() } else { info }
+    }));
+    all.extend([1, 16, 64, 256, 1024].map(|samples| {
+        let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
+        CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
+            .switch(|state, command| command == Command::Samples(state.view.samples))
     }));
     all
 }
 
-/// Whether the view mode shows the renderer's work rather than the scene.
-fn is_diagnostic(view_mode: ViewMode) -> bool {
-    view_mode.counts() || view_mode == ViewMode::Slope
-}
+const SAMPLES: &str = "Smooth edges: samples per pixel that the viewport adds up while nothing changes";

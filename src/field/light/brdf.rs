@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::layers::{Layers, layers_direct, layers_of};
 use crate::mixture::SurfaceMaterial;
 
 /// A point of a surface that is lit.
@@ -17,20 +18,11 @@ pub struct ShadingPoint {
     pub to_eye: DVec3,
 }
 
-/// The share of the light from the unit direction `to_light` that the surface reflects toward the eye: the BRDF times
-/// the cosine of the angle of incidence times π. A white Lambert surface that faces the light gives 1.
-pub fn brdf_direct(point: &ShadingPoint, to_light: DVec3) -> DVec3 {
-    let material = &point.material;
-    let facing = point.normal.dot(to_light).max(0.0);
-    let halfway = to_light + point.to_eye;
-    let alignment = point.normal.dot(halfway).max(0.0) / halfway.length().max(1e-6);
-    let highlight = material.phong_specular * alignment.powf(material.phong_shininess);
-    (material.base_color + highlight) * facing
-}
-
-/// The share of the ambient light that the surface reflects toward the eye.
-pub fn brdf_ambient(point: &ShadingPoint) -> DVec3 {
-    point.material.base_color
+impl ShadingPoint {
+    /// The layers of its material, seen from the eye.
+    fn layers(&self) -> Layers {
+        layers_of(&self.material, self.normal.dot(self.to_eye))
+    }
 }
 
 /// Factors on the light of the environment.
@@ -50,24 +42,50 @@ pub struct EnvironmentShares {
     pub coat_roughness: f64,
 }
 
-/// The shares of the light of the environment: a split sum, with the fit of Karis, "Physically based shading on
-/// mobile" (2014).
-pub fn brdf_environment(point: &ShadingPoint) -> EnvironmentShares {
+/// The share of the light from the unit direction `to_light` that the surface reflects toward the eye: the BRDF times
+/// the cosine of the angle of incidence times π. A white Lambert surface that faces the light gives 1.
+pub fn brdf_direct(point: &ShadingPoint, to_light: DVec3) -> DVec3 {
+    brdf_layered(point, &point.layers(), to_light)
+}
+
+/// [`brdf_direct`] with another α of the coat's highlight.
+pub fn brdf_with_coat(point: &ShadingPoint, to_light: DVec3, coat_alpha: f64) -> DVec3 {
+    brdf_layered(point, &Layers { coat_alpha, ..point.layers() }, to_light)
+}
+
+fn brdf_layered(point: &ShadingPoint, layers: &Layers, to_light: DVec3) -> DVec3 {
+    let toward = to_light + point.to_eye;
+    let halfway = toward / toward.length().max(1e-6);
+    let layers = layers_direct(layers, point.normal, point.to_eye, to_light, halfway);
+    brdf_phong(point, to_light, halfway) + (1.0 - point.material.phong_weight) * layers
+}
+
+/// The part by Blinn and Phong. A mixture holds the highlight and its exponent times the weight.
+fn brdf_phong(point: &ShadingPoint, to_light: DVec3, halfway: DVec3) -> DVec3 {
     let material = &point.material;
-    let layered = 1.0 - material.phong_weight;
-    let dielectric = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2) * material.specular_weight;
-    let facing = (material.specular_color * dielectric).lerp(material.base_color, material.metalness);
-    let cosine = point.normal.dot(point.to_eye).max(0.0);
-    let r = material.roughness;
-    let smooth = 1.0 - r;
-    let a = (smooth * smooth).min((-9.28 * cosine).exp2()) * smooth + 0.0425 - 0.0275 * r;
-    let (scale, bias) = (1.04 - 0.572 * r - 1.04 * a, 1.04 * a + 0.022 * r - 0.04);
+    let facing = point.normal.dot(to_light).max(0.0);
+    let alignment = point.normal.dot(halfway).max(0.0);
+    let exponent = (material.phong_shininess / material.phong_weight.max(1e-4)).max(1.0);
+    let highlight = material.phong_specular * alignment.powf(exponent);
+    (material.base_color * material.phong_weight + highlight) * facing
+}
+
+/// The share of light that comes equally from everywhere.
+pub fn brdf_ambient(point: &ShadingPoint) -> DVec3 {
+    let shares = brdf_environment(point);
+    shares.diffuse + shares.specular + shares.coat
+}
+
+/// The shares of the light of the environment: a split sum.
+pub fn brdf_environment(point: &ShadingPoint) -> EnvironmentShares {
+    let (layers, weight) = (point.layers(), 1.0 - point.material.phong_weight);
+    let diffuse = point.material.base_color * point.material.phong_weight;
     EnvironmentShares {
-        diffuse: material.base_color * (1.0 - material.metalness * layered),
-        specular: (facing * scale + bias).max(DVec3::ZERO) * layered,
-        roughness: r,
+        diffuse: diffuse + weight * layers.diffuse_albedo,
+        specular: weight * layers.specular_albedo,
+        roughness: layers.alpha.sqrt(),
         direction: 2.0 * point.normal.dot(point.to_eye) * point.normal - point.to_eye,
-        coat: 0.0,
-        coat_roughness: 0.0,
+        coat: weight * layers.coat_albedo,
+        coat_roughness: layers.coat_alpha.sqrt(),
     }
 }

@@ -1,10 +1,11 @@
 //! The resources of a frame besides the scene: the view, its dispatches, the buffers between passes, and the targets of
 //! its slot.
 
+use bytemuck::Zeroable as _;
 use wgpu::BindGroup;
 
 use super::frame::Frame;
-use super::mesh_materials::mesh_materials;
+use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::slot::Slot;
@@ -13,12 +14,14 @@ use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::field::FieldBuffers;
 use crate::recipe::Pass;
+use crate::resources::accumulation::Accumulation;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
 use crate::resources::targets::{Target, Targets};
+use crate::resources::texture_resources::{TextureBindings, TextureResources};
 use crate::resources::uniforms::{DispatchParams, GpuView, strided};
 use isolith_field::light::environment_map::{PlacedMap, map_words};
-use isolith_field::{FlatScene, GpuLight, gpu_lights};
+use isolith_field::{FlatScene, gpu_lights};
 use isolith_geometry::Camera;
 
 /// Bytes of a subtile in a list.
@@ -65,6 +68,8 @@ pub struct SlotState {
     pub targets: Targets,
     /// Target of the enlarged picture, if marks are drawn over a picture that is too coarse for them.
     pub enlarged: Option<Target>,
+    /// Textures of accumulated samples, once there are any.
+    pub accumulation: Option<Accumulation>,
     pub groups: Option<Groups>,
 }
 
@@ -80,15 +85,14 @@ impl SlotState {
 pub struct FrameResources {
     layouts: Layouts,
     view: SyncedBuffer,
+    /// The contents of `view` for the first sample.
+    first_view: GpuView,
     lights: SyncedBuffer,
-    /// Whether a light has a size.
-    pub has_area_lights: bool,
-    /// Whether the environment is not a gradient.
-    pub is_image_lit: bool,
     environment_map: SyncedBuffer,
     /// The environment in that buffer.
     held_map: Option<Option<PlacedMap>>,
     mesh_materials: SyncedBuffer,
+    textures: TextureResources,
     dispatch_params: SyncedBuffer,
     subtiles: SyncedBuffer,
     pub subtile_counts: SyncedBuffer,
@@ -106,12 +110,12 @@ impl FrameResources {
         Self {
             layouts,
             view: SyncedBuffer::uniform(device, "view"),
+            first_view: GpuView::zeroed(),
             lights: storage("lights"),
-            has_area_lights: false,
-            is_image_lit: false,
             environment_map: storage("environment map"),
             held_map: None,
             mesh_materials: storage("mesh materials"),
+            textures: TextureResources::default(),
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
             subtiles: storage("subtiles"),
             subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
@@ -142,7 +146,12 @@ impl FrameResources {
     pub fn resize(&mut self, device: &wgpu::Device, slot: Slot, size: [u32; 2], overlay: &OverlaySettings) {
         let state = &mut self.slots[slot as usize];
         if state.as_ref().is_none_or(|state| state.targets.size != size) {
-            *state = Some(SlotState { targets: Targets::new(device, size), enlarged: None, groups: None });
+            *state = Some(SlotState {
+                targets: Targets::new(device, size),
+                enlarged: None,
+                accumulation: None,
+                groups: None,
+            });
         }
         if let Some(state) = state {
             let shown = overlay.enlarged(size);
@@ -152,25 +161,28 @@ impl FrameResources {
     }
 
     /// Uploads changed data and reserves space for the plan. Returns whether a buffer was replaced.
-    pub fn upload(&mut self, gpu: &Gpu, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &FramePlan) -> bool {
+    pub fn upload(
+        &mut self,
+        gpu: &Gpu,
+        flat: &FlatScene,
+        meshes: &MeshMaterials,
+        camera: &Camera,
+        size: [u32; 2],
+        plan: &FramePlan,
+    ) -> bool {
         let Gpu { device, queue, .. } = gpu;
-        let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
-        let no_rays = vec![NO_RAYS; plan.lists as usize];
         let lights = gpu_lights(flat, camera, size);
-        self.has_area_lights = lights.iter().any(GpuLight::has_size);
-        let view = GpuView::new(camera, size, flat, lights.len() as u32);
-        self.is_image_lit = flat.environment_map.is_some();
+        self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.upload_map(gpu, flat),
-            self.view.set(device, queue, bytemuck::bytes_of(&view)),
+            self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
-            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&mesh_materials(flat))),
+            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
+            self.textures.upload(gpu, flat, camera),
             self.set_work(gpu, &plan.dispatches),
             self.subtiles.reserve(device, bytes_of_subtiles(plan.subtiles.into()) as usize),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
-            self.subtile_counts.reset(device, queue, bytemuck::cast_slice(&no_subtiles)),
-            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
-            self.counts.reset(gpu, flat.components.len(), size),
+            self.reset_lists(gpu, plan, flat.components.len(), size),
         ];
         uploads.contains(&true)
     }
@@ -183,6 +195,33 @@ impl FrameResources {
         self.held_map = Some(flat.environment_map.clone());
         let words = map_words(flat.environment_map.as_ref());
         self.environment_map.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
+    }
+
+    /// Resets the lists and counts that the passes of a frame fill. Returns whether a buffer was replaced.
+    pub fn reset_lists(&mut self, gpu: &Gpu, plan: &FramePlan, components: usize, size: [u32; 2]) -> bool {
+        let Gpu { device, queue, .. } = gpu;
+        let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
+        let no_rays = vec![NO_RAYS; plan.lists as usize];
+        let resets = [
+            self.subtile_counts.reset(device, queue, bytemuck::cast_slice(&no_subtiles)),
+            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
+            self.counts.reset(gpu, components, size),
+        ];
+        resets.contains(&true)
+    }
+
+    /// Uploads the view of another sample of the frame.
+    pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
+        let view = self.first_view.of_sample(index, is_transparent);
+        self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
+    }
+
+    /// Gives the slot textures for accumulated samples, if it has none.
+    pub fn keep_accumulation(&mut self, device: &wgpu::Device, slot: Slot) {
+        if let Some(state) = &mut self.slots[slot as usize] {
+            let size = state.targets.size;
+            state.accumulation.get_or_insert_with(|| Accumulation::new(device, size));
+        }
     }
 
     /// Uploads dispatches. Returns whether the buffer was replaced.
@@ -247,6 +286,11 @@ impl FrameResources {
     /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
+    }
+
+    /// The textures, if the scene uses some.
+    pub fn textures(&self) -> Option<TextureBindings<'_>> {
+        self.textures.bindings()
     }
 
     /// Clears the counts of unfinished rays of `lists` lists, and the counters of pixels.

@@ -267,6 +267,7 @@ impl SceneV1 {
             schema: self.schema,
             isolith: VERSION,
             environment: Environment::sky(self.environment.sky, self.environment.horizon, self.environment.ambient),
+            display: self.display,
             materials: self.materials.into_iter().map(MaterialV1::converted).collect(),
             next_id: self.next_id,
             nodes: self.nodes.into_iter().map(NodeFile::converted).collect(),

@@ -64,8 +64,9 @@ fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, cra
     let mut scene = scene.clone();
     match path.changed(&scene, value)? {
         Changed::Node(node) => scene.replace(*node)?,
-        Changed::Material(material) => scene.replace_material(material)?,
+        Changed::Material(material) => scene.replace_material(*material)?,
         Changed::Environment(environment) => scene.environment = environment,
+        Changed::Display(display) => scene.display = display,
     }
     Ok(scene)
 }
@@ -118,6 +119,7 @@ fn checked(scene: &Scene, path: &ParamPath) -> Result<(), check::Fault> {
         ParamOwner::Node(id, _) => check::node(scene.node(id).expect("there")),
         ParamOwner::Material(id) => check::material(scene.material(id).expect("there")),
         ParamOwner::Environment => check::environment(&scene.environment),
+        ParamOwner::Display => check::display(&scene.display),
     }
 }
 
@@ -155,7 +157,7 @@ fn the_limits_of_the_tables_are_those_that_files_are_held_to() {
             let fault = checked(&changed, &path).expect_err(&path.to_string());
             let field = match path.owner {
                 ParamOwner::Node(_, part) => part.field(&path.name),
-                ParamOwner::Material(_) | ParamOwner::Environment => path.name.to_string(),
+                ParamOwner::Material(_) | ParamOwner::Environment | ParamOwner::Display => path.name.to_string(),
             };
             assert_eq!(fault.field, format!("{field}{suffix}"), "{path}: {bad}");
             count += 1;
@@ -201,6 +203,7 @@ fn what_is_no_path_and_what_is_not_there_are_errors_that_name_it() {
         (path("transform.translation[3]"), "no such element"),
         ("material.1.color".into(), "there is base_color, base_weight"),
         ("environment.fog".into(), "there is no such parameter"),
+        ("display.gamma".into(), "there is exposure, view_transform"),
     ] {
         let error = text.parse::<ParamPath>().expect(&text).get(&scene).expect_err(&text).to_string();
         assert!(error.starts_with(&text) && error.contains(reason), "{text}: {error}");
@@ -223,6 +226,7 @@ fn choices_are_named_as_in_files() {
     same(&BlendKernel::ALL);
     same(&RadiusUnit::ALL);
     same(&crate::Axis::ALL);
+    same(&crate::ViewTransform::ALL);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::drawn::{Corners, Points};
 use crate::environment_image::EnvironmentImage;
 use crate::heights::Heights;
 use crate::limits::{CORNERS, Limits, POINTS, SIZE};
+use crate::texture_image::TextureImage;
 use crate::whole;
 use isolith_font::Face;
 
@@ -169,6 +170,7 @@ macro_rules! file {
     };
 }
 file!(Heights, Heights);
+file!(TextureImage, Texture);
 file!(Face, Font);
 file!(EnvironmentImage, Environment);
 

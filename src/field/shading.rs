@@ -1,0 +1,158 @@
+//! Viewport shading: a flat scene under other lights, and in other materials. Geometry and ids stay as they are.
+
+use std::str::FromStr;
+use std::sync::Arc;
+
+use super::arrays::FlatScene;
+use super::flat_material::FlatMaterial;
+use isolith_scene::{Environment, Material};
+
+/// How a lit picture shows a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Shading {
+    /// Its shapes: one clay for everything, under a studio light.
+    Solid,
+    /// Its materials, under a studio light.
+    Material,
+    /// Its materials under its own lights.
+    #[default]
+    Rendered,
+}
+
+impl Shading {
+    /// Every shading, in the order of menus.
+    pub const ALL: [Self; 3] = [Self::Solid, Self::Material, Self::Rendered];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Solid => "solid",
+            Self::Material => "material",
+            Self::Rendered => "rendered",
+        }
+    }
+
+    /// Its name in menus.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Solid => "Solid",
+            Self::Material => "Material Preview",
+            Self::Rendered => "Rendered",
+        }
+    }
+
+    /// One sentence about what it shows.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Solid => "Shapes only: clay under a studio light that follows the view",
+            Self::Material => "The materials under a studio light that follows the view, without the scene's lights",
+            Self::Rendered => "The materials under the lights and the environment of the scene",
+        }
+    }
+}
+
+impl FromStr for Shading {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let names = Self::ALL.map(Self::name).join(", ");
+        Self::ALL.into_iter().find(|shading| shading.name() == name).ok_or(format!("it is none of {names}"))
+    }
+}
+
+impl FlatScene {
+    /// The scene as a shading shows it. Without lights of its own it gets the studio light, see [`super::gpu_lights`].
+    pub fn shaded(self: &Arc<Self>, shading: Shading) -> Arc<Self> {
+        if shading == Shading::Rendered {
+            return Arc::clone(self);
+        }
+        let mut shown = Self::clone(self);
+        shown.lights.clear();
+        shown.environment = studio(shading);
+        shown.environment_map = None;
+        if shading == Shading::Solid {
+            shown.wear(clay());
+        }
+        Arc::new(shown)
+    }
+
+    /// Gives everything one material.
+    fn wear(&mut self, material: FlatMaterial) {
+        if self.materials.is_empty() && !self.meshes.is_empty() {
+            self.materials.push(material);
+        }
+        self.materials.fill(material);
+        for mesh in &mut self.meshes {
+            mesh.material = Some(0);
+        }
+    }
+}
+
+/// The clay of [`Shading::Solid`]: a warm gray between dark and light, so that both lights and shades show.
+fn clay() -> FlatMaterial {
+    FlatMaterial::new(&Material { base_color: [0.46, 0.45, 0.435], specular_roughness: 0.55, ..Material::default() })
+}
+
+/// Neutral surroundings. Those of [`Shading::Solid`] are dark, so that the outline of a shape shows.
+fn studio(shading: Shading) -> Environment {
+    let gray = |v: f64| [v, v * 1.02, v * 1.06];
+    match shading {
+        Shading::Solid => Environment::sky(gray(0.03), gray(0.065), gray(0.22)),
+        _ => Environment::sky(gray(0.11), gray(0.32), gray(0.34)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{flatten, gpu_lights};
+    use glam::DVec3;
+    use isolith_geometry::Camera;
+    use isolith_scene::{Light, MaterialId, Node, NodeKind, Object, Scene, ShapeKind};
+
+    /// Balls of two materials and a sun.
+    fn scene() -> Arc<FlatScene> {
+        let mut scene = Scene::new();
+        let red = Material { emission_luminance: 2.0, ..Material::new(MaterialId(2), "Red", [0.9, 0.1, 0.1]) };
+        scene.insert_material(red).unwrap();
+        for id in [1, 2] {
+            let object = Object { shape: ShapeKind::Sphere.default_shape(), material: MaterialId(id) };
+            let node = Node::new("Ball", NodeKind::Object(object)).at(DVec3::X * 3.0 * id as f64);
+            scene.insert(None, 0, node).unwrap();
+        }
+        scene.insert(None, 0, Node::new("Sun", NodeKind::Light(Light::sun()))).unwrap();
+        Arc::new(flatten(&scene, 0.0).unwrap())
+    }
+
+    #[test]
+    fn only_light_and_matter_differ() {
+        let flat = scene();
+        let camera = Camera::looking_at(DVec3::Z * 9.0, DVec3::ZERO, 0.7);
+        assert!(Arc::ptr_eq(&flat, &flat.shaded(Shading::Rendered)));
+        let [solid, material] = [Shading::Solid, Shading::Material].map(|shading| flat.shaded(shading));
+        for shown in [&solid, &material] {
+            assert!((&shown.nodes, &shown.params, &shown.ids) == (&flat.nodes, &flat.params, &flat.ids));
+            assert_eq!((&shown.components, &shown.cameras), (&flat.components, &flat.cameras));
+            assert_ne!(gpu_lights(shown, &camera, [64, 64]), gpu_lights(&flat, &camera, [64, 64]));
+        }
+        assert_eq!(material.materials, flat.materials);
+        assert_eq!(solid.materials.len(), flat.materials.len());
+        assert!(solid.materials.iter().all(|m| *m == clay() && m.emission == [0.0; 3]));
+    }
+
+    #[test]
+    fn the_studio_light_follows_the_view() {
+        let solid = scene().shaded(Shading::Solid);
+        let [front, back] = [DVec3::Z, DVec3::NEG_Z]
+            .map(|at| gpu_lights(&solid, &Camera::looking_at(at * 9.0, DVec3::ZERO, 0.7), [64, 64])[0].direction[2]);
+        assert!(front < 0.0 && back > 0.0, "{front} {back}");
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for shading in Shading::ALL {
+            assert_eq!(shading.name().parse(), Ok(shading));
+        }
+        assert_eq!("matcap".parse::<Shading>(), Err("it is none of solid, material, rendered".to_owned()));
+    }
+}
