@@ -5,7 +5,7 @@ use std::mem::{offset_of, size_of};
 use isolith::field::{FlatMaterial, FlatNode, FlatTexture, GpuLight, GpuPlacedTextures, TextureSet, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{
     Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
@@ -298,6 +298,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
         view(),
         dispatch_params(),
         instance(),
+        layout!("RayMesh" = RayMesh { local_x, local_y, local_z, nodes, triangles, index, padding_0 }),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),

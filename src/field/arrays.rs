@@ -11,6 +11,7 @@ use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
 use crate::light::environment_map::PlacedMap;
 use isolith_geometry::{Aabb, Camera};
+use isolith_mesh::ModelPose;
 use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
@@ -226,8 +227,8 @@ pub struct FlatLight {
 pub struct FlatMesh {
     /// Its node.
     pub id: NodeId,
-    /// The file, as the scene names it.
-    pub path: String,
+    /// The file, as the scene names it, and the pose at the scene's time.
+    pub model: ModelPose,
     /// World from the file's space.
     pub world_from_local: DAffine3,
     /// Index into [`FlatScene::materials`] instead of the file's own materials.

@@ -12,7 +12,8 @@ use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{
-    Material, MaterialId, PatternKind, Pyramid, TexelForm, TextureSource, TextureSpace, TextureWrap, Textures,
+    ColorSpace, Material, MaterialId, PatternKind, Pyramid, TexelForm, TextureSource, TextureSpace, TextureWrap,
+    Textures,
 };
 
 /// The textures that a scene uses; empty without any.
@@ -199,7 +200,7 @@ impl FlatTextures {
     fn texture(&mut self, source: TextureSource<'_>, form: TexelForm) -> FlatTexture {
         match source {
             TextureSource::Image { image, color_space, wrap, scale } => {
-                let pyramid = image.content().map(|image| image.pyramid(color_space, form));
+                let pyramid = image.content().map(|image| image.pyramid(color_space == ColorSpace::Srgb, form));
                 let name = image.name().unwrap_or_default();
                 FlatTexture {
                     kind: FlatTexture::IMAGE,

@@ -21,6 +21,7 @@ use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::TexturedMaterials;
 use super::lower_bound::fold_bounds;
+use super::meshes::model_pose;
 use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
@@ -110,7 +111,7 @@ fn flatten_within(
     debug_assert!(time.is_finite(), "time is checked at the border");
     let _span = tracing::debug_span!("flatten", nodes = scene.nodes().len()).entered();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
-    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
+    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, time, limits, cancel))
 }
 
 /// Runs `work` on a stack that is deep enough for it.
@@ -135,6 +136,7 @@ fn on_a_stack<T: Send>(
 fn flatten_surveyed(
     scene: &Scene,
     survey: &Survey,
+    time: f64,
     limits: FlattenLimits,
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
@@ -150,7 +152,7 @@ fn flatten_surveyed(
     let textured = TexturedMaterials::new(scene.materials());
     let mut materials = Materials { scene, textured, index: HashMap::new() };
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
-        add_non_field(&mut flat, &mut materials, node, world_from_local);
+        add_non_field(&mut flat, &mut materials, node, world_from_local, time);
     });
     let Components { operands, warnings, has_cuts, budget } = components;
     flat.warnings.extend(warnings);
@@ -233,7 +235,13 @@ impl Materials<'_> {
     }
 }
 
-fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Node, world_from_local: &DAffine3) {
+fn add_non_field(
+    flat: &mut FlatScene,
+    materials: &mut Materials<'_>,
+    node: &Node,
+    world_from_local: &DAffine3,
+    time: f64,
+) {
     let forward = (world_from_local.matrix3 * DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z);
     match &node.kind {
         NodeKind::Light(light) => flat.lights.push(FlatLight {
@@ -248,7 +256,7 @@ fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Nod
             let material = mesh.material.map(|id| materials.of_mesh(flat, node, id));
             flat.meshes.push(FlatMesh {
                 id: node.id,
-                path: mesh.path.clone(),
+                model: model_pose(mesh, time),
                 world_from_local: *world_from_local,
                 material,
             });

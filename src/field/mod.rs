@@ -112,6 +112,7 @@ pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
 pub use mesh_material::mesh_material;
+pub use meshes::model_pose;
 pub use modifier_table::{
     changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
 };

@@ -184,7 +184,7 @@ pub(super) fn object(name: &str, shape: Shape, material: MaterialId) -> Node {
 
 /// A mesh from a glTF file.
 pub(super) fn mesh(name: &str, path: &str) -> Node {
-    Node::new(name, NodeKind::Mesh(MeshNode { path: path.into(), material: None }))
+    Node::new(name, NodeKind::Mesh(MeshNode::new(path)))
 }
 
 pub(super) fn sphere(radius: f64) -> Shape {

@@ -33,7 +33,7 @@ pub(super) fn scene() -> Scene {
     }
     let [stone, veined] = [bricks(), marble()].map(|material| builder.material(material));
     for moment in 0..3 {
-        let x = 2.6 * f64::from(moment) - 2.6;
+        let x = 2.4 * f64::from(moment) - 2.7;
         let joint = builder.add(None, blended("Joint", Operator::Union, BlendKernel::Cubic, 0.35));
         builder.add(joint, object("Post", cuboid(1.0, 1.1, 0.9, 0.06), stone).at(v(x - 0.3, 0.5, 1.2)));
         let moved = 0.3 + 0.25 * f64::from(moment);
@@ -41,7 +41,7 @@ pub(super) fn scene() -> Scene {
     }
     builder.sun("Sun", [-0.6, 1.0, 0.7], [1.0, 0.95, 0.86], 1.5);
     builder.sun("Fill", [1.0, 0.4, 0.5], [0.6, 0.75, 1.0], 0.4);
-    builder.camera([0.0, 4.2, 8.4], [0.0, 0.35, -0.4], 40.0);
+    builder.camera([0.0, 4.6, 8.6], [0.0, 0.25, -0.5], 38.0);
     builder.finish()
 }
 
@@ -87,8 +87,8 @@ fn tile(x: u32, y: u32) -> [u8; 3] {
 }
 
 fn bricks() -> Material {
-    let wall = |first, second| (first, second, 3.0, 0.4, 0.06);
-    let (first, second, scale, row, joint) = wall([0.42, 0.13, 0.07], [0.55, 0.52, 0.47]);
+    let (first, second) = ([0.42, 0.13, 0.07], [0.55, 0.52, 0.47]);
+    let (scale, row, joint) = (3.0, 0.4, 0.06);
     let color = ColorTexture::Bricks { first, second, scale, row, joint };
     let mut textures = mapped(color, [1.0, 16.0], TextureSpace::Object);
     if let Textures::Triplanar { height, bump, .. } = &mut textures {

@@ -30,6 +30,16 @@ impl Attached {
         }
     }
 
+    /// The size of the file in bytes; 0 without a file.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Heights(file) => file.size(),
+            Self::Texture(file) => file.size(),
+            Self::Font(file) => file.size(),
+            Self::Environment(file) => file.size(),
+        }
+    }
+
     /// The file's name, or the name of the default that a shape uses without a file.
     pub fn label(&self) -> &str {
         let without = match self {

@@ -108,6 +108,14 @@ pub(super) fn check_environment(
 }
 
 fn check_sum(images: impl Iterator<Item = Attached>) -> Result<(), SceneError> {
+    if sum(images) > MAX_SCENE_PIXELS {
+        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
+    }
+    Ok(())
+}
+
+/// The pixels of images, each file counted once.
+fn sum(images: impl Iterator<Item = Attached>) -> u64 {
     let mut counted: Vec<Attached> = Vec::new();
     let mut sum = 0;
     for image in images {
@@ -116,8 +124,11 @@ fn check_sum(images: impl Iterator<Item = Attached>) -> Result<(), SceneError> {
             counted.push(image);
         }
     }
-    if sum > MAX_SCENE_PIXELS {
-        return Err(SceneError::Limit { what: "the pixels of all images", limit: MAX_SCENE_PIXELS as usize });
-    }
-    Ok(())
+    sum
+}
+
+/// The pixels of all images of these nodes and materials, and of the environment.
+pub(super) fn used(nodes: &[Arc<Node>], materials: &[Arc<Material>], environment: &Environment) -> u64 {
+    let of_materials = materials.iter().flat_map(|material| images_of_material(material));
+    sum(nodes.iter().flat_map(|node| images(node)).chain(of_materials).chain(image_around(environment)))
 }

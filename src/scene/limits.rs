@@ -106,6 +106,13 @@ pub const LETTERS: Limits = Limits::new([0.0, MAX_TEXT as f64], [0.0, MAX_TEXT a
 /// Length of the path of a file, in letters.
 pub const PATH_LENGTH: Limits = Limits::new([1.0, MAX_PATH as f64], [1.0, MAX_PATH as f64], "").whole();
 
+/// Characters of the name of an animation clip.
+pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, MAX_NAME as f64], "").whole();
+/// Times within an animation clip.
+pub const CLIP_TIME: Limits = Limits::new([0.0, 10.0], [-1e6, 1e6], "s");
+/// Speeds of animation clips.
+pub const CLIP_SPEED: Limits = Limits::new([0.0, 2.0], [-1e3, 1e3], "");
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits::new([0.0, 5.0], [0.0, 1e6], "m");
 /// Thicknesses and roundings.

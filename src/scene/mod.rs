@@ -73,5 +73,7 @@ pub use presets::material_presets;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
 pub use texture::{NormalTexture, TextureSpace, Textures};
-pub use texture_image::{ColorSpace, Pyramid, TexelForm, TexelLevel, TextureImage};
-pub use texture_source::{ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap};
+pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_source::{
+    ColorSpace, ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
+};

@@ -107,6 +107,11 @@ impl Scene {
         &self.nodes
     }
 
+    /// The pixels of all its images, each file counted once: at most [`super::limits::MAX_SCENE_PIXELS`].
+    pub fn image_pixels(&self) -> u64 {
+        image_budget::used(&self.nodes, &self.materials, &self.environment)
+    }
+
     /// The depth of each node, parallel to [`Scene::nodes`]; 0 at the top.
     pub fn depths(&self) -> &[u32] {
         &self.depths

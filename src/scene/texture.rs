@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::attachment::Attachment;
 use super::limits::{BUMP, NO_LIMITS, POSITION, SHARPNESS, STRETCH, TEXTURE_SCALE, TILE, TURBULENCE, TURN};
 use super::params::{Variants, choices, nested_variants, param_rows, param_variants};
-use super::texture_image::{ColorSpace, TextureImage};
-use super::texture_source::{ColorTexture, HeightTexture, RoughnessTexture, TextureSource, TextureWrap};
+use super::texture_image::TextureImage;
+use super::texture_source::{ColorSpace, ColorTexture, HeightTexture, RoughnessTexture, TextureSource, TextureWrap};
 
 /// The space that textures live in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -2,40 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use image::{DynamicImage, ImageFormat, guess_format};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
 use super::attachment::{Attachment, Content};
 use super::heights::exr;
 use super::image_file;
-use super::params::choices;
-
-/// How the numbers of an image are meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ColorSpace {
-    /// Encoded as colors for screens are. Files with linear numbers, such as EXR, are read as they are.
-    Srgb,
-    /// Amounts.
-    Linear,
-}
-
-impl ColorSpace {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Srgb, Self::Linear];
-
-    /// Display name.
-    pub fn label(self) -> &'static str {
-        ["sRGB", "Linear"][self as usize]
-    }
-
-    fn help(self) -> &'static str {
-        ["Encoded as colors for screens are.", "Amounts, such as heights and roughness."][self as usize]
-    }
-}
-
-choices!(ColorSpace);
+use image::{DynamicImage, ImageFormat, guess_format};
 
 /// The form of texels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +61,7 @@ pub struct TextureImage {
     is_linear: bool,
     /// Number of decoded pixels, for the budget.
     pub(super) pixels: u64,
-    /// Made on first use, by color space and form.
+    /// Made on first use, by whether the numbers are meant as sRGB, and by form.
     pyramids: [[OnceLock<Arc<Pyramid>>; 3]; 2],
 }
 
@@ -141,14 +111,15 @@ impl TextureImage {
         self.size
     }
 
-    /// The image in this form with its smaller versions; made once.
-    pub fn pyramid(&self, color_space: ColorSpace, form: TexelForm) -> Arc<Pyramid> {
-        let made = &self.pyramids[color_space as usize][form as usize];
-        Arc::clone(made.get_or_init(|| Arc::new(self.make(color_space, form))))
+    /// The image in this form with its smaller versions; made once. `is_srgb`: its numbers are encoded as colors for
+    /// screens are, unless the format of the file says otherwise.
+    pub fn pyramid(&self, is_srgb: bool, form: TexelForm) -> Arc<Pyramid> {
+        let made = &self.pyramids[usize::from(is_srgb)][form as usize];
+        Arc::clone(made.get_or_init(|| Arc::new(self.make(is_srgb, form))))
     }
 
-    fn make(&self, color_space: ColorSpace, form: TexelForm) -> Pyramid {
-        let is_encoded = color_space == ColorSpace::Srgb && !self.is_linear;
+    fn make(&self, is_srgb: bool, form: TexelForm) -> Pyramid {
+        let is_encoded = is_srgb && !self.is_linear;
         let linear = |code: u16| {
             let value = f32::from(code) / f32::from(u16::MAX);
             if is_encoded { decoded(value) } else { value }
@@ -257,7 +228,7 @@ mod tests {
         for size in [[7, 5], [8, 8], [1, 9], [1, 1]] {
             let image =
                 Attachment::<TextureImage>::painted("x.png", size, |x, y| [(40 * x) as u8, 255, (30 * y) as u8]);
-            let pyramid = image.content().unwrap().pyramid(ColorSpace::Linear, TexelForm::Value);
+            let pyramid = image.content().unwrap().pyramid(false, TexelForm::Value);
             let mean = |level: &TexelLevel| {
                 let [w, h] = level.size;
                 let all = (0..w * h).map(|i| f64::from(f32::from_bits(level.texels[level.index(i % w, i / w)])));
@@ -268,7 +239,7 @@ mod tests {
             assert_eq!(pyramid.levels.last().map(|level| level.size), Some([1, 1]));
         }
         let ramp = Attachment::<TextureImage>::painted("x.png", [256, 1], |x, _| [x as u8; 3]);
-        let pyramid = ramp.content().unwrap().pyramid(ColorSpace::Srgb, TexelForm::Color);
+        let pyramid = ramp.content().unwrap().pyramid(true, TexelForm::Color);
         let shown: Vec<f64> =
             (0..256).map(|x| color(pyramid.levels[0].texels[pyramid.levels[0].index(x, 0)])[0]).collect();
         for (code, shown) in (0_u16..).zip(&shown) {

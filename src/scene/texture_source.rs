@@ -6,7 +6,33 @@ use serde::{Deserialize, Serialize};
 use super::attachment::Attachment;
 use super::limits::{NO_LIMITS, OCTAVES, PATTERN_SHARE, SEED, TEXTURE_SCALE, TURBULENCE, UNIT};
 use super::params::{ParamField, Variants, choices, nested_variants, param_rows, param_variants};
-use super::texture_image::{ColorSpace, TextureImage};
+use super::texture_image::TextureImage;
+
+/// How the numbers of an image are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ColorSpace {
+    /// Encoded as colors for screens are. Files with linear numbers, such as EXR, are read as they are.
+    Srgb,
+    /// Amounts.
+    Linear,
+}
+
+impl ColorSpace {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Srgb, Self::Linear];
+
+    /// Display name.
+    pub fn label(self) -> &'static str {
+        ["sRGB", "Linear"][self as usize]
+    }
+
+    fn help(self) -> &'static str {
+        ["Encoded as colors for screens are.", "Amounts, such as heights and roughness."][self as usize]
+    }
+}
+
+choices!(ColorSpace);
 
 /// How an image goes on beyond its edges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
