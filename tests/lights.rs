@@ -113,7 +113,7 @@ fn an_image_lights_and_surrounds_the_scene_as_in_the_reference() {
         (_, 0..16) => [0.3, 0.5, 0.9],
         _ => [0.2, 0.1, 0.05],
     };
-    let image = Attachment::<EnvironmentImage>::captured("room.hdr", [64, 32], painted);
+    let image = Attachment::<EnvironmentImage>::painted("room.hdr", [64, 32], painted);
     let mut pictures_of = Vec::new();
     for rotation in [0.0, 130.0] {
         let mut scene = shapes();

@@ -75,9 +75,9 @@ fn area_mirrored(point: ShadingPoint, light: Light, incoming: IncomingLight, par
 }
 
 // Roughness of the highlight, as alpha of GGX.
-fn area_alpha(material: FlatMaterial, roughness: f32) -> f32 {
-    let exponent = max(material.phong_shininess / max(material.phong_weight, 1e-4), 1.0);
-    return max(mix(roughness * roughness, sqrt(2.0 / (exponent + 2.0)), material.phong_weight), 1e-3);
+fn area_alpha(material: FlatMaterial) -> f32 {
+    let of_phong = sqrt(2.0 / (material.phong_shininess / max(material.phong_weight, 1e-4) + 2.0));
+    return max(mix(material.roughness * material.roughness, of_phong, material.phong_weight), 1e-3);
 }
 
 // The light that the surface reflects toward the eye, relative to the light's color. The highlight is
@@ -86,22 +86,21 @@ fn area_alpha(material: FlatMaterial, roughness: f32) -> f32 {
 // pi sin^2 that covers all of it is reflected whole. Where the lobe covers only a part of the light,
 // the nearest part and its share stand for it. The diffuse part is exact for spheres.
 fn area_reflected(point: ShadingPoint, light: Light, incoming: IncomingLight) -> vec3f {
-    let shares = brdf_environment(point);
+    let material = point.material;
     let widened = incoming.sine_squared / (4.0 * max(dot(point.normal, point.to_eye), 1e-3));
-    let alpha = area_alpha(point.material, shares.roughness);
+    let alpha = area_alpha(material);
     let spread = 1.0 + widened / (alpha * alpha);
     let covered = 1.0 - 1.0 / spread;
     let mirrored = area_mirrored(point, light, incoming, covered);
     let edge = mirrored.aside / (2.0 * alpha);
     let visible = 0.5 - 0.5 * edge / sqrt(1.0 + edge * edge);
     let strength = (1.0 - covered + covered * visible) / spread;
+    // The coat has a lobe of its own: with this roughness it is as bright as with its own spread.
+    let coat = point.layers.coat_alpha;
     var lit = point;
-    if LAYERS {
-        // The coat has a lobe of its own: with this alpha it is as bright as with its own spread.
-        let coat = point.layers.coat_alpha * point.layers.coat_alpha;
-        lit.layers.coat_alpha = sqrt(min((coat + widened) / spread, 1.0));
-    }
+    lit.layers.coat_alpha = sqrt(min((coat * coat + widened) / spread, 1.0));
     let facing = area_facing(dot(point.normal, incoming.to_light), incoming.sine_squared);
     let diffuse = facing - max(dot(point.normal, mirrored.direction), 0.0) * strength;
-    return (brdf_direct(lit, mirrored.direction) * strength + shares.diffuse * diffuse) * incoming.share;
+    let albedo = material.base_color * (1.0 - material.metalness * (1.0 - material.phong_weight));
+    return (brdf_direct(lit, mirrored.direction) * strength + albedo * diffuse) * incoming.share;
 }

@@ -5,8 +5,9 @@
 #include "light/area.wgsl"
 #include "light/environment.wgsl"
 
-fn lighting_surface(point: ShadingPoint, ambient: vec3f, light_count: u32) -> vec3f {
-    var color = point.material.emission + lighting_around(point, ambient);
+// `open` is the share of the environment's light that arrives.
+fn lighting_surface(point: ShadingPoint, ambient: vec3f, open: f32, light_count: u32) -> vec3f {
+    var color = point.material.emission + lighting_around(point, ambient) * open;
     for (var i = 0u; i < light_count; i++) {
         color += lighting_reflected(point, lights[i]);
     }
@@ -17,10 +18,9 @@ fn lighting_surface(point: ShadingPoint, ambient: vec3f, light_count: u32) -> ve
 fn lighting_around(point: ShadingPoint, ambient: vec3f) -> vec3f {
     if IMAGE_LIT {
         let shares = brdf_environment(point);
-        let diffuse = shares.diffuse * environment_irradiance(point.normal);
-        let specular = shares.specular * environment_reflected(shares.direction, shares.roughness);
-        let coat = shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
-        return (diffuse + specular + coat) * ambient;
+        return shares.diffuse * environment_irradiance(point.normal)
+            + shares.specular * environment_reflected(shares.direction, shares.roughness)
+            + shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
     }
     return brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
 }

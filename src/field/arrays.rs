@@ -366,10 +366,10 @@ pub struct FlatScene {
     pub cameras: Vec<FlatCamera>,
     /// The environment.
     pub environment: Environment,
-    /// Its light, unless it is a gradient.
-    pub environment_map: Option<PlacedMap>,
     /// How the light becomes the colors of a screen.
     pub display: DisplaySettings,
+    /// Its light, unless it is a gradient.
+    pub environment_map: Option<PlacedMap>,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].

@@ -145,8 +145,8 @@ fn flatten_surveyed(
         params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
         environment: scene.environment.clone(),
-        environment_map: PlacedMap::of(&scene.environment),
         display: scene.display,
+        environment_map: PlacedMap::of(&scene.environment),
         ..FlatScene::default()
     };
     let textured = TexturedMaterials::new(scene.materials());

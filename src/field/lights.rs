@@ -142,16 +142,10 @@ impl GpuLight {
             ..Self::zeroed()
         }
     }
-}
 
-impl FlatLight {
     /// Whether it has a size, so that shading needs the formulas for area lights.
     pub fn has_size(&self) -> bool {
-        match self.light.light {
-            LightKind::Sun { angle, .. } => angle > 0.0,
-            LightKind::Point { radius, .. } | LightKind::Spot { radius, .. } => radius > 0.0,
-            LightKind::Rectangle { .. } => true,
-        }
+        self.radius > 0.0 || self.kind == Self::RECTANGLE
     }
 }
 

@@ -8,7 +8,7 @@ const STUDIO: [u32; 2] = [128, 64];
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.0; 3], [0.0; 3], [0.0; 3]);
-    let image = Attachment::<EnvironmentImage>::captured("studio.hdr", STUDIO, studio);
+    let image = Attachment::<EnvironmentImage>::painted("studio.hdr", STUDIO, studio);
     builder.environment(EnvironmentKind::Image { image, strength: 1.0, rotation: 0.0 });
     let floor = builder.surface("Table", [0.16, 0.17, 0.19], 0.0, 0.45);
     builder.add(None, object("Table", cuboid(9.0, 0.3, 5.2, 0.12), floor).at(v(0.0, -0.15, 0.0)));

@@ -120,13 +120,12 @@ impl Environment {
         }
     }
 
-    /// The colors of sky, horizon and ambient light; of other kinds colors that stand for the background, and a factor of
-    /// 1 on their light.
+    /// The colors of sky, horizon and ambient light; of other kinds a color that stands for them, and no light.
     pub fn gradient(&self) -> [[f64; 3]; 3] {
         match &self.background {
-            EnvironmentKind::Color { color } => [*color, *color, [1.0; 3]],
+            EnvironmentKind::Color { color } => [*color, *color, [0.0; 3]],
             EnvironmentKind::Gradient { sky, horizon, ambient } => [*sky, *horizon, *ambient],
-            EnvironmentKind::Image { .. } => [[0.1; 3], [0.1; 3], [1.0; 3]],
+            EnvironmentKind::Image { .. } => [[0.1; 3], [0.1; 3], [0.0; 3]],
         }
     }
 }

@@ -22,7 +22,7 @@ pub struct EnvironmentImage {
 impl Attachment<EnvironmentImage> {
     /// Draws an image of at least 1 × 1 pixels and returns it as an HDR file of this name; `color` gives the linear
     /// color of each pixel.
-    pub fn captured(name: &str, [columns, lines]: [u32; 2], color: impl Fn(u32, u32) -> [f32; 3]) -> Self {
+    pub fn painted(name: &str, [columns, lines]: [u32; 2], color: impl Fn(u32, u32) -> [f32; 3]) -> Self {
         let mut file = Cursor::new(Vec::new());
         let pixels = Rgb32FImage::from_fn(columns, lines, |x, y| image::Rgb(color(x, y)));
         DynamicImage::from(pixels).write_to(&mut file, ImageFormat::Hdr).expect("memory takes all");
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn bright_images_keep_their_brightness_and_encoded_ones_become_linear() {
         let bright = |x: u32, y: u32| [x as f32 * 100.0, y as f32, 0.5];
-        let file = Attachment::<EnvironmentImage>::captured("sky.hdr", [16, 8], bright);
+        let file = Attachment::<EnvironmentImage>::painted("sky.hdr", [16, 8], bright);
         let image = file.content().expect("it was drawn");
         assert_eq!((image.size, image.pixels), ([16, 8], 128));
         for (i, texel) in image.texels.iter().enumerate() {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn large_images_are_reduced_and_what_is_no_image_is_refused() {
         let file =
-            Attachment::<EnvironmentImage>::captured("wide.hdr", [2 * MAX_ENVIRONMENT_WIDTH as u32, 4], |_, y| {
+            Attachment::<EnvironmentImage>::painted("wide.hdr", [2 * MAX_ENVIRONMENT_WIDTH as u32, 4], |_, y| {
                 [y as f32; 3]
             });
         let image = file.content().expect("it was drawn");

@@ -225,8 +225,7 @@ fn lit(material: Value) -> BenchScene {
     let light = &mut bench_scene.flat.lights[0];
     light.direction = DVec3::new(0.3, -0.8, -0.6).normalize();
     light.light.light = LightKind::Sun { strength: 0.4 * std::f64::consts::PI, angle: 0.0 };
-    let [sky, horizon, _] = bench_scene.flat.environment.gradient();
-    bench_scene.flat.environment = Environment::sky(sky, horizon, [0.3; 3]);
+    bench_scene.flat.environment = Environment::sky([0.1; 3], [0.2; 3], [0.3; 3]);
     bench_scene
 }
 

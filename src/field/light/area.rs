@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
-use super::brdf::{ShadingPoint, brdf_environment, brdf_with_coat};
+use super::brdf::{ShadingPoint, brdf_layered};
 use crate::lights::GpuLight;
 use crate::mixture::SurfaceMaterial;
 
@@ -85,37 +85,42 @@ fn area_mirrored(point: &ShadingPoint, light: &GpuLight, incoming: &IncomingLigh
 }
 
 /// Roughness of the highlight, as α of GGX.
-fn area_alpha(material: &SurfaceMaterial, roughness: f64) -> f64 {
-    let exponent = (material.phong_shininess / material.phong_weight.max(1e-4)).max(1.0);
-    let (of_ggx, of_phong) = (roughness * roughness, (2.0 / (exponent + 2.0)).sqrt());
+fn area_alpha(material: &SurfaceMaterial) -> f64 {
+    let of_ggx = material.roughness * material.roughness;
+    let of_phong = (2.0 / (material.phong_shininess / material.phong_weight.max(1e-4) + 2.0)).sqrt();
     (of_ggx + (of_phong - of_ggx) * material.phong_weight).max(1e-3)
 }
 
 /// The light that the surface reflects toward the eye, relative to the light's color.
 pub fn area_reflected(point: &ShadingPoint, light: &GpuLight, incoming: &IncomingLight) -> DVec3 {
-    reflected_by(point, light, incoming, brdf_with_coat)
+    reflected_by(point, light, incoming, |direction, widened| {
+        let mut layers = point.layers();
+        layers.coat_alpha = widened(layers.coat_alpha);
+        brdf_layered(point, &layers, direction)
+    })
 }
 
-/// [`area_reflected`] for any reflection function, which also gets the α of the coat.
+/// [`area_reflected`] for any reflection function, which also gets what widens the spread of its coat.
 fn reflected_by(
     point: &ShadingPoint,
     light: &GpuLight,
     incoming: &IncomingLight,
-    brdf: impl Fn(&ShadingPoint, DVec3, f64) -> DVec3,
+    brdf: impl Fn(DVec3, &dyn Fn(f64) -> f64) -> DVec3,
 ) -> DVec3 {
-    let shares = brdf_environment(point);
+    let material = &point.material;
     let widened = incoming.sine_squared / (4.0 * point.normal.dot(point.to_eye).max(1e-3));
-    let alpha = area_alpha(&point.material, shares.roughness);
+    let alpha = area_alpha(material);
     let spread = 1.0 + widened / (alpha * alpha);
     let covered = 1.0 - 1.0 / spread;
     let mirrored = area_mirrored(point, light, incoming, covered);
     let edge = mirrored.aside / (2.0 * alpha);
     let visible = 0.5 - 0.5 * edge / (1.0 + edge * edge).sqrt();
     let strength = (1.0 - covered + covered * visible) / spread;
-    let coat_alpha = ((shares.coat_roughness.powi(4) + widened) / spread).min(1.0).sqrt();
+    let of_coat = |alpha: f64| ((alpha * alpha + widened) / spread).min(1.0).sqrt();
     let facing = area_facing(point.normal.dot(incoming.to_light), incoming.sine_squared);
     let diffuse = facing - point.normal.dot(mirrored.direction).max(0.0) * strength;
-    (brdf(point, mirrored.direction, coat_alpha) * strength + shares.diffuse * diffuse) * incoming.share
+    let albedo = material.base_color * (1.0 - material.metalness * (1.0 - material.phong_weight));
+    (brdf(mirrored.direction, &of_coat) * strength + albedo * diffuse) * incoming.share
 }
 
 fn vector(v: [f32; 3]) -> DVec3 {

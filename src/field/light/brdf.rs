@@ -20,7 +20,7 @@ pub struct ShadingPoint {
 
 impl ShadingPoint {
     /// The layers of its material, seen from the eye.
-    fn layers(&self) -> Layers {
+    pub fn layers(&self) -> Layers {
         layers_of(&self.material, self.normal.dot(self.to_eye))
     }
 }
@@ -48,12 +48,8 @@ pub fn brdf_direct(point: &ShadingPoint, to_light: DVec3) -> DVec3 {
     brdf_layered(point, &point.layers(), to_light)
 }
 
-/// [`brdf_direct`] with another α of the coat's highlight.
-pub fn brdf_with_coat(point: &ShadingPoint, to_light: DVec3, coat_alpha: f64) -> DVec3 {
-    brdf_layered(point, &Layers { coat_alpha, ..point.layers() }, to_light)
-}
-
-fn brdf_layered(point: &ShadingPoint, layers: &Layers, to_light: DVec3) -> DVec3 {
+/// [`brdf_direct`] of a point whose layers are known.
+pub fn brdf_layered(point: &ShadingPoint, layers: &Layers, to_light: DVec3) -> DVec3 {
     let toward = to_light + point.to_eye;
     let halfway = toward / toward.length().max(1e-6);
     let layers = layers_direct(layers, point.normal, point.to_eye, to_light, halfway);

@@ -9,7 +9,7 @@ use crate::FlatScene;
 /// The environment of a scene.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EnvironmentLight<'a> {
-    /// Colors of sky, horizon and ambient light of a gradient. With a map the last is a factor on its light.
+    /// Colors of sky, horizon and ambient light of a gradient.
     pub gradient: [DVec3; 3],
     /// The light of other kinds.
     pub map: Option<&'a PlacedMap>,
@@ -19,12 +19,6 @@ impl<'a> EnvironmentLight<'a> {
     /// That of the scene.
     pub fn of(flat: &'a FlatScene) -> Self {
         Self { gradient: flat.environment.gradient().map(DVec3::from), map: flat.environment_map.as_ref() }
-    }
-
-    /// The same where only this share of the light arrives.
-    pub fn occluded(mut self, share: f64) -> Self {
-        self.gradient[2] *= share;
-        self
     }
 }
 
@@ -53,5 +47,5 @@ pub fn environment_on(point: &ShadingPoint, environment: &EnvironmentLight<'_>) 
     let diffuse = shares.diffuse * placed.map.irradiance(placed.map_from_world(point.normal));
     let specular = shares.specular * placed.map.reflected(mirrored, shares.roughness);
     let coat = placed.map.reflected(mirrored, shares.coat_roughness) * shares.coat;
-    (diffuse + specular + coat) * placed.strength * environment.gradient[2]
+    (diffuse + specular + coat) * placed.strength
 }

@@ -8,10 +8,15 @@ use super::brdf::ShadingPoint;
 use super::environment::{EnvironmentLight, environment_on};
 use crate::lights::GpuLight;
 
-/// Color of a surface point.
-pub fn lighting_surface(point: &ShadingPoint, environment: &EnvironmentLight<'_>, lights: &[GpuLight]) -> DVec3 {
+/// Color of a surface point, where the share `open` of the environment's light arrives.
+pub fn lighting_surface(
+    point: &ShadingPoint,
+    environment: &EnvironmentLight<'_>,
+    open: f64,
+    lights: &[GpuLight],
+) -> DVec3 {
     let sum: DVec3 = lights.iter().map(|light| lighting_reflected(point, light)).sum();
-    point.material.emission + environment_on(point, environment) + sum
+    point.material.emission + environment_on(point, environment) * open + sum
 }
 
 /// The light of one source that the surface reflects toward the eye, without shadows.
@@ -103,7 +108,12 @@ mod tests {
 
     /// A surface without ambient light.
     fn lit(material: SurfaceMaterial, position: DVec3, normal: DVec3, to_eye: DVec3, lights: &[GpuLight]) -> DVec3 {
-        lighting_surface(&ShadingPoint { material, position, normal, to_eye }, &EnvironmentLight::default(), lights)
+        lighting_surface(
+            &ShadingPoint { material, position, normal, to_eye },
+            &EnvironmentLight::default(),
+            1.0,
+            lights,
+        )
     }
 
     /// A floor 2 below the light's height over the eye, viewed from the side.

@@ -239,7 +239,7 @@ impl View<'_> {
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial, occlusion: f64) -> DVec3 {
         let position = ray.direction * t;
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, &EnvironmentLight::of(self.flat).occluded(occlusion), &self.lights)
+        lighting_surface(&point, &EnvironmentLight::of(self.flat), occlusion, &self.lights)
     }
 
     /// Normal, material and the share of the ambient light at a hit on a mesh.

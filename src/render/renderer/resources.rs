@@ -187,16 +187,6 @@ impl FrameResources {
         uploads.contains(&true)
     }
 
-    /// Uploads the environment, if it is another one. Returns whether the buffer was replaced.
-    fn upload_map(&mut self, gpu: &Gpu, flat: &FlatScene) -> bool {
-        if self.held_map.as_ref() == Some(&flat.environment_map) {
-            return false;
-        }
-        self.held_map = Some(flat.environment_map.clone());
-        let words = map_words(flat.environment_map.as_ref());
-        self.environment_map.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
-    }
-
     /// Resets the lists and counts that the passes of a frame fill. Returns whether a buffer was replaced.
     pub fn reset_lists(&mut self, gpu: &Gpu, plan: &FramePlan, components: usize, size: [u32; 2]) -> bool {
         let Gpu { device, queue, .. } = gpu;
@@ -214,6 +204,16 @@ impl FrameResources {
     pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
         let view = self.first_view.of_sample(index, is_transparent);
         self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
+    }
+
+    /// Uploads the environment, if it is another one. Returns whether the buffer was replaced.
+    fn upload_map(&mut self, gpu: &Gpu, flat: &FlatScene) -> bool {
+        if self.held_map.as_ref() == Some(&flat.environment_map) {
+            return false;
+        }
+        self.held_map = Some(flat.environment_map.clone());
+        let words = map_words(flat.environment_map.as_ref());
+        self.environment_map.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
     }
 
     /// Gives the slot textures for accumulated samples, if it has none.

@@ -1,9 +1,9 @@
 //! Lights with a size against Monte Carlo integrals over their surface.
 
-use super::super::brdf::brdf_direct;
 use super::super::lighting::lighting_incoming;
 use super::*;
 use crate::FlatLight;
+use crate::light::brdf::brdf_direct;
 use isolith_scene::{Falloff, Light, LightKind, NodeId};
 
 /// Samples of an integral.
@@ -36,11 +36,6 @@ fn light(position: DVec3, direction: DVec3, kind: LightKind) -> GpuLight {
     let [x, y]: [DVec3; 2] = direction.any_orthonormal_pair().into();
     let light = Light::new(kind);
     GpuLight::new(&FlatLight { id: NodeId(1), position, direction, axes: [x, y], scale: 1.0, light }, DVec3::ZERO)
-}
-
-/// Black, and without a highlight.
-fn plastic() -> SurfaceMaterial {
-    SurfaceMaterial { ior: 1.5, coat_ior: 1.6, opacity: 1.0, coat_color: DVec3::ONE, ..SurfaceMaterial::default() }
 }
 
 /// A light that does not end within the tests.
@@ -110,7 +105,7 @@ fn estimated(light: &GpuLight, point: &ShadingPoint, brdf: Brdf) -> DVec3 {
     let incoming = lighting_incoming(light, point.position);
     // The color of a sphere is its irradiance at 1 m.
     let radiance = if light.kind == GpuLight::RECTANGLE { 1.0 } else { f64::from(light.radius).powi(2) };
-    reflected_by(point, light, &incoming, |point, to_light, _| brdf(point, to_light)) * radiance
+    reflected_by(point, light, &incoming, |direction, _| brdf(point, direction)) * radiance
 }
 
 /// Lights of every size at random places, many of them cut by the horizon.
@@ -137,7 +132,7 @@ fn statistics(mut errors: Vec<f64>) -> [f64; 2] {
 #[test]
 fn diffuse_light_of_spheres_and_rectangles_is_that_of_the_integral() {
     let mut random = Random(1);
-    let white = SurfaceMaterial { base_color: DVec3::ONE, phong_weight: 1.0, ..plastic() };
+    let white = SurfaceMaterial { base_color: DVec3::ONE, roughness: 1.0, ..SurfaceMaterial::default() };
     let mut errors = [Vec::new(), Vec::new()];
     for light in lights(&mut random, 400) {
         let point = point(white, DVec3::Z);
@@ -156,7 +151,7 @@ fn diffuse_light_of_spheres_and_rectangles_is_that_of_the_integral() {
 fn highlights_are_near_those_of_the_integral() {
     let mut random = Random(2);
     for (roughness, most) in [(0.1, [0.03, 0.2]), (0.3, [0.03, 0.25]), (0.6, [0.02, 0.2]), (1.0, [0.01, 0.06])] {
-        let material = SurfaceMaterial { roughness, ..plastic() };
+        let material = SurfaceMaterial { roughness, ..SurfaceMaterial::default() };
         let mut errors = Vec::new();
         for light in lights(&mut random, 600) {
             // The eye looks near the reflection of the light, where highlights are.
@@ -178,7 +173,7 @@ fn highlights_are_near_those_of_the_integral() {
 
 #[test]
 fn a_small_light_is_a_point_and_a_rectangle_is_dark_from_behind() {
-    let material = SurfaceMaterial { base_color: DVec3::splat(0.5), roughness: 0.5, ..plastic() };
+    let material = SurfaceMaterial { base_color: DVec3::splat(0.5), roughness: 0.5, ..SurfaceMaterial::default() };
     let at = DVec3::new(0.3, 0.2, 2.0);
     let point = point(material, DVec3::new(0.6, 0.0, 0.8));
     let small = sphere(at, 1e-4);
