@@ -258,7 +258,7 @@ impl Renderer {
         self.resources.bind(device, slot, &self.scene, |bound| self.passes.bind(device, bound));
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
-        frame.template_rows = template_rows;
+        (frame.template_rows, frame.has_layers) = (template_rows, materials.have_layers(flat));
         if slot == Slot::Preview {
             // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();

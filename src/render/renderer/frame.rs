@@ -4,7 +4,6 @@ use std::time::Duration;
 
 use super::choice::Chosen;
 use super::going_on::GoingOn;
-use super::mesh_materials::mesh_materials;
 use super::slot::Slot;
 use crate::frame::cost_model::{Cost, CostModel};
 use crate::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
@@ -45,7 +44,7 @@ pub struct Frame {
     pub(crate) overlay: OverlaySettings,
     pub(crate) view_mode: ViewMode,
     pub(crate) view_transform: ViewTransform,
-    /// Whether a material has the layers of OpenPBR.
+    /// Whether a material may have the layers of OpenPBR.
     pub(crate) has_layers: bool,
     /// The sample that it renders; `None` for a picture of a single sample.
     pub(crate) sampling: Option<Sampling>,
@@ -84,7 +83,7 @@ impl Frame {
             overlay,
             view_mode: ViewMode::Shaded,
             view_transform: flat.display.view_transform,
-            has_layers: flat.materials.iter().chain(&mesh_materials(flat)).any(|material| material.phong_weight < 1.0),
+            has_layers: true,
             sampling: None,
             going_on: GoingOn::default(),
             template_rows: Vec::new(),
