@@ -20,6 +20,12 @@
 @group(2) @binding(3) var material_target: texture_2d<u32>;
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
 
+#if TEXTURES
+@group(3) @binding(1) var<storage, read> placed_textures: array<GpuPlacedTextures>;
+@group(3) @binding(2) var<storage, read> texture_sets: array<TextureSet>;
+@group(3) @binding(3) var texels: texture_storage_2d<r32uint, read>;
+#end
+
 #include "light/material.wgsl"
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
@@ -59,6 +65,11 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
     var color = environment_background(direction.y, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
+        let surface_normal = textureLoad(normal_target, pixel, 0).xyz;
+#if TEXTURES
+        mixture_point = textured_point(direction, depth, surface_normal, view.footprint);
+        mixture_bend = vec3f(0.0);
+#end
         let stored = textureLoad(material_target, pixel, 0);
         var material = mixture_material(select(stored, vec4u(0u), is_mesh));
         var ambient = view.ambient;
@@ -71,7 +82,10 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
             material.emission = mesh_encoded_emission(stored);
             ambient *= surface.z;
         }
-        let normal = textureLoad(normal_target, pixel, 0).xyz;
+        var normal = surface_normal;
+#if TEXTURES
+        normal = textured_normal(normal, mixture_bend);
+#end
         let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.

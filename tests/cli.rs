@@ -315,7 +315,7 @@ fn without_a_driver_it_says_so() {
 fn check_counts_what_is_there() {
     let place = Place::new();
     let report = place.run(&["check", "scene.json", "--json"]).succeeded().object();
-    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "limits", "warnings"];
+    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "clips", "limits", "warnings"];
     assert_eq!(keys(&report), all);
     assert_eq!(report["cameras"], serde_json::json!(["front", "above"]));
     assert_eq!((&report["nodes"], &report["components"], &report["tree_depth"]), (&5.into(), &2.into(), &2.into()));
@@ -353,7 +353,7 @@ fn check_lists_every_parameter_with_unit_limits_and_default() {
 fn check_warns_about_meshes_that_are_missing() {
     let place = Place::new();
     let mut scene = sample();
-    let mesh = NodeKind::Mesh(MeshNode { path: "no.glb".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("no.glb"));
     scene.insert(None, 0, Node::new("statue", mesh)).expect("the scene has room");
     place.write("mesh.json", &scene);
     let report = place.run(&["check", "mesh.json", "--json"]).succeeded().object();

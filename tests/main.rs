@@ -28,6 +28,7 @@ mod settle;
 mod shaders;
 mod strategies;
 mod stress;
+mod textures;
 mod tidy;
 mod unflattened;
 mod versions;

@@ -203,7 +203,9 @@ impl Random {
             4 => {
                 let path = self.pick(&["duck.glb", "models/a b/ü.gltf", "x.y/z"]).to_owned();
                 let material = if self.once_in(2) { Some(self.pick(materials)) } else { None };
-                NodeKind::Mesh(MeshNode { path, material })
+                let clip = self.pick(&["", "Walk", "0", "Läuft 2"]).to_owned();
+                let (clip_time, clip_speed) = (self.number(&limits::CLIP_TIME), self.number(&limits::CLIP_SPEED));
+                NodeKind::Mesh(MeshNode { path, material, clip, clip_time, clip_speed })
             }
             _ => NodeKind::Object(Object { shape: self.shape(), material: self.pick(materials) }),
         }

@@ -2,12 +2,14 @@
 
 use std::mem::{offset_of, size_of};
 
-use isolith::field::{FlatMaterial, FlatNode, GpuLight, flatten};
+use isolith::field::{FlatMaterial, FlatNode, FlatTexture, GpuLight, GpuPlacedTextures, TextureSet, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits};
 use isolith::scene::ShapeKind;
-use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
+use isolith::wgsl::{
+    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
+};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The passes: the files outside of all folders.
@@ -45,7 +47,13 @@ fn sources() -> Vec<(&'static str, String)> {
     let text =
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
-    passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
+    let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
+    plain.chain([("shade.wgsl", textured())]).collect()
+}
+
+/// The pass `shade` for scenes with textures.
+fn textured() -> String {
+    assemble_featured("shade.wgsl", &["TEXTURES"]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The module of a source, or the error in it.
@@ -244,6 +252,9 @@ fn flat_material() -> Layout {
 #[test]
 fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
+        layout!("FlatTexture" = FlatTexture { first, kind, second, image, scale, a, b, wrap }),
+        layout!("TextureSet" = TextureSet { slots, base_weight, sharpness, strength }),
+        layout!("GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump }),
         flat_node(),
         flat_material(),
         layout!(
@@ -266,6 +277,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
         view(),
         dispatch_params(),
         instance(),
+        layout!("RayMesh" = RayMesh { local_x, local_y, local_z, nodes, triangles, index, padding_0 }),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
@@ -283,6 +295,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
             validate(&assemble(pass, &Evaluator::Interpreter(OpSet::all()), Options::default()).expect("checked above"))
                 .expect("checked above")
         })
+        .chain([validate(&textured()).expect("checked above")])
         .collect();
     for layout in &layouts {
         let holds = |m: &&naga::Module| m.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(layout.name));

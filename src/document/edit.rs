@@ -155,7 +155,7 @@ impl Edit {
     fn of_param(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Self, SceneError> {
         Ok(match path.changed(scene, value)? {
             Changed::Node(node) => Self::Replace(*node),
-            Changed::Material(material) => Self::ReplaceMaterial(material),
+            Changed::Material(material) => Self::ReplaceMaterial(*material),
             Changed::Environment(environment) => Self::SetEnvironment(environment),
             Changed::Display(display) => Self::SetDisplay(display),
         })

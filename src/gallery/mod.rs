@@ -20,6 +20,7 @@ mod random_groups;
 mod scene_builder;
 mod shapes;
 mod showcase;
+mod textures;
 mod write;
 
 use isolith_scene::Scene;
@@ -58,6 +59,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
         ("materials", materials::scene()),
+        ("textures", textures::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -88,7 +88,7 @@ impl SceneBuilder {
         self.material(Material { model, ..Material::new(MaterialId(0), name, base_color) })
     }
 
-    /// Adds a material.
+    /// Any material, under a new id.
     pub fn material(&mut self, material: Material) -> MaterialId {
         let id = self.scene.next_material_id();
         self.scene.insert_material(Material { id, ..material }).expect("the id is new");
@@ -160,7 +160,7 @@ pub(super) fn object(name: &str, shape: Shape, material: MaterialId) -> Node {
 
 /// A mesh from a glTF file.
 pub(super) fn mesh(name: &str, path: &str) -> Node {
-    Node::new(name, NodeKind::Mesh(MeshNode { path: path.into(), material: None }))
+    Node::new(name, NodeKind::Mesh(MeshNode::new(path)))
 }
 
 pub(super) fn sphere(radius: f64) -> Shape {

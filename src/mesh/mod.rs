@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! .gltf / .glb ──► resolve (files, data URIs) ──► document (JSON, checked) ──► forest (placement of nodes)
-//!              ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
+//!              ──► clip (what an animation moves) ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
 //! ```
 //!
 //! Files are untrusted. Every number is checked before it sizes a read or an allocation, all of it runs behind
@@ -11,6 +11,8 @@
 
 mod accessor;
 mod bvh;
+mod clip;
+mod clip_schema;
 mod document;
 mod error;
 mod forest;
@@ -18,6 +20,7 @@ mod library;
 pub mod limits;
 mod load;
 mod material_schema;
+mod model_pose;
 mod pose;
 mod primitive;
 mod references;
@@ -31,9 +34,11 @@ mod watch;
 mod whole;
 
 pub use bvh::{Bvh, BvhNode};
+pub use clip::ClipInfo;
 pub use error::MeshError;
 pub use library::{MeshLibrary, MeshResult, MeshSource, ReloadOutcome, Reread};
-pub use load::{load, parse};
+pub use load::{load, parse, parse_posed};
+pub use model_pose::{ClipTime, ModelPose};
 pub use surface::{Surface, TextureUse};
 pub use texture::{Sampler, Texture, Wrap};
 pub use triangle_mesh::{MeshHit, MeshLook, MeshPart, TriangleMesh};

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::accessor::Source;
+use super::clip::clips;
 use super::error::LoadRefusal;
 use super::limits::{MAX_ATTRIBUTES, MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use super::pose::{Pose, Vertices, same_count};
@@ -48,7 +49,7 @@ struct Run {
 type Key = (Vec<(String, Whole)>, Vec<Vec<(String, Whole)>>, UvSets);
 
 impl<'a> Writer<'a> {
-    pub fn new(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Self {
+    pub fn new(source: &'a Source<'a>, surfaces: Surfaces<'a>, remarks: Remarks) -> Self {
         let mesh = TriangleMesh {
             positions: Vec::new(),
             normals: Vec::new(),
@@ -58,11 +59,13 @@ impl<'a> Writer<'a> {
             indices: Vec::new(),
             parts: Vec::new(),
             textures: Vec::new(),
+            images: Vec::new(),
+            clips: clips(source),
             bounds: Aabb::EMPTY,
             warnings: Vec::new(),
             bvh: OnceLock::new(),
         };
-        Self { source, surfaces, mesh, remarks: Remarks::of(source.root), attributes: 0 }
+        Self { source, surfaces, mesh, remarks, attributes: 0 }
     }
 
     pub fn finish(mut self) -> TriangleMesh {
@@ -75,7 +78,7 @@ impl<'a> Writer<'a> {
         if !self.mesh.tangents.is_empty() {
             self.mesh.tangents.resize(self.mesh.positions.len(), [0.0; 4]);
         }
-        self.mesh.textures = self.surfaces.textures;
+        (self.mesh.textures, self.mesh.images) = self.surfaces.into_textures();
         self.mesh.warnings = self.remarks.finish();
         self.mesh
     }

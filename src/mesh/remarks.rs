@@ -43,10 +43,6 @@ impl Remarks {
             }
         }
         let count = |n: usize, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
-        if !root.animations.is_empty() {
-            let animations = count(root.animations.len(), "animation");
-            remarks.add(format!("{animations} not played: the model is shown at rest"));
-        }
         if !root.cameras.is_empty() {
             remarks.add(format!("{} not used", count(root.cameras.len(), "camera")));
         }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::de::IgnoredAny;
 
+use super::clip_schema::Animation;
 use super::material_schema::{GltfMaterial, GltfSampler, GltfTexture};
 pub(super) use super::whole::Whole;
 
@@ -52,9 +53,8 @@ pub(super) struct Root {
     pub materials: Vec<GltfMaterial>,
     #[serde(default)]
     pub skins: Vec<Skin>,
-    /// Only the count matters.
     #[serde(default)]
-    pub animations: Vec<IgnoredAny>,
+    pub animations: Vec<Animation>,
     /// Only the count matters.
     #[serde(default)]
     pub cameras: Vec<IgnoredAny>,

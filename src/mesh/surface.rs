@@ -1,6 +1,7 @@
 //! Materials: the appearance of a run of triangles.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::DVec2;
 
@@ -10,7 +11,7 @@ use super::material_schema::{GltfMaterial, TextureInfo};
 use super::remarks::Remarks;
 use super::resolve::Reader;
 use super::schema::{Primitive, Whole};
-use super::texture::{Sampler, Texture, Wrap, decode};
+use super::texture::{Sampler, SharedTextures, Texture, Wrap, decode};
 
 /// The appearance of a run of triangles: the metallic-roughness model of glTF with its layers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,14 +177,26 @@ pub(super) struct Surfaces<'a> {
     reader: &'a Reader<'a>,
     budget: &'a mut u64,
     /// The decoded images.
-    pub textures: Vec<Texture>,
+    textures: Vec<Arc<Texture>>,
+    /// Images decoded before, by their index.
+    shared: SharedTextures,
     /// The index of each decoded image of the document; `None` if it cannot be used.
     decoded: HashMap<usize, Option<usize>>,
 }
 
 impl<'a> Surfaces<'a> {
-    pub fn new(source: &'a Source<'a>, reader: &'a Reader<'a>, budget: &'a mut u64) -> Self {
-        Self { source, reader, budget, textures: Vec::new(), decoded: HashMap::new() }
+    /// `shared` are the textures of the same file in another pose.
+    pub fn new(source: &'a Source<'a>, reader: &'a Reader<'a>, budget: &'a mut u64, shared: SharedTextures) -> Self {
+        Self { source, reader, budget, textures: Vec::new(), decoded: HashMap::new(), shared }
+    }
+
+    /// The textures, and for each the image of the document.
+    pub fn into_textures(self) -> (Vec<Arc<Texture>>, Vec<usize>) {
+        let mut images = vec![0; self.textures.len()];
+        for (image, texture) in self.decoded.into_iter().filter_map(|(image, texture)| Some((image, texture?))) {
+            images[texture] = image;
+        }
+        (self.textures, images)
     }
 
     /// The surface of a primitive, with the sets of texture coordinates for its textures. Leaves out what it cannot
@@ -269,7 +282,10 @@ impl<'a> Surfaces<'a> {
         number.map(|number| (number, sampler))
     }
 
-    fn decode(&mut self, index: Whole) -> Result<Texture, LoadRefusal> {
+    fn decode(&mut self, index: Whole) -> Result<Arc<Texture>, LoadRefusal> {
+        if let Some(texture) = self.shared.get(&index.index()) {
+            return Ok(texture.clone());
+        }
         let place = format!("images[{}]", index.0);
         let Some(image) = self.source.root.images.get(index.index()) else {
             return Err(LoadRefusal::at(place, "is missing"));
@@ -279,7 +295,7 @@ impl<'a> Surfaces<'a> {
             (None, Some(uri)) => self.reader.uri(uri).and_then(|bytes| decode(&bytes, self.budget)),
             (None, None) => Err("has no data".into()),
         };
-        decoded.map_err(|reason| LoadRefusal::at(place, reason))
+        decoded.map(Arc::new).map_err(|reason| LoadRefusal::at(place, reason))
     }
 }
 

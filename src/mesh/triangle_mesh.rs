@@ -1,13 +1,14 @@
 //! The triangle mesh with all data that a renderer uploads.
 
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use glam::{DMat3, DVec2, DVec3, DVec4};
 
 use super::bvh::{Bvh, Triangle};
+use super::clip::ClipInfo;
 use super::surface::{Surface, TextureUse};
-use super::texture::Texture;
+use super::texture::{SharedTextures, Texture};
 use isolith_geometry::{Aabb, Ray};
 
 /// An indexed triangle mesh in one space: the file's scene with all its nodes written out.
@@ -33,7 +34,11 @@ pub struct TriangleMesh {
     /// Runs of triangles with the same surface that stand near each other.
     pub parts: Vec<MeshPart>,
     /// All textures.
-    pub textures: Vec<Texture>,
+    pub textures: Vec<Arc<Texture>>,
+    /// For each texture the image of the file.
+    pub(super) images: Vec<usize>,
+    /// The animation clips of the file.
+    pub clips: Vec<ClipInfo>,
     /// The smallest box around all triangles.
     pub bounds: Aabb,
     /// Contents of the file that are not drawn, as texts for the user.
@@ -96,6 +101,11 @@ impl TriangleMesh {
     pub fn corners(&self, triangle: u32) -> Triangle {
         let origin = self.part(triangle).origin;
         self.vertices(triangle).map(|v| origin + point(self.positions[v]))
+    }
+
+    /// The textures by their images, for another pose of the same file.
+    pub(super) fn shared_textures(&self) -> SharedTextures {
+        self.images.iter().copied().zip(self.textures.iter().cloned()).collect()
     }
 
     /// The part that a triangle belongs to.
@@ -213,6 +223,15 @@ impl TriangleMesh {
     fn uv(&self, vertex: usize, slot: usize) -> DVec2 {
         let [u, v, u2, v2] = self.uvs[vertex].map(f64::from);
         if slot == 0 { DVec2::new(u, v) } else { DVec2::new(u2, v2) }
+    }
+
+    /// The nearest hit with 0 ≤ t ≤ `max_t` on a surface that stops light: blended ones let all of it pass, and masks
+    /// are not read. As the rays on the GPU have it.
+    pub fn hit_solid(&self, ray_local: &Ray, max_t: f64) -> Option<MeshHit> {
+        let corners = |triangle| self.corners(triangle);
+        let is_solid = |triangle, _| !self.part(triangle).surface.is_blended;
+        let (t, triangle, weights) = self.bvh().hit(ray_local, max_t, corners, is_solid)?;
+        Some(MeshHit { t, triangle, weights, normal: self.normal_at(triangle, weights) })
     }
 
     fn is_there(&self, triangle: u32, weights: [f64; 3], covers: &impl Fn(u32, f64) -> bool) -> bool {

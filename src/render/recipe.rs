@@ -103,6 +103,7 @@ mod tests {
         "probe.wgsl",
         "probe_brdf.wgsl",
         "probe_lookahead.wgsl",
+        "probe_mesh_rays.wgsl",
         "probe_scene.wgsl",
         "probe_surface.wgsl",
     ];

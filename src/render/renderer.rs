@@ -6,7 +6,7 @@ pub(super) mod evaluation;
 mod frame;
 mod going_on;
 mod measure;
-mod mesh_materials;
+pub(super) mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
@@ -27,6 +27,7 @@ use crate::frame::cost_model::CostModel;
 use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
+use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::PipelineCache;
 use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
@@ -252,13 +253,16 @@ impl Renderer {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
+        let features = ShadeFeatures::new(flat, &materials.all);
+        self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
         self.resources.bind(device, slot, &self.scene, |bound| self.passes.bind(device, bound));
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
-        (frame.template_rows, frame.has_layers) = (template_rows, materials.have_layers(flat));
+        frame.template_rows = template_rows;
+        frame.shade_features = features;
         if slot == Slot::Preview {
             // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();

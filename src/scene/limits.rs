@@ -102,6 +102,13 @@ pub const LETTERS: Limits = Limits::new([0.0, MAX_TEXT as f64], [0.0, MAX_TEXT a
 /// Length of the path of a file, in letters.
 pub const PATH_LENGTH: Limits = Limits::new([1.0, MAX_PATH as f64], [1.0, MAX_PATH as f64], "").whole();
 
+/// Characters of the name of an animation clip.
+pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, MAX_NAME as f64], "").whole();
+/// Times within an animation clip.
+pub const CLIP_TIME: Limits = Limits::new([0.0, 10.0], [-1e6, 1e6], "s");
+/// Speeds of animation clips.
+pub const CLIP_SPEED: Limits = Limits::new([0.0, 2.0], [-1e3, 1e3], "");
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits::new([0.0, 5.0], [0.0, 1e6], "m");
 /// Thicknesses and roundings.
@@ -182,3 +189,17 @@ pub const AMPLITUDE: Limits = Limits::new([0.0, 0.5], [0.0, 1e6], "m");
 pub const DISPLACEMENT: Limits = Limits::new([-0.5, 0.5], [-1e6, 1e6], "m");
 /// Width of a repeated tile.
 pub const TILE: Limits = Limits::new([0.1, 5.0], [1e-4, 1e6], "m");
+/// Tiles, images and patterns of a texture per tile.
+pub const TEXTURE_SCALE: Limits = Limits::new([0.1, 32.0], [1e-3, 1e3], "");
+/// Factor on the width of a texture's tile.
+pub const STRETCH: Limits = Limits::new([0.1, 10.0], [1e-3, 1e3], "");
+/// The power of the normal that weights projections.
+pub const SHARPNESS: Limits = Limits::new([1.0, 64.0], [1.0, 1e3], "");
+/// Height of what a texture embosses, outward or inward.
+pub const BUMP: Limits = Limits::new([-0.1, 0.1], [-1e3, 1e3], "m");
+/// Height of a row of bricks, in lengths of a brick.
+pub const PATTERN_SHARE: Limits = Limits::new([0.1, 2.0], [0.01, 100.0], "");
+/// How far a pattern wanders, in its own widths; factors on slopes.
+pub const TURBULENCE: Limits = Limits::new([0.0, 2.0], [0.0, 100.0], "");
+/// Most bytes of all images of textures on the device: beyond it, the largest are shown at half their size.
+pub const MAX_TEXTURE_BYTES: usize = 127 << 20;

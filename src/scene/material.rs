@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::limits::{INTENSITY, IOR, LUMINANCE, NO_LIMITS, SHININESS, SPECULAR, UNIT};
 use super::params::{Variants, nested_variants, param_rows, param_struct, param_variants};
+use super::texture::Textures;
 use super::whole;
 
 /// Stable identity of a material; never reused within a document.
@@ -66,6 +67,9 @@ param_struct! {
         emission_color: [f64; 3] = [1.0; 3], INTENSITY.color();
         /// How it reflects light.
         model: ReflectionModel = ReflectionModel::OpenPbr {}, NO_LIMITS;
+        /// What varies over the surface.
+        #[serde(skip_serializing_if = "Textures::is_none")]
+        textures: Textures = Textures::None {}, NO_LIMITS;
     }
 }
 

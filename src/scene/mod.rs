@@ -30,6 +30,7 @@ mod error;
 pub mod file;
 mod heights;
 mod image_budget;
+mod image_file;
 mod light;
 pub mod limits;
 mod material;
@@ -41,6 +42,9 @@ mod params;
 mod presets;
 mod shape;
 mod table;
+mod texture;
+mod texture_image;
+mod texture_source;
 mod whole;
 
 pub use attached::Attached;
@@ -64,3 +68,8 @@ pub use params::{
 pub use presets::material_presets;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
+pub use texture::{NormalTexture, TextureSpace, Textures};
+pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_source::{
+    ColorSpace, ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
+};

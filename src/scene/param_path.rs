@@ -242,7 +242,7 @@ impl ParamPath {
                 if !self.set_value(&mut material, value.clone()) {
                     return Err(refusal(&material));
                 }
-                Ok(Changed::Material(material))
+                Ok(Changed::Material(Box::new(material)))
             }
             ParamOwner::Environment => {
                 let mut environment = scene.environment;
@@ -317,7 +317,7 @@ pub enum Changed {
     /// A node.
     Node(Box<Node>),
     /// A material.
-    Material(Material),
+    Material(Box<Material>),
     /// The environment.
     Environment(Environment),
     /// The display settings.

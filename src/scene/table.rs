@@ -107,6 +107,11 @@ impl Scene {
         &self.nodes
     }
 
+    /// The pixels of all its images, each file counted once: at most [`super::limits::MAX_SCENE_PIXELS`].
+    pub fn image_pixels(&self) -> u64 {
+        image_budget::used(&self.nodes, &self.materials)
+    }
+
     /// The depth of each node, parallel to [`Scene::nodes`]; 0 at the top.
     pub fn depths(&self) -> &[u32] {
         &self.depths
@@ -184,7 +189,7 @@ impl Scene {
             Some(id) => self.depths[self.group_index(id)?] as usize + 1,
         };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
-        image_budget::check(&self.nodes, None, &subtree)?;
+        image_budget::check(&self.nodes, &self.materials, None, &subtree)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
@@ -256,7 +261,8 @@ impl Scene {
         if has_children && !matches!(node.kind, NodeKind::Group(_)) {
             return Err(SceneError::NotAGroup(node.id));
         }
-        image_budget::check(&self.nodes, Some(&self.nodes[index]), std::slice::from_ref(&node))?;
+        let old = Some(&*self.nodes[index]);
+        image_budget::check(&self.nodes, &self.materials, old, std::slice::from_ref(&node))?;
         let parent = self.nodes[index].parent;
         self.nodes[index] = Arc::new(Node { parent, ..node });
         Ok(())
@@ -283,6 +289,7 @@ impl Scene {
             return Err(SceneError::DuplicateMaterial(material.id));
         }
         check_limit("the number of materials", self.materials.len() + 1, MAX_MATERIALS)?;
+        image_budget::check_material(&self.nodes, &self.materials, &material)?;
         self.materials.push(Arc::new(material));
         Ok(())
     }
@@ -290,6 +297,7 @@ impl Scene {
     /// Replaces the material of the same id.
     pub fn replace_material(&mut self, material: Material) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == material.id).ok_or(SceneError::NoMaterial(material.id))?;
+        image_budget::check_material(&self.nodes, &self.materials, &material)?;
         self.materials[at] = Arc::new(material);
         Ok(())
     }

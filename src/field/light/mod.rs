@@ -7,6 +7,7 @@
 //! | `albedo` | the light that a GGX lobe reflects in all |
 //! | `lighting` | the sum over all lights |
 //! | `environment` | light from everywhere, and the background |
+//! | `texture` | colors and values that vary over a surface |
 //! | `display` | linear light to the colors of a screen |
 
 pub mod albedo;
@@ -19,5 +20,6 @@ pub mod layers;
 pub mod lighting;
 #[cfg(test)]
 mod lobes;
+pub mod texture;
 #[cfg(test)]
 mod walk;

@@ -5,6 +5,7 @@ pub mod brdf_probe;
 mod device;
 pub mod driver;
 mod error;
+pub mod mesh_ray_probe;
 pub mod probe;
 pub mod readback;
 pub mod scene_probe;

@@ -36,6 +36,9 @@ pub struct MeshPass {
     instance_group: Option<BindGroup>,
     /// By the address of the mesh on the CPU. Dropped together with that mesh.
     uploaded: HashMap<usize, Uploaded>,
+    /// By the address of the texture on the CPU and whether it holds colors: the same may hold colors here and numbers
+    /// there. Poses of a model share them. Dropped together with that texture.
+    textures: HashMap<(usize, bool), (Weak<Texture>, wgpu::TextureView)>,
     draws: Vec<Draw>,
 }
 
@@ -98,6 +101,7 @@ impl FramePass for MeshPass {
             instances: SyncedBuffer::uniform(device, "mesh instances"),
             instance_group: None,
             uploaded: HashMap::new(),
+            textures: HashMap::new(),
             draws: Vec::new(),
         })
     }
@@ -126,12 +130,14 @@ impl MeshPass {
         size: [u32; 2],
     ) {
         self.uploaded.retain(|_, u| u.mesh.strong_count() > 0);
+        self.textures.retain(|_, (texture, _)| texture.strong_count() > 0);
         self.draws.clear();
         let mut bytes = Vec::new();
         for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
             let Some(mesh) = mesh else { continue };
             let key = Arc::as_ptr(mesh) as usize;
             if !self.uploaded.contains_key(&key) {
+                self.upload_textures(device, queue, mesh);
                 let uploaded = self.upload(device, queue, mesh);
                 self.uploaded.insert(key, uploaded);
             }
@@ -227,7 +233,7 @@ impl MeshPass {
         let buffer = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
-        let parts: Vec<_> = self.textures(device, queue, mesh);
+        let parts = self.bind_textures(device, queue, mesh);
         let mut tangents = mesh.tangents.clone();
         tangents.resize(mesh.positions.len(), [0.0; 4]);
         let tangents = parts.iter().any(|part| part.mapped.is_some()).then_some(tangents);
@@ -244,20 +250,22 @@ impl MeshPass {
         }
     }
 
-    /// Uploads the textures of a mesh, and binds those of each part.
-    fn textures(&self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &TriangleMesh) -> Vec<UploadedPart> {
-        let white = upload_texture(device, queue, &Texture { width: 1, height: 1, rgba: vec![255; 4] }, true);
-        // Each image by its use: the same may hold colors here and numbers there.
-        let mut views: HashMap<(usize, bool), wgpu::TextureView> = HashMap::new();
-        let colors = |s: &Surface| [(s.base_color, true), (s.emissive, true)];
-        let numbers = |s: &Surface| [(s.metal_rough, false), (s.normal, false), (s.occlusion, false)];
-        for part in &mesh.parts {
-            for (texture_use, is_color) in colors(&part.surface).into_iter().chain(numbers(&part.surface)) {
-                let Some(TextureUse { texture, .. }) = texture_use else { continue };
-                let make = || upload_texture(device, queue, &mesh.textures[texture], is_color);
-                views.entry((texture, is_color)).or_insert_with(make);
-            }
+    /// Uploads the textures of a mesh.
+    fn upload_textures(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &TriangleMesh) {
+        let all = mesh.parts.iter().flat_map(|part| [&colors(&part.surface)[..], &numbers(&part.surface)[..]].concat());
+        for (texture_use, is_color) in all {
+            let Some(texture) = texture_use.map(|texture_use| &mesh.textures[texture_use.texture]) else { continue };
+            let make = || (Arc::downgrade(texture), upload_texture(device, queue, texture, is_color));
+            self.textures.entry((Arc::as_ptr(texture) as usize, is_color)).or_insert_with(make);
         }
+    }
+
+    /// Binds the textures of each part of a mesh.
+    fn bind_textures(&self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &TriangleMesh) -> Vec<UploadedPart> {
+        let white = upload_texture(device, queue, &Texture { width: 1, height: 1, rgba: vec![255; 4] }, true);
+        let view_of = |texture: usize, is_color: bool| {
+            &self.textures[&(Arc::as_ptr(&mesh.textures[texture]) as usize, is_color)].1
+        };
         // Many parts share their textures.
         let mut groups: HashMap<Vec<Option<(usize, Sampler)>>, BindGroup> = HashMap::new();
         let mut group = |uses: &[(Option<TextureUse>, bool)], pipeline: usize| {
@@ -265,7 +273,7 @@ impl MeshPass {
                 let resources: Vec<_> = uses
                     .iter()
                     .flat_map(|(texture_use, is_color)| {
-                        let view = texture_use.map_or(&white, |texture_use| &views[&(texture_use.texture, *is_color)]);
+                        let view = texture_use.map_or(&white, |texture_use| view_of(texture_use.texture, *is_color));
                         let sampler =
                             &self.samplers[&texture_use.map_or(Sampler::default(), |texture_use| texture_use.sampler)];
                         [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
@@ -285,6 +293,16 @@ impl MeshPass {
         };
         mesh.parts.iter().map(part).collect()
     }
+}
+
+/// The textures of a surface that hold colors.
+fn colors(surface: &Surface) -> [(Option<TextureUse>, bool); 2] {
+    [(surface.base_color, true), (surface.emissive, true)]
+}
+
+/// Those that hold numbers.
+fn numbers(surface: &Surface) -> [(Option<TextureUse>, bool); 3] {
+    [(surface.metal_rough, false), (surface.normal, false), (surface.occlusion, false)]
 }
 
 /// An attachment that is cleared to `value`.

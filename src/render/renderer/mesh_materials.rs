@@ -35,9 +35,4 @@ impl MeshMaterials {
         }
         Self { all, of_parts }
     }
-
-    /// Whether one of them, or one of the fields, has the layers of OpenPBR.
-    pub fn have_layers(&self, flat: &FlatScene) -> bool {
-        flat.materials.iter().chain(&self.all).any(|material| material.phong_weight < 1.0)
-    }
 }

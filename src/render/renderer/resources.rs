@@ -18,6 +18,7 @@ use crate::resources::accumulation::Accumulation;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
 use crate::resources::targets::{Target, Targets};
+use crate::resources::texture_resources::{TextureBindings, TextureResources};
 use crate::resources::uniforms::{DispatchParams, GpuView, strided};
 use isolith_field::{FlatScene, gpu_lights};
 use isolith_geometry::Camera;
@@ -87,6 +88,7 @@ pub struct FrameResources {
     first_view: GpuView,
     lights: SyncedBuffer,
     mesh_materials: SyncedBuffer,
+    textures: TextureResources,
     dispatch_params: SyncedBuffer,
     subtiles: SyncedBuffer,
     pub subtile_counts: SyncedBuffer,
@@ -107,6 +109,7 @@ impl FrameResources {
             first_view: GpuView::zeroed(),
             lights: storage("lights"),
             mesh_materials: storage("mesh materials"),
+            textures: TextureResources::default(),
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
             subtiles: storage("subtiles"),
             subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
@@ -168,6 +171,7 @@ impl FrameResources {
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
+            self.textures.upload(gpu, flat, camera),
             self.set_work(gpu, &plan.dispatches),
             self.subtiles.reserve(device, bytes_of_subtiles(plan.subtiles.into()) as usize),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
@@ -260,6 +264,11 @@ impl FrameResources {
     /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
+    }
+
+    /// The textures, if the scene uses some.
+    pub fn textures(&self) -> Option<TextureBindings<'_>> {
+        self.textures.bindings()
     }
 
     /// Clears the counts of unfinished rays of `lists` lists, and the counters of pixels.

@@ -4,6 +4,8 @@ pub mod accumulation;
 pub mod buffers;
 pub mod hierarchy;
 pub mod layouts;
+pub mod mesh_rays;
 pub mod tape_texture;
 pub mod targets;
+pub mod texture_resources;
 pub mod uniforms;
