@@ -9,9 +9,10 @@ use super::failure::Failure;
 use super::input::{folder, read_scene, shown};
 use super::text::{complain, say};
 use crate::field::{self, Cancel, FlatScene, Usage, flatten_until};
+use crate::font::MAX_TEXT_ARCS;
 use crate::mesh::{MeshLibrary, TriangleMesh};
-use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
-use crate::scene::{Param, ParamPath, ParamValue, Scene};
+use crate::scene::limits::{MAX_ATTACHMENT_BYTES, MAX_DEPTH, MAX_MATERIALS, MAX_NODES, MAX_SCENE_PIXELS};
+use crate::scene::{Node, NodeId, NodeKind, Object, Param, ParamPath, ParamValue, Scene, Shape, text_profile};
 
 /// Arguments of `isolith check`.
 #[derive(Debug, clap::Args)]
@@ -133,6 +134,21 @@ impl Report {
         ];
         let named = |id| scene.node(id).map(|node| format!("{} {id}", node.name));
         let of_scene = limits.map(|(name, used, limit)| LimitUse { name, used, limit, node: None });
+        let most = |name, limit, of: fn(&Node) -> usize| {
+            let of_nodes = scene.nodes().iter().map(|node| (of(node), node.id));
+            let (used, node) = of_nodes.max_by_key(|(used, _)| *used).unwrap_or((0, NodeId(0)));
+            LimitUse { name, used, limit, node: named(node).filter(|_| used > 0) }
+        };
+        let of_files = [
+            LimitUse {
+                name: "pixels of all images",
+                used: scene.image_pixels() as usize,
+                limit: MAX_SCENE_PIXELS as usize,
+                node: None,
+            },
+            most("bytes of an image or font", MAX_ATTACHMENT_BYTES, largest_file),
+            most("arcs of a text", MAX_TEXT_ARCS, text_arcs),
+        ];
         let of_arrays = usages.iter().map(|usage| {
             let Usage { name, used, limit, node } = *usage;
             LimitUse { name, used, limit, node: node.and_then(named) }
@@ -141,7 +157,7 @@ impl Report {
             nodes: scene.nodes().len(),
             tree_depth,
             components: flat.components.len(),
-            limits: of_scene.into_iter().chain(of_arrays).collect(),
+            limits: of_scene.into_iter().chain(of_files).chain(of_arrays).collect(),
             cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
             clips: Vec::new(),
             warnings: flat.warnings.iter().cloned().map(CheckWarning::from).collect(),
@@ -191,6 +207,27 @@ impl Report {
             text += &format!("\nwarning: {}: {}", one_line(&warning.node), one_line(&warning.reason));
         }
         text
+    }
+}
+
+/// The size of the largest file in a node.
+fn largest_file(node: &Node) -> usize {
+    let shape = match &node.kind {
+        NodeKind::Object(object) => object.shape.values(),
+        _ => Vec::new(),
+    };
+    let values = shape.into_iter().chain(node.modifiers.iter().flat_map(|slot| slot.modifier.values()));
+    let sizes = values.map(|value| if let ParamValue::File(file) = value { file.size() } else { 0 });
+    sizes.max().unwrap_or(0)
+}
+
+/// The number of arcs of a text's outlines.
+fn text_arcs(node: &Node) -> usize {
+    match &node.kind {
+        NodeKind::Object(Object { shape: Shape::Text { text, font, size, .. }, .. }) => {
+            text_profile(text, font, *size).len()
+        }
+        _ => 0,
     }
 }
 

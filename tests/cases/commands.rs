@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use isolith::scene::{MaterialId, MeshNode, Node, NodeKind, Object, Scene, Shape, file};
+use isolith::scene::{Attachment, MaterialId, MeshNode, Node, NodeKind, Object, Scene, Shape, file};
 use serde_json::Value;
 
 /// A ball, and with `with_model` a model whose file is missing.
@@ -185,6 +185,35 @@ fn a_check_says_whether_it_is_fine_what_limits_are_used_and_which_cameras_there_
     }
     let nodes = report["limits"].as_array().expect("a list").iter().find(|l| l["name"] == "nodes").expect("nodes");
     assert_eq!((&nodes["used"], &nodes["limit"]), (&1.into(), &100_000.into()));
+}
+
+#[test]
+fn a_check_names_the_budgets_of_images_and_fonts() {
+    let place = folder();
+    let image = Attachment::drawn("hill.png", [30, 20], |x, y| (x * y % 256) as u8);
+    let font = Attachment::new("font.ttf", epaint_default_fonts::UBUNTU_LIGHT.to_vec()).expect("a font");
+    let text = Shape::Text { text: "Isolith".into(), font, size: 1.0, depth: 0.1, rounding: 0.0 };
+    let mut scene = scene(false);
+    for (name, shape) in [("hill", Shape::Heightmap { image, size: [1.0; 3], height: 0.1 }), ("sign", text)] {
+        let kind = NodeKind::Object(Object { shape, material: MaterialId(1) });
+        scene.insert(None, 0, Node::new(name, kind)).expect("the scene has room");
+    }
+    std::fs::write(place.path().join("files.json"), file::to_json(&scene).expect("a sound scene")).expect("written");
+    let used = |scene: &str| {
+        let report = objects(&run(place.path(), &["check", scene, "--json"])).remove(0);
+        ["pixels of all images", "bytes of an image or font", "arcs of a text"].map(|name| {
+            let limits = report["limits"].as_array().expect("a list");
+            let limit = limits.iter().find(|limit| limit["name"] == name).expect(name);
+            let used = limit["used"].as_u64().expect("a number");
+            assert!(used < limit["limit"].as_u64().expect("a number"), "{limit}");
+            (used, limit["node"].as_str().map(|node| node.split(' ').next().unwrap_or_default().to_owned()))
+        })
+    };
+    assert_eq!(used("scene.json"), [(0, None), (0, None), (0, None)]);
+    let [pixels, bytes, (arcs, node)] = used("files.json");
+    assert_eq!(pixels, (600, None));
+    assert_eq!(bytes, (epaint_default_fonts::UBUNTU_LIGHT.len() as u64, Some("sign".to_owned())));
+    assert!(arcs > 50 && node.as_deref() == Some("sign"), "{arcs}, {node:?}");
 }
 
 #[test]
