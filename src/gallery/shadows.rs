@@ -29,7 +29,7 @@ pub(super) fn scene() -> Scene {
         let rod = object("Rod", capsule([0.0; 3], [0.0, 2.2, 0.0], radius), steel);
         builder.add(None, rod.at(v(x, 0.0, -1.6 + 0.12 * i as f64)));
     }
-    builder.sun("Sun", [1.0, 0.85, 0.35], [1.0, 0.93, 0.82], 0.9);
+    builder.sun("Sun", [0.7, 0.95, 0.75], [1.0, 0.93, 0.82], 0.9);
     let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.12, range: 14.0 };
     builder.lamp("Lamp", [-3.4, 2.6, 1.6], [0.55, 0.72, 1.0], 0.8, attenuation);
     builder.camera([1.2, 3.4, 8.2], [-0.3, 0.65, -0.9], 42.0);
