@@ -186,6 +186,13 @@ fn dispatch_params() -> Layout {
     )
 }
 
+fn shadow_settings() -> Layout {
+    layout!(
+        "ShadowSettings" =
+            ShadowSettings { lights, stride, cones, sample, fineness, occlusion_radius, occlusion_strength, padding }
+    )
+}
+
 fn flat_material() -> Layout {
     layout!(
         "FlatMaterial" = FlatMaterial {
@@ -254,18 +261,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
             }
         ),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
-        layout!(
-            "ShadowSettings" = ShadowSettings {
-                lights,
-                stride,
-                cones,
-                sample,
-                fineness,
-                occlusion_radius,
-                occlusion_strength,
-                padding
-            }
-        ),
+        shadow_settings(),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(
