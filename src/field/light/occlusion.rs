@@ -1,4 +1,5 @@
-//! Ambient occlusion by six signed cones, with the mean free direction. Counterpart of `shaders/scene/occlusion.wgsl`.
+//! Ambient occlusion by six signed cones, with the mean free direction. Counterpart of `shaders/light/occlusion.wgsl`
+//! and of the second entry point of `shaders/shadow.wgsl`.
 //!
 //! The cones have a half angle of 30 degrees. One stands along the normal, five lean by 60 degrees: they touch the
 //! tangent plane. A sphere that fits into the cone has the radius `t * sin(30 degrees)`, and so far from the plane is
