@@ -30,7 +30,7 @@
 // See the CPU's constants of these names.
 const OCCLUSION_NEAR: f32 = 0.0833333;
 const OCCLUSION_FAR: f32 = 0.76;
-const OCCLUSION_GROWTH: f32 = 2.0;
+const OCCLUSION_GROWTH: f32 = 3.0;
 const OCCLUSION_SINE: f32 = 0.5;
 
 // A point of a surface.
@@ -166,37 +166,44 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
         high = bitcast<vec3f>(vec3u(states[own + 7u], states[own + 8u], states[own + 9u]));
     }
     while !ended && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits {
-        if cone == OCCLUSION_CONES {
-            let found = scene_occluder(p, point.normal, far * (1.0 + OCCLUSION_SINE), after);
-            if scene_visits >= scene_limits.max_visits {
-                break;
-            }
-            after = found + 1u;
-            ended = found >= scene_limits.all_nodes;
-            cone = 0u;
-            t = near;
-        }
-        if !ended {
-            scene_visits += 1u;
-            let component = scene_components[hierarchy[after - 1u].link];
-            let q = p + occlusion_cone(point.normal, cone).xyz * t + component.eye;
-            let size = OCCLUSION_SINE * t;
-            let plane = dot(component.half_space.xyz, q) + component.half_space.w;
-            var f = max(length(max(max(component.low - q, q - component.high), vec3f(0.0))), plane);
-            if f < size * 0.999 && t <= far {
-                scene_evaluations += 1u;
-                field_begin(component);
-                f = field(q);
-                f += select(0.0, field_slack(), f > 0.0);
-            }
-            let ratio = select(1.0, f / size, t <= far);
-            low = select(low, min(low, vec3f(ratio)), vec3u(0u, 1u, 2u) == vec3u(cone));
-            high = select(high, min(high, vec3f(ratio)), vec3u(3u, 4u, 5u) == vec3u(cone));
-            t += max(abs(f), OCCLUSION_GROWTH * t);
-            if t > far || ratio <= -1.0 {
-                cone += 1u;
+        // Finds the next evaluation. Invocations that run together then evaluate together.
+        var component: Component;
+        var q = vec3f(0.0);
+        var is_found = false;
+        while !is_found && !ended && scene_visits < scene_limits.max_visits {
+            if cone == OCCLUSION_CONES {
+                let found = scene_occluder(p, point.normal, far * (1.0 + OCCLUSION_SINE), after);
+                let is_valid = scene_visits < scene_limits.max_visits;
+                after = select(after, found + 1u, is_valid);
+                ended = is_valid && found >= scene_limits.all_nodes;
+                cone = select(cone, 0u, is_valid);
                 t = near;
             }
+            if !ended && cone < OCCLUSION_CONES {
+                scene_visits += 1u;
+                component = scene_components[hierarchy[after - 1u].link];
+                q = p + occlusion_cone(point.normal, cone).xyz * t + component.eye;
+                let plane = dot(component.half_space.xyz, q) + component.half_space.w;
+                // Otherwise the bounds are outside of the sphere, and so is the component.
+                let bound = max(length(max(max(component.low - q, q - component.high), vec3f(0.0))), plane);
+                is_found = bound < OCCLUSION_SINE * t * 0.999 && t <= far;
+                // At the same distances for all: steps by the field would show the bounds.
+                let next = select(t * OCCLUSION_GROWTH, t, is_found);
+                cone += select(0u, 1u, next > far);
+                t = select(next, near, next > far);
+            }
+        }
+        if is_found {
+            scene_evaluations += 1u;
+            field_begin(component);
+            let f = field(q);
+            let ratio = (f + select(0.0, field_slack(), f > 0.0)) / (OCCLUSION_SINE * t);
+            low = select(low, min(low, vec3f(ratio)), vec3u(0u, 1u, 2u) == vec3u(cone));
+            high = select(high, min(high, vec3f(ratio)), vec3u(3u, 4u, 5u) == vec3u(cone));
+            let next = t * OCCLUSION_GROWTH;
+            let is_over = next > far || ratio <= -1.0;
+            cone += select(0u, 1u, is_over);
+            t = select(next, near, is_over);
         }
     }
     if exists {

@@ -228,6 +228,13 @@ fn dispatch_params() -> Layout {
     )
 }
 
+fn shadow_settings() -> Layout {
+    layout!(
+        "ShadowSettings" =
+            ShadowSettings { lights, stride, cones, sample, fineness, occlusion_radius, occlusion_strength, padding }
+    )
+}
+
 fn flat_material() -> Layout {
     layout!(
         "FlatMaterial" = FlatMaterial {
@@ -303,18 +310,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
         instance(),
         layout!("RayMesh" = RayMesh { local_x, local_y, local_z, nodes, triangles, index, padding_0 }),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
-        layout!(
-            "ShadowSettings" = ShadowSettings {
-                lights,
-                stride,
-                cones,
-                sample,
-                fineness,
-                occlusion_radius,
-                occlusion_strength,
-                padding
-            }
-        ),
+        shadow_settings(),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
         layout!(

@@ -30,7 +30,7 @@ pub(super) fn scene() -> Scene {
         builder.add(None, rod.at(v(x, 0.0, -1.6 + 0.12 * i as f64)));
     }
     let sun = LightKind::Sun { strength: 2.8, angle: 1.5 };
-    builder.light("Sun", [[1.0, 0.85, 0.35], [0.0; 3]], [1.0, 0.93, 0.82], sun);
+    builder.light("Sun", [[0.7, 0.95, 0.75], [0.0; 3]], [1.0, 0.93, 0.82], sun);
     let falloff = Falloff::Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.12, range: 14.0 };
     let lamp = LightKind::Point { power: 32.0, radius: 0.12, falloff };
     builder.light("Lamp", [[-3.4, 2.6, 1.6], [0.0; 3]], [0.55, 0.72, 1.0], lamp);

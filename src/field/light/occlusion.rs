@@ -1,4 +1,5 @@
-//! Ambient occlusion by six signed cones, with the mean free direction. Counterpart of `shaders/scene/occlusion.wgsl`.
+//! Ambient occlusion by six signed cones, with the mean free direction. Counterpart of `shaders/light/occlusion.wgsl`
+//! and of the second entry point of `shaders/shadow.wgsl`.
 //!
 //! The cones have a half angle of 30 degrees. One stands along the normal, five lean by 60 degrees: they touch the
 //! tangent plane. A sphere that fits into the cone has the radius `t * sin(30 degrees)`, and so far from the plane is
@@ -27,8 +28,8 @@ const MIDDLE_WEIGHT: f64 = 0.25;
 const OCCLUSION_NEAR: f64 = 0.083_333_3;
 /// The end of a cone, as a share of the radius: the last sphere ends behind it.
 const OCCLUSION_FAR: f64 = 0.76;
-/// Least step, in distances: where a sphere ends, the next one begins.
-const OCCLUSION_GROWTH: f64 = 2.0;
+/// From one distance to the next: up to 3 the spheres touch.
+const OCCLUSION_GROWTH: f64 = 3.0;
 
 /// What a point sees of its surroundings.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +96,8 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
                 f = field(flat, component, p);
             }
             ratio = ratio.min(f / size);
-            t += f.abs().max(OCCLUSION_GROWTH * t);
+            // At the same distances for all: steps by the field would show the bounds.
+            t *= OCCLUSION_GROWTH;
         }
     }
     ratio
