@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 
 use super::flat_material::FlatMaterial;
 use super::hierarchy::Hierarchy;
-use isolith_geometry::{Aabb, Camera};
+use isolith_geometry::{Aabb, Camera, Lens};
 use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
@@ -237,6 +237,8 @@ pub struct FlatCamera {
     pub name: String,
     /// The camera.
     pub camera: Camera,
+    /// Its lens, for stills.
+    pub lens: Lens,
 }
 
 /// A subtree that meets the others only through hard union, and is therefore traced alone; or a batch of small ones.

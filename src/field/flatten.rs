@@ -23,7 +23,7 @@ use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, Lens};
 use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].
@@ -204,6 +204,7 @@ fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Nod
             id: node.id,
             name: node.name.clone(),
             camera: place_camera(camera, world_from_local),
+            lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance },
         }),
         NodeKind::Group(_) | NodeKind::Object(_) => {}
     }
