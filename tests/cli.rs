@@ -19,7 +19,7 @@ fn sample() -> Scene {
     add(None, Node::new("floor", object(Shape::Plane {})).at(DVec3::new(0.0, -0.6, 0.0)));
     add(None, Node::new("ball", object(Shape::Sphere { radius: 0.5 })));
     let rig = add(None, Node::new("rig", NodeKind::Group(Group::UNION)));
-    let lens = CameraNode { fov_y: 40.0, near: 0.01, far: 20.0 };
+    let lens = CameraNode { fov_y: 40.0, near: 0.01, far: 20.0, ..CameraNode::default() };
     for (name, eye) in [("front", DVec3::new(0.0, 0.0, 4.0)), ("above", DVec3::new(0.0, 4.0, 0.1))] {
         let pose = Camera::looking_at(eye, DVec3::ZERO, 1.0);
         add(Some(rig), Node::new(name, NodeKind::Camera(lens)).at(eye).rotated(pose.rotation));

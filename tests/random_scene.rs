@@ -205,7 +205,13 @@ impl Random {
                 let (a, b) = (self.number(&limits::CLIP), self.number(&limits::CLIP));
                 let near = a.min(b).min(1e8);
                 let far = a.max(b).max(near * 2.0);
-                NodeKind::Camera(CameraNode { fov_y: self.number(&limits::FOV), near, far })
+                NodeKind::Camera(CameraNode {
+                    fov_y: self.number(&limits::FOV),
+                    near,
+                    far,
+                    aperture: self.number(&limits::APERTURE),
+                    focus_distance: self.number(&limits::CLIP),
+                })
             }
             4 => {
                 let path = self.pick(&["duck.glb", "models/a b/ü.gltf", "x.y/z"]).to_owned();

@@ -7,7 +7,7 @@ use isolith::field::light::display::display_color;
 use isolith::field::reference::image::render_reference_at;
 use isolith::field::{FlatScene, GBuffer, NO_LEAF, flatten};
 use isolith::gallery;
-use isolith::geometry::{Camera, pixel_jitter};
+use isolith::geometry::{Camera, Lens, SampleView};
 use isolith::mesh::MeshLibrary;
 use isolith::render::{EvalStrategy, Film, Gpu, OverlaySettings, Renderer, Slot};
 use isolith::scene::{
@@ -48,7 +48,7 @@ fn accumulated(
     samples: u32,
     is_transparent: bool,
 ) -> GBuffer {
-    let film = Film { samples, is_transparent };
+    let film = Film { samples, is_transparent, lens: Lens::default() };
     renderer.render_samples(film, flat, &[], camera, SIZE, &mut |_| true).expect("a picture").0
 }
 
@@ -71,13 +71,14 @@ fn one_sample_is_the_single_picture_to_the_bit() {
 }
 
 /// Share of the samples that may fall on the other side of an edge than those of the reference.
-fn compare(name: &str, bench_scene: &BenchScene, samples: u32) {
+fn compare(name: &str, bench_scene: &BenchScene, samples: u32, lens: Lens) {
     let BenchScene { flat, meshes, camera, .. } = bench_scene;
-    let film = Film { samples, is_transparent: false };
+    let film = Film { samples, is_transparent: false, lens };
     let drawn = renderer().render_samples(film, flat, meshes, camera, SIZE, &mut |_| true).expect("a picture").0;
     let mut sums = vec![DVec3::ZERO; drawn.depth.len()];
     for sample in 0..samples {
-        let reference = render_reference_at(pixel_jitter(sample), flat, meshes, camera, SIZE, &|_| ());
+        let SampleView { camera, offset } = lens.view(camera, SIZE[1], sample, samples);
+        let reference = render_reference_at(offset, flat, meshes, &camera, SIZE, &|_| ());
         let light = reference.unwrap_or_else(|error| panic!("{error:?}")).buffers.radiance;
         for (sum, [r, g, b, _]) in sums.iter_mut().zip(light) {
             *sum += DVec3::new(r.into(), g.into(), b.into());
@@ -100,11 +101,11 @@ fn samples_are_the_mean_of_single_pictures_beside_the_centers() {
     let flat = flatten(&pawn, 0.0).expect("within the limits");
     let seen = |name: &str, flat, camera| BenchScene { name: name.into(), flat, meshes: Vec::new(), camera };
     let camera = flat.default_camera(&[], 1.5);
-    compare("pawn", &seen("pawn", flat, camera), 64);
+    compare("pawn", &seen("pawn", flat, camera), 64, Lens::default());
     let ball = flatten(&glowing_ball([0.5, 0.2, 0.1]), 0.0).expect("within the limits");
     // Pixels so narrow that rays count from a plane before the ball.
     let far = Camera { far: 1e6, ..self::camera(1e5, 3e-5) };
-    compare("narrow", &seen("narrow", ball, far), 16);
+    compare("narrow", &seen("narrow", ball, far), 16, Lens::default());
 }
 
 #[test]
@@ -114,7 +115,9 @@ fn meshes_move_with_the_samples_as_fields_do() {
     let flat = flatten(&scene, 0.0).expect("within the limits");
     let (meshes, _) = flat.load_meshes(&mut MeshLibrary::new(Some(folder)));
     let camera = flat.cameras[0].camera;
-    compare("mesh", &BenchScene { name: "mesh".into(), flat, meshes, camera }, 16);
+    let mesh = BenchScene { name: "mesh".into(), flat, meshes, camera };
+    compare("mesh", &mesh, 16, Lens::default());
+    compare("mesh out of focus", &mesh, 8, Lens { aperture: 0.1, focus_distance: 1.5 });
 }
 
 /// The share of each pixel that a ball of radius 1 covers, seen from this distance along its middle.
@@ -203,4 +206,49 @@ fn a_sample_uploads_no_scene_and_needs_no_time_to_plan() {
     assert_eq!(renderer.uploaded(), uploaded);
     let buffers = renderer.read(&frame).expect("read");
     assert!(buffers.leaf.iter().any(|leaf| *leaf != NO_LEAF));
+}
+
+#[test]
+fn a_lens_blurs_what_is_not_in_focus() {
+    let pawn = gallery::all().into_iter().find(|(name, _)| *name == "pawn").expect("the pawn").1;
+    let flat = flatten(&pawn, 0.0).expect("within the limits");
+    let camera = flat.default_camera(&[], 1.5);
+    let pawn = BenchScene { name: "pawn".into(), flat, meshes: Vec::new(), camera };
+    compare("pawn out of focus", &pawn, 24, Lens { aperture: 0.3, focus_distance: 2.0 });
+}
+
+/// Variance along X of the alpha of a small ball 4 m away, in square pixels.
+fn spread(renderer: &mut Renderer, lens: Lens) -> f64 {
+    let mut scene = glowing_ball([1.0; 3]);
+    let mut ball = (*scene.nodes()[0]).clone();
+    ball.transform.scale = DVec3::splat(0.1);
+    scene.replace(ball).expect("the ball is there");
+    let flat = flatten(&scene, 0.0).expect("within the limits");
+    let film = Film { samples: 64, is_transparent: true, lens };
+    let camera = camera(4.0, 0.2);
+    let picture = renderer.render_samples(film, &flat, &[], &camera, SIZE, &mut |_| true).expect("a picture").0;
+    let middle = f64::from(SIZE[0]) * 0.5;
+    let weights = picture
+        .radiance
+        .iter()
+        .zip(0..)
+        .map(|([.., a], i)| (f64::from(*a), (f64::from(i % SIZE[0]) + 0.5 - middle).powi(2)));
+    let (sum, squares) = weights.fold((0.0, 0.0), |(sum, squares), (a, square)| (sum + a, squares + a * square));
+    squares / sum
+}
+
+/// The blur of a point is a disk as wide as the lens is, seen through the sharp plane.
+#[test]
+fn the_circle_of_confusion_has_its_size() {
+    let mut renderer = renderer();
+    let footprint = camera(4.0, 0.2).footprint(SIZE[1].into());
+    let sharp = spread(&mut renderer, Lens::default());
+    let in_focus = spread(&mut renderer, Lens { aperture: 0.2, focus_distance: 4.0 });
+    assert!((in_focus - sharp).abs() < 0.05, "{in_focus} {sharp}");
+    for (focus_distance, diameter) in [(2.0, 0.2), (8.0, 0.1)] {
+        let blurred = spread(&mut renderer, Lens { aperture: 0.2, focus_distance });
+        let radius: f64 = 0.5 * diameter / (4.0 * footprint);
+        let expected = 0.25 * radius * radius;
+        assert!((blurred - sharp - expected).abs() < 0.06 * expected, "{focus_distance}: {blurred} {sharp} {expected}");
+    }
 }

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::adapters::AdapterArguments;
 use super::failure::Failure;
-use super::film::{FilmArguments, clear_background};
+use super::film::{FilmArguments, clear_background, with_lens};
 use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
@@ -18,7 +18,7 @@ use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::mesh_rays::Meshes;
 use crate::field::reference::image::render_reference;
 use crate::field::{FlatScene, GBuffer, Shading, Warning};
-use crate::geometry::Camera;
+use crate::geometry::{Camera, Lens};
 use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
 use crate::render::{EvalStrategy, Film, Gpu, Renderer};
@@ -190,7 +190,8 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     if cancel.is_canceled() {
         return Err(Failure::Canceled);
     }
-    let camera = choose_camera(&flat, &meshes, arguments)?;
+    let (camera, lens) = choose_camera(&flat, &meshes, arguments)?;
+    let film = with_lens(film, lens, &camera, arguments.size[1])?;
     let flat = flat.shaded(arguments.shading);
     let buffers = if arguments.reference {
         reference_picture(arguments, film, scene, &flat, &meshes, &camera)?
@@ -229,11 +230,14 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
 }
 
 /// The camera chosen by name, or the default view of the scene.
-fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<Camera, Failure> {
+fn choose_camera(flat: &FlatScene, meshes: &Meshes, arguments: &RenderArguments) -> Result<(Camera, Lens), Failure> {
     let aspect = f64::from(arguments.size[0]) / f64::from(arguments.size[1]);
-    let Some(name) = &arguments.camera else { return Ok(flat.default_camera(meshes, aspect)) };
+    let Some(name) = &arguments.camera else {
+        let lens = flat.cameras.first().map_or(Lens::default(), |first| first.lens);
+        return Ok((flat.default_camera(meshes, aspect), lens));
+    };
     if let Some(found) = flat.cameras.iter().find(|camera| camera.name == *name) {
-        return Ok(found.camera);
+        return Ok((found.camera, found.lens));
     }
     let names: Vec<_> = flat.cameras.iter().map(|camera| format!("\"{}\"", camera.name)).collect();
     let has = if names.is_empty() { "none".to_string() } else { names.join(", ") };

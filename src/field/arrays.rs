@@ -10,7 +10,7 @@ use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
 use crate::light::environment_map::PlacedMap;
-use isolith_geometry::{Aabb, Camera};
+use isolith_geometry::{Aabb, Camera, Lens};
 use isolith_mesh::ModelPose;
 use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
@@ -244,6 +244,8 @@ pub struct FlatCamera {
     pub name: String,
     /// The camera.
     pub camera: Camera,
+    /// Its lens, for stills.
+    pub lens: Lens,
 }
 
 /// A subtree that meets the others only through hard union, and is therefore traced alone; or a batch of small ones.

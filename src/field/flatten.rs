@@ -26,7 +26,7 @@ use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
 use crate::light::environment_map::PlacedMap;
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, Lens};
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
 
@@ -265,6 +265,7 @@ fn add_non_field(
             id: node.id,
             name: node.name.clone(),
             camera: place_camera(camera, world_from_local),
+            lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance },
         }),
         NodeKind::Group(_) | NodeKind::Object(_) => {}
     }

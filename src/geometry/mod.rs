@@ -8,6 +8,7 @@ mod arc;
 mod arc_union;
 mod camera;
 mod jitter;
+mod lens;
 mod ray;
 mod transform;
 
@@ -16,5 +17,6 @@ pub use arc::{ArcPiece, biarc, smooth_curve, straight_curve};
 pub use arc_union::{TooDense, arc_union};
 pub use camera::Camera;
 pub use jitter::pixel_jitter;
+pub use lens::{Lens, SampleView};
 pub use ray::Ray;
 pub use transform::{Transform, singular_values};

@@ -35,7 +35,7 @@ use crate::resources::layouts::Layouts;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning, gpu_lights};
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, SampleView};
 use isolith_mesh::TriangleMesh;
 use isolith_wgsl::{Options, SkipMode};
 
@@ -179,7 +179,7 @@ impl Renderer {
 
     /// Expected time of a whole frame. While workers build tapes, it may exceed what can be drawn at all.
     pub fn estimate(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Duration, RenderError> {
-        match self.prepare(flat, camera, size) {
+        match self.prepare(flat, &(*camera).into(), size) {
             Err(RenderError::TooManyDispatches(..)) if self.tape_cache.building() > 0 => Ok(LONGEST),
             prepared => {
                 let seconds = self.cost_model.seconds_of_frame(prepared?.plan.cost());
@@ -197,8 +197,8 @@ impl Renderer {
 
     /// Chooses the evaluators and plans a frame within the capacity of the device. A frame becomes long if a component
     /// of a thousand leaves has no tapes and the driver ends loops early.
-    fn prepare(&mut self, flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Result<Prepared, RenderError> {
-        let chosen = self.choose(flat, camera)?;
+    fn prepare(&mut self, flat: &FlatScene, view: &SampleView, size: [u32; 2]) -> Result<Prepared, RenderError> {
+        let chosen = self.choose(flat, &view.camera)?;
         let (room, limit) = Room::of(&self.gpu.device.limits());
         let node = |component: usize| flat.ids[flat.components[component].first as usize];
         let refused = |error| match error {
@@ -207,10 +207,10 @@ impl Renderer {
                 RenderError::ListBytes { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
             }
         };
-        let casters = gpu_lights(flat, camera, size).iter().filter(|light| light.cast_shadows == 1).count();
+        let casters = gpu_lights(flat, &view.camera, size).iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
         let per_pixel = shadows.map_or(0.0, |shadows| shadows.per_pixel());
-        let plan = plan(flat, camera, size, &chosen.evaluations, per_pixel, &self.cost_model, room).map_err(refused)?;
+        let plan = plan(flat, view, size, &chosen.evaluations, per_pixel, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
         Ok(Prepared { chosen, plan, shadows })
     }
@@ -225,6 +225,20 @@ impl Renderer {
         size: [u32; 2],
         overlay: OverlaySettings,
     ) -> Result<Frame, RenderError> {
+        self.begin_at(slot, flat, meshes, &(*camera).into(), size, overlay)
+    }
+
+    /// The same for one of several samples.
+    fn begin_at(
+        &mut self,
+        slot: Slot,
+        flat: &FlatScene,
+        meshes: &[Option<Arc<TriangleMesh>>],
+        view: &SampleView,
+        size: [u32; 2],
+        overlay: OverlaySettings,
+    ) -> Result<Frame, RenderError> {
+        let camera = &view.camera;
         let limits = self.gpu.device.limits();
         let limit = limits.max_texture_dimension_2d;
         if size[0] == 0 || size[1] == 0 || size[0] > limit || size[1] > limit {
@@ -235,7 +249,7 @@ impl Renderer {
         }
         let Prepared { chosen, plan, shadows } = {
             let _span = tracing::debug_span!("plan", components = flat.components.len()).entered();
-            self.prepare(flat, camera, size)?
+            self.prepare(flat, view, size)?
         };
         let _span = tracing::debug_span!("upload").entered();
         self.gpu.check()?;

@@ -52,6 +52,6 @@ param_struct! {
         /// Stops of exposure: each one more doubles the light.
         exposure: f64 = 0.0, EXPOSURE;
         /// From the light of the scene to that of a screen.
-        view_transform: ViewTransform = ViewTransform::None, NO_LIMITS;
+        view_transform: ViewTransform = ViewTransform::None, NO_LIMITS.labeled("Transform");
     }
 }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::limits::{
-    CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT,
+    APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT,
 };
 use super::params::{param_struct, param_table};
 use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
@@ -155,6 +155,18 @@ fn is_usual_width(width: &f64) -> bool {
     *width == usual_width()
 }
 
+const fn usual_focus() -> f64 {
+    5.0
+}
+
+fn is_usual_focus(distance: &f64) -> bool {
+    *distance == usual_focus()
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 const fn usual_depth() -> f64 {
     0.05
 }
@@ -240,6 +252,12 @@ param_struct! {
         near: f64 = 0.01, CLIP.labeled("Clip start");
         /// Nothing farther is seen, along the ray of each pixel.
         far: f64 = 1_000.0, CLIP.labeled("Clip end");
+        /// Diameter of the lens's opening: depth of field in stills of several samples. 0 sees everything sharp.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        aperture: f64 = 0.0, APERTURE;
+        /// Distance of what is sharp, along the view axis.
+        #[serde(default = "usual_focus", skip_serializing_if = "is_usual_focus")]
+        focus_distance: f64 = usual_focus(), CLIP.labeled("Focus distance");
     }
 }
 

@@ -5,7 +5,7 @@ use exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
 use glam::DVec3;
 use image::GenericImageView;
 use isolith::field::light::display::display_color;
-use isolith::scene::{DisplaySettings, ViewTransform};
+use isolith::scene::{Changed, DisplaySettings, ParamPath, ParamValue, ViewTransform};
 
 use super::{Place, open, sample};
 
@@ -102,4 +102,30 @@ fn the_scenes_display_settings_are_used_unless_options_replace_them() {
     let [plain, own, other] = ["plain", "own", "other"].map(|name| open(&place.path(&format!("{name}.png"))));
     assert_ne!(plain, own);
     assert_eq!(plain, other);
+}
+
+#[test]
+fn a_lens_blurs_stills_of_several_samples_and_is_refused_beyond_its_limit() {
+    let place = Place::new();
+    let set = |aperture: f64, focus_distance: f64| {
+        let mut scene = sample();
+        let front = scene.nodes().iter().find(|node| node.name == "front").expect("a camera").id;
+        for (name, value) in [("aperture", aperture), ("focus_distance", focus_distance)] {
+            let path: ParamPath = format!("node.{}.camera.{name}", front.0).parse().expect("a path");
+            let Ok(Changed::Node(node)) = path.changed(&scene, ParamValue::Scalar(value)) else { panic!("{name}") };
+            scene.replace(*node).expect("valid");
+        }
+        place.write("scene.json", &scene);
+    };
+    let picture = |samples: &str| {
+        render(&place, "out.png", &["--samples", samples]);
+        open(&place.path("out.png"))
+    };
+    let (single, sharp) = (picture("1"), picture("8"));
+    set(0.4, 2.0);
+    assert_eq!(picture("1"), single, "one sample is that of a pinhole");
+    assert_ne!(picture("8"), sharp);
+    set(100.0, 1e-3);
+    let arguments = ["render", "scene.json", "-o", "x.png", "--camera", "front", "--size", "24x16"];
+    place.run(&arguments).failed(2, &["aperture", "8192"]);
 }

@@ -122,7 +122,8 @@ fn add_lamp(state: &mut EditorState, name: &str, light: LightKind) {
 
 fn add_camera(state: &mut EditorState) {
     let camera = state.view.navigation.camera();
-    let kind = CameraNode { fov_y: camera.fov_y.to_degrees(), near: camera.near, far: camera.far };
+    let kind =
+        CameraNode { fov_y: camera.fov_y.to_degrees(), near: camera.near, far: camera.far, ..CameraNode::default() };
     let node = Node::new("Camera", NodeKind::Camera(kind)).at(camera.position).rotated(camera.rotation);
     insertion::node_in_world(state, node);
 }

@@ -13,7 +13,7 @@ use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
 use crate::resources::uniforms::DispatchParams;
 use isolith_field::{Component, FlatScene, gpu_lights};
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, SampleView};
 
 /// Side of a tile, in pixels: the area that a cone starts with.
 pub const TILE: u32 = 8;
@@ -117,7 +117,7 @@ pub enum TooMuch {
 /// The frame would exceed `room`. The check precedes the first dispatch, since there may be millions.
 pub fn plan(
     flat: &FlatScene,
-    camera: &Camera,
+    view: &SampleView,
     size: [u32; 2],
     evaluations: &[EvaluationCost],
     shadows: f64,
@@ -125,7 +125,8 @@ pub fn plan(
     room: Room,
 ) -> Result<FramePlan, TooMuch> {
     let whole = Rect { origin: [0, 0], end: size };
-    let projection = ScreenProjection::new(camera, size);
+    let camera = &view.camera;
+    let projection = ScreenProjection::new(view, size);
     let seen: Vec<(usize, Rect, Marching)> = front_to_back(flat, camera)
         .into_iter()
         .filter_map(|index| {
@@ -327,16 +328,18 @@ struct ScreenProjection {
 }
 
 impl ScreenProjection {
-    fn new(camera: &Camera, size: [u32; 2]) -> Self {
-        let center = DVec2::new(f64::from(size[0]), f64::from(size[1])) * 0.5;
-        let scale = center.y / camera.tan_half_fov();
+    fn new(SampleView { camera, offset }: &SampleView, size: [u32; 2]) -> Self {
+        let half = DVec2::new(f64::from(size[0]), f64::from(size[1])) * 0.5;
+        let scale = half.y / camera.tan_half_fov();
+        // A moved picture reaches farther from the view axis.
+        let corner = (half + offset.abs()) / scale;
         Self {
             eye: camera.position,
             forward: camera.rotation * DVec3::NEG_Z,
             right: camera.rotation * DVec3::X * scale,
             down: camera.rotation * DVec3::NEG_Y * scale,
-            center,
-            near: (camera.near * 0.5 * camera.corner_cosine(size)).max(1e-12),
+            center: half - *offset,
+            near: (camera.near * 0.5 / (1.0 + corner.length_squared()).sqrt()).max(1e-12),
         }
     }
 }

@@ -2,6 +2,7 @@
 //! its slot.
 
 use bytemuck::Zeroable as _;
+use glam::DVec2;
 use wgpu::BindGroup;
 
 use super::frame::Frame;
@@ -215,8 +216,8 @@ impl FrameResources {
     }
 
     /// Uploads the view of another sample of the frame.
-    pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
-        let view = self.first_view.of_sample(index, is_transparent);
+    pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool, offset: DVec2) {
+        let view = self.first_view.of_sample(index, is_transparent, offset);
         self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
         self.shadows.set_sample(gpu, index);
     }

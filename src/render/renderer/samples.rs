@@ -5,11 +5,14 @@
 
 use std::time::Duration;
 
+use glam::DVec2;
+
 use super::frame::{Frame, Sampling};
 use super::going_on::GoingOn;
 use super::{RenderError, Renderer};
 use crate::gpu::Gpu;
 use crate::gpu::readback::read_radiance;
+use isolith_geometry::pixel_jitter;
 
 impl Renderer {
     /// Makes the frame the first sample of an accumulated picture. If it is complete already, only its light is
@@ -19,7 +22,7 @@ impl Renderer {
         if frame.is_done() {
             frame.skip_to_shading();
         }
-        self.set_sample(frame, Sampling { index: 0, is_transparent });
+        self.set_sample(frame, Sampling { index: 0, is_transparent }, DVec2::ZERO);
     }
 
     /// Begins the next sample of a frame whose sample is complete.
@@ -37,7 +40,8 @@ impl Renderer {
             slot.accumulation.as_ref().expect("accumulate makes it").keep(&mut encoder, &slot.targets);
             queue.submit([encoder.finish()]);
         }
-        self.set_sample(frame, Sampling { index: sampling.index + 1, ..sampling });
+        let index = sampling.index + 1;
+        self.set_sample(frame, Sampling { index, ..sampling }, pixel_jitter(index));
         // Pipelines may have become ready since the last sample.
         self.pipelines.refresh(&frame.keys, &mut frame.choices);
         if let Some(planned) = frame.going_on.planned {
@@ -63,7 +67,8 @@ impl Renderer {
         match (shown.sampling, shown.samples()) {
             (Some(sampling), complete @ 1..) => {
                 (frame.next, frame.measured) = (frame.plan.dispatches.len(), None);
-                self.set_sample(frame, Sampling { index: complete - 1, ..sampling });
+                // Nothing is traced, so the offset does not matter.
+                self.set_sample(frame, Sampling { index: complete - 1, ..sampling }, DVec2::ZERO);
             }
             _ => frame.skip_to_shading(),
         }
@@ -76,8 +81,9 @@ impl Renderer {
         Ok(read_radiance(&self.gpu, accumulation.sum(sampling.index), sampling.index + 1)?)
     }
 
-    fn set_sample(&mut self, frame: &mut Frame, sampling: Sampling) {
+    /// Makes the frame render this sample, moved by `offset` pixels.
+    pub(super) fn set_sample(&mut self, frame: &mut Frame, sampling: Sampling, offset: DVec2) {
         frame.sampling = Some(sampling);
-        self.resources.set_sample(&self.gpu, sampling.index, sampling.is_transparent);
+        self.resources.set_sample(&self.gpu, sampling.index, sampling.is_transparent, offset);
     }
 }

@@ -3,21 +3,24 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::frame::Sampling;
 use super::{RenderError, Renderer, Slot};
 use crate::gpu::readback::read_color;
 use crate::passes::overlay_settings::OverlaySettings;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::{FlatScene, GBuffer, Warning};
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, Lens};
 use isolith_mesh::TriangleMesh;
 
 /// How the light of an accumulated still is gathered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Film {
     /// Number of samples, at least 1.
     pub samples: u32,
     /// Whether the background is left out; alpha is coverage then.
     pub is_transparent: bool,
+    /// The camera's lens.
+    pub lens: Lens,
 }
 
 impl Renderer {
@@ -85,7 +88,14 @@ impl Renderer {
             if frame.samples() >= samples {
                 break;
             }
-            self.next_sample(&mut frame)?;
+            if film.lens.is_open() {
+                let (index, is_transparent) = (frame.samples(), film.is_transparent);
+                let view = film.lens.view(camera, size[1], index, samples);
+                frame = self.begin_at(Slot::Full, flat, meshes, &view, size, OverlaySettings::default())?;
+                self.set_sample(&mut frame, Sampling { index, is_transparent }, view.offset);
+            } else {
+                self.next_sample(&mut frame)?;
+            }
         }
         let (buffers, warnings) = first.expect("there is a first sample");
         let radiance = self.read_radiance(&frame)?;

@@ -1,11 +1,11 @@
 //! Input of the passes besides the flat scene. Each struct has a counterpart of the same name in `shaders/common/`.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 
 use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, Component, FlatScene};
-use isolith_geometry::{Camera, pixel_jitter};
+use isolith_geometry::Camera;
 
 /// The camera, the background and the lights of a frame.
 #[repr(C)]
@@ -76,9 +76,9 @@ impl GpuView {
         }
     }
 
-    /// The same view for another sample.
-    pub fn of_sample(self, sample_index: u32, is_transparent: bool) -> Self {
-        let jitter = pixel_jitter(sample_index).as_vec2().to_array();
+    /// The same view for another sample, moved by `offset` pixels.
+    pub fn of_sample(self, sample_index: u32, is_transparent: bool, offset: DVec2) -> Self {
+        let jitter = offset.as_vec2().to_array();
         Self { jitter, sample_index, transparent: is_transparent.into(), ..self }
     }
 }

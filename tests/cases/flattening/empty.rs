@@ -177,7 +177,7 @@ fn lights_and_cameras_in_a_group_of_their_own_are_no_operands() {
         let parent = Some(add(&mut scene, None, blended(operator)));
         let lights = Some(add(&mut scene, parent, group(Operator::Union)));
         add(&mut scene, lights, Node::new("sun", NodeKind::Light(Light::sun())));
-        let lens = CameraNode { fov_y: 40.0, near: 0.01, far: 20.0 };
+        let lens = CameraNode { fov_y: 40.0, near: 0.01, far: 20.0, ..CameraNode::default() };
         add(&mut scene, lights, Node::new("lens", NodeKind::Camera(lens)));
         add(&mut scene, parent, ball());
         let flat = flat(&scene);

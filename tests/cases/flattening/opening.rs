@@ -15,7 +15,7 @@ use super::{add, around, ball, flat, load};
 fn rings(inner: u32, outer: u32) -> Scene {
     let mut scene = Scene::new();
     add(&mut scene, None, ball().modified(around(inner)).modified(around(outer)));
-    let lens = CameraNode { fov_y: 33.0, near: 0.01, far: 99.0 };
+    let lens = CameraNode { fov_y: 33.0, near: 0.01, far: 99.0, ..CameraNode::default() };
     add(&mut scene, None, Node::new("lens", NodeKind::Camera(lens)));
     scene
 }
