@@ -287,7 +287,7 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
         names
     };
     assert_eq!(names(&material)[..3], ["base_color", "base_weight", "base_metalness"]);
-    assert_eq!(names(&material).last().map(String::as_str), Some("model.type"));
+    assert_eq!(names(&material).last().map(String::as_str), Some("textures.type"));
     assert_eq!(names(&Environment::default()), ["sky", "horizon", "ambient"]);
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
