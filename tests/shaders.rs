@@ -284,7 +284,9 @@ fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
         layout!("FlatTexture" = FlatTexture { first, kind, second, image, scale, a, b, wrap }),
         layout!("TextureSet" = TextureSet { slots, base_weight, sharpness, strength }),
-        layout!("GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump }),
+        layout!(
+            "GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump, cells, first, skew, last, repeated, steps }
+        ),
         flat_node(),
         flat_material(),
         layout!(

@@ -161,6 +161,39 @@ fn far_patterns_tend_to_their_mean() {
 }
 
 #[test]
+fn textures_repeat_with_arrays() {
+    let array = Modifier::Repeat {
+        counts: [4, 3, 0],
+        spacing: [2.1, 1.7, 3.3],
+        offset: [0.35, 0.0, 0.0],
+        turn: 0.0,
+        mirrored: [false; 3],
+        carve_from: [0; 3],
+        carve_to: [0; 3],
+    };
+    for color in [marble(), squares(), pictured(image(32, "a.png"))] {
+        let material = textured(7, color, TextureSpace::Object);
+        let turn = DQuat::from_rotation_y(0.7);
+        let shift = DVec3::new(3.0, -2.0, 5.0);
+        let place = |node: Node| node.at(shift).rotated(turn).modified(array.clone());
+        let flat = flatten(&scene(material, BOX, place), 0.0).expect("within limits");
+        // From the cell of the eye to copies before and behind it; Z has no end.
+        let first = |i: u32| DVec3::new(f64::from(i) * 0.05 - 0.4, 0.17, 0.4);
+        let seen = |i: u32, cell: DVec3| {
+            let local = first(i) + cell * DVec3::new(2.1, 1.7, 3.3) + DVec3::X * (0.35 * cell.y);
+            let at = turn * local + shift;
+            color_at(&flat, at, at + turn * DVec3::new(0.2, 0.3, 0.9), 1e-3)
+        };
+        for cell in [DVec3::new(3.0, 0.0, 0.0), DVec3::new(1.0, 2.0, -5.0), DVec3::new(0.0, 1.0, 900.0)] {
+            let off = (0..16).map(|i| (seen(i, cell) - seen(i, DVec3::ZERO)).abs().max_element()).fold(0.0, f64::max);
+            assert!(off < 1e-3, "{cell}: {off}");
+        }
+        let differs = (0..15).map(|i| (seen(i, DVec3::ZERO) - seen(i + 1, DVec3::ZERO)).length()).fold(0.0, f64::max);
+        assert!(differs > 0.02, "{differs}");
+    }
+}
+
+#[test]
 fn two_hundred_textures_of_many_sizes_are_each_shown() {
     let mut scene = Scene::new();
     for i in 0..200_u32 {

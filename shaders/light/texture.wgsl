@@ -27,6 +27,13 @@ struct GpuPlacedTextures {
     rows: array<vec4f, 3>,
     textures: u32,
     bump: f32,
+    // The cells of an array, counted from that of the eye.
+    cells: array<vec4f, 3>,
+    first: vec3f,
+    skew: f32,
+    last: vec3f,
+    repeated: u32,
+    steps: array<vec4f, 3>,
 }
 
 const TEXTURE_IMAGE: u32 = 1u;
@@ -55,6 +62,18 @@ struct TextureSample {
 // Textures start again after `TEXTURE_TILES` tiles.
 fn texture_wrapped(at: vec3f) -> vec3f {
     return at - TEXTURE_TILES * floor(at / TEXTURE_TILES + 0.5);
+}
+
+// What the copies of an array add to the place of a texture, in tiles.
+fn texture_repeated(placed: GpuPlacedTextures, position: vec3f) -> vec3f {
+    if placed.repeated == 0u {
+        return vec3f(0.0);
+    }
+    let here = vec4f(position, 1.0);
+    let at = vec3f(dot(placed.cells[0], here), dot(placed.cells[1], here), dot(placed.cells[2], here));
+    var cell = clamp(round(at), placed.first, placed.last);
+    cell.x = clamp(round(at.x - placed.skew * cell.y), placed.first.x, placed.last.x);
+    return placed.steps[0].xyz * cell.x + placed.steps[1].xyz * cell.y + placed.steps[2].xyz * cell.z;
 }
 
 // Weights of the projections along the axes: powers of the normal's coordinates.

@@ -112,7 +112,8 @@ fn textured_material(material: FlatMaterial, index: u32, point: TexturedPoint) -
     // A vector times a matrix: its products with the columns, which are rows here.
     let normal = normalize(point.normal * axes);
     let sharpness = texture_sets[placed.textures].sharpness;
-    var sample = TextureSample(point.position * rows + shift, point.across * rows, point.along * rows, normal, vec3f(0.0));
+    let at = point.position * rows + shift - texture_repeated(placed, point.position);
+    var sample = TextureSample(at, point.across * rows, point.along * rows, normal, vec3f(0.0));
     sample.weights = texture_weights(normal, sharpness);
     // For the slope of heights: steps that rounding does not hide.
     let width = max(length(sample.across), length(sample.along));

@@ -3,12 +3,13 @@
 use glam::{DAffine3, DVec3};
 
 use super::arrays::*;
+use super::flat_texture::RepeatedSpace;
 use super::lower_bound::{LowerBound, fold_bounds};
 use super::modifier_table::modifier_payload_row;
 use super::operand::{Operand, Value};
 use super::stack::shallow;
 use isolith_geometry::Aabb;
-use isolith_scene::{BlendKernel, MaterialId, ShapeKind};
+use isolith_scene::{BlendKernel, MaterialId, ModifierKind, ShapeKind};
 
 /// A leaf's use of a material.
 #[derive(Clone, Copy, Debug)]
@@ -16,8 +17,10 @@ pub(super) struct MaterialUse {
     /// The material.
     pub id: MaterialId,
     /// The space of the object, if textures of the material need it. Within modifiers that stay in the arrays it is
-    /// that of the object before they act: the texture covers their result as a whole.
+    /// that of the object before they act: the texture covers their result as a whole, and only arrays repeat it.
     pub object_from_world: Option<DAffine3>,
+    /// The innermost array around it.
+    pub repeated: Option<RepeatedSpace>,
 }
 
 /// The space that a fold is in.
@@ -26,6 +29,8 @@ struct Within {
     origin: DVec3,
     /// The world, or the local space of the enclosing modifier.
     space_from_world: DAffine3,
+    /// The innermost array around it.
+    repeated: Option<RepeatedSpace>,
 }
 
 /// Appends the component's entries and returns its description.
@@ -41,7 +46,7 @@ pub(super) fn emit(
     let first = flat.nodes.len();
     let params = flat.params.len().next_multiple_of(ROW_ALIGNMENT);
     flat.params.resize(params, [0.0; 4]);
-    let within = Within { origin, space_from_world: DAffine3::IDENTITY };
+    let within = Within { origin, space_from_world: DAffine3::IDENTITY, repeated: None };
     let stack = emit_fold(flat, operands, &within, material);
     let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
@@ -344,7 +349,7 @@ fn emit_operand(
     match &operand.value {
         Value::Leaf { local_from_world, distance_scale, prepared, material: id, object_from_world } => {
             let object_from_world = object_from_world.as_deref().map(|object| *object * within.space_from_world);
-            let material = material(flat, MaterialUse { id: *id, object_from_world });
+            let material = material(flat, MaterialUse { id: *id, object_from_world, repeated: within.repeated });
             flat.nodes.push(FlatNode { code: code(prepared.kind as u32), extent: 1, params, material });
             flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
             flat.params.extend(placing_rows(local_from_world, within.origin));
@@ -376,7 +381,10 @@ fn emit_operand(
             flat.params.extend(placing_rows(local_from_world, within.origin));
             flat.params.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
             let space_from_world = *local_from_world * within.space_from_world;
-            let stack = emit_fold(flat, content, &Within { origin: DVec3::ZERO, space_from_world }, material);
+            let repeats = *kind == ModifierKind::Repeat;
+            let own = repeats.then(|| RepeatedSpace::new(&modified.rows, &space_from_world)).flatten();
+            let inner = Within { origin: DVec3::ZERO, space_from_world, repeated: own.or(within.repeated) };
+            let stack = emit_fold(flat, content, &inner, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }

@@ -38,6 +38,53 @@ pub struct PlacedTextures {
     pub bump: f64,
     /// Index of its set.
     pub set: u32,
+    /// The array that repeats it, if any.
+    pub repeated: Option<RepeatedSpace>,
+}
+
+/// The cells of an array, whose copies each show the same part of a texture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RepeatedSpace {
+    /// From the world to cells: whole numbers are the middles of copies.
+    cells_from_world: DAffine3,
+    /// The way in the world from one copy to the next, for each axis of the array.
+    steps: DMat3,
+    /// Shift along X, in cells, from one copy along Y to the next.
+    skew: f64,
+    /// First and last copies.
+    first: DVec3,
+    last: DVec3,
+}
+
+impl RepeatedSpace {
+    /// The cells of an array by its rows, see `shaders/mod/repeat.wgsl`. `None` for arrays that turn or mirror their
+    /// copies: these show the texture as a whole.
+    pub(super) fn new(rows: &[[f64; 4]], space_from_world: &DAffine3) -> Option<Self> {
+        let [[.., turn], [.., mirrored], ..] = rows else { return None };
+        if *turn != 0.0 || *mirrored != 0.0 {
+            return None;
+        }
+        let [spacing, first, last, middle, offset] = [0, 1, 2, 3, 5].map(|i| DVec3::from_slice(&rows[i]));
+        let cells = DAffine3::from_scale(spacing.recip()) * DAffine3::from_translation(-middle);
+        let steps = DMat3::from_cols(
+            DVec3::new(spacing.x, offset.y, offset.z),
+            DVec3::new(offset.x, spacing.y, 0.0),
+            DVec3::new(0.0, 0.0, spacing.z),
+        );
+        Some(Self {
+            cells_from_world: cells * *space_from_world,
+            steps: space_from_world.matrix3.inverse() * steps,
+            skew: offset.x / spacing.x,
+            first,
+            last,
+        })
+    }
+
+    /// The copy at a point of the world, beyond the first and last too.
+    fn cell(&self, at: DVec3) -> DVec3 {
+        let at = self.cells_from_world.transform_point3(at).round();
+        DVec3::new((at.x - self.skew * at.y).round(), at.y, at.z)
+    }
 }
 
 /// An image on the device.
@@ -124,6 +171,18 @@ pub struct GpuPlacedTextures {
     pub bump: f32,
     /// Padding of eight bytes.
     pub _padding: [u32; 2],
+    /// From positions relative to the eye to cells of an array, counted from that of the eye, by rows.
+    pub cells: [[f32; 4]; 3],
+    /// First cell.
+    pub first: [f32; 3],
+    /// Shift along X, in cells, from one copy along Y to the next.
+    pub skew: f32,
+    /// Last cell.
+    pub last: [f32; 3],
+    /// 1 if an array repeats the textures.
+    pub repeated: u32,
+    /// The way from one copy to the next, in tiles, for each axis of the array.
+    pub steps: [[f32; 4]; 3],
 }
 
 /// After this many tiles textures start again: the place of the eye among them is that of a number near 0, which f32
@@ -137,10 +196,24 @@ impl GpuPlacedTextures {
     /// The textures as seen from `eye`.
     pub fn new(placed: &PlacedTextures, eye: DVec3) -> Self {
         let matrix = placed.texture_from_world.matrix3;
-        let at = placed.texture_from_world.transform_point3(eye);
+        let mut at = placed.texture_from_world.transform_point3(eye);
+        let mut own = Self::none();
+        if let Some(repeated) = &placed.repeated {
+            let cell = repeated.cell(eye);
+            let steps = matrix * repeated.steps;
+            at -= steps * cell;
+            let linear = repeated.cells_from_world.matrix3;
+            let mut from = repeated.cells_from_world.transform_point3(eye) - cell;
+            from.x -= repeated.skew * cell.y;
+            own.cells = [0, 1, 2].map(|i| linear.row(i).extend(from[i]).as_vec4().to_array());
+            own.first = (repeated.first - cell).as_vec3().to_array();
+            own.last = (repeated.last - cell).as_vec3().to_array();
+            own.steps = [0, 1, 2].map(|i| steps.col(i).extend(0.0).as_vec4().to_array());
+            (own.skew, own.repeated) = (repeated.skew as f32, 1);
+        }
         let at = at - TILES * (at / TILES).round();
         let rows = [0, 1, 2].map(|i| matrix.row(i).extend(at[i]).as_vec4().to_array());
-        Self { rows, textures: placed.set, bump: placed.bump as f32, _padding: [0; 2] }
+        Self { rows, textures: placed.set, bump: placed.bump as f32, ..own }
     }
 
     /// An entry without textures.
@@ -152,18 +225,30 @@ impl GpuPlacedTextures {
 impl FlatTextures {
     /// Places the textures of the material at `at` of the scene's materials; `object_from_world` is the space of the
     /// object that uses it.
-    pub(super) fn place(&mut self, material: &Material, at: usize, object_from_world: &DAffine3) {
+    pub(super) fn place(
+        &mut self,
+        material: &Material,
+        at: usize,
+        object_from_world: &DAffine3,
+        repeated: Option<RepeatedSpace>,
+    ) {
         let Some(set) = self.set(material) else { return };
         self.placed.resize(at, None);
-        self.placed.push(placed(material, set as u32, object_from_world));
+        self.placed.push(placed(material, set as u32, object_from_world, repeated));
     }
 
     /// Moves the textures at `at` to another place of their object.
-    pub(super) fn replace(&mut self, material: &Material, at: usize, object_from_world: &DAffine3) {
+    pub(super) fn replace(
+        &mut self,
+        material: &Material,
+        at: usize,
+        object_from_world: &DAffine3,
+        repeated: Option<RepeatedSpace>,
+    ) {
         if let Some(entry) = self.placed.get_mut(at)
             && let Some(PlacedTextures { set, .. }) = *entry
         {
-            *entry = placed(material, set, object_from_world);
+            *entry = placed(material, set, object_from_world, repeated);
         }
     }
 
@@ -298,7 +383,12 @@ pub fn texel_words(images: &[FlatImage]) -> Vec<u32> {
 }
 
 /// The textures of a material on an object.
-fn placed(material: &Material, set: u32, object_from_world: &DAffine3) -> Option<PlacedTextures> {
+fn placed(
+    material: &Material,
+    set: u32,
+    object_from_world: &DAffine3,
+    repeated: Option<RepeatedSpace>,
+) -> Option<PlacedTextures> {
     let Textures::Triplanar { bump, space, size, stretch, offset, rotation, .. } = &material.textures else {
         return None;
     };
@@ -314,7 +404,8 @@ fn placed(material: &Material, set: u32, object_from_world: &DAffine3) -> Option
     let tile = DVec3::from(*stretch) * *size;
     let tiles = DAffine3::from_scale(tile.recip()) * DAffine3::from_quat(turn);
     let texture_from_world = tiles * DAffine3::from_translation(-DVec3::from(*offset)) * object;
-    Some(PlacedTextures { texture_from_world, bump: bump / scale, set })
+    let repeated = repeated.filter(|_| *space != TextureSpace::World);
+    Some(PlacedTextures { texture_from_world, bump: bump / scale, set, repeated })
 }
 
 /// The same space in meters of the world.

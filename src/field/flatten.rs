@@ -206,7 +206,8 @@ struct Materials<'a> {
 }
 
 impl Materials<'_> {
-    fn resolve(&mut self, flat: &mut FlatScene, MaterialUse { id, object_from_world }: MaterialUse) -> u32 {
+    fn resolve(&mut self, flat: &mut FlatScene, user: MaterialUse) -> u32 {
+        let MaterialUse { id, object_from_world, repeated } = user;
         let known = self.index.get(&id).copied();
         if let (Some(known), None) = (known, object_from_world) {
             return known;
@@ -220,7 +221,7 @@ impl Materials<'_> {
         flat.material_ids.push(id);
         self.index.entry(id).or_insert(at as u32);
         if let Some(material) = self.textured.get(id) {
-            flat.textures.place(material, at, &object_from_world.unwrap_or(DAffine3::IDENTITY));
+            flat.textures.place(material, at, &object_from_world.unwrap_or(DAffine3::IDENTITY), repeated);
         }
         at as u32
     }
@@ -231,7 +232,7 @@ impl Materials<'_> {
             let reason = "has a material with textures, which meshes do not show".into();
             flat.warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
         }
-        self.resolve(flat, MaterialUse { id, object_from_world: None })
+        self.resolve(flat, MaterialUse { id, object_from_world: None, repeated: None })
     }
 }
 

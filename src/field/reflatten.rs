@@ -128,14 +128,14 @@ impl Last {
         let mut scratch = FlatScene { materials, ..FlatScene::default() };
         let mut known = true;
         let mut moved = Vec::new();
-        let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world }| {
+        let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world, repeated }| {
             let found = match object_from_world {
                 None => flat.material_ids.iter().position(|m| *m == id),
                 Some(object) => {
                     // The leaf that is about to be written keeps its own entry.
                     let leaf = flat.nodes.get(old.first as usize + scratch.nodes.len());
                     let at = leaf.map_or(usize::MAX, |leaf| leaf.material as usize);
-                    moved.push((id, at, object));
+                    moved.push((id, at, object, repeated));
                     flat.material_ids.get(at).filter(|m| **m == id).map(|_| at)
                 }
             };
@@ -152,9 +152,9 @@ impl Last {
         for node in &mut scratch.nodes {
             node.params += old.params;
         }
-        for (id, at, object_from_world) in moved {
+        for (id, at, object_from_world, repeated) in moved {
             if let Some(material) = scene.material(id) {
-                flat.textures.replace(material, at, &object_from_world);
+                flat.textures.replace(material, at, &object_from_world, repeated);
             }
         }
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;

@@ -41,7 +41,7 @@ pub(super) fn scene() -> Scene {
     }
     builder.sun("Sun", [-0.6, 1.0, 0.7], [1.0, 0.95, 0.86], 1.5);
     builder.sun("Fill", [1.0, 0.4, 0.5], [0.6, 0.75, 1.0], 0.4);
-    builder.camera([0.0, 4.6, 8.6], [0.0, 0.25, -0.5], 38.0);
+    builder.camera([0.0, 4.6, 8.6], [0.0, 0.25, -0.5], 50.0);
     builder.finish()
 }
 

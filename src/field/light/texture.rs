@@ -223,6 +223,22 @@ pub fn textured_point(direction: DVec3, depth: f64, normal: DVec3, footprint: f6
     TexturedPoint { position: direction * depth, normal, across: across * width, along }
 }
 
+/// What the copies of an array add to the place of a texture, in tiles.
+fn texture_repeated(placed: &GpuPlacedTextures, position: DVec3) -> DVec3 {
+    if placed.repeated == 0 {
+        return DVec3::ZERO;
+    }
+    let [first, last] = [placed.first, placed.last].map(|v| DVec3::from(v.map(f64::from)));
+    let at = DVec3::from(placed.cells.map(|row| {
+        let [x, y, z, shift] = row.map(f64::from);
+        DVec3::new(x, y, z).dot(position) + shift
+    }));
+    let mut cell = at.round().clamp(first, last);
+    cell.x = (at.x - f64::from(placed.skew) * cell.y).round().clamp(first.x, last.x);
+    let [x, y, z] = placed.steps.map(|[x, y, z, _]| DVec3::from([x, y, z].map(f64::from)));
+    x * cell.x + y * cell.y + z * cell.z
+}
+
 /// A material with its textures, and by how much they bend the normal.
 fn textured_material(
     material: SurfaceMaterial,
@@ -240,7 +256,8 @@ fn textured_material(
     let axes = [0, 1, 2].map(|i| rows.row(i).normalize());
     let normal = DVec3::from(axes.map(|axis| axis.dot(point.normal))).normalize();
     let sample = Sample {
-        at: rows * point.position + DVec3::from(wide.map(|[.., shift]| shift)),
+        at: rows * point.position + DVec3::from(wide.map(|[.., shift]| shift))
+            - texture_repeated(placed, point.position),
         across: rows * point.across,
         along: rows * point.along,
         normal,

@@ -292,7 +292,7 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
         names
     };
     assert_eq!(names(&material)[..3], ["base_color", "base_weight", "base_metalness"]);
-    assert_eq!(names(&material).last().map(String::as_str), Some("model.type"));
+    assert_eq!(names(&material).last().map(String::as_str), Some("textures.type"));
     assert_eq!(
         names(&Environment::default())[..4],
         ["background.type", "background.sky", "background.horizon", "background.ambient"]
