@@ -12,6 +12,8 @@
 @group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
 // Materials of the meshes, without what their textures change.
 @group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
+// The environment, unless it is a gradient.
+@group(1) @binding(3) var<storage, read> environment_map: array<u32>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 // Of meshes.
@@ -19,6 +21,12 @@
 // Of fields: mixtures. Of meshes: see `common/mesh_look.wgsl`.
 @group(2) @binding(3) var material_target: texture_2d<u32>;
 @group(2) @binding(4) var visibility_target: texture_2d<u32>;
+
+#if TEXTURES
+@group(3) @binding(1) var<storage, read> placed_textures: array<GpuPlacedTextures>;
+@group(3) @binding(2) var<storage, read> texture_sets: array<TextureSet>;
+@group(3) @binding(3) var texels: texture_storage_2d<r32uint, read>;
+#end
 
 #include "light/material.wgsl"
 #include "light/lighting.wgsl"
@@ -56,12 +64,17 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let visibility = textureLoad(visibility_target, pixel, 0).x;
-    var color = environment_background(direction.y, view.sky, view.horizon);
+    var color = environment_background(direction, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
+        let surface_normal = textureLoad(normal_target, pixel, 0).xyz;
+#if TEXTURES
+        mixture_point = textured_point(direction, depth, surface_normal, view.footprint);
+        mixture_bend = vec3f(0.0);
+#end
         let stored = textureLoad(material_target, pixel, 0);
         var material = mixture_material(select(stored, vec4u(0u), is_mesh));
-        var ambient = view.ambient;
+        var open = 1.0;
         if is_mesh {
             let surface = mesh_encoded_surface(stored);
             material = mesh_materials[stored.x];
@@ -69,13 +82,16 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
             material.metalness = surface.x;
             material.roughness = surface.y;
             material.emission = mesh_encoded_emission(stored);
-            ambient *= surface.z;
+            open = surface.z;
         }
-        let normal = textureLoad(normal_target, pixel, 0).xyz;
-        let point = ShadingPoint(material, direction * depth, normal, -direction);
+        var normal = surface_normal;
+#if TEXTURES
+        normal = textured_normal(normal, mixture_bend);
+#end
+        let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
-        color = lighting_surface(point, ambient, select(view.light_count, 0u, depth >= BACKGROUND));
+        color = lighting_surface(point, view.ambient, open, select(view.light_count, 0u, depth >= BACKGROUND));
     }
     let is_empty = view.transparent == 1u && depth >= BACKGROUND;
     return select(vec4f(color, 1.0), vec4f(0.0), is_empty);

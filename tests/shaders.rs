@@ -2,12 +2,14 @@
 
 use std::mem::{offset_of, size_of};
 
-use isolith::field::{FlatMaterial, FlatNode, GpuLight, flatten};
+use isolith::field::{FlatMaterial, FlatNode, FlatTexture, GpuLight, GpuPlacedTextures, TextureSet, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits};
 use isolith::scene::ShapeKind;
-use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
+use isolith::wgsl::{
+    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
+};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The passes: the files outside of all folders.
@@ -45,7 +47,13 @@ fn sources() -> Vec<(&'static str, String)> {
     let text =
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
-    passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
+    let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
+    plain.chain([("shade.wgsl", textured())]).collect()
+}
+
+/// The pass `shade` for scenes with textures.
+fn textured() -> String {
+    assemble_featured("shade.wgsl", &["TEXTURES"]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The module of a source, or the error in it.
@@ -226,7 +234,7 @@ fn flat_material() -> Layout {
             specular_color,
             specular_weight,
             emission,
-            opacity,
+            coat_darkening,
             coat_color,
             coat_weight,
             roughness,
@@ -241,9 +249,33 @@ fn flat_material() -> Layout {
     )
 }
 
+fn light() -> Layout {
+    layout!(
+        "Light" = GpuLight {
+            position,
+            kind,
+            direction,
+            range,
+            color,
+            radius,
+            right,
+            cos_inner,
+            up,
+            cos_outer,
+            constant,
+            linear,
+            quadratic,
+            cast_shadows
+        }
+    )
+}
+
 #[test]
 fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
+        layout!("FlatTexture" = FlatTexture { first, kind, second, image, scale, a, b, wrap }),
+        layout!("TextureSet" = TextureSet { slots, base_weight, sharpness, strength }),
+        layout!("GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump }),
         flat_node(),
         flat_material(),
         layout!(
@@ -274,16 +306,14 @@ fn rust_and_wgsl_agree_about_every_struct() {
             "DebugView" =
                 DebugView { view_mode, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }
         ),
-        layout!(
-            "Light" =
-                GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }
-        ),
+        light(),
     ];
     let modules: Vec<_> = passes()
         .map(|pass| {
             validate(&assemble(pass, &Evaluator::Interpreter(OpSet::all()), Options::default()).expect("checked above"))
                 .expect("checked above")
         })
+        .chain([validate(&textured()).expect("checked above")])
         .collect();
     for layout in &layouts {
         let holds = |m: &&naga::Module| m.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(layout.name));

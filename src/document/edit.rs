@@ -136,7 +136,7 @@ impl Edit {
                     return Ok(Change::NONE);
                 }
                 check::environment(&environment).map_err(|f| f.into_error("environment"))?;
-                Arc::make_mut(scene).environment = environment;
+                Arc::make_mut(scene).set_environment(environment)?;
                 Ok(Change::VALUE)
             }
             Self::SetDisplay(display) => {
@@ -155,7 +155,7 @@ impl Edit {
     fn of_param(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Self, SceneError> {
         Ok(match path.changed(scene, value)? {
             Changed::Node(node) => Self::Replace(*node),
-            Changed::Material(material) => Self::ReplaceMaterial(material),
+            Changed::Material(material) => Self::ReplaceMaterial(*material),
             Changed::Environment(environment) => Self::SetEnvironment(environment),
             Changed::Display(display) => Self::SetDisplay(display),
         })

@@ -10,6 +10,7 @@ use super::blends::has_own_radius;
 use super::budget::{Budget, Cancel, FlattenLimits, STACK};
 use super::composition::{apart, begin_with, group_of, polar_copies, size_of_fold, united};
 use super::cuts::{self, Cut};
+use super::flat_texture::TexturedMaterials;
 use super::leaf::leaf;
 use super::lower_bound::{LowerBound, fold_bounds};
 use super::modifier_reach::read_within;
@@ -102,6 +103,7 @@ pub(super) struct Collector<'a, 'b> {
     /// Prepared shapes with a payload, by the node's index: copies share them, wherever they stand.
     drawn: HashMap<usize, Rc<PreparedShape>>,
     splines: Splines,
+    textured: TexturedMaterials<'a>,
     /// Modifiers that cannot act on their content, by the node's index and the number of modifiers before them.
     refused: HashSet<(usize, usize)>,
 }
@@ -124,6 +126,7 @@ impl<'a, 'b> Collector<'a, 'b> {
             read_to: 0.0,
             drawn: HashMap::new(),
             splines: Splines::default(),
+            textured: TexturedMaterials::new(scene.materials()),
             refused: HashSet::new(),
         }
     }
@@ -227,8 +230,13 @@ impl<'a, 'b> Collector<'a, 'b> {
         if !self.budget.take_entries(outermost, 1) {
             return None;
         }
-        let operand = leaf(node, outermost, world, object, self.drawn.get(&index).cloned());
-        let Value::Leaf { prepared, .. } = &operand.value else { unreachable!("made as a leaf") };
+        let mut operand = leaf(node, outermost, world, object, self.drawn.get(&index).cloned());
+        let Value::Leaf { prepared, object_from_world, .. } = &mut operand.value else {
+            unreachable!("made as a leaf")
+        };
+        if self.textured.is_placed(object.material) {
+            *object_from_world = Some(Rc::new(world.inverse()));
+        }
         if object.shape.is_blank(&prepared.bounds) {
             return None;
         }

@@ -18,8 +18,8 @@ pub struct FlatMaterial {
     pub specular_weight: f32,
     /// Emitted color times its luminance.
     pub emission: [f32; 3],
-    /// Opacity.
-    pub opacity: f32,
+    /// How much the coat darkens what is below.
+    pub coat_darkening: f32,
     /// Tint of the coat.
     pub coat_color: [f32; 3],
     /// Share of the surface under the coat.
@@ -56,7 +56,7 @@ impl FlatMaterial {
             specular_color: color(material.specular_color, 1.0),
             specular_weight: material.specular_weight as f32,
             emission: color(material.emission_color, material.emission_luminance),
-            opacity: material.geometry_opacity as f32,
+            coat_darkening: material.coat_darkening as f32,
             coat_color: color(material.coat_color, 1.0),
             coat_weight: material.coat_weight as f32,
             roughness: material.specular_roughness as f32,

@@ -1,11 +1,13 @@
 //! The builder of the example scenes.
 
+use std::f64::consts::PI;
+
 use glam::{DQuat, DVec3};
 
 use isolith_geometry::Camera;
 use isolith_scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
+    Blend, BlendKernel, CameraNode, Environment, EnvironmentKind, Falloff, Group, Light, LightKind, Material,
+    MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
 };
 
 /// A scene under construction.
@@ -19,54 +21,77 @@ pub(super) struct SceneBuilder {
 impl SceneBuilder {
     /// An empty scene with this environment.
     pub fn new(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
-        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment { sky, horizon, ambient }, 1)
+        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment::sky(sky, horizon, ambient), 1)
             .expect("an empty scene is within every limit");
         Self { scene }
     }
 
-    /// A matte material.
-    pub fn matte(&mut self, name: &str, albedo: [f64; 3]) -> MaterialId {
-        self.glossy(name, albedo, 0.08, 16.0)
-    }
-
-    /// A material with a highlight.
-    pub fn glossy(&mut self, name: &str, albedo: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
-        self.phong(name, albedo, [specular, shininess], [0.0; 3])
-    }
-
-    /// A material with emission.
-    pub fn glowing(&mut self, name: &str, albedo: [f64; 3], emission: [f64; 3]) -> MaterialId {
-        self.phong(name, albedo, [0.0, 48.0], emission)
-    }
-
-    /// A material with a highlight and emission.
-    pub fn glass(
-        &mut self,
-        name: &str,
-        albedo: [f64; 3],
-        [specular, shininess]: [f64; 2],
-        emission: [f64; 3],
-    ) -> MaterialId {
-        self.phong(name, albedo, [specular, shininess], emission)
-    }
-
-    fn phong(
-        &mut self,
-        name: &str,
-        base_color: [f64; 3],
-        [specular, shininess]: [f64; 2],
-        emission: [f64; 3],
-    ) -> MaterialId {
-        let lit = emission.iter().any(|v| *v > 0.0);
+    /// A dry material without a visible highlight.
+    pub fn matte(&mut self, name: &str, base_color: [f64; 3]) -> MaterialId {
+        let (base_diffuse_roughness, specular_weight, specular_roughness) = (0.5, 0.5, 0.8);
         self.material(Material {
-            emission_luminance: if lit { 1.0 } else { 0.0 },
-            emission_color: if lit { emission } else { [1.0; 3] },
-            model: ReflectionModel::BlinnPhong { specular, shininess },
+            base_diffuse_roughness,
+            specular_weight,
+            specular_roughness,
             ..Material::new(MaterialId(0), name, base_color)
         })
     }
 
-    fn material(&mut self, material: Material) -> MaterialId {
+    /// A plastic of this roughness.
+    pub fn glossy(&mut self, name: &str, base_color: [f64; 3], specular_roughness: f64) -> MaterialId {
+        self.material(Material { specular_roughness, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// A rough material under a clear coat of this roughness: enamel, glaze, lacquer.
+    pub fn coated(&mut self, name: &str, base_color: [f64; 3], coat_roughness: f64) -> MaterialId {
+        let (specular_roughness, coat_weight, coat_ior) = (0.5, 1.0, 1.5);
+        self.material(Material {
+            specular_roughness,
+            coat_weight,
+            coat_roughness,
+            coat_ior,
+            ..Material::new(MaterialId(0), name, base_color)
+        })
+    }
+
+    /// A metal of this roughness.
+    pub fn metal(&mut self, name: &str, base_color: [f64; 3], specular_roughness: f64) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, base_color);
+        self.material(Material { specular_roughness, base_metalness: 1.0, ..material })
+    }
+
+    /// A material that emits light.
+    pub fn glowing(&mut self, name: &str, base_color: [f64; 3], emission_color: [f64; 3]) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, base_color);
+        self.material(Material { specular_weight: 0.0, emission_luminance: 1.0, emission_color, ..material })
+    }
+
+    /// A smooth material that glows from within.
+    pub fn gem(&mut self, name: &str, base_color: [f64; 3], emission_color: [f64; 3]) -> MaterialId {
+        let (specular_roughness, specular_ior, emission_luminance) = (0.12, 1.8, 1.0);
+        self.material(Material {
+            specular_roughness,
+            specular_ior,
+            emission_luminance,
+            emission_color,
+            ..Material::new(MaterialId(0), name, base_color)
+        })
+    }
+
+    /// A smooth liquid.
+    pub fn water(&mut self, name: &str, base_color: [f64; 3]) -> MaterialId {
+        let (specular_roughness, specular_ior) = (0.1, 1.33);
+        self.material(Material { specular_roughness, specular_ior, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// A material by Blinn and Phong.
+    pub fn phong(&mut self, name: &str, base_color: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
+        let model = ReflectionModel::BlinnPhong { specular, shininess };
+        self.material(Material { model, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// Any material, under a new id.
+    pub fn material(&mut self, material: Material) -> MaterialId {
         let id = self.scene.next_material_id();
         self.scene.insert_material(Material { id, ..material }).expect("the id is new");
         id
@@ -78,16 +103,18 @@ impl SceneBuilder {
         inserted.expect("example scenes are within every limit")
     }
 
-    /// Parallel light from the direction `from`.
-    pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], intensity: f64) {
+    /// Parallel light from the direction `from`, under which a white surface has the radiance `white`.
+    pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], white: f64) {
         let rotation = Camera::looking_at(DVec3::from(from), DVec3::ZERO, 1.0).rotation;
-        let light = Light { color, intensity, light: LightKind::Sun {} };
+        let sun = LightKind::Sun { strength: rounded(white * PI), angle: 0.0 };
+        let light = Light { color, ..Light::new(sun) };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(from)).rotated(rotation));
     }
 
-    /// A point light.
-    pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], intensity: f64, attenuation: Attenuation) {
-        let light = Light { color, intensity, light: LightKind::Point { attenuation } };
+    /// A point light under which a white surface has the radiance `white`, where the falloff is 1.
+    pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], white: f64, falloff: Falloff) {
+        let point = LightKind::Point { power: rounded(white * (4.0 * PI * PI)), radius: 0.0, falloff };
+        let light = Light { color, ..Light::new(point) };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)));
     }
 
@@ -97,13 +124,33 @@ impl SceneBuilder {
         name: &str,
         [at, target]: [[f64; 3]; 2],
         color: [f64; 3],
-        intensity: f64,
+        white: f64,
         [inner, outer]: [f64; 2],
     ) {
-        let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.02, range: 40.0 };
-        let light = Light { color, intensity, light: LightKind::Spot { attenuation, inner, outer } };
+        let falloff = Falloff::Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.02, range: 40.0 };
+        let power = rounded(white * (4.0 * PI * PI));
+        let light = Light { color, ..Light::new(LightKind::Spot { power, radius: 0.0, falloff, inner, outer }) };
         let rotation = Camera::looking_at(DVec3::from(at), DVec3::from(target), 1.0).rotation;
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)).rotated(rotation));
+    }
+
+    /// A material by OpenPBR.
+    pub fn surface(&mut self, name: &str, color: [f64; 3], metalness: f64, roughness: f64) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, color);
+        self.material(Material { base_metalness: metalness, specular_roughness: roughness, ..material })
+    }
+
+    /// A light at `at`, aimed at `target`.
+    pub fn light(&mut self, name: &str, [at, target]: [[f64; 3]; 2], color: [f64; 3], kind: LightKind) {
+        let (at, target) = (DVec3::from(at), DVec3::from(target));
+        let rotation = Camera::looking_at(at, target, 1.0).rotation;
+        let light = Light { color, ..Light::new(kind) };
+        self.add(None, Node::new(name, NodeKind::Light(light)).at(at).rotated(rotation));
+    }
+
+    /// Replaces the environment.
+    pub fn environment(&mut self, background: EnvironmentKind) {
+        self.scene.set_environment(Environment { background }).expect("its image is small");
     }
 
     /// Adds the camera.
@@ -192,9 +239,14 @@ pub(super) fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
+/// A computed number, to nine decimals.
+fn rounded(v: f64) -> f64 {
+    (v * 1e9).round() / 1e9 + 0.0
+}
+
 /// The node with every computed number rounded.
 fn settled(mut node: Node) -> Node {
-    let round = |v: f64| (v * 1e9).round() / 1e9 + 0.0;
+    let round = rounded;
     let round3 = |v: DVec3| DVec3::new(round(v.x), round(v.y), round(v.z));
     let transform = &mut node.transform;
     transform.translation = round3(transform.translation);

@@ -101,6 +101,7 @@ mod tests {
     const NO_PASSES: &[&str] = &[
         "driver.wgsl",
         "probe.wgsl",
+        "probe_brdf.wgsl",
         "probe_lookahead.wgsl",
         "probe_mesh_rays.wgsl",
         "probe_scene.wgsl",

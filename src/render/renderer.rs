@@ -6,7 +6,7 @@ pub(super) mod evaluation;
 mod frame;
 mod going_on;
 mod measure;
-mod mesh_materials;
+pub(super) mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
@@ -21,21 +21,20 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::passes::Passes;
-use super::passes::frame_pass::Building;
-use super::passes::overlay_settings::OverlaySettings;
+use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
 use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
+use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::PipelineCache;
 use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
 use crate::resources::uniforms::UNIFORM_STRIDE;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
-use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning};
+use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning, gpu_lights};
 use isolith_geometry::Camera;
 use isolith_mesh::TriangleMesh;
 use isolith_wgsl::{Options, SkipMode};
@@ -254,6 +253,8 @@ impl Renderer {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
+        let features = ShadeFeatures::new(flat, &gpu_lights(flat, camera, size), &materials.all);
+        self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
@@ -261,6 +262,7 @@ impl Renderer {
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
+        frame.shade_features = features;
         if slot == Slot::Preview {
             // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();

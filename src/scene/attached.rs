@@ -1,7 +1,9 @@
 //! Attachments of any kind.
 
 use super::attachment::{Attachment, Content};
+use super::environment_image::EnvironmentImage;
 use super::heights::Heights;
+use super::texture_image::TextureImage;
 use isolith_font::Face;
 
 /// An attachment of any kind, as the value of a parameter.
@@ -9,8 +11,12 @@ use isolith_font::Face;
 pub enum Attached {
     /// An image of heights.
     Heights(Attachment<Heights>),
+    /// An image of a texture.
+    Texture(Attachment<TextureImage>),
     /// A font.
     Font(Attachment<Face>),
+    /// An image of everything around the scene.
+    Environment(Attachment<EnvironmentImage>),
 }
 
 impl Attached {
@@ -18,7 +24,19 @@ impl Attached {
     pub fn name(&self) -> Option<&str> {
         match self {
             Self::Heights(file) => file.name(),
+            Self::Texture(file) => file.name(),
             Self::Font(file) => file.name(),
+            Self::Environment(file) => file.name(),
+        }
+    }
+
+    /// The size of the file in bytes; 0 without a file.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Heights(file) => file.size(),
+            Self::Texture(file) => file.size(),
+            Self::Font(file) => file.size(),
+            Self::Environment(file) => file.size(),
         }
     }
 
@@ -26,7 +44,9 @@ impl Attached {
     pub fn label(&self) -> &str {
         let without = match self {
             Self::Heights(_) => Heights::WITHOUT,
+            Self::Texture(_) => TextureImage::WITHOUT,
             Self::Font(_) => Face::WITHOUT,
+            Self::Environment(_) => EnvironmentImage::WITHOUT,
         };
         self.name().unwrap_or(without)
     }
@@ -35,7 +55,9 @@ impl Attached {
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::Heights(_) => Heights::ENDINGS,
+            Self::Texture(_) => TextureImage::ENDINGS,
             Self::Font(_) => Face::ENDINGS,
+            Self::Environment(_) => EnvironmentImage::ENDINGS,
         }
     }
 
@@ -43,7 +65,9 @@ impl Attached {
     pub fn without(&self) -> Self {
         match self {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
+            Self::Texture(_) => Self::Texture(Attachment::NONE),
             Self::Font(_) => Self::Font(Attachment::NONE),
+            Self::Environment(_) => Self::Environment(Attachment::NONE),
         }
     }
 
@@ -51,7 +75,9 @@ impl Attached {
     pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
         Ok(match self {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
+            Self::Texture(_) => Self::Texture(Attachment::new(name, bytes)?),
             Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
+            Self::Environment(_) => Self::Environment(Attachment::new(name, bytes)?),
         })
     }
 }

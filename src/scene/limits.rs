@@ -92,6 +92,10 @@ pub const MAX_IMAGE_SIDE: u32 = 8_192;
 pub const MAX_IMAGE_BYTES: u64 = 512 << 20;
 /// Most pixels of all images of a scene together, each file counted once: decoding so many takes seconds.
 pub const MAX_SCENE_PIXELS: u64 = 1 << 27;
+/// Most columns of the image of an environment; larger images are reduced.
+pub const MAX_ENVIRONMENT_WIDTH: usize = 1_024;
+/// Greatest radiance of the image of an environment; brighter pixels are clamped.
+pub const MAX_RADIANCE: f32 = 60_000.0;
 /// Most heights along a side of a grid; larger images are reduced.
 pub const MAX_HEIGHTS: usize = 256;
 
@@ -133,8 +137,22 @@ pub const STEPS: Limits = Limits::new([1.0, 12.0], [1.0, 64.0], "").whole();
 pub const MAX_APART: usize = 64;
 /// Weights and reflectances.
 pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
+/// Strength of a specular reflection; above 1 a dielectric reflects more than its index of refraction says.
+pub const SPECULAR: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
+/// Irradiance of a sun.
+pub const IRRADIANCE: Limits = Limits::new([0.0, 10.0], [0.0, 1e9], "W/m²");
+/// Power of a light.
+pub const LIGHT_POWER: Limits = Limits::new([0.0, 1e3], [0.0, 1e9], "W");
+/// Angular diameter of a sun, in degrees.
+pub const SUN_ANGLE: Limits = Limits::new([0.0, 30.0], [0.0, 90.0], "°");
+/// Factor on the colors of an environment's image.
+pub const ENVIRONMENT_STRENGTH: Limits = Limits::new([0.0, 4.0], [0.0, 1e4], "");
+/// Radius of a light.
+pub const LIGHT_RADIUS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
+/// Sides of a light that is a rectangle.
+pub const LIGHT_SIDE: Limits = Limits::new([0.1, 5.0], [1e-3, 1e6], "m");
 /// Index of refraction.
 pub const IOR: Limits = Limits::new([1.0, 3.0], [1.0, 100.0], "");
 /// Strength of emitted light.
@@ -187,3 +205,17 @@ pub const AMPLITUDE: Limits = Limits::new([0.0, 0.5], [0.0, 1e6], "m");
 pub const DISPLACEMENT: Limits = Limits::new([-0.5, 0.5], [-1e6, 1e6], "m");
 /// Width of a repeated tile.
 pub const TILE: Limits = Limits::new([0.1, 5.0], [1e-4, 1e6], "m");
+/// Tiles, images and patterns of a texture per tile.
+pub const TEXTURE_SCALE: Limits = Limits::new([0.1, 32.0], [1e-3, 1e3], "");
+/// Factor on the width of a texture's tile.
+pub const STRETCH: Limits = Limits::new([0.1, 10.0], [1e-3, 1e3], "");
+/// The power of the normal that weights projections.
+pub const SHARPNESS: Limits = Limits::new([1.0, 64.0], [1.0, 1e3], "");
+/// Height of what a texture embosses, outward or inward.
+pub const BUMP: Limits = Limits::new([-0.1, 0.1], [-1e3, 1e3], "m");
+/// Height of a row of bricks, in lengths of a brick.
+pub const PATTERN_SHARE: Limits = Limits::new([0.1, 2.0], [0.01, 100.0], "");
+/// How far a pattern wanders, in its own widths; factors on slopes.
+pub const TURBULENCE: Limits = Limits::new([0.0, 2.0], [0.0, 100.0], "");
+/// Most bytes of all images of textures on the device: beyond it, the largest are shown at half their size.
+pub const MAX_TEXTURE_BYTES: usize = 127 << 20;

@@ -26,10 +26,13 @@ mod decode_budget;
 mod display;
 mod drawn;
 mod empty_set;
+mod environment;
+mod environment_image;
 mod error;
 pub mod file;
 mod heights;
 mod image_budget;
+mod image_file;
 mod light;
 pub mod limits;
 mod material;
@@ -38,8 +41,12 @@ mod node;
 mod operator;
 mod param_path;
 mod params;
+mod presets;
 mod shape;
 mod table;
+mod texture;
+mod texture_image;
+mod texture_source;
 mod whole;
 
 pub use attached::Attached;
@@ -48,9 +55,11 @@ pub use axis::Axis;
 pub use display::{DisplaySettings, ViewTransform};
 pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
 pub use empty_set::EmptyOperandResult;
+pub use environment::{Environment, EnvironmentKind};
+pub use environment_image::EnvironmentImage;
 pub use error::SceneError;
 pub use heights::Heights;
-pub use light::{Attenuation, Environment, Light, LightKind};
+pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
@@ -60,5 +69,11 @@ pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
 };
+pub use presets::material_presets;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
+pub use texture::{NormalTexture, TextureSpace, Textures};
+pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_source::{
+    ColorSpace, ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
+};

@@ -61,6 +61,12 @@ pub struct Options {
     pub relaxed: bool,
     /// Tolerance of the march at the surface.
     pub quality: Quality,
+    /// Whether materials may have the layers of OpenPBR. Without them, shading knows Blinn and Phong only.
+    pub layers: bool,
+    /// Whether a light has a size.
+    pub area_lights: bool,
+    /// Whether the environment is not a gradient.
+    pub image_lit: bool,
 }
 
 impl Default for Options {
@@ -71,6 +77,9 @@ impl Default for Options {
             cones: true,
             relaxed: true,
             quality: Quality::default(),
+            layers: true,
+            area_lights: false,
+            image_lit: false,
         }
     }
 }

@@ -13,12 +13,13 @@ use crate::coverage::PixelSample;
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_color, display_decode};
-use crate::light::environment::environment_background;
+use crate::light::environment::{EnvironmentLight, environment_background};
 use crate::light::lighting::lighting_surface;
+use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_material::mesh_material;
 use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
-use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
+use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, GpuPlacedTextures, HitTarget, MESH_BIT, NO_LEAF, gpu_textures};
 use isolith_geometry::{Camera, Ray};
 use isolith_mesh::{MeshHit, MeshLook, TriangleMesh};
 use isolith_scene::NodeId;
@@ -115,7 +116,8 @@ pub fn render_reference_at(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceImage, TraceError> {
     let center = jitter + 0.5;
-    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height], center };
+    let (lights, textures) = (gpu_lights(flat, camera, [width, height]), gpu_textures(flat, camera));
+    let view = View { flat, meshes, camera, lights, textures, size: [width, height], center };
     let tracer = Tracer::new(flat);
     let done = AtomicU32::new(0);
     let rows: Vec<Vec<Pixel>> = (0..height)
@@ -152,6 +154,7 @@ struct View<'a> {
     meshes: &'a Meshes,
     camera: &'a Camera,
     lights: Vec<GpuLight>,
+    textures: Vec<GpuPlacedTextures>,
     size: [u32; 2],
     /// The place within each pixel.
     center: DVec2,
@@ -180,17 +183,25 @@ impl View<'_> {
         let margin = (march.margin / footprint) as f32;
         let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
         let mut tied = false;
+        let mut shading_normal = None;
         let (t, leaf, normal, material, occlusion) = if let Some(hit) = march.hit {
             let component = &self.flat.components[hit.component as usize];
             let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
             tied = point.tied;
-            (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material, 1.0)
+            let normal = point.gradient.try_normalize().unwrap_or(-ray.direction);
+            let mut material = point.material;
+            if !self.textures.is_empty() {
+                let at = textured_point(ray.direction, hit.t, normal, footprint);
+                let FlatScene { materials, textures, .. } = self.flat;
+                let (textured, bent) = textured_mixture(&point.materials, materials, textures, &self.textures, &at);
+                (material, shading_normal) = (textured, Some(bent));
+            }
+            (hit.t, hit.leaf, normal, material, 1.0)
         } else if let Some((index, hit)) = mesh {
             let (normal, material, occlusion) = self.mesh_surface(index, &hit, ray.direction);
             (hit.t, MESH_BIT | index as u32, normal, material, occlusion)
         } else {
-            let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
-            let color = environment_background(ray.direction.y, sky, horizon);
+            let color = environment_background(ray.direction, &EnvironmentLight::of(self.flat));
             let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
@@ -198,7 +209,7 @@ impl View<'_> {
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
         let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
-        let color = self.shade(&ray, t, normal, &material, occlusion);
+        let color = self.shade(&ray, t, shading_normal.unwrap_or(normal), &material, occlusion);
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
 
@@ -226,10 +237,9 @@ impl View<'_> {
     }
 
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial, occlusion: f64) -> DVec3 {
-        let ambient = DVec3::from(self.flat.environment.ambient) * occlusion;
         let position = ray.direction * t;
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, ambient, &self.lights)
+        lighting_surface(&point, &EnvironmentLight::of(self.flat), occlusion, &self.lights)
     }
 
     /// Normal, material and the share of the ambient light at a hit on a mesh.

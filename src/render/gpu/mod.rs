@@ -1,6 +1,7 @@
 //! The GPU: adapters, the device with its limits and errors, and readback.
 
 pub mod adapter;
+pub mod brdf_probe;
 mod device;
 pub mod driver;
 mod error;

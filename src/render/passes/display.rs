@@ -13,7 +13,7 @@ use isolith_scene::ViewTransform;
 use isolith_wgsl::{ShaderError, assemble_plain};
 
 bindings! {
-    /// Group 1 of this pass, group 3 of pass `shade`.
+    /// Group 1.
     SumBindings, "sum of samples", FRAGMENT {
         sum: read_texture(false),
     }

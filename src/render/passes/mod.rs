@@ -11,6 +11,7 @@ mod mesh_textures;
 pub mod overlay;
 pub mod overlay_settings;
 pub mod shade;
+pub mod shade_features;
 
 use std::ops::Range;
 

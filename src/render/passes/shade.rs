@@ -1,20 +1,19 @@
 //! Pass `shade`: lighting of the hits, and the background.
 
+use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
-use wgpu::{BindGroup, BindGroupLayout, RenderPipeline};
+use wgpu::{BindGroup, BindGroupLayout, RenderPipeline, ShaderModule};
 
-use super::display::SumBindings;
 use super::frame_pass::{Building, FramePass};
+use super::shade_features::{ShadeExtras, ShadeFeatures, ShadeOutput};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
-use crate::resources::accumulation::SUM_FORMAT;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
-use isolith_scene::ViewTransform;
-use isolith_wgsl::{ShaderError, assemble_plain};
+use isolith_wgsl::ShaderError;
 
 bindings! {
     /// Group 1.
@@ -22,6 +21,7 @@ bindings! {
         lights: read_storage(),
         materials: read_storage(),
         mesh_materials: read_storage(),
+        environment_map: read_storage(),
     }
 }
 
@@ -39,35 +39,31 @@ bindings! {
 /// The pass.
 #[derive(Debug)]
 pub struct ShadePass {
-    module: wgpu::ShaderModule,
-    layout: wgpu::PipelineLayout,
-    /// Layout of [`Self::sample`].
-    sample_layout: wgpu::PipelineLayout,
-    /// For pictures of a single sample, by view transform; built on first use.
-    pipelines: [OnceLock<RenderPipeline>; ViewTransform::ALL.len()],
-    /// For one of several samples.
-    sample: OnceLock<RenderPipeline>,
+    view: BindGroupLayout,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
-    sum: BindGroupLayout,
+    /// The sources that pictures have needed so far.
+    modules: HashMap<ShadeFeatures, ShaderModule>,
+    /// Their pipelines, built on first use.
+    pipelines: Mutex<HashMap<(ShadeFeatures, ShadeOutput), ShadePipeline>>,
 }
 
-/// Entry points by view transform.
-const ENTRY_POINTS: [&str; ViewTransform::ALL.len()] =
-    ["shade_fragment", "shade_agx_fragment", "shade_neutral_fragment"];
+/// A pipeline with the layout of its group 3.
+#[derive(Clone, Debug)]
+struct ShadePipeline {
+    pipeline: RenderPipeline,
+    extras_layout: BindGroupLayout,
+}
 
 impl FramePass for ShadePass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
-        let (lights, targets) = (LightBindings::layout(device), ShadeBindings::layout(device));
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(Pass::Shade.label()),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
-        });
-        let sum = SumBindings::layout(device);
-        let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
-        let sample_layout = pipeline_layout(device, "shade sample", &[&layouts.view, &lights, &targets, &sum]);
-        let (pipelines, sample) = (Default::default(), OnceLock::new());
-        Ok(Self { module, layout, sample_layout, pipelines, sample, lights, targets, sum })
+        Ok(Self {
+            view: layouts.view.clone(),
+            lights: LightBindings::layout(device),
+            targets: ShadeBindings::layout(device),
+            modules: HashMap::new(),
+            pipelines: Mutex::default(),
+        })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -75,6 +71,7 @@ impl FramePass for ShadePass {
             lights: bound.resources.lights(),
             materials: bound.materials.clone(),
             mesh_materials: bound.resources.mesh_materials(),
+            environment_map: bound.resources.environment_map(),
         };
         let targets = ShadeBindings {
             depth: bound.targets.depth.binding(),
@@ -91,21 +88,21 @@ impl FramePass for ShadePass {
         let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
         let device = &recorder.gpu.device;
         let sampled = frame.sampling.zip(recorder.accumulation);
-        let sum = sampled.map(|(sampling, accumulation)| {
-            SumBindings { sum: accumulation.sum_before(sampling.index).binding() }.bind(device, &self.sum)
-        });
-        let (pipeline, target) = match sampled {
-            Some((sampling, accumulation)) => (self.sample(device), accumulation.sum(sampling.index)),
-            None => (self.single(device, frame.view_transform), &targets.color),
+        let extras = ShadeExtras {
+            sum: sampled.map(|(sampling, accumulation)| accumulation.sum_before(sampling.index).binding()),
+            textures: recorder.resources.textures(),
         };
+        let (output, target) = match sampled {
+            Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),
+            None => (ShadeOutput::Picture(frame.view_transform), &targets.color),
+        };
+        let ShadePipeline { pipeline, extras_layout } = self.pipeline(device, frame.shade_features, output);
+        let extras = extras.bind(device, &extras_layout);
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
         let mut pass = screen_pass(encoder, Pass::Shade.label(), &target.view, stamps);
-        pass.set_pipeline(pipeline);
-        if let Some(sum) = &sum {
-            pass.set_bind_group(3, sum, &[]);
-        }
-        for (at, group) in (0..).zip([view, lights, textures]) {
+        pass.set_pipeline(&pipeline);
+        for (at, group) in (0..).zip([view, lights, textures, &extras]) {
             pass.set_bind_group(at, group, &[]);
         }
         for DispatchParams { origin, end, .. } in
@@ -118,14 +115,31 @@ impl FramePass for ShadePass {
 }
 
 impl ShadePass {
-    fn single(&self, device: &wgpu::Device, transform: ViewTransform) -> &RenderPipeline {
-        let at = transform as usize;
-        self.pipelines[at].get_or_init(|| screen_pipeline(device, &self.module, ENTRY_POINTS[at], &self.layout, None))
+    /// Loads the source for these features.
+    ///
+    /// # Errors
+    /// A shader file is missing.
+    pub fn prepare(&mut self, device: &wgpu::Device, features: ShadeFeatures) -> Result<(), ShaderError> {
+        if let std::collections::hash_map::Entry::Vacant(place) = self.modules.entry(features) {
+            let source = wgpu::ShaderSource::Wgsl(features.source()?.into());
+            let descriptor = wgpu::ShaderModuleDescriptor { label: Some(Pass::Shade.label()), source };
+            place.insert(device.create_shader_module(descriptor));
+        }
+        Ok(())
     }
 
-    fn sample(&self, device: &wgpu::Device) -> &RenderPipeline {
-        let entry_point = "shade_sample_fragment";
-        let build = || screen_pipeline_to(SUM_FORMAT, device, &self.module, entry_point, &self.sample_layout, None);
-        self.sample.get_or_init(build)
+    /// The pipeline; the frame has prepared its features.
+    fn pipeline(&self, device: &wgpu::Device, features: ShadeFeatures, output: ShadeOutput) -> ShadePipeline {
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        let build = || {
+            let extras_layout = features.extras_layout(device, output);
+            let groups = [&self.view, &self.lights, &self.targets, &extras_layout];
+            let layout = pipeline_layout(device, Pass::Shade.label(), &groups);
+            let format = output.format();
+            let module = &self.modules[&features];
+            let pipeline = screen_pipeline_to(format, device, module, output.entry_point(), &layout, None);
+            ShadePipeline { pipeline, extras_layout }
+        };
+        pipelines.entry((features, output)).or_insert_with(build).clone()
     }
 }

@@ -8,6 +8,7 @@ use super::slot::Slot;
 use crate::frame::cost_model::{Cost, CostModel};
 use crate::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
 use crate::passes::overlay_settings::OverlaySettings;
+use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::{EvalMode, PipelineChoice};
 use crate::pipelines::field::FieldPipelines;
 use crate::pipelines::key::PipelineKey;
@@ -44,6 +45,8 @@ pub struct Frame {
     pub(crate) overlay: OverlaySettings,
     pub(crate) view_mode: ViewMode,
     pub(crate) view_transform: ViewTransform,
+    /// What pass `shade` needs.
+    pub(crate) shade_features: ShadeFeatures,
     /// The sample that it renders; `None` for a picture of a single sample.
     pub(crate) sampling: Option<Sampling>,
     /// State of the rays that continue beyond the plan.
@@ -81,6 +84,7 @@ impl Frame {
             overlay,
             view_mode: ViewMode::Shaded,
             view_transform: flat.display.view_transform,
+            shade_features: ShadeFeatures::default(),
             sampling: None,
             going_on: GoingOn::default(),
             template_rows: Vec::new(),

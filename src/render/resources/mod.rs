@@ -7,4 +7,5 @@ pub mod layouts;
 pub mod mesh_rays;
 pub mod tape_texture;
 pub mod targets;
+pub mod texture_resources;
 pub mod uniforms;

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{
-    BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamOwner, ParamPath, Part, RadiusUnit,
-    Scene, Shape, ShapeKind, check,
+    BlendKernel, BlendOverride, CameraNode, ColorTexture, Environment, Group, HeightTexture, Light, LightKind,
+    Material, MaterialId, MeshNode, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, NormalTexture, Object,
+    Operator, ParamOwner, ParamPath, Part, RadiusUnit, RoughnessTexture, Scene, Shape, ShapeKind, Textures, check,
 };
 
 /// A node of each kind, and objects with every shape and every modifier.
@@ -32,7 +32,28 @@ fn scene() -> Scene {
         let end = scene.nodes().len();
         scene.insert(None, end, node).expect("valid");
     }
+    for material in textured() {
+        scene.insert_material(Material { id: scene.next_material_id(), ..material }).expect("valid");
+    }
     scene
+}
+
+/// Materials with every kind of texture.
+fn textured() -> Vec<Material> {
+    let normals: Vec<_> = NormalTexture::variants().into_iter().map(|(normal, ..)| normal).collect();
+    let colors = ColorTexture::variants().into_iter().map(|(color, ..)| color);
+    let roughnesses = RoughnessTexture::variants().into_iter().map(|(roughness, ..)| roughness);
+    let heights = HeightTexture::variants().into_iter().map(|(height, ..)| height);
+    let all = colors.zip(roughnesses).zip(heights).enumerate();
+    all.map(|(i, ((new_color, new_roughness), new_height))| {
+        let mut textures = Textures::triplanar();
+        if let Textures::Triplanar { color, roughness, normal, height, .. } = &mut textures {
+            (*color, *roughness, *height) = (new_color, new_roughness, new_height);
+            *normal = normals[i % normals.len()].clone();
+        }
+        Material { textures, ..Material::default() }
+    })
+    .collect()
 }
 
 /// Another value of the same type; passes the checks wherever one can.
@@ -64,7 +85,7 @@ fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, cra
     let mut scene = scene.clone();
     match path.changed(&scene, value)? {
         Changed::Node(node) => scene.replace(*node)?,
-        Changed::Material(material) => scene.replace_material(material)?,
+        Changed::Material(material) => scene.replace_material(*material)?,
         Changed::Environment(environment) => scene.environment = environment,
         Changed::Display(display) => scene.display = display,
     }
@@ -202,7 +223,7 @@ fn what_is_no_path_and_what_is_not_there_are_errors_that_name_it() {
         (path("group.blend.radius[0]"), "no such element"),
         (path("transform.translation[3]"), "no such element"),
         ("material.1.color".into(), "there is base_color, base_weight"),
-        ("environment.fog".into(), "there is sky, horizon, ambient"),
+        ("environment.fog".into(), "there is no such parameter"),
         ("display.gamma".into(), "there is exposure, view_transform"),
     ] {
         let error = text.parse::<ParamPath>().expect(&text).get(&scene).expect_err(&text).to_string();
@@ -233,10 +254,11 @@ fn choices_are_named_as_in_files() {
 fn another_kind_of_light_keeps_what_both_have() {
     let mut light = Light::default();
     assert!(light.set("light.type", ParamValue::Choice("point")));
-    assert!(light.set("light.attenuation.range", ParamValue::Scalar(7.0)));
+    assert!(light.set("light.falloff.type", ParamValue::Choice("attenuation")));
+    assert!(light.set("light.falloff.range", ParamValue::Scalar(7.0)));
     assert!(!light.set("light.inner", ParamValue::Scalar(7.0)), "a point light has no cone");
     assert!(light.set("light.type", ParamValue::Choice("spot")));
-    assert_eq!(light.get("light.attenuation.range"), Some(ParamValue::Scalar(7.0)));
+    assert_eq!(light.get("light.falloff.range"), Some(ParamValue::Scalar(7.0)));
     assert_eq!(light.get("light.inner"), Some(ParamValue::Scalar(20.0)));
     assert!(!light.set("light.type", ParamValue::Choice("moon")));
 }
@@ -271,8 +293,60 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
     };
     assert_eq!(names(&material)[..3], ["base_color", "base_weight", "base_metalness"]);
     assert_eq!(names(&material).last().map(String::as_str), Some("model.type"));
-    assert_eq!(names(&Environment::default()), ["sky", "horizon", "ambient"]);
+    assert_eq!(
+        names(&Environment::default()),
+        ["background.type", "background.sky", "background.horizon", "background.ambient"]
+    );
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
     assert_eq!(names(&Group::default()), group);
+}
+
+/// A table with parameters that old files do not have.
+#[allow(dead_code, reason = "a sample uses only what it shows")]
+mod sample {
+    use schemars::JsonSchema;
+    use serde::Serialize;
+
+    use crate::limits::SIZE;
+    use crate::params::param_kinds;
+
+    param_kinds! {
+        /// A sample.
+        #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+        pub enum Sample;
+
+        /// Its kinds.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum SampleKind;
+
+        /// A ring.
+        Ring = "Ring" {
+            /// Its radius.
+            radius: f64 = 1.0, SIZE;
+            /// Came later.
+            #[serde(default)]
+            thickness: f64 = 0.25, SIZE;
+            /// Came later, too.
+            #[serde(default)]
+            sides: u32 = 6, SIZE;
+        }
+    }
+}
+
+#[test]
+fn a_parameter_that_a_file_does_not_have_is_its_default() {
+    use sample::Sample;
+    let read = |text: &str| serde_json::from_str::<Sample>(text).map_err(|error| error.to_string());
+    let old = read(r#"{"type": "ring", "radius": 2.0}"#);
+    assert_eq!(old, Ok(Sample::Ring { radius: 2.0, thickness: 0.25, sides: 6 }));
+    let new = read(r#"{"type": "ring", "radius": 2.0, "thickness": 0.0, "sides": 3}"#);
+    assert_eq!(new, Ok(Sample::Ring { radius: 2.0, thickness: 0.0, sides: 3 }));
+    for (wrong, part) in [
+        (r#"{"type": "ring"}"#, "missing field `radius`"),
+        (r#"{"type": "ring", "radius": 2.0, "thickness": null}"#, "invalid type"),
+        (r#"{"type": "ring", "radius": 2.0, "width": 1.0}"#, "unknown field `width`"),
+    ] {
+        assert!(read(wrong).is_err_and(|error| error.contains(part)), "{wrong}");
+    }
 }

@@ -9,8 +9,10 @@ use super::ParamField;
 use crate::attached::Attached;
 use crate::attachment::Attachment;
 use crate::drawn::{Corners, Points};
+use crate::environment_image::EnvironmentImage;
 use crate::heights::Heights;
 use crate::limits::{CORNERS, Limits, POINTS, SIZE};
+use crate::texture_image::TextureImage;
 use crate::whole;
 use isolith_font::Face;
 
@@ -168,7 +170,9 @@ macro_rules! file {
     };
 }
 file!(Heights, Heights);
+file!(TextureImage, Texture);
 file!(Face, Font);
+file!(EnvironmentImage, Environment);
 
 impl ParamField for Points {
     const ANIMATABLE: bool = false;

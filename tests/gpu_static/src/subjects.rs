@@ -128,6 +128,9 @@ const OPTIONS: Options = Options {
     cones: true,
     relaxed: true,
     quality: isolith::wgsl::Quality::Default,
+    layers: true,
+    area_lights: true,
+    image_lit: true,
 };
 
 /// Passes that evaluate a field, with their entry points.
