@@ -13,16 +13,16 @@ fn coverage_threshold(pixel: vec2u, sample: u32, layer: u32) -> f32 {
 }
 
 // PCG (Jarzynski and Olano, "Hash functions for GPU rendering", 2020).
-fn coverage_hash(from: u32) -> u32 {
-    let state = from * 747796405u + 2891336453u;
+fn coverage_hash(key: u32) -> u32 {
+    let state = key * 747796405u + 2891336453u;
     let word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
     return (word >> 22u) ^ word;
 }
 
 // A permutation in which each bit depends on the lower ones only (Laine and Karras, "Stratified
 // sampling for stochastic transparency", 2011, with Burley's constants).
-fn coverage_scrambled(from: u32, seed: u32) -> u32 {
-    var x = from + seed;
+fn coverage_scrambled(bits: u32, seed: u32) -> u32 {
+    var x = bits + seed;
     x ^= x * 0x6c50b47cu;
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;

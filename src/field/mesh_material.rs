@@ -19,6 +19,8 @@ pub fn mesh_material(surface: &Surface) -> FlatMaterial {
         specular_color: surface.specular_color,
         specular_weight: surface.specular_weight,
         emission: surface.emission,
+        // The coat of glTF darkens nothing below it.
+        coat_darkening: 0.0,
         coat_weight: surface.coat_weight,
         roughness: surface.roughness,
         ior: surface.ior,

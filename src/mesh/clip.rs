@@ -1,7 +1,5 @@
 //! Animation clips: the transforms of nodes and the weights of morph targets at a time (specification, 3.11).
 
-use std::collections::BTreeMap;
-
 use glam::{DQuat, DVec3, DVec4};
 
 use super::accessor::Source;
@@ -9,6 +7,7 @@ use super::clip_schema::{Animation, ClipSampler};
 use super::error::{LoadRefusal, name};
 use super::limits::MAX_KEYS;
 use super::model_pose::ClipTime;
+use super::node_pose::Poses;
 use super::remarks::Remarks;
 use super::schema::Root;
 
@@ -20,18 +19,6 @@ pub struct ClipInfo {
     /// Its length in seconds.
     pub seconds: f64,
 }
-
-/// What a clip sets of a node.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct NodePose {
-    pub translation: Option<DVec3>,
-    pub rotation: Option<DQuat>,
-    pub scale: Option<DVec3>,
-    pub weights: Option<Vec<f64>>,
-}
-
-/// What a clip sets, by node; empty at rest.
-pub(super) type Poses = BTreeMap<usize, NodePose>;
 
 /// The clips of a document. What is broken in one counts when it is played.
 pub(super) fn clips(source: &Source<'_>) -> Vec<ClipInfo> {

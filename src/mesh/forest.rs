@@ -2,9 +2,9 @@
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
-use super::clip::{NodePose, Poses};
 use super::error::LoadRefusal;
 use super::limits::MAX_NODES;
+use super::node_pose::{NodePose, Poses};
 use super::schema::{GltfNode, Root};
 
 /// The nodes of a document.

@@ -6,12 +6,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use super::accessor::Source;
-use super::clip::{Poses, poses};
+use super::clip::poses;
 use super::document::{GltfDocument, read_document};
 use super::error::LoadRefusal;
 use super::forest::walk;
 use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES, MAX_TEXTURE_BYTES};
 use super::model_pose::ClipTime;
+use super::node_pose::Poses;
 use super::pose::{Pose, morph_weights};
 use super::primitive::Writer;
 use super::remarks::Remarks;

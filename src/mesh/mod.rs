@@ -21,6 +21,7 @@ pub mod limits;
 mod load;
 mod material_schema;
 mod model_pose;
+mod node_pose;
 mod pose;
 mod primitive;
 mod references;

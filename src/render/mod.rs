@@ -49,7 +49,7 @@ pub use renderer::{
     Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts,
 };
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
-pub use resources::mesh_rays::{MAX_MESH_VISITS, RayMesh};
+pub use resources::mesh_rays::{MAX_MESH_VISITS, MeshRayBuffer, RayMesh};
 pub use resources::shadows::ShadowSettings;
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

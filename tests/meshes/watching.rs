@@ -148,11 +148,11 @@ fn the_editor_follows_a_model_on_disk_and_reads_it_again_when_asked() {
 fn what_a_model_holds_that_is_not_drawn_stands_in_the_log() {
     let folder = tempfile::tempdir().unwrap();
     let mut tiny = triangle();
-    tiny.json["animations"] = json!([{}]);
+    tiny.json["cameras"] = json!([{ "type": "perspective" }]);
     fs::write(folder.path().join("model.gltf"), tiny.gltf()).unwrap();
     let harness = open(folder.path());
     let told: Vec<_> = harness.state().messages().map(|message| message.text.clone()).collect();
-    assert_eq!(told, ["model.gltf: 1 animation not played: the model is shown at rest"]);
+    assert_eq!(told, ["model.gltf: 1 camera not used"]);
 }
 
 #[test]
