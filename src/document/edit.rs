@@ -52,6 +52,13 @@ pub enum Edit {
     ReplaceMaterial(Material),
     /// Adds a material with its own id, see [`Scene::next_material_id`].
     InsertMaterial(Material),
+    /// Moves a material to a place in the list, counted without it.
+    MoveMaterial {
+        /// The material.
+        id: MaterialId,
+        /// Counted from 0.
+        position: usize,
+    },
     /// Removes a material that no node uses.
     RemoveMaterial(MaterialId),
     /// Replaces the environment.
@@ -125,6 +132,13 @@ impl Edit {
                 Arc::make_mut(scene).insert_material(material)?;
                 Ok(Change::VALUE)
             }
+            Self::MoveMaterial { id, position } => {
+                if scene.materials().iter().position(|m| m.id == id) == Some(position) {
+                    return Ok(Change::NONE);
+                }
+                Arc::make_mut(scene).move_material(id, position)?;
+                Ok(Change::VALUE)
+            }
             Self::RemoveMaterial(id) => {
                 Arc::make_mut(scene).remove_material(id)?;
                 Ok(Change::VALUE)
@@ -161,10 +175,8 @@ impl Edit {
             Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
             Self::ReplaceMaterial(material) => format!("Change material {}", material.name),
             Self::InsertMaterial(material) => format!("Add material {}", material.name),
-            Self::RemoveMaterial(id) => {
-                let name = scene.material(*id).map(|m| m.name.clone());
-                format!("Delete material {}", name.unwrap_or_else(|| id.to_string()))
-            }
+            Self::MoveMaterial { id, .. } => format!("Reorder material {}", material_name(scene, *id)),
+            Self::RemoveMaterial(id) => format!("Delete material {}", material_name(scene, *id)),
             Self::SetEnvironment(_) => "Change environment".into(),
             Self::SetParam { path, value } => match Self::of_param(scene, path, value.clone()) {
                 Ok(edit) => edit.label(scene),
@@ -187,6 +199,10 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else {
         format!("Change {name}")
     }
+}
+
+fn material_name(scene: &Scene, id: MaterialId) -> String {
+    scene.material(id).map_or_else(|| id.to_string(), |material| material.name.clone())
 }
 
 fn names(scene: &Scene, ids: &[NodeId]) -> String {

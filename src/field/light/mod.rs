@@ -6,8 +6,10 @@
 //! | `lighting` | the sum over all lights |
 //! | `environment` | light from everywhere, and the background |
 //! | `display` | linear light to the colors of a screen |
+//! | `material_ball` | thumbnails of materials; has no counterpart |
 
 pub mod brdf;
 pub mod display;
 pub mod environment;
 pub mod lighting;
+pub mod material_ball;
