@@ -4,6 +4,9 @@
 
 #include "common/view.wgsl"
 #include "common/depth.wgsl"
+#include "common/mesh_look.wgsl"
+#include "common/coverage.wgsl"
+#include "common/tangent.wgsl"
 
 struct Instance {
     // Rows of the matrix from the mesh's space to world space, relative to the eye or to the point
@@ -17,7 +20,8 @@ struct Instance {
     normal_z: vec4f,
     // Factor of the vertex colors and of their opacity.
     color: vec4f,
-    // Rows of the matrix from the vertices' texture coordinates to those of the texture.
+    // Rows of the matrix from the vertices' texture coordinates to those of the texture. The last
+    // number of the first row is 1 if it takes the second coordinates of a vertex.
     texture_x: vec4f,
     texture_y: vec4f,
     base_color: vec3f,
@@ -31,17 +35,44 @@ struct Instance {
     // Positions are relative to the point at this depth before the eye on the view axis; see
     // `common/ray.wgsl`.
     ray_origin_depth: f32,
+    // Factors of the textures.
+    emission: vec3f,
+    // Index of the material that holds what no texture changes.
+    material: u32,
+    metalness: f32,
+    roughness: f32,
+    // Of the first two coordinates of the normals of a texture; 0 without one.
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // 1: emits its base color, and reflects nothing.
+    unlit: u32,
+    // 1: covers samples by its opacity.
+    blended: u32,
+    padding_1: u32,
+    padding_2: u32,
+    // Pairs of rows as `texture_x` and `texture_y`, for metalness and roughness, normals, occlusion,
+    // emission.
+    map_rows: array<vec4f, 8>,
 }
 
 @group(1) @binding(0) var<uniform> instance: Instance;
 @group(2) @binding(0) var base_color: texture_2d<f32>;
 @group(2) @binding(1) var base_sampler: sampler;
+@group(2) @binding(2) var metal_rough_map: texture_2d<f32>;
+@group(2) @binding(3) var metal_rough_sampler: sampler;
+@group(2) @binding(4) var normal_map: texture_2d<f32>;
+@group(2) @binding(5) var normal_sampler: sampler;
+@group(2) @binding(6) var occlusion_map: texture_2d<f32>;
+@group(2) @binding(7) var occlusion_sampler: sampler;
+@group(2) @binding(8) var emissive_map: texture_2d<f32>;
+@group(2) @binding(9) var emissive_sampler: sampler;
 
 struct Vertex {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
-    @location(3) uv: vec2f,
+    // Two texture coordinates.
+    @location(3) uv: vec4f,
 }
 
 struct Varying {
@@ -50,7 +81,23 @@ struct Varying {
     @location(0) position: vec3f,
     @location(1) normal: vec3f,
     @location(2) color: vec4f,
-    @location(3) uv: vec2f,
+    // In the base color texture.
+    @location(3) place: vec2f,
+    // Its first vertex tells a triangle from others.
+    @location(6) @interpolate(flat) vertex: u32,
+}
+
+// The varying of surfaces with further textures.
+struct MappedVarying {
+    @builtin(position) clip: vec4f,
+    @location(0) position: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) color: vec4f,
+    @location(3) place: vec2f,
+    @location(4) uv: vec4f,
+    // In the world. The last number is the sign of the bitangent, or 0 if the file has no tangents.
+    @location(5) tangent: vec4f,
+    @location(6) @interpolate(flat) vertex: u32,
 }
 
 struct Written {
@@ -58,6 +105,7 @@ struct Written {
     @location(1) visibility: u32,
     @location(2) normal: vec4f,
     @location(3) base_color: vec4f,
+    @location(4) material: vec4u,
 }
 
 // The near limit is a distance along the ray, but the hardware clips by the depth along the view
@@ -66,7 +114,11 @@ struct Written {
 const NEAR_SHARE: f32 = 1.0 / 16777216.0;
 
 @vertex
-fn mesh_vertex(vertex: Vertex) -> Varying {
+fn mesh_vertex(vertex: Vertex, @builtin(vertex_index) index: u32) -> Varying {
+    return mesh_placed(vertex, index);
+}
+
+fn mesh_placed(vertex: Vertex, index: u32) -> Varying {
     let p = vec4f(vertex.position, 1.0);
     let position = vec3f(
         dot(instance.eye_from_local_x, p),
@@ -76,15 +128,40 @@ fn mesh_vertex(vertex: Vertex) -> Varying {
     let n = vertex.normal;
     let normal = vec3f(dot(instance.normal_x.xyz, n), dot(instance.normal_y.xyz, n), dot(instance.normal_z.xyz, n));
     // `right` and `up` span half the picture at distance 1; their squares cancel these lengths.
+    let depth = dot(position, view.forward) + instance.ray_origin_depth;
+    let jitter = view.jitter / vec2f(f32(view.width), f32(view.height)) * (2.0 * depth);
     let clip = vec4f(
-        dot(position, view.right) / dot(view.right, view.right),
-        dot(position, view.up) / dot(view.up, view.up),
+        dot(position, view.right) / dot(view.right, view.right) - jitter.x,
+        dot(position, view.up) / dot(view.up, view.up) + jitter.y,
         view.near * NEAR_SHARE,
-        dot(position, view.forward) + instance.ray_origin_depth,
+        depth,
     );
-    let uv = vec3f(vertex.uv, 1.0);
-    let place = vec2f(dot(instance.texture_x.xyz, uv), dot(instance.texture_y.xyz, uv));
-    return Varying(clip, position, normal, vertex.color, place);
+    let place = mesh_place(instance.texture_x, instance.texture_y, vertex.uv);
+    return Varying(clip, position, normal, vertex.color, place, index);
+}
+
+@vertex
+fn mesh_mapped_vertex(
+    vertex: Vertex, @location(4) tangent: vec4f, @builtin(vertex_index) index: u32,
+) -> MappedVarying {
+    let plain = mesh_placed(vertex, index);
+    let t = tangent.xyz;
+    let turned = vec3f(
+        dot(instance.eye_from_local_x.xyz, t),
+        dot(instance.eye_from_local_y.xyz, t),
+        dot(instance.eye_from_local_z.xyz, t),
+    );
+    let side = select(tangent.w, -tangent.w, instance.mirrored == 1u);
+    return MappedVarying(
+        plain.clip, plain.position, plain.normal, plain.color, plain.place, vertex.uv, vec4f(turned, side),
+        index,
+    );
+}
+
+// The place in a texture, by the rows of its transform.
+fn mesh_place(x: vec4f, y: vec4f, uv: vec4f) -> vec2f {
+    let p = vec3f(select(uv.xy, uv.zw, x.w > 0.5), 1.0);
+    return vec2f(dot(x.xyz, p), dot(y.xyz, p));
 }
 
 // Distance from the eye to a point on a triangle. Far away, its excess over the depth along the
@@ -99,17 +176,60 @@ fn mesh_distance(position: vec3f) -> f32 {
 
 @fragment
 fn mesh_fragment(in: Varying, @builtin(front_facing) front: bool) -> Written {
-    let color = instance.color * in.color * textureSample(base_color, base_sampler, in.uv);
+    let color = instance.color * in.color * textureSample(base_color, base_sampler, in.place);
+    let surface = vec3f(instance.metalness, instance.roughness, 1.0);
+    return mesh_written(in, front, color, mesh_normal(in), surface, instance.emission);
+}
+
+@fragment
+fn mesh_mapped_fragment(in: MappedVarying, @builtin(front_facing) front: bool) -> Written {
+    let rows = instance.map_rows;
+    let color = instance.color * in.color * textureSample(base_color, base_sampler, in.place);
+    let metal_rough = textureSample(metal_rough_map, metal_rough_sampler, mesh_place(rows[0], rows[1], in.uv));
+    let bump_place = mesh_place(rows[2], rows[3], in.uv);
+    let bump = textureSample(normal_map, normal_sampler, bump_place).xyz * 2.0 - 1.0;
+    let scaled = bump * vec3f(instance.normal_scale, instance.normal_scale, 1.0);
+    let occlusion = textureSample(occlusion_map, occlusion_sampler, mesh_place(rows[4], rows[5], in.uv)).x;
+    let emissive = textureSample(emissive_map, emissive_sampler, mesh_place(rows[6], rows[7], in.uv)).rgb;
+    let plain = Varying(in.clip, in.position, in.normal, in.color, in.place, in.vertex);
+    let normal = tangent_turned(mesh_normal(plain), in.tangent, in.position, bump_place, scaled);
+    let arriving = 1.0 + instance.occlusion_strength * (occlusion - 1.0);
+    let surface = vec3f(instance.metalness * metal_rough.b, instance.roughness * metal_rough.g, arriving);
+    return mesh_written(plain, front, color, normal, surface, instance.emission * emissive);
+}
+
+// The unit normal between the vertices.
+fn mesh_normal(in: Varying) -> vec3f {
+    let length_of_normal = length(in.normal);
+    let away = in.position + view.forward * instance.ray_origin_depth;
+    return select(-normalize(away), in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
+}
+
+// The opacity above which the fragment covers this sample of its pixel.
+fn mesh_threshold(in: Varying) -> f32 {
+    return coverage_threshold(vec2u(in.clip.xy), view.sample_index, in.vertex + coverage_hash(instance.visibility));
+}
+
+// `surface` is metalness, roughness and the share of the ambient light that arrives.
+fn mesh_written(
+    in: Varying, front: bool, color: vec4f, upward: vec3f, surface: vec3f, emission: vec3f,
+) -> Written {
     let t = mesh_distance(in.position);
     if t < view.near || t > view.far || color.a < instance.alpha_cutoff {
         discard;
     }
-    let length_of_normal = length(in.normal);
-    let away = in.position + view.forward * instance.ray_origin_depth;
-    var normal = select(-away / t, in.normal / max(length_of_normal, 1e-30), length_of_normal > 0.0);
+    if instance.blended == 1u && color.a <= mesh_threshold(in) {
+        discard;
+    }
     // Both sides are visible. The triangle decides which side faces the eye: near an outline the
     // interpolated normal may point away although the triangle faces the eye.
-    normal = select(normal, -normal, front == (instance.mirrored == 1u));
-    let shown = select(color.rgb, instance.base_color, instance.overridden == 1u);
-    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(shown, 1.0));
+    let normal = select(upward, -upward, front == (instance.mirrored == 1u));
+    var shown = select(color.rgb, instance.base_color, instance.overridden == 1u);
+    var light = emission;
+    if instance.unlit == 1u {
+        light = shown;
+        shown = vec3f(0.0);
+    }
+    let words = mesh_encoded(instance.material, surface, light);
+    return Written(t, instance.visibility, vec4f(normal, 0.0), vec4f(shown, 1.0), words);
 }

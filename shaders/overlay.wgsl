@@ -162,7 +162,7 @@ fn overlay_ground(pixel: vec2u) -> vec2f {
 // Step on the ground for a `step` in the picture. Avoids the difference of two places on the
 // ground, which are nearly equal in narrow pictures.
 fn overlay_step(pixel: vec2u, step: vec3f) -> vec2f {
-    let along = view_offset(vec2f(pixel) + 0.5) + view.forward;
+    let along = view_offset(vec2f(pixel) + 0.5 - view.jitter) + view.forward;
     let falls = vec2f(along.y, along.y + step.y);
     let safe = select(falls, vec2f(1e-6), abs(falls) < vec2f(1e-6));
     return abs(step.xz * along.y - along.xz * step.y) * abs(overlay.eye.y / (safe.x * safe.y));

@@ -1,5 +1,6 @@
 //! The program from outside: every command and exit code, its files and its messages.
 
+mod light;
 mod shading;
 
 use std::path::{Path, PathBuf};
@@ -153,6 +154,9 @@ fn what_is_not_understood_is_refused_with_a_reason() {
         ("--time", "nan", "finite"),
         ("--depth", "depth.jpg", ".exr or .png"),
         ("-o", "picture.bmp", ".png"),
+        ("--samples", "0", "1..=4096"),
+        ("--exposure", "99", "-20 to 20"),
+        ("--view-transform", "filmic", "none, agx, pbr_neutral"),
         ("--view", "heat", "shaded, steps, evaluations"),
         ("--shading", "matcap", "solid, material, rendered"),
     ] {
@@ -294,7 +298,7 @@ fn without_a_driver_it_says_so() {
 fn check_counts_what_is_there() {
     let place = Place::new();
     let report = place.run(&["check", "scene.json", "--json"]).succeeded().object();
-    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "limits", "warnings"];
+    let all = ["ok", "file", "nodes", "components", "tree_depth", "cameras", "clips", "limits", "warnings"];
     assert_eq!(keys(&report), all);
     assert_eq!(report["cameras"], serde_json::json!(["front", "above"]));
     assert_eq!((&report["nodes"], &report["components"], &report["tree_depth"]), (&5.into(), &2.into(), &2.into()));
@@ -332,7 +336,7 @@ fn check_lists_every_parameter_with_unit_limits_and_default() {
 fn check_warns_about_meshes_that_are_missing() {
     let place = Place::new();
     let mut scene = sample();
-    let mesh = NodeKind::Mesh(MeshNode { path: "no.glb".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("no.glb"));
     scene.insert(None, 0, Node::new("statue", mesh)).expect("the scene has room");
     place.write("mesh.json", &scene);
     let report = place.run(&["check", "mesh.json", "--json"]).succeeded().object();
@@ -384,7 +388,7 @@ fn ctrl_c_ends_a_render_and_leaves_nothing_behind() {
     let place = Place::new();
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_isolith"))
         .current_dir(place.folder.path())
-        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192"])
+        .args(["render", "scene.json", "-o", "out.png", "--size", "8192x8192", "--samples", "1"])
         .stdout(std::process::Stdio::null())
         .stderr(std::process::Stdio::piped())
         .spawn()

@@ -50,6 +50,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
         (format!("node.{id}.transform.translation[1]").replace('#', ""), ParamValue::Scalar(3.0)),
         ("material.1.specular_weight".into(), ParamValue::Scalar(0.5)),
         ("environment.sky".into(), ParamValue::Vector(DVec3::ONE)),
+        ("display.exposure".into(), ParamValue::Scalar(1.5)),
     ] {
         let revision = document.revision();
         set(&mut document, &path, value.clone()).expect(&path);
@@ -61,8 +62,8 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
         set(&mut document, &path, value).expect(&path);
         assert_eq!(document.undo_labels().count(), steps, "{path}");
     }
-    let labels: Vec<_> = document.undo_labels().take(4).map(str::to_owned).collect();
-    assert_eq!(labels, ["Change environment", "Change material Clay", "Place b", "Change b"]);
+    let labels: Vec<_> = document.undo_labels().take(5).map(str::to_owned).collect();
+    assert_eq!(labels, ["Change display", "Change environment", "Change material Clay", "Place b", "Change b"]);
     let now = text(&document);
     let radius = format!("node.{}.object.shape.radius", id.0);
     let error = set(&mut document, &radius, ParamValue::Scalar(-1.0)).expect_err("beyond its limits").to_string();
@@ -73,7 +74,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
     let error = set(&mut document, &length, ParamValue::Scalar(1.0)).expect_err("a ball has none").to_string();
     assert!(error.starts_with(&length) && error.contains("there is radius"), "{error}");
     assert_eq!(text(&document), now, "what is refused changes nothing");
-    for _ in 0..4 {
+    for _ in 0..5 {
         assert!(document.undo());
     }
     assert_eq!(text(&document), before);
@@ -113,6 +114,7 @@ fn some_edit(random: &mut Random, scene: &Scene) -> Edit {
         }
         9 => Edit::RemoveMaterial(MaterialId(random.below(8) as u64)),
         10 => Edit::SetEnvironment(random.environment()),
+        12 if random.once_in(3) => Edit::SetDisplay(random.display()),
         11 => {
             let id = some_ids(random, scene).first().copied().unwrap_or(NodeId(3));
             Edit::Replace(Node { id, ..random.node(&materials) })

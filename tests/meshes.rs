@@ -2,8 +2,10 @@
 
 mod asset;
 mod broken;
+mod clips;
 mod escapes;
 mod gallery;
+mod gpu_rays;
 mod hostile;
 mod mutated;
 mod poses;

@@ -3,9 +3,9 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Limits, Material,
-    MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamValue,
-    RadiusUnit, Scene, Shape, ShapeKind, limits,
+    Attenuation, Blend, BlendKernel, BlendOverride, CameraNode, DisplaySettings, Environment, Group, Light, LightKind,
+    Limits, Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object,
+    Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, ViewTransform, limits,
 };
 
 use crate::contract::samples::image;
@@ -155,6 +155,11 @@ impl Random {
         Environment { sky: color(), horizon: color(), ambient: color() }
     }
 
+    /// Display settings within their limits.
+    pub fn display(&mut self) -> DisplaySettings {
+        DisplaySettings { exposure: self.number(&limits::EXPOSURE), view_transform: self.pick(&ViewTransform::ALL) }
+    }
+
     fn light(&mut self) -> Light {
         let attenuation = Attenuation {
             constant: 0.5 + self.number(&limits::UNIT),
@@ -198,7 +203,9 @@ impl Random {
             4 => {
                 let path = self.pick(&["duck.glb", "models/a b/ü.gltf", "x.y/z"]).to_owned();
                 let material = if self.once_in(2) { Some(self.pick(materials)) } else { None };
-                NodeKind::Mesh(MeshNode { path, material })
+                let clip = self.pick(&["", "Walk", "0", "Läuft 2"]).to_owned();
+                let (clip_time, clip_speed) = (self.number(&limits::CLIP_TIME), self.number(&limits::CLIP_SPEED));
+                NodeKind::Mesh(MeshNode { path, material, clip, clip_time, clip_speed })
             }
             _ => NodeKind::Object(Object { shape: self.shape(), material: self.pick(materials) }),
         }
@@ -248,5 +255,8 @@ pub fn random_scene(seed: u64, count: usize) -> Scene {
         nodes.push(node);
     }
     let environment = random.environment();
-    Scene::from_tables(nodes, materials, environment, random.bits() >> 20).expect("random scenes keep the rules")
+    let tables = Scene::from_tables(nodes, materials, environment, random.bits() >> 20);
+    let mut scene = tables.expect("random scenes keep the rules");
+    scene.display = random.display();
+    scene
 }

@@ -2,12 +2,14 @@
 
 use std::mem::{offset_of, size_of};
 
-use isolith::field::{FlatMaterial, FlatNode, GpuLight, flatten};
+use isolith::field::{FlatMaterial, FlatNode, FlatTexture, GpuLight, GpuPlacedTextures, TextureSet, flatten};
 use isolith::gallery;
 use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
-use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, SceneLimits};
+use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits};
 use isolith::scene::ShapeKind;
-use isolith::wgsl::{Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, fits_templates};
+use isolith::wgsl::{
+    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
+};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
 /// The passes: the files outside of all folders.
@@ -45,13 +47,21 @@ fn sources() -> Vec<(&'static str, String)> {
     let text =
         |pass, evaluator| assemble(pass, evaluator, Options::default()).unwrap_or_else(|error| panic!("{error}"));
     let all = [everything, tape, special];
-    passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator)))).collect()
+    let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
+    plain.chain([("shade.wgsl", textured())]).collect()
+}
+
+/// The pass `shade` for scenes with textures.
+fn textured() -> String {
+    assemble_featured("shade.wgsl", &["TEXTURES"]).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The module of a source, or the error in it.
 fn validate(source: &str) -> Result<naga::Module, String> {
     let module = naga::front::wgsl::parse_str(source).map_err(|error| error.emit_to_string(source))?;
-    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
+    // WebGPU has `pack2x16float`; only OpenGL's old versions lack it.
+    let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+    let mut validator = Validator::new(ValidationFlags::all(), capabilities);
     validator.validate(&module).map_err(|error| error.emit_to_string(source))?;
     Ok(module)
 }
@@ -135,8 +145,67 @@ impl Layout {
     }
 }
 
+fn instance() -> Layout {
+    layout!(
+        "Instance" = Instance {
+            eye_from_local_x,
+            eye_from_local_y,
+            eye_from_local_z,
+            normal_x,
+            normal_y,
+            normal_z,
+            color,
+            texture_x,
+            texture_y,
+            base_color,
+            visibility,
+            overridden,
+            mirrored,
+            alpha_cutoff,
+            ray_origin_depth,
+            emission,
+            material,
+            metalness,
+            roughness,
+            normal_scale,
+            occlusion_strength,
+            unlit,
+            blended,
+            padding_1,
+            padding_2,
+            map_rows
+        }
+    )
+}
+
 fn flat_node() -> Layout {
     layout!("FlatNode" = FlatNode { code, extent, params, material })
+}
+
+fn view() -> Layout {
+    layout!(
+        "View" = GpuView {
+            right,
+            near,
+            up,
+            far,
+            forward,
+            footprint,
+            sky,
+            light_count,
+            horizon,
+            width,
+            ambient,
+            height,
+            jitter,
+            exposure,
+            sample_index,
+            transparent,
+            padding_0,
+            padding_1,
+            padding_2
+        }
+    )
 }
 
 fn dispatch_params() -> Layout {
@@ -165,7 +234,7 @@ fn flat_material() -> Layout {
             specular_color,
             specular_weight,
             emission,
-            opacity,
+            coat_darkening,
             coat_color,
             coat_weight,
             roughness,
@@ -183,6 +252,9 @@ fn flat_material() -> Layout {
 #[test]
 fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
+        layout!("FlatTexture" = FlatTexture { first, kind, second, image, scale, a, b, wrap }),
+        layout!("TextureSet" = TextureSet { slots, base_weight, sharpness, strength }),
+        layout!("GpuPlacedTextures" = GpuPlacedTextures { rows, textures, bump }),
         flat_node(),
         flat_material(),
         layout!(
@@ -202,30 +274,10 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 flush
             }
         ),
-        layout!(
-            "View" =
-                GpuView { right, near, up, far, forward, footprint, sky, light_count, horizon, width, ambient, height }
-        ),
+        view(),
         dispatch_params(),
-        layout!(
-            "Instance" = Instance {
-                eye_from_local_x,
-                eye_from_local_y,
-                eye_from_local_z,
-                normal_x,
-                normal_y,
-                normal_z,
-                color,
-                texture_x,
-                texture_y,
-                base_color,
-                visibility,
-                overridden,
-                mirrored,
-                alpha_cutoff,
-                ray_origin_depth
-            }
-        ),
+        instance(),
+        layout!("RayMesh" = RayMesh { local_x, local_y, local_z, nodes, triangles, index, padding_0 }),
         layout!("HierarchyNode" = GpuHierarchyNode { low, link, high, axis }),
         layout!("SceneLimits" = SceneLimits { tree_nodes, all_nodes, max_evaluations, max_visits }),
         layout!("Overlay" = Overlay { eye, cell, axis_x, axis_z, leaf_count, size }),
@@ -243,6 +295,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
             validate(&assemble(pass, &Evaluator::Interpreter(OpSet::all()), Options::default()).expect("checked above"))
                 .expect("checked above")
         })
+        .chain([validate(&textured()).expect("checked above")])
         .collect();
     for layout in &layouts {
         let holds = |m: &&naga::Module| m.types.iter().any(|(_, ty)| ty.name.as_deref() == Some(layout.name));

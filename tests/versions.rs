@@ -11,11 +11,13 @@ use isolith::scene::{NodeKind, Scene, file};
 /// to a millimeter.
 type Meaning = ([usize; 5], [f64; 5]);
 
-/// Recorded while the format's first version was the only one. Never change them: they exist to catch a change of the
+/// Recorded while each version was the present one. Never change them: they exist to catch a change of the
 /// reader.
-const MEANINGS: [(&str, Meaning); 2] = [
+const MEANINGS: [(&str, Meaning); 4] = [
     ("1/mesh-and-fields.json", ([7, 16, 1, 3, 1], [-0.05, 0.076, 0.732, 1.924, 0.212])),
     ("1/showcase.json", ([17, 67, 0, 4, 1], [-0.131, -0.302, 0.805, 1.28, 0.141])),
+    ("2/mesh-and-fields.json", ([7, 16, 1, 3, 1], [-0.05, 0.076, 0.73, 1.924, 0.212])),
+    ("2/showcase.json", ([17, 67, 0, 4, 1], [-0.131, -0.302, 0.805, 1.28, 0.141])),
 ];
 
 fn folder() -> PathBuf {

@@ -29,7 +29,9 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
     var state = march_begin(start, first_descent);
     for (var step = 0u; step < steps; step += 1u) {
         let rounding = 2.0 * SPACING * (state.t + reach);
-        var sample = march_evaluate(&state, ray, component.flush, rounding);
+        // Numbers are as large as the point is far from their origin, or smaller.
+        let flush = min(component.flush, component.flush_near + 0.5 * rounding);
+        var sample = march_evaluate(&state, ray, flush, rounding);
         if sample.f < 0.0 && state.end < NEVER {
             return March(state.end, true, true, step + 1u);
         }
@@ -76,7 +78,7 @@ fn march_along(component: Component, ray: Ray, start: f32, exit: f32, first_desc
         }
         let expected = select(descent, first_descent, sample.advance == 0.0);
         if CLOSE_IS_HIT && expected > STEEP && f < CLOSE * footprint {
-            march_look_behind(&state, sample, expected, 0.5 * rounding + component.flush);
+            march_look_behind(&state, sample, expected, 0.5 * rounding + flush);
             continue;
         }
         if is_lost {

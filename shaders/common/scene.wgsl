@@ -33,6 +33,8 @@ struct Component {
     // A field not below the negative of this may be the rounding between two coincident faces:
     // there is no material between them.
     flush: f32,
+    // The same at the eye. It grows with the distance from there, up to `flush`.
+    flush_near: f32,
 }
 
 const GROUP: u32 = 0xffffu;

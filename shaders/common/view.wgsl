@@ -18,15 +18,27 @@ struct View {
     width: u32,
     ambient: vec3f,
     height: u32,
+    // Offset from pixel centers to the place of this sample, in pixels; zero for the first sample.
+    jitter: vec2f,
+    // Factor of the exposure.
+    exposure: f32,
+    // Of accumulated samples.
+    sample_index: u32,
+    // 1: the background is without color and coverage.
+    transparent: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
 
 @group(0) @binding(0) var<uniform> view: View;
 
 // Offset from the picture's center, on the plane at distance 1 before the eye, of a place in the
-// picture in pixels.
+// picture in pixels. The jitter moves the picture as a whole: what holds for pixel centers holds for
+// the rays of every sample.
 fn view_offset(place: vec2f) -> vec3f {
     let size = vec2f(f32(view.width), f32(view.height));
-    let at = place / size * 2.0 - 1.0;
+    let at = (place + view.jitter) / size * 2.0 - 1.0;
     return view.right * at.x - view.up * at.y;
 }
 

@@ -1,7 +1,9 @@
 // The light that a surface reflects toward the eye. Counterpart of `src/field/light/brdf.rs`.
-// Needs `light/material.wgsl`.
+// Needs `light/material.wgsl`, and `LAYERS`: whether a material may have the layers of OpenPBR.
 
-// A point of a surface that is lit.
+#include "light/layers.wgsl"
+
+// A point of a surface that is lit; `brdf_point` makes it.
 struct ShadingPoint {
     material: FlatMaterial,
     // Relative to the eye.
@@ -9,20 +11,73 @@ struct ShadingPoint {
     // Of unit length, as is `to_eye`.
     normal: vec3f,
     to_eye: vec3f,
+    // For `LAYERS` only.
+    layers: Layers,
+}
+
+// Factors on the light of the environment.
+struct EnvironmentShares {
+    // On the light that arrives from all around.
+    diffuse: vec3f,
+    // On the light from about `direction`, blurred by `roughness`.
+    specular: vec3f,
+    roughness: f32,
+    direction: vec3f,
+    // The same of the coat.
+    coat: f32,
+    coat_roughness: f32,
+}
+
+fn brdf_point(material: FlatMaterial, position: vec3f, normal: vec3f, to_eye: vec3f) -> ShadingPoint {
+    var point = ShadingPoint(material, position, normal, to_eye, Layers());
+    if LAYERS {
+        point.layers = layers_of(material, dot(normal, to_eye));
+    }
+    return point;
 }
 
 // The share of the light from the unit direction `to_light` that the surface reflects toward the
 // eye: the BRDF times the cosine of the angle of incidence times pi. A white Lambert surface that
 // faces the light gives 1.
 fn brdf_direct(point: ShadingPoint, to_light: vec3f) -> vec3f {
-    let facing = max(dot(point.normal, to_light), 0.0);
-    let halfway = to_light + point.to_eye;
-    let alignment = max(dot(point.normal, halfway), 0.0) / max(length(halfway), 1e-6);
-    let highlight = point.material.phong_specular * pow(alignment, point.material.phong_shininess);
-    return (point.material.base_color + highlight) * facing;
+    let toward = to_light + point.to_eye;
+    let scale = max(length(toward), 1e-6);
+    let phong = brdf_phong(point, to_light, max(dot(point.normal, toward), 0.0) / scale);
+    if LAYERS {
+        let layers = layers_direct(point.layers, point.normal, point.to_eye, to_light, toward / scale);
+        return phong + (1.0 - point.material.phong_weight) * layers;
+    }
+    return phong;
 }
 
-// The share of the ambient light that the surface reflects toward the eye.
+// The part by Blinn and Phong; `alignment` is the cosine between normal and halfway direction. A
+// mixture holds the highlight and its exponent times the weight.
+fn brdf_phong(point: ShadingPoint, to_light: vec3f, alignment: f32) -> vec3f {
+    let material = point.material;
+    let facing = max(dot(point.normal, to_light), 0.0);
+    let exponent = max(material.phong_shininess / max(material.phong_weight, 1e-4), 1.0);
+    let highlight = material.phong_specular * pow(alignment, exponent);
+    return (material.base_color * material.phong_weight + highlight) * facing;
+}
+
+// The share of light that comes equally from everywhere.
 fn brdf_ambient(point: ShadingPoint) -> vec3f {
-    return point.material.base_color;
+    let shares = brdf_environment(point);
+    return shares.diffuse + shares.specular + shares.coat;
+}
+
+// The shares of the light of the environment: a split sum.
+fn brdf_environment(point: ShadingPoint) -> EnvironmentShares {
+    var shares = EnvironmentShares();
+    shares.diffuse = point.material.base_color * point.material.phong_weight;
+    shares.direction = reflect(-point.to_eye, point.normal);
+    if LAYERS {
+        let weight = 1.0 - point.material.phong_weight;
+        shares.diffuse += weight * point.layers.diffuse_albedo;
+        shares.specular = weight * point.layers.specular_albedo;
+        shares.roughness = sqrt(point.layers.alpha);
+        shares.coat = weight * point.layers.coat_albedo;
+        shares.coat_roughness = sqrt(point.layers.coat_alpha);
+    }
+    return shares;
 }

@@ -7,7 +7,7 @@ struct FlatMaterial {
     specular_color: vec3f,
     specular_weight: f32,
     emission: vec3f,
-    opacity: f32,
+    coat_darkening: f32,
     coat_color: vec3f,
     coat_weight: f32,
     roughness: f32,
@@ -20,19 +20,32 @@ struct FlatMaterial {
     phong_shininess: f32,
 }
 
+#if TEXTURES
+#include "light/textured.wgsl"
+
+// The point whose mixture is asked for, and by how much its textures bend the normal there.
+var<private> mixture_point: TexturedPoint;
+var<private> mixture_bend: vec3f;
+
+#end
 // The material of a mixture as `common/mixture.wgsl` encodes it.
 fn mixture_material(encoded: vec4u) -> FlatMaterial {
     var mixed = FlatMaterial();
     var left = encoded;
     while left.x > 0u {
         let weight = f32(left.x >> 16u) / 65535.0;
-        let material = materials[left.x & 0xffffu];
+        var material = materials[left.x & 0xffffu];
+#if TEXTURES
+        let textured = textured_material(material, left.x & 0xffffu, mixture_point);
+        material = textured.material;
+        mixture_bend += weight * textured.bend;
+#end
         mixed.base_color += material.base_color * weight;
         mixed.metalness += material.metalness * weight;
         mixed.specular_color += material.specular_color * weight;
         mixed.specular_weight += material.specular_weight * weight;
         mixed.emission += material.emission * weight;
-        mixed.opacity += material.opacity * weight;
+        mixed.coat_darkening += material.coat_darkening * weight;
         mixed.coat_color += material.coat_color * weight;
         mixed.coat_weight += material.coat_weight * weight;
         mixed.roughness += material.roughness * weight;

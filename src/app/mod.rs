@@ -1,5 +1,6 @@
 //! Joins editor and renderer in one window, and reopens the window when the graphics device is lost.
 
+mod samples;
 mod shared_app;
 mod viewport_renderer;
 mod window;

@@ -1,5 +1,5 @@
 //! The viewport's picture: first a coarse one if the full one would take too long, then the full one bit by bit until
-//! something changes. An up-to-date picture costs nothing.
+//! something changes. While nothing does, samples accumulate; a picture with all of them costs nothing.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 
+use super::samples::Samples;
 use crate::editor::{Editor, Message, Picture, ViewSettings};
 use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::{FlatScene, Shading};
@@ -38,6 +39,10 @@ pub(super) struct ViewportRenderer {
     /// The last scene, its shading, and what that makes of it.
     shaded: Option<(Arc<FlatScene>, Shading, Arc<FlatScene>)>,
     in_flight: Option<(Frame, Instant)>,
+    /// Samples of the complete picture.
+    samples: Samples,
+    /// Number of samples that the artist wants.
+    wanted: u32,
     elapsed: Duration,
     /// The last measured time for painting the window.
     painting: Duration,
@@ -107,6 +112,8 @@ impl ViewportRenderer {
             request: None,
             shaded: None,
             in_flight: None,
+            samples: Samples::default(),
+            wanted: 1,
             elapsed: Duration::ZERO,
             painting: PER_FRAME[0],
             painting_since: None,
@@ -129,6 +136,8 @@ impl ViewportRenderer {
             size_px: shown.map_or([1, 1], |(_, size)| size),
             progress: self.in_flight.as_ref().map(|(frame, _)| frame.progress()),
             is_waiting: self.waiting && !self.navigating,
+            samples: self.samples.count().map(|count| [count, self.wanted.max(count)]),
+            is_sampling: self.samples.wants_more(self.wanted),
             status: self.status(),
         }
     }
@@ -146,10 +155,12 @@ impl ViewportRenderer {
         if editor.take_stop_drawing() {
             // The current picture is final until the request changes.
             (self.in_flight, self.waiting) = (None, false);
+            self.samples.stop();
         }
-        let ViewSettings { navigating, .. } = editor.view();
-        // Not an input of the picture: the end of a drag changes nothing in it.
-        let view = ViewSettings { navigating: false, ..editor.view() };
+        let ViewSettings { navigating, samples: wanted, .. } = editor.view();
+        self.wanted = wanted;
+        // Not inputs of the picture: the end of a drag and the number of samples change nothing in it.
+        let view = ViewSettings { navigating: false, samples: 0, ..editor.view() };
         let outline = if view.show_outline { with_descendants(editor) } else { Vec::new() };
         let flat = self.shaded(editor.flat(), view.shading);
         let meshes = flat.known_meshes(editor.meshes());
@@ -159,7 +170,9 @@ impl ViewportRenderer {
         let settled = self.navigating && !navigating;
         self.navigating = navigating;
         let is_other = self.request.as_ref() != Some(&request);
-        if is_other || (self.waiting && (news || settled)) {
+        // Samples to come are worth the pipelines and tapes that have become ready.
+        let is_faster = news && self.samples.wants_more(wanted);
+        if is_other || is_faster || (self.waiting && (news || settled)) {
             if self.differs_in_marks_only(&request) {
                 self.restyle(&request, &meshes)?;
             } else {
@@ -168,7 +181,7 @@ impl ViewportRenderer {
             self.request = Some(request);
         }
         if let Some((frame, started)) = &mut self.in_flight {
-            let time = self.painting.mul_f32(PER_PAINTING).clamp(PER_FRAME[0], PER_FRAME[1]);
+            let time = slice(self.painting);
             if !frame.is_done() {
                 self.renderers.active().advance(frame, time)?;
             }
@@ -179,8 +192,7 @@ impl ViewportRenderer {
                         editor.document().scene().node(warning.node).map_or(String::new(), |n| n.name.clone());
                     editor.report(Message::warning(format!("{}: {}", warning.name, warning.reason)));
                 }
-                self.in_flight = None;
-                self.show(Slot::Full);
+                self.complete();
             }
             ctx.request_repaint();
             self.painting_since = Some(Instant::now());
@@ -188,9 +200,13 @@ impl ViewportRenderer {
             (self.needs_prewarm && !self.waiting, &self.request)
         {
             self.needs_prewarm = self.renderers.active().prewarm_pipelines(flat, &view.camera, AT_ONCE)?;
-            if self.needs_prewarm {
+            if self.needs_prewarm || self.samples.wants_more(wanted) {
                 ctx.request_repaint();
             }
+        } else if self.samples.wants_more(wanted) && !navigating {
+            self.samples.advance(self.renderers.active(), wanted, slice(self.painting))?;
+            ctx.request_repaint();
+            self.painting_since = Some(Instant::now());
         }
         Ok(())
     }
@@ -222,14 +238,22 @@ impl ViewportRenderer {
             let view = ViewSettings { show_grid, show_outline, view_mode, ..request.view };
             RenderRequest { view, outline: shown.outline.clone(), ..request.clone() }
         };
-        complete && self.request.as_ref().is_some_and(|shown| *shown == marked_alike(shown))
+        // The hits of a later sample are not those of the picture.
+        let has_hits =
+            |shown: &RenderRequest| !self.samples.has_accumulated() || shown.view.view_mode == request.view.view_mode;
+        complete && self.request.as_ref().is_some_and(|shown| has_hits(shown) && *shown == marked_alike(shown))
     }
 
     /// Redraws the marks over the complete picture.
     fn restyle(&mut self, request: &RenderRequest, meshes: &[Option<Arc<TriangleMesh>>]) -> Result<(), RenderError> {
-        let mut frame = self.begin(Slot::Full, request, meshes, request.view.size_px)?;
-        frame.skip_to_shading();
-        self.renderers.active().advance(&mut frame, Duration::MAX)?;
+        let frame = self.begin(Slot::Full, request, meshes, request.view.size_px)?;
+        let is_new = self.samples.count().is_none();
+        let frame = self.samples.restyle(self.renderers.active(), frame)?;
+        if !frame.is_lit() {
+            self.samples.reset();
+        } else if is_new {
+            self.samples.start(frame);
+        }
         self.show(Slot::Full);
         Ok(())
     }
@@ -269,6 +293,7 @@ impl ViewportRenderer {
         meshes: &[Option<Arc<TriangleMesh>>],
         is_other: bool,
     ) -> Result<(), RenderError> {
+        self.samples.reset();
         let ViewSettings { camera, size_px, .. } = request.view;
         let flat = &*request.flat;
         self.renderers.choose(request.view.view_mode)?;
@@ -297,12 +322,21 @@ impl ViewportRenderer {
         }
         if frame.is_done() && self.renderers.active().unfinished_rays(&frame)?.is_empty() {
             self.elapsed = started.elapsed();
-            self.in_flight = None;
-            self.show(Slot::Full);
+            self.in_flight = Some((frame, started));
+            self.complete();
         } else {
             self.in_flight = Some((frame, started));
         }
         Ok(())
+    }
+
+    /// Shows the frame in flight, which is complete. If it is lit, its samples accumulate from now on.
+    fn complete(&mut self) {
+        let frame = self.in_flight.take().map(|(frame, _)| frame);
+        if let Some(frame) = frame.filter(Frame::is_lit) {
+            self.samples.start(frame);
+        }
+        self.show(Slot::Full);
     }
 
     /// Begins the picture of a request.
@@ -351,6 +385,11 @@ impl ViewportRenderer {
         *texture = Some((id, size));
         self.shown = Some(slot);
     }
+}
+
+/// Time for the picture in a frame of the window that took `painting` to paint.
+fn slice(painting: Duration) -> Duration {
+    painting.mul_f32(PER_PAINTING).clamp(PER_FRAME[0], PER_FRAME[1])
 }
 
 /// The selected nodes and their descendants.

@@ -1,6 +1,7 @@
 //! `isolith check`: contents of scenes, their use of each limit, and their faults.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -8,7 +9,7 @@ use super::failure::Failure;
 use super::input::{folder, read_scene, shown};
 use super::text::{complain, say};
 use crate::field::{self, Cancel, FlatScene, Usage, flatten_until};
-use crate::mesh::MeshLibrary;
+use crate::mesh::{MeshLibrary, TriangleMesh};
 use crate::scene::limits::{MAX_DEPTH, MAX_MATERIALS, MAX_NODES};
 use crate::scene::{Param, ParamPath, ParamValue, Scene};
 
@@ -18,8 +19,8 @@ pub struct CheckArguments {
     /// Scene files; - reads standard input
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
-    /// Print one JSON object a scene and line: {ok, file, nodes, components, tree_depth, cameras, limits, warnings}, or
-    /// {ok, file, node, field, reason} for a scene that cannot be used
+    /// Print one JSON object a scene and line: {ok, file, nodes, components, tree_depth, cameras, clips, limits,
+    /// warnings}, or {ok, file, node, field, reason} for a scene that cannot be used
     #[arg(long)]
     json: bool,
     /// Make warnings errors, such as a model that is missing
@@ -71,6 +72,8 @@ struct Report {
     components: usize,
     limits: Vec<LimitUse>,
     cameras: Vec<String>,
+    /// The animation clips of models: the node, the name, and the length in seconds.
+    clips: Vec<(String, String, f64)>,
     warnings: Vec<CheckWarning>,
     /// Every parameter, if `--params` is given.
     params: Option<Vec<(ParamPath, &'static Param, ParamValue)>>,
@@ -103,10 +106,21 @@ fn read(path: &Path, with_params: bool) -> Result<Report, Failure> {
     let (flat, usages) = flattened.ok_or(Failure::Canceled)?;
     let mut report = Report::new(&scene, &flat, &usages);
     let mut library = MeshLibrary::new(folder(path));
-    let (_, missing) = flat.load_meshes(&mut library);
+    let (meshes, missing) = flat.load_meshes(&mut library);
+    report.clips = clips(&scene, &flat, &meshes);
     report.warnings.extend(missing.into_iter().map(CheckWarning::from));
     report.params = with_params.then(|| ParamPath::all(&scene));
     Ok(report)
+}
+
+/// The animation clips of the models that the scene shows.
+fn clips(scene: &Scene, flat: &FlatScene, meshes: &[Option<Arc<TriangleMesh>>]) -> Vec<(String, String, f64)> {
+    let named = |id| scene.node(id).map_or_else(|| id.to_string(), |node| format!("{} {id}", node.name));
+    let of_mesh = |(placed, mesh): (&field::FlatMesh, &Option<Arc<TriangleMesh>>)| {
+        let clips = mesh.as_ref().map_or(&[][..], |mesh| mesh.clips.as_slice());
+        clips.iter().map(|clip| (named(placed.id), clip.name.clone(), clip.seconds)).collect::<Vec<_>>()
+    };
+    flat.meshes.iter().zip(meshes).flat_map(of_mesh).collect()
 }
 
 impl Report {
@@ -129,6 +143,7 @@ impl Report {
             components: flat.components.len(),
             limits: of_scene.into_iter().chain(of_arrays).collect(),
             cameras: flat.cameras.iter().map(|camera| camera.name.clone()).collect(),
+            clips: Vec::new(),
             warnings: flat.warnings.iter().cloned().map(CheckWarning::from).collect(),
             params: None,
         }
@@ -139,6 +154,9 @@ impl Report {
             self.warnings.iter().map(|w| json!({ "node": w.node, "reason": w.reason })).collect();
         let limit = |l: &LimitUse| json!({ "name": l.name, "used": l.used, "limit": l.limit, "node": l.node });
         let limits: Vec<Value> = self.limits.iter().map(limit).collect();
+        let clip =
+            |(node, name, seconds): &(String, String, f64)| json!({ "node": node, "name": name, "seconds": seconds });
+        let clips: Vec<Value> = self.clips.iter().map(clip).collect();
         let mut report = json!({
             "ok": is_fine,
             "file": path.display().to_string(),
@@ -146,6 +164,7 @@ impl Report {
             "components": self.components,
             "tree_depth": self.tree_depth,
             "cameras": self.cameras,
+            "clips": clips,
             "limits": limits,
             "warnings": warnings,
         });
@@ -162,6 +181,9 @@ impl Report {
         }
         text += &format!("\n  {:<30} {:>9}", "cameras", self.cameras.len());
         text += &format!("\n  {:<30} {:>9}", "warnings", self.warnings.len());
+        for (node, name, seconds) in &self.clips {
+            text += &format!("\n  clip “{}” of {}, {seconds:.2} s", one_line(name), one_line(node));
+        }
         for (path, param, value) in self.params.iter().flatten() {
             text += &format!("\n  {}", param_line(path, param, value));
         }

@@ -11,7 +11,9 @@
 //! | `adapters` | `isolith adapters`, and the option that chooses one |
 //! | `input` | scene files, standard input |
 //! | `text` | printing |
+//! | `film` | options for samples, exposure and view transform |
 //! | `exr_ids` | ids as OpenEXR channels |
+//! | `exr_light` | linear light as OpenEXR channels |
 //! | `log` | spans and events, enabled by `RUST_LOG` |
 //! | `runtime_folder` | the folder `XDG_RUNTIME_DIR` that drivers need |
 //! | `failure` | failures and their exit codes |
@@ -20,7 +22,9 @@ mod adapters;
 mod bench;
 mod check;
 mod exr_ids;
+mod exr_light;
 mod failure;
+mod film;
 mod input;
 mod log;
 mod outputs;

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageFormat};
 
-use super::exr_ids;
 use super::failure::Failure;
 use super::input::is_standard;
+use super::{exr_ids, exr_light};
 use crate::field::{FlatScene, GBuffer, HitTarget};
 use crate::scene::file;
 
@@ -38,9 +38,15 @@ impl Quantity {
 
 /// Writes one quantity of the buffers in the format of the path's extension; `-` is standard output and gets a PNG.
 /// Returns a note for reading the file, to be printed after its name.
-pub fn write(quantity: Quantity, path: &Path, buffers: &GBuffer, flat: &FlatScene) -> Result<String, Failure> {
+pub fn write(
+    quantity: Quantity,
+    path: &Path,
+    buffers: &GBuffer,
+    flat: &FlatScene,
+    samples: u32,
+) -> Result<String, Failure> {
     let failed = |reason: String| Failure::Write { path: path.to_path_buf(), reason };
-    let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat).map_err(failed)?;
+    let (bytes, note) = encode(quantity, ending(path) == "exr", buffers, flat, samples).map_err(failed)?;
     if is_standard(path) {
         let mut out = std::io::stdout().lock();
         out.write_all(&bytes).and_then(|()| out.flush()).map_err(|error| failed(error.to_string()))?;
@@ -50,9 +56,20 @@ pub fn write(quantity: Quantity, path: &Path, buffers: &GBuffer, flat: &FlatScen
     Ok(note)
 }
 
-fn encode(quantity: Quantity, as_exr: bool, buffers: &GBuffer, flat: &FlatScene) -> Result<(Vec<u8>, String), String> {
+fn encode(
+    quantity: Quantity,
+    as_exr: bool,
+    buffers: &GBuffer,
+    flat: &FlatScene,
+    samples: u32,
+) -> Result<(Vec<u8>, String), String> {
     let (image, note) = match (quantity, as_exr) {
-        (Quantity::Color, _) => (color(buffers), String::new()),
+        (Quantity::Color, true) => {
+            let size = [buffers.width, buffers.height];
+            let bytes = exr_light::encode(size, &buffers.radiance, &flat.display, samples);
+            return Ok((bytes.map_err(|error| error.to_string())?, " (linear light)".into()));
+        }
+        (Quantity::Color, false) => (color(buffers), String::new()),
         (Quantity::Depth, true) => (raw(buffers, |i| [buffers.depth[i]; 3]), " (meters)".into()),
         (Quantity::Depth, false) => depth_picture(buffers),
         (Quantity::Normal, true) => (raw(buffers, |i| buffers.normal[i]), " (X, Y, Z)".into()),

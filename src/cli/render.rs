@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use super::adapters::AdapterArguments;
 use super::failure::Failure;
+use super::film::{FilmArguments, clear_background};
 use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
@@ -20,13 +21,13 @@ use crate::field::{FlatScene, GBuffer, Shading, Warning};
 use crate::geometry::Camera;
 use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
-use crate::render::{EvalStrategy, Gpu, Renderer};
+use crate::render::{EvalStrategy, Film, Gpu, Renderer};
 use crate::scene::Scene;
 use crate::session::PreparedScene;
 
 /// Longest side of a picture, in pixels.
 const MAX_SIDE: u32 = 16_384;
-/// Maximum number of pixels in a picture; rendering keeps 24 bytes for each.
+/// Maximum number of pixels in a picture; the processor keeps 44 bytes for each.
 const MAX_PIXELS: u64 = 1 << 27;
 
 /// Arguments of `isolith render`.
@@ -34,8 +35,9 @@ const MAX_PIXELS: u64 = 1 << 27;
 pub struct RenderArguments {
     /// Scene file; - reads standard input
     scene: PathBuf,
-    /// Picture to write, a .png; - writes it to standard output
-    #[arg(short, long, value_name = "FILE", value_parser = png_path)]
+    /// Picture to write: .png, or .exr for linear light before exposure and view transform; - writes a .png to
+    /// standard output
+    #[arg(short, long, value_name = "FILE", value_parser = picture_path)]
     output: PathBuf,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
@@ -60,6 +62,8 @@ pub struct RenderArguments {
     /// components
     #[arg(long, value_name = "MODE", default_value = "shaded", value_parser = ViewMode::from_str, conflicts_with = "reference")]
     view: ViewMode,
+    #[command(flatten)]
+    film: FilmArguments,
     /// How the scene is lit: rendered by its own lights, material by a studio light, or solid, everything in clay
     #[arg(long, value_name = "NAME", default_value = "rendered", value_parser = Shading::from_str)]
     shading: Shading,
@@ -69,7 +73,7 @@ pub struct RenderArguments {
     /// Make warnings errors, such as a model that is missing; then nothing is written
     #[arg(long)]
     strict: bool,
-    /// Print one JSON object: {ok, file, outputs, width, height, components, seconds, warnings}, or {ok, file, node,
+    /// Print one JSON object: {ok, file, outputs, width, height, samples, components, seconds, warnings}, or {ok, file, node,
     /// field, reason} where there is no picture
     #[arg(long)]
     json: bool,
@@ -93,6 +97,7 @@ impl RenderArguments {
             normal: None,
             node_id: None,
             view: ViewMode::Shaded,
+            film: FilmArguments::default(),
             shading: Shading::Rendered,
             reference: false,
             strict: false,
@@ -123,6 +128,20 @@ impl RenderArguments {
             }
             false => say(line),
         }
+    }
+
+    /// The samples of the picture.
+    fn film(&self) -> Result<Film, Failure> {
+        let is_colored = self.view == ViewMode::Shaded;
+        if !is_colored && self.is_linear() {
+            return Err(Failure::Usage("--output: views other than shaded have no linear light for an .exr".into()));
+        }
+        self.film.film(self.reference || !is_colored, is_colored)
+    }
+
+    /// Whether the picture is written as linear light.
+    fn is_linear(&self) -> bool {
+        outputs::ending(&self.output) == "exr"
     }
 
     /// Every output with its quantity.
@@ -156,7 +175,9 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     }
     let paths: Vec<_> = arguments.outputs().into_iter().map(|(_, path)| path).collect();
     outputs::check_writable(&paths, &[&arguments.scene])?;
-    let scene = read_scene(&arguments.scene)?;
+    let film = arguments.film()?;
+    let mut scene = read_scene(&arguments.scene)?;
+    arguments.film.apply(&mut scene.display);
     let cancel = cancel_by_interrupts();
     let task = Task::canceled_by("rendering", &cancel);
     let PreparedScene { flat, mut library, .. } =
@@ -172,16 +193,16 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     let camera = choose_camera(&flat, &meshes, arguments)?;
     let flat = flat.shaded(arguments.shading);
     let buffers = if arguments.reference {
-        reference_picture(arguments, scene, &flat, &meshes, &camera)?
+        reference_picture(arguments, film, scene, &flat, &meshes, &camera)?
     } else {
-        let (buffers, unfinished) = gpu_picture(arguments, &flat, &meshes, &camera)?;
+        let (buffers, unfinished) = gpu_picture(arguments, film, &flat, &meshes, &camera)?;
         arguments.warn(&unfinished)?;
         warnings.extend(unfinished);
         buffers
     };
     let mut written = Vec::new();
     for (quantity, path) in arguments.outputs() {
-        let mut note = outputs::write(quantity, path, &buffers, &flat)?;
+        let mut note = outputs::write(quantity, path, &buffers, &flat, film.samples)?;
         if quantity == Quantity::Color {
             note += &arguments.view.note(&DepthRange::of(&flat.content(&meshes), camera.position));
         }
@@ -191,7 +212,8 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
     }
     let [width, height] = arguments.size;
     let (components, seconds) = (flat.components.len(), started.elapsed().as_secs_f64());
-    arguments.tell(&format!("{width}x{height} pixels, {components} components, {seconds:.1} s"))?;
+    let samples = if film.samples > 1 { format!("{} samples, ", film.samples) } else { String::new() };
+    arguments.tell(&format!("{width}x{height} pixels, {samples}{components} components, {seconds:.1} s"))?;
     let told = warnings.iter().map(|w| json!({ "node": format!("{} {}", w.name, w.node), "reason": w.reason }));
     Ok(json!({
         "ok": true,
@@ -199,6 +221,7 @@ fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
         "outputs": written,
         "width": width,
         "height": height,
+        "samples": film.samples,
         "components": components,
         "seconds": seconds,
         "warnings": told.collect::<Vec<_>>(),
@@ -245,11 +268,13 @@ fn by_job<T: Send + 'static>(
 
 fn gpu_picture(
     arguments: &RenderArguments,
+    film: Film,
     flat: &Arc<FlatScene>,
     meshes: &Meshes,
     camera: &Camera,
 ) -> Result<(GBuffer, Vec<Warning>), Failure> {
     let (choice, view_mode, size) = (arguments.adapter.choice(), arguments.view, arguments.size);
+    let accumulates = film.samples > 1 || film.is_transparent || arguments.is_linear();
     let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
     by_job("rendering", arguments, Interrupts::StopTheTask, move |task| {
         let gpu = Gpu::open(&choice)?;
@@ -266,22 +291,34 @@ fn gpu_picture(
             task.set_progress(share);
             !task.is_canceled()
         };
-        Ok(renderer.render_as(view_mode, &flat, &meshes, &camera, size, &mut update)?)
+        Ok(match accumulates {
+            true => renderer.render_samples(film, &flat, &meshes, &camera, size, &mut update)?,
+            false => renderer.render_as(view_mode, &flat, &meshes, &camera, size, &mut update)?,
+        })
     })
 }
 
 fn reference_picture(
     arguments: &RenderArguments,
+    film: Film,
     scene: Scene,
     flat: &Arc<FlatScene>,
     meshes: &Meshes,
     camera: &Camera,
 ) -> Result<GBuffer, Failure> {
-    let (path, size) = (arguments.scene.clone(), arguments.size);
+    let (path, size, is_transparent) = (arguments.scene.clone(), arguments.size, film.is_transparent);
+    let leave_out = move |mut buffers: GBuffer| {
+        if is_transparent {
+            clear_background(&mut buffers);
+        }
+        buffers
+    };
     let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
     by_job("tracing", arguments, Interrupts::EndTheProgram, move |task| {
         let reference = render_reference(&flat, &meshes, &camera, size, &|share| task.set_progress(share as f32));
-        reference.map(|reference| reference.buffers).map_err(|error| Failure::given_up(&path, &scene, &error))
+        reference
+            .map(|reference| leave_out(reference.buffers))
+            .map_err(|error| Failure::given_up(&path, &scene, &error))
     })
 }
 
@@ -299,11 +336,11 @@ fn parse_time(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|time: &f64| time.is_finite()).ok_or("give a finite number of seconds".to_string())
 }
 
-fn png_path(text: &str) -> Result<PathBuf, String> {
+fn picture_path(text: &str) -> Result<PathBuf, String> {
     match outputs::ending(Path::new(text)).as_str() {
-        "png" => Ok(text.into()),
+        "png" | "exr" => Ok(text.into()),
         _ if is_standard(Path::new(text)) => Ok(text.into()),
-        _ => Err("the picture's name must end in .png, or be - for standard output".into()),
+        _ => Err("the picture's name must end in .png or .exr, or be - for standard output".into()),
     }
 }
 

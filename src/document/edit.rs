@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::structure;
 use isolith_scene::{
-    Changed, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue, Scene,
-    SceneError, check,
+    Changed, DisplaySettings, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue,
+    Scene, SceneError, check,
 };
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
@@ -63,7 +63,9 @@ pub enum Edit {
     RemoveMaterial(MaterialId),
     /// Replaces the environment.
     SetEnvironment(Environment),
-    /// Changes one parameter of a node, a material or the environment.
+    /// Replaces the display settings.
+    SetDisplay(DisplaySettings),
+    /// Changes one parameter of a node, a material, the environment or the display.
     SetParam {
         /// The path of the parameter.
         path: ParamPath,
@@ -151,6 +153,14 @@ impl Edit {
                 Arc::make_mut(scene).environment = environment;
                 Ok(Change::VALUE)
             }
+            Self::SetDisplay(display) => {
+                if scene.display == display {
+                    return Ok(Change::NONE);
+                }
+                check::display(&display).map_err(|f| f.into_error("display"))?;
+                Arc::make_mut(scene).display = display;
+                Ok(Change::VALUE)
+            }
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
         }
     }
@@ -159,8 +169,9 @@ impl Edit {
     fn of_param(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Self, SceneError> {
         Ok(match path.changed(scene, value)? {
             Changed::Node(node) => Self::Replace(*node),
-            Changed::Material(material) => Self::ReplaceMaterial(material),
+            Changed::Material(material) => Self::ReplaceMaterial(*material),
             Changed::Environment(environment) => Self::SetEnvironment(environment),
+            Changed::Display(display) => Self::SetDisplay(display),
         })
     }
 
@@ -178,6 +189,7 @@ impl Edit {
             Self::MoveMaterial { id, .. } => format!("Reorder material {}", material_name(scene, *id)),
             Self::RemoveMaterial(id) => format!("Delete material {}", material_name(scene, *id)),
             Self::SetEnvironment(_) => "Change environment".into(),
+            Self::SetDisplay(_) => "Change display".into(),
             Self::SetParam { path, value } => match Self::of_param(scene, path, value.clone()) {
                 Ok(edit) => edit.label(scene),
                 Err(_) => format!("Change {path}"),

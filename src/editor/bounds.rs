@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use isolith_field::model_pose;
 use isolith_geometry::Aabb;
 use isolith_mesh::MeshLibrary;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
@@ -76,7 +77,7 @@ pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
         NodeKind::Group(_) => None,
         NodeKind::Object(object) => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
         NodeKind::Mesh(mesh) => {
-            Some(meshes.known(&mesh.path).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))
+            Some(meshes.nearest(&model_pose(mesh, 0.0)).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))
         }
         NodeKind::Light(_) | NodeKind::Camera(_) => Some(token),
     }

@@ -161,7 +161,7 @@ impl Editor {
         }
         let parts: Vec<_> = relative.iter().map(|p| p.to_string_lossy()).collect();
         let name = relative.file_stem().map_or_else(|| "Mesh".into(), |s| s.to_string_lossy().into_owned());
-        let mesh = MeshNode { path: parts.join("/"), material: None };
+        let mesh = MeshNode::new(parts.join("/"));
         insertion::node(&mut self.state, Node::new(name, NodeKind::Mesh(mesh)));
     }
 }

@@ -33,7 +33,11 @@ pub struct WantedFile {
 
 /// Names the node, its shape or modifier and the parameter, for messages; `None` if the node no longer exists.
 pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
-    let ParamOwner::Node(id, part) = path.owner else { return None };
+    let (id, part) = match path.owner {
+        ParamOwner::Node(id, part) => (id, part),
+        ParamOwner::Material(id) => return Some(format!("{}: {}", scene.material(id)?.name, path.name)),
+        ParamOwner::Environment => return None,
+    };
     let node = scene.node(id)?;
     let of = match (part, &node.kind) {
         (Part::Modifier(place), _) => node.modifiers.get(place)?.modifier.kind().label(),

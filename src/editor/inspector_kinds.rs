@@ -44,7 +44,7 @@ pub fn shape(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     });
 }
 
-/// The file of a mesh.
+/// The file of a mesh, and the clip that poses it.
 pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
     widgets::card(ui, "Mesh", |ui| {
         let help = "A .gltf or .glb file, relative to the scene's folder";
@@ -58,6 +58,21 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
                     m.path.clone_from(&path);
                 }
             });
+        }
+        let help = "The animation clip that poses the model, by its name or its number; empty for the rest pose";
+        let clip = |n: &Node| if let NodeKind::Mesh(m) = &n.kind { Some(m.clip.clone()) } else { None };
+        let (current, hint) = if edit.common(clip).is_some() { (&*mesh.clip, "at rest") } else { ("", MIXED) };
+        let (widget, typed) = widgets::row(ui, "Clip", help, |ui| widgets::line(ui, "Clip", current, hint));
+        if let Some(clip) = typed {
+            edit.change(widget, |n| {
+                if let NodeKind::Mesh(m) = &mut n.kind {
+                    m.clip.clone_from(&clip);
+                }
+            });
+        }
+        if !mesh.clip.is_empty() {
+            inspector_params::row(ui, edit, Part::Mesh, "clip_time");
+            inspector_params::row(ui, edit, Part::Mesh, "clip_speed");
         }
     });
 }

@@ -195,13 +195,14 @@ enum Section {
     First,
     Specular,
     Coat,
+    Textures,
     Advanced,
     /// The material's model does not use it.
     Unused,
 }
 
 /// The most common parameters, in the order of the card.
-const FIRST: [&str; 8] = [
+const FIRST: [&str; 7] = [
     "base_color",
     "base_metalness",
     "specular_roughness",
@@ -209,21 +210,10 @@ const FIRST: [&str; 8] = [
     "model.shininess",
     "emission_luminance",
     "emission_color",
-    "geometry_opacity",
 ];
 
 /// What Blinn and Phong do without.
-const OF_LAYERS: [&str; 9] = [
-    "base_metalness",
-    "base_diffuse",
-    "specular_",
-    "coat_",
-    "transmission_",
-    "subsurface_",
-    "fuzz_",
-    "thin_film_",
-    "geometry_thin",
-];
+const OF_LAYERS: [&str; 4] = ["base_metalness", "base_diffuse", "specular_", "coat_"];
 
 impl Section {
     fn of(path: &str, model: ReflectionModel) -> Self {
@@ -233,6 +223,7 @@ impl Section {
             path if FIRST.contains(&path) => Self::First,
             path if path.starts_with("specular_") => Self::Specular,
             path if path.starts_with("coat_") => Self::Coat,
+            path if path.split('.').next() == Some("textures") => Self::Textures,
             _ => Self::Advanced,
         }
     }
@@ -259,7 +250,12 @@ fn editor(ui: &mut Ui, session: &mut EditSession, material: &Material) {
         let mut first: Vec<_> = of(Section::First).collect();
         first.sort_by_key(|path| FIRST.iter().position(|name| name == path));
         rows(ui, first);
-        let folded = [("Specular", Section::Specular), ("Coat", Section::Coat), ("Advanced", Section::Advanced)];
+        let folded = [
+            ("Specular", Section::Specular),
+            ("Coat", Section::Coat),
+            ("Textures", Section::Textures),
+            ("Advanced", Section::Advanced),
+        ];
         for (title, section) in folded {
             let paths: Vec<_> = of(section).collect();
             if !paths.is_empty() {

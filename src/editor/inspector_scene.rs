@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use isolith_scene::{Environment, ParamPath, Params};
+use isolith_scene::{DisplaySettings, Environment, ParamPath, Params};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
@@ -12,6 +12,11 @@ pub fn show(ui: &mut Ui, session: &mut EditSession) {
     widgets::card(ui, "World", |ui| {
         for param in Environment::default().params() {
             inspector_params::single(ui, session, ParamPath::of_environment(param.name));
+        }
+    });
+    widgets::card(ui, "Display", |ui| {
+        for param in DisplaySettings::default().params() {
+            inspector_params::single(ui, session, ParamPath::of_display(param.name));
         }
     });
     widgets::card(ui, "First steps", |ui| {

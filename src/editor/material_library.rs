@@ -3,10 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use super::material_edits::material_of;
-use super::material_presets::material_presets;
 use super::thumbnails::Thumbnails;
 use isolith_document::Document;
-use isolith_scene::{Material, MaterialId, NodeId};
+use isolith_scene::{Material, MaterialId, NodeId, material_presets};
 
 /// See the module.
 pub struct MaterialLibrary {

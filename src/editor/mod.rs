@@ -11,7 +11,7 @@
 //! | `root` | the editor: state, shell, and the windows in front |
 //! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
 //! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
-//! | `material_library`, `thumbnails`, `material_edits`, `material_presets`, `preset_picker` | the materials: counts, balls, changes, presets |
+//! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
@@ -56,7 +56,6 @@ mod intent;
 mod legend;
 mod material_edits;
 mod material_library;
-mod material_presets;
 mod materials;
 mod messages;
 mod multi_edit;

@@ -94,8 +94,9 @@ impl Default for EditorState {
 impl EditorState {
     /// The view for the renderer.
     pub fn wanted_view(&self) -> ViewSettings {
-        let ViewState { navigation, shading, view_mode, show_grid, show_outline, size_px, is_navigating, .. } =
-            &self.view;
+        let ViewState {
+            navigation, shading, view_mode, samples, show_grid, show_outline, size_px, is_navigating, ..
+        } = &self.view;
         ViewSettings {
             camera: navigation.camera(),
             size_px: *size_px,
@@ -104,6 +105,7 @@ impl EditorState {
             show_outline: *show_outline,
             shading: *shading,
             view_mode: *view_mode,
+            samples: *samples,
         }
     }
 

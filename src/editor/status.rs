@@ -38,6 +38,7 @@ impl Panel for StatusBar {
                     ui.label(RichText::new("·").color(theme::RESTING));
                     ui.label(RichText::new(&state.picture.status).color(theme::WEAK));
                 }
+                samples(state, ui);
                 drawing(state, ui);
                 ui.with_layout(Layout::left_to_right(Align::Center), |ui| left(state, ui));
             });
@@ -45,10 +46,18 @@ impl Panel for StatusBar {
     }
 }
 
+/// Number of samples in the picture.
+fn samples(state: &EditorState, ui: &mut Ui) {
+    if let Some([count, wanted]) = state.picture.samples.filter(|[_, wanted]| *wanted > 1) {
+        ui.label(RichText::new("·").color(theme::RESTING));
+        ui.label(RichText::new(format!("{count} / {wanted} samples")).color(theme::WEAK));
+    }
+}
+
 /// Progress of the picture, and a button that stops drawing.
 fn drawing(state: &mut EditorState, ui: &mut Ui) {
-    let Picture { progress, is_waiting, .. } = state.picture;
-    if progress.is_none() && !is_waiting {
+    let Picture { progress, is_waiting, is_sampling, .. } = state.picture;
+    if progress.is_none() && !is_waiting && !is_sampling {
         return;
     }
     let help = "Stops drawing: the picture stays as it is until something changes";

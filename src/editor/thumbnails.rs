@@ -8,7 +8,7 @@ use super::theme;
 use isolith_field::FlatMaterial;
 use isolith_field::light::material_ball::material_ball;
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
-use isolith_scene::{Material, MaterialId, ParamValue, Params};
+use isolith_scene::{Material, MaterialId};
 
 /// Width and height of a thumbnail in pixels.
 const SIDE: usize = 96;
@@ -119,19 +119,9 @@ fn looks_alike(a: &Material, b: &Material) -> bool {
 }
 
 fn render(material: &Material) -> ColorImage {
-    let pixels = material_ball(&FlatMaterial::new(material), opacity(material), SIDE);
+    let pixels = material_ball(&FlatMaterial::new(material), SIDE);
     let pixels = pixels.into_iter().map(|[r, g, b, _]| Color32::from_rgb(r, g, b)).collect();
     ColorImage::new([SIDE, SIDE], pixels)
-}
-
-fn opacity(material: &Material) -> f64 {
-    let mut opacity = 1.0;
-    material.visit("", &mut |_, param, value| {
-        if let ("geometry_opacity", ParamValue::Scalar(value)) = (param.name, value) {
-            opacity = value;
-        }
-    });
-    opacity
 }
 
 #[cfg(test)]

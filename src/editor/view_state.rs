@@ -19,6 +19,10 @@ pub struct Picture {
     pub progress: Option<f32>,
     /// Whether the full picture waits for pipelines or tapes.
     pub is_waiting: bool,
+    /// Number of accumulated samples, and of those that are wanted; `None` if the picture has no samples.
+    pub samples: Option<[u32; 2]>,
+    /// Whether samples are being added.
+    pub is_sampling: bool,
     /// Text for the status bar: adapter, milliseconds.
     pub status: String,
 }
@@ -40,7 +44,12 @@ pub struct ViewSettings {
     pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Samples per pixel that accumulate while nothing changes.
+    pub samples: u32,
 }
+
+/// Samples per pixel of a new view.
+const SAMPLES: u32 = 64;
 
 /// The action of the pointer in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -68,6 +77,8 @@ pub struct ViewState {
     pub shading: Shading,
     /// The view mode.
     pub view_mode: ViewMode,
+    /// Samples per pixel that accumulate while nothing changes.
+    pub samples: u32,
     /// Whether to show the ground grid.
     pub show_grid: bool,
     /// Whether to outline the selection.
@@ -90,6 +101,7 @@ impl Default for ViewState {
             navigation: Navigation::default(),
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
+            samples: SAMPLES,
             show_grid: true,
             show_outline: true,
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),

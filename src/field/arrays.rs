@@ -7,9 +7,11 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
 use super::flat_material::FlatMaterial;
+use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
 use isolith_geometry::{Aabb, Camera};
-use isolith_scene::{Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
+use isolith_mesh::ModelPose;
+use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
 
 /// Entry of the subtree-extent array: a group, a leaf (one shape), a modifier, or a run.
 ///
@@ -220,8 +222,8 @@ pub struct FlatLight {
 pub struct FlatMesh {
     /// Its node.
     pub id: NodeId,
-    /// The file, as the scene names it.
-    pub path: String,
+    /// The file, as the scene names it, and the pose at the scene's time.
+    pub model: ModelPose,
     /// World from the file's space.
     pub world_from_local: DAffine3,
     /// Index into [`FlatScene::materials`] instead of the file's own materials.
@@ -264,6 +266,9 @@ pub struct Component {
     /// where no two of their faces can cancel each other. Where a cut ends flush with a face, the remainder is the
     /// rounding of numbers of this size.
     pub flush_extent: f64,
+    /// The same without the sizes of shapes that are evaluated in numbers no larger than the distances of the point
+    /// and of the shape from `origin`: less for a large face, and right where that point is near.
+    pub flush_placement: f64,
     /// Stack depth: the accumulators that an evaluator must be able to put aside.
     pub stack: u32,
     /// Domains of its modifiers, in the order of their entries.
@@ -344,6 +349,8 @@ pub struct FlatScene {
     pub materials: Vec<FlatMaterial>,
     /// The id in the scene of each of `materials`.
     pub material_ids: Vec<MaterialId>,
+    /// Their textures.
+    pub textures: FlatTextures,
     /// The components.
     pub components: Vec<Component>,
     /// Visible lights.
@@ -354,6 +361,8 @@ pub struct FlatScene {
     pub cameras: Vec<FlatCamera>,
     /// Surroundings.
     pub environment: Environment,
+    /// How the light becomes the colors of a screen.
+    pub display: DisplaySettings,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].
@@ -414,6 +423,9 @@ pub const MAX_FLAT_ROWS: usize = 1 << 23;
 /// Most components: the renderer draws each on its own, and lavapipe needs half a gigabyte and several seconds for
 /// this many.
 pub const MAX_COMPONENTS: usize = 1 << 16;
+/// Most entries of materials, where one with textures has an entry for each object that uses it: a mixture holds indices
+/// of 16 bits.
+pub const MAX_PLACED_MATERIALS: usize = u16::MAX as usize;
 /// Most bytes of the arrays.
 pub const MAX_FLAT_BYTES: usize = 160 << 20;
 /// Most steps of flattening: visits of nodes and moved operands, copies included. Steps stand for time, but are the

@@ -10,8 +10,10 @@ use super::blends::has_own_radius;
 use super::budget::{Budget, Cancel, FlattenLimits, STACK};
 use super::composition::{apart, begin_with, group_of, polar_copies, size_of_fold, united};
 use super::cuts::{self, Cut};
+use super::flat_texture::TexturedMaterials;
 use super::leaf::leaf;
 use super::lower_bound::{LowerBound, fold_bounds};
+use super::modifier_reach::read_within;
 use super::modify::{MAX_NEIGHBORS, ModifierRefusal, Splines, modify};
 use super::operand::{Operand, Value};
 use super::prepare::PreparedShape;
@@ -95,9 +97,13 @@ pub(super) struct Collector<'a, 'b> {
     warned: HashSet<(NodeId, String)>,
     /// Whether the collector is inside a modifier, whose lights, cameras and meshes are already collected.
     is_muted: bool,
+    /// The greatest value of the field from which modifiers around make surfaces, in meters of the space that
+    /// transforms lead to.
+    read_to: f64,
     /// Prepared shapes with a payload, by the node's index: copies share them, wherever they stand.
     drawn: HashMap<usize, Rc<PreparedShape>>,
     splines: Splines,
+    textured: TexturedMaterials<'a>,
     /// Modifiers that cannot act on their content, by the node's index and the number of modifiers before them.
     refused: HashSet<(usize, usize)>,
 }
@@ -117,8 +123,10 @@ impl<'a, 'b> Collector<'a, 'b> {
             warnings: Vec::new(),
             warned: HashSet::new(),
             is_muted: false,
+            read_to: 0.0,
             drawn: HashMap::new(),
             splines: Splines::default(),
+            textured: TexturedMaterials::new(scene.materials()),
             refused: HashSet::new(),
         }
     }
@@ -222,8 +230,13 @@ impl<'a, 'b> Collector<'a, 'b> {
         if !self.budget.take_entries(outermost, 1) {
             return None;
         }
-        let operand = leaf(node, outermost, world, object, self.drawn.get(&index).cloned());
-        let Value::Leaf { prepared, .. } = &operand.value else { unreachable!("made as a leaf") };
+        let mut operand = leaf(node, outermost, world, object, self.drawn.get(&index).cloned());
+        let Value::Leaf { prepared, object_from_world, .. } = &mut operand.value else {
+            unreachable!("made as a leaf")
+        };
+        if self.textured.is_placed(object.material) {
+            *object_from_world = Some(Rc::new(world.inverse()));
+        }
         if object.shape.is_blank(&prepared.bounds) {
             return None;
         }
@@ -322,12 +335,17 @@ impl<'a, 'b> Collector<'a, 'b> {
         if self.refused.contains(&(index, rest.len())) {
             return self.modified(index, rest, world, outermost);
         }
-        let content = begin_with(self.modified(index, rest, &DAffine3::IDENTITY, outermost)?);
+        let (least, greatest) = singular_values(&world.matrix3);
+        let read_to = if self.read_to > 0.0 { self.read_to / least } else { 0.0 };
+        let outside = std::mem::replace(&mut self.read_to, read_within(last, read_to));
+        let content = self.modified(index, rest, &DAffine3::IDENTITY, outermost);
+        self.read_to = outside;
+        let content = begin_with(content?);
         let lower_bound = fold_bounds(&content);
         if lower_bound.bounds.is_empty() || !self.budget.take_entries(outermost, 1) {
             return None;
         }
-        let modified = match modify(last, &lower_bound, &mut self.splines) {
+        let modified = match modify(last, &lower_bound, read_to, &mut self.splines) {
             Ok(modified) => modified,
             Err(ModifierRefusal::Cannot(reason)) => {
                 self.warn(node, reason);
@@ -348,7 +366,6 @@ impl<'a, 'b> Collector<'a, 'b> {
         if let Some(warning) = &modified.warning {
             self.warn(node, warning.clone());
         }
-        let (least, greatest) = singular_values(&world.matrix3);
         let cull_box = modified.cull_box.transformed(world);
         let bounds = modified.bounds.transformed(world);
         let bound_slope = if cull_box.is_finite() { modified.bound_slope * least / greatest } else { 0.0 };

@@ -10,11 +10,29 @@ use super::stack::shallow;
 use isolith_geometry::Aabb;
 use isolith_scene::{BlendKernel, MaterialId, ShapeKind};
 
+/// A leaf's use of a material.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MaterialUse {
+    /// The material.
+    pub id: MaterialId,
+    /// The space of the object, if textures of the material need it. Within modifiers that stay in the arrays it is
+    /// that of the object before they act: the texture covers their result as a whole.
+    pub object_from_world: Option<DAffine3>,
+}
+
+/// The space that a fold is in.
+struct Within {
+    /// The point that its numbers are relative to.
+    origin: DVec3,
+    /// The world, or the local space of the enclosing modifier.
+    space_from_world: DAffine3,
+}
+
 /// Appends the component's entries and returns its description.
 pub(super) fn emit(
     flat: &mut FlatScene,
     operands: &[Operand<'_>],
-    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
 ) -> Component {
     let bounds = fold_bounds(operands).bounds;
     let shallow = shallow(operands);
@@ -23,9 +41,11 @@ pub(super) fn emit(
     let first = flat.nodes.len();
     let params = flat.params.len().next_multiple_of(ROW_ALIGNMENT);
     flat.params.resize(params, [0.0; 4]);
-    let stack = emit_fold(flat, operands, origin, material);
+    let within = Within { origin, space_from_world: DAffine3::IDENTITY };
+    let stack = emit_fold(flat, operands, &within, material);
     let data = flat.params.len();
     emit_data(flat, operands, &mut (first..));
+    let can_cancel = can_cancel(operands);
     let mut modifier_domains = Vec::new();
     let entries = || (first..).map(|at| (at - first, flat.nodes[at].is_run()));
     collect_domains(operands, 1, &mut entries(), &mut modifier_domains);
@@ -43,7 +63,8 @@ pub(super) fn emit(
         origin,
         bounds: bounds.translated(-origin),
         half_space: half_space(operands, origin),
-        flush_extent: if can_cancel(operands) { extent(operands, origin) } else { 0.0 },
+        flush_extent: if can_cancel { extent(operands, origin, &extent_of_leaf) } else { 0.0 },
+        flush_placement: if can_cancel { extent(operands, origin, &placement_of_leaf) } else { 0.0 },
         stack,
         modifier_domains,
         copies: operands.iter().map(copies).max().unwrap_or(1),
@@ -113,24 +134,43 @@ fn can_cancel(operands: &[Operand<'_>]) -> bool {
     })
 }
 
-/// The largest coordinate of the leaves' bounds, relative to `origin` or to the local space of the enclosing
-/// modifier; for an unbounded leaf its distance from there.
-fn extent(operands: &[Operand<'_>], origin: DVec3) -> f64 {
+/// The greatest number of `of_leaf` for all leaves, relative to `origin` or to the local space of the enclosing
+/// modifier.
+fn extent(operands: &[Operand<'_>], origin: DVec3, of_leaf: &dyn Fn(&Operand<'_>, DVec3) -> f64) -> f64 {
     let of = |operand: &Operand<'_>| match &operand.value {
-        Value::Leaf { .. } if operand.bounds.is_finite() => {
-            let bounds = operand.bounds.translated(-origin);
-            bounds.min.abs().max(bounds.max.abs()).max_element()
-        }
-        Value::Leaf { local_from_world, distance_scale, prepared, .. } => {
-            let local = local_from_world.transform_point3(origin);
-            // The position along a plane does not count.
-            let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
-            far * distance_scale
-        }
-        Value::Fold(inner) => extent(inner, origin),
-        Value::Modified { content, .. } => extent(content, DVec3::ZERO),
+        Value::Leaf { .. } => of_leaf(operand, origin),
+        Value::Fold(inner) => extent(inner, origin, of_leaf),
+        // How far a point is from the origin of this space is not known.
+        Value::Modified { content, .. } => extent(content, DVec3::ZERO, &extent_of_leaf),
     };
     operands.iter().map(of).fold(0.0, f64::max)
+}
+
+/// The largest coordinate of a leaf's bounds; for an unbounded leaf its distance.
+fn extent_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    if !operand.bounds.is_finite() {
+        return distance_of_leaf(operand, origin);
+    }
+    let bounds = operand.bounds.translated(-origin);
+    bounds.min.abs().max(bounds.max.abs()).max_element()
+}
+
+/// The distance of shapes that compare a coordinate of the point with their size; for others, which subtract points of
+/// their own, their extent.
+fn placement_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    let Value::Leaf { prepared, .. } = &operand.value else { return 0.0 };
+    match prepared.kind {
+        ShapeKind::Box | ShapeKind::Sphere | ShapeKind::Cylinder => distance_of_leaf(operand, origin),
+        _ => extent_of_leaf(operand, origin),
+    }
+}
+
+/// The distance of a leaf's own origin; of a plane, the distance to it.
+fn distance_of_leaf(operand: &Operand<'_>, origin: DVec3) -> f64 {
+    let Value::Leaf { local_from_world, distance_scale, prepared, .. } = &operand.value else { return 0.0 };
+    let local = local_from_world.transform_point3(origin);
+    let far = if prepared.kind == ShapeKind::Plane { local.y.abs() } else { local.length() };
+    far * distance_scale
 }
 
 /// Appends the payloads of all leaves and modifiers; `entries` are the entries from here on, in the order of writing.
@@ -194,8 +234,8 @@ const RUN_LENGTH: usize = 6;
 fn emit_fold(
     flat: &mut FlatScene,
     operands: &[Operand<'_>],
-    origin: DVec3,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+    within: &Within,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
 ) -> u32 {
     let alike = |a: &Operand<'_>, b: &Operand<'_>| {
         let skippable = |o: &Operand<'_>| o.bound_slope > 0.0 && o.join.is_skipped_far_off();
@@ -204,9 +244,9 @@ fn emit_fold(
     let mut stack = 0;
     for row in operands.chunk_by(alike) {
         stack = stack.max(if row.len() >= LEAST_IN_ROW {
-            emit_runs(flat, row, origin, material)
+            emit_runs(flat, row, within, material)
         } else {
-            row.iter().map(|operand| emit_operand(flat, operand, origin, material)).max().unwrap_or(0)
+            row.iter().map(|operand| emit_operand(flat, operand, within, material)).max().unwrap_or(0)
         });
     }
     stack
@@ -216,8 +256,8 @@ fn emit_fold(
 fn emit_runs(
     flat: &mut FlatScene,
     row: &[Operand<'_>],
-    origin: DVec3,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+    within: &Within,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
 ) -> u32 {
     let mut stack = 0;
     for run in row.chunks(row.len().div_ceil(RUN_LENGTH).max(RUN_LENGTH)) {
@@ -226,14 +266,14 @@ fn emit_runs(
         let code = FlatNode::RUN | ((run[0].join as u32) << 16);
         flat.ids.push(run[0].node.id);
         flat.nodes.push(FlatNode { code, extent: 0, params, material: 0 });
-        let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.cull_box)).translated(-origin);
+        let bounds = run.iter().fold(Aabb::EMPTY, |all, o| all.union(&o.cull_box)).translated(-within.origin);
         let bound_slope = run.iter().map(|o| o.bound_slope).fold(f64::INFINITY, f64::min);
         let support = run.iter().map(|o| o.blend.support()).fold(0.0, f64::max);
         flat.params.extend(bounding_rows([support as f32, 0.0, 0.0], bound_slope, &bounds));
         stack = stack.max(if run.len() > RUN_LENGTH {
-            emit_runs(flat, run, origin, material)
+            emit_runs(flat, run, within, material)
         } else {
-            run.iter().map(|operand| emit_operand(flat, operand, origin, material)).max().unwrap_or(0)
+            run.iter().map(|operand| emit_operand(flat, operand, within, material)).max().unwrap_or(0)
         });
         flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
     }
@@ -292,8 +332,8 @@ fn collect_rest(
 fn emit_operand(
     flat: &mut FlatScene,
     operand: &Operand<'_>,
-    origin: DVec3,
-    material: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
+    within: &Within,
+    material: &mut dyn FnMut(&mut FlatScene, MaterialUse) -> u32,
 ) -> u32 {
     let index = flat.nodes.len();
     let params = flat.params.len() as u32;
@@ -302,11 +342,12 @@ fn emit_operand(
     let blend_params = [operand.blend.support(), operand.detail[0], operand.detail[1]].map(|v| v as f32);
     flat.ids.push(operand.node.id);
     match &operand.value {
-        Value::Leaf { local_from_world, distance_scale, prepared, material: id } => {
-            let material = material(flat, *id);
+        Value::Leaf { local_from_world, distance_scale, prepared, material: id, object_from_world } => {
+            let object_from_world = object_from_world.as_deref().map(|object| *object * within.space_from_world);
+            let material = material(flat, MaterialUse { id: *id, object_from_world });
             flat.nodes.push(FlatNode { code: code(prepared.kind as u32), extent: 1, params, material });
             flat.params.push([blend_params[0], *distance_scale as f32, blend_params[1], blend_params[2]]);
-            flat.params.extend(placing_rows(local_from_world, origin));
+            flat.params.extend(placing_rows(local_from_world, within.origin));
             let packed = prepared.parameters.map(|v| v as f32);
             let rows = prepared.kind.parameter_rows();
             flat.params.extend(packed.chunks_exact(4).take(rows).map(|c| [c[0], c[1], c[2], c[3]]));
@@ -316,20 +357,26 @@ fn emit_operand(
         }
         Value::Fold(inner) => {
             flat.nodes.push(FlatNode { code: code(FlatNode::GROUP), extent: 0, params, material: 0 });
-            flat.params.extend(bounding_rows(blend_params, operand.bound_slope, &operand.cull_box.translated(-origin)));
-            let stack = emit_fold(flat, inner, origin, material);
+            flat.params.extend(bounding_rows(
+                blend_params,
+                operand.bound_slope,
+                &operand.cull_box.translated(-within.origin),
+            ));
+            let stack = emit_fold(flat, inner, within, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }
         Value::Modified { local_from_world, distance_scale, kind, modified, content } => {
             let marker = FlatNode::MODIFIER + *kind as u32;
             flat.nodes.push(FlatNode { code: code(marker), extent: 0, params, material: 0 });
-            let mut bounding = bounding_rows(blend_params, operand.bound_slope, &operand.cull_box.translated(-origin));
+            let mut bounding =
+                bounding_rows(blend_params, operand.bound_slope, &operand.cull_box.translated(-within.origin));
             bounding[1][3] = *distance_scale as f32;
             flat.params.extend(bounding);
-            flat.params.extend(placing_rows(local_from_world, origin));
+            flat.params.extend(placing_rows(local_from_world, within.origin));
             flat.params.extend(modified.rows.iter().map(|row| row.map(|v| v as f32)));
-            let stack = emit_fold(flat, content, DVec3::ZERO, material);
+            let space_from_world = *local_from_world * within.space_from_world;
+            let stack = emit_fold(flat, content, &Within { origin: DVec3::ZERO, space_from_world }, material);
             flat.nodes[index].extent = (flat.nodes.len() - index) as u32;
             stack + 1
         }

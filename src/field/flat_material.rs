@@ -18,8 +18,8 @@ pub struct FlatMaterial {
     pub specular_weight: f32,
     /// Emitted color times its luminance.
     pub emission: [f32; 3],
-    /// Opacity.
-    pub opacity: f32,
+    /// How much the coat darkens what is below.
+    pub coat_darkening: f32,
     /// Tint of the coat.
     pub coat_color: [f32; 3],
     /// Share of the surface under the coat.
@@ -43,12 +43,6 @@ pub struct FlatMaterial {
 }
 
 impl FlatMaterial {
-    /// The material of a mesh that keeps its file's colors; the colors themselves stand in a target.
-    pub fn of_file() -> Self {
-        let model = ReflectionModel::BlinnPhong { specular: 0.2, shininess: 32.0 };
-        Self::new(&Material { model, base_color: [1.0; 3], ..Material::default() })
-    }
-
     /// The material as the GPU reads it.
     pub fn new(material: &Material) -> Self {
         let color = |c: [f64; 3], by: f64| c.map(|v| (v * by) as f32);
@@ -62,7 +56,7 @@ impl FlatMaterial {
             specular_color: color(material.specular_color, 1.0),
             specular_weight: material.specular_weight as f32,
             emission: color(material.emission_color, material.emission_luminance),
-            opacity: material.geometry_opacity as f32,
+            coat_darkening: material.coat_darkening as f32,
             coat_color: color(material.coat_color, 1.0),
             coat_weight: material.coat_weight as f32,
             roughness: material.specular_roughness as f32,

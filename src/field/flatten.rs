@@ -16,14 +16,17 @@ use super::batch::{batched, united};
 use super::budget::{BYTES, Budget, Cancel, FlattenLimits, LEVELS, ROWS, STACK, Usage};
 use super::collect::{Components, collect};
 use super::composition::size_of_fold;
-use super::emit::emit;
+use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
+use super::flat_texture::TexturedMaterials;
 use super::lower_bound::fold_bounds;
+use super::meshes::model_pose;
 use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
 use isolith_geometry::Camera;
+use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].
@@ -31,6 +34,9 @@ const TOGETHER: &str = "the number of shapes that are blended or cut together";
 
 /// See [`MAX_COMPONENTS`].
 const APART: &str = "the number of parts that meet others by hard union only, copies included";
+
+/// See [`MAX_PLACED_MATERIALS`].
+const MATERIALS: &str = "the number of materials, those with textures counted for each object that uses them";
 
 /// See [`MAX_COPIES`].
 const COPIES: &str = "the number of copies of copies that are evaluated for one point";
@@ -67,7 +73,8 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     let limits = FlattenLimits::default();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     on_a_stack(scene, &survey, || {
-        let mut materials = Materials { scene, index };
+        let textured = TexturedMaterials::new(scene.materials());
+        let mut materials = Materials { scene, textured, index };
         let budget = Budget::new(limits, &Cancel::default());
         let whole = united(collect(scene, &survey, budget, &mut |_, _| {}).operands);
         if !whole.is_empty() {
@@ -103,7 +110,7 @@ fn flatten_within(
     debug_assert!(time.is_finite(), "time is checked at the border");
     let _span = tracing::debug_span!("flatten", nodes = scene.nodes().len()).entered();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
-    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, limits, cancel))
+    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, time, limits, cancel))
 }
 
 /// Runs `work` on a stack that is deep enough for it.
@@ -128,6 +135,7 @@ fn on_a_stack<T: Send>(
 fn flatten_surveyed(
     scene: &Scene,
     survey: &Survey,
+    time: f64,
     limits: FlattenLimits,
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
@@ -136,14 +144,16 @@ fn flatten_surveyed(
         params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
         environment: scene.environment,
+        display: scene.display,
         ..FlatScene::default()
     };
-    let mut materials = Materials { scene, index: HashMap::new() };
+    let textured = TexturedMaterials::new(scene.materials());
+    let mut materials = Materials { scene, textured, index: HashMap::new() };
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
-        add_non_field(&mut flat, &mut materials, node, world_from_local);
+        add_non_field(&mut flat, &mut materials, node, world_from_local, time);
     });
     let Components { operands, warnings, has_cuts, budget } = components;
-    flat.warnings = warnings;
+    flat.warnings.extend(warnings);
     let steps = budget.steps();
     if let Some(problem) = budget.problem {
         return Err(problem);
@@ -161,27 +171,75 @@ fn flatten_surveyed(
             return Ok(None);
         }
     }
+    warn_of_small_images(&mut flat, scene);
     Ok(Some(Made { flat, has_cuts, steps }))
+}
+
+/// Reduces the images of textures to what devices can hold, with a warning for each.
+fn warn_of_small_images(flat: &mut FlatScene, scene: &Scene) {
+    let FlatScene { textures, warnings, material_ids, nodes, ids, .. } = flat;
+    let set_ids = textures.set_ids.clone();
+    for image in textures.fit(MAX_TEXTURE_BYTES) {
+        let id = set_ids[image.set as usize];
+        let user =
+            nodes.iter().zip(&*ids).find(|(node, _)| node.is_leaf() && material_ids[node.material as usize] == id);
+        let Some(node) = user.and_then(|(_, id)| scene.node(*id)) else { continue };
+        let material = scene.material(id).map_or("", |material| &material.name);
+        let reason = format!(
+            "shows the image {:?} of its material {material:?} at 1/{} of its size: the images of textures take more \
+             than {} MiB",
+            image.name,
+            image.reduction(),
+            MAX_TEXTURE_BYTES >> 20
+        );
+        warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
+    }
 }
 
 /// Indices of the materials in use, in the order of first use.
 struct Materials<'a> {
     scene: &'a Scene,
+    textured: TexturedMaterials<'a>,
     index: HashMap<MaterialId, u32>,
 }
 
 impl Materials<'_> {
-    fn resolve(&mut self, flat: &mut FlatScene, id: MaterialId) -> u32 {
-        *self.index.entry(id).or_insert_with(|| {
+    fn resolve(&mut self, flat: &mut FlatScene, MaterialUse { id, object_from_world }: MaterialUse) -> u32 {
+        let known = self.index.get(&id).copied();
+        if let (Some(known), None) = (known, object_from_world) {
+            return known;
+        }
+        let made = || {
             let material = self.scene.material(id).expect("the scene holds every material that a node names");
-            flat.materials.push(FlatMaterial::new(material));
-            flat.material_ids.push(id);
-            flat.materials.len() as u32 - 1
-        })
+            FlatMaterial::new(material)
+        };
+        let at = flat.materials.len();
+        flat.materials.push(known.map_or_else(made, |known| flat.materials[known as usize]));
+        flat.material_ids.push(id);
+        self.index.entry(id).or_insert(at as u32);
+        if let Some(material) = self.textured.get(id) {
+            flat.textures.place(material, at, &object_from_world.unwrap_or(DAffine3::IDENTITY));
+        }
+        at as u32
+    }
+
+    /// A mesh's use of a material.
+    fn of_mesh(&mut self, flat: &mut FlatScene, node: &Node, id: MaterialId) -> u32 {
+        if self.textured.get(id).is_some() {
+            let reason = "has a material with textures, which meshes do not show".into();
+            flat.warnings.push(Warning { node: node.id, name: node.name.clone(), reason });
+        }
+        self.resolve(flat, MaterialUse { id, object_from_world: None })
     }
 }
 
-fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Node, world_from_local: &DAffine3) {
+fn add_non_field(
+    flat: &mut FlatScene,
+    materials: &mut Materials<'_>,
+    node: &Node,
+    world_from_local: &DAffine3,
+    time: f64,
+) {
     let forward = (world_from_local.matrix3 * DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z);
     match &node.kind {
         NodeKind::Light(light) => flat.lights.push(FlatLight {
@@ -191,10 +249,10 @@ fn add_non_field(flat: &mut FlatScene, materials: &mut Materials<'_>, node: &Nod
             light: *light,
         }),
         NodeKind::Mesh(mesh) => {
-            let material = mesh.material.map(|id| materials.resolve(flat, id));
+            let material = mesh.material.map(|id| materials.of_mesh(flat, node, id));
             flat.meshes.push(FlatMesh {
                 id: node.id,
-                path: mesh.path.clone(),
+                model: model_pose(mesh, time),
                 world_from_local: *world_from_local,
                 material,
             });
@@ -244,7 +302,7 @@ fn add_component(
         return refuse(STACK, depth as usize, MAX_STACK as usize);
     }
     let start = flat.nodes.len();
-    let component = emit(flat, operands, &mut |flat, id| materials.resolve(flat, id));
+    let component = emit(flat, operands, &mut |flat, user| materials.resolve(flat, user));
     let copies = component.copies as usize;
     flat.components.push(component);
     let limits = [
@@ -253,6 +311,7 @@ fn add_component(
         (ROWS, flat.params.len(), most_rows),
         (BYTES, flat.bytes(), MAX_FLAT_BYTES),
         (COPIES, copies, MAX_COPIES),
+        (MATERIALS, flat.materials.len(), MAX_PLACED_MATERIALS),
     ];
     match limits.into_iter().find(|(_, value, limit)| value > limit) {
         Some((what, value, limit)) => refuse(what, value, limit),

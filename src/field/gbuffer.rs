@@ -14,8 +14,11 @@ pub struct GBuffer {
     pub leaf: Vec<u32>,
     /// Unit world normal; zero where nothing is hit.
     pub normal: Vec<[f32; 3]>,
-    /// sRGB and alpha; the background is opaque too.
+    /// sRGB and alpha; the background is opaque too, unless it is left out.
     pub color: Vec<[u8; 4]>,
+    /// Linear light before exposure and view transform, multiplied by coverage, and coverage; empty unless samples were
+    /// accumulated.
+    pub radiance: Vec<[f32; 4]>,
 }
 
 /// No hit.
@@ -58,6 +61,7 @@ impl GBuffer {
             leaf: vec![NO_LEAF; pixels],
             normal: vec![[0.0; 3]; pixels],
             color: vec![[0, 0, 0, 255]; pixels],
+            radiance: Vec::new(),
         }
     }
 

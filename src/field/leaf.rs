@@ -29,7 +29,8 @@ pub(super) fn leaf<'a>(
     let bounds = prepared.bounds.transformed(&world_from_local);
     let bound_slope = if bounds.is_finite() { least / greatest } else { 0.0 };
     let local_from_world = world_from_local.inverse();
-    let value = Value::Leaf { local_from_world, distance_scale: least, prepared, material: *material };
+    let value =
+        Value::Leaf { local_from_world, distance_scale: least, prepared, material: *material, object_from_world: None };
     Operand::first(node, outermost, LowerBound::new(bounds, bounds, bound_slope), value)
 }
 

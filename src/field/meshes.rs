@@ -4,7 +4,17 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use super::{FlatScene, Warning};
-use isolith_mesh::{MeshLibrary, TriangleMesh};
+use isolith_mesh::{ClipTime, MeshLibrary, ModelPose, TriangleMesh};
+use isolith_scene::MeshNode;
+
+/// The pose of a model at `time` seconds.
+pub fn model_pose(mesh: &MeshNode, time: f64) -> ModelPose {
+    let at = mesh.clip_time + mesh.clip_speed * time;
+    // Speed and time within their limits may still have a product that is not finite.
+    let at = if at.is_finite() { at } else { mesh.clip_time };
+    let clip = (!mesh.clip.is_empty()).then(|| ClipTime { name: mesh.clip.clone(), time: at });
+    ModelPose { path: mesh.path.clone(), clip }
+}
 
 impl FlatScene {
     /// The loaded meshes, parallel to [`FlatScene::meshes`], for rays and the renderer, with warnings: about each
@@ -13,18 +23,21 @@ impl FlatScene {
     pub fn load_meshes(&self, library: &mut MeshLibrary) -> (Vec<Option<Arc<TriangleMesh>>>, Vec<Warning>) {
         let mut warnings = Vec::new();
         let mut told = HashSet::new();
-        let load = |mesh: &super::FlatMesh| match library.get(&mesh.path) {
+        let load = |mesh: &super::FlatMesh| match library.get(&mesh.model) {
             Ok(triangles) => {
-                if !triangles.warnings.is_empty() && told.insert(mesh.path.clone()) {
-                    let warning =
-                        |reason: &String| Warning { node: mesh.id, name: mesh.path.clone(), reason: reason.clone() };
+                if !triangles.warnings.is_empty() && told.insert(mesh.model.clone()) {
+                    let warning = |reason: &String| Warning {
+                        node: mesh.id,
+                        name: mesh.model.path.clone(),
+                        reason: reason.clone(),
+                    };
                     warnings.extend(triangles.warnings.iter().map(warning));
                 }
                 Some(triangles)
             }
             Err(error) => {
                 let reason = format!("the mesh is not drawn: {error}");
-                warnings.push(Warning { node: mesh.id, name: mesh.path.clone(), reason });
+                warnings.push(Warning { node: mesh.id, name: mesh.model.path.clone(), reason });
                 None
             }
         };
@@ -32,9 +45,10 @@ impl FlatScene {
         (meshes, warnings)
     }
 
-    /// The same for a library as it is: reads no file and leaves out meshes that are not loaded yet.
+    /// The same for a library as it is: reads no file and leaves out meshes that are not loaded yet. Another pose stands
+    /// in for one that is not loaded yet.
     pub fn known_meshes(&self, library: &MeshLibrary) -> Vec<Option<Arc<TriangleMesh>>> {
-        let known = |mesh: &super::FlatMesh| library.known(&mesh.path).and_then(|mesh| mesh.as_ref().ok()).cloned();
+        let known = |mesh: &super::FlatMesh| library.nearest(&mesh.model).and_then(|mesh| mesh.as_ref().ok()).cloned();
         self.meshes.iter().map(known).collect()
     }
 }
@@ -48,7 +62,7 @@ mod tests {
     #[test]
     fn a_mesh_that_is_missing_is_a_warning_about_its_node() {
         let mut scene = Scene::new();
-        let node = NodeKind::Mesh(MeshNode { path: "no-such.glb".into(), material: None });
+        let node = NodeKind::Mesh(MeshNode::new("no-such.glb"));
         let id = scene.insert(None, 0, Node::new("statue", node)).unwrap();
         let flat = flatten(&scene, 0.0).unwrap();
         let (meshes, warnings) = flat.load_meshes(&mut MeshLibrary::new(Some(std::env::temp_dir())));

@@ -103,8 +103,8 @@ surface_material! {
     specular_weight: f64,
     /// Emitted color times its luminance.
     emission: DVec3,
-    /// Opacity.
-    opacity: f64,
+    /// How much the coat darkens what is below.
+    coat_darkening: f64,
     /// Tint of the coat.
     coat_color: DVec3,
     /// Share of the surface under the coat.

@@ -9,6 +9,7 @@
 //! | `operand`, `composition` | operands of folds, and their composition |
 //! | `collect`, `fold`, `cuts` | scene → folds of operands, one for each component |
 //! | `flatten` | scene → [`FlatScene`] |
+//! | `modifier_reach` | what modifiers read of their content, and how fine their patterns may be |
 //! | `modifier_table` | all facts about a kind of modifier, in one row |
 //! | `modify` | effects of modifiers on bounds and steps |
 //! | `moved` | the parameters of a component relative to a point near the eye |
@@ -62,12 +63,14 @@ mod blends;
 mod budget;
 mod collect;
 mod composition;
+pub mod coverage;
 mod cuts;
 pub mod debug_view;
 mod emit;
 mod error;
 pub mod eval;
 mod flat_material;
+mod flat_texture;
 mod flatten;
 mod fold;
 mod gbuffer;
@@ -76,9 +79,11 @@ mod leaf;
 pub mod light;
 mod lights;
 mod lower_bound;
+mod mesh_material;
 pub mod mesh_rays;
 mod meshes;
 pub mod mixture;
+mod modifier_reach;
 mod modifier_table;
 mod modify;
 mod moved;
@@ -93,6 +98,7 @@ mod stack;
 pub mod standpoint;
 mod survey;
 mod tape;
+mod textures_in_view;
 pub mod unflattened;
 mod usage;
 pub mod view;
@@ -101,9 +107,12 @@ pub use arrays::*;
 pub use budget::{Cancel, Usage};
 pub use error::FlattenError;
 pub use flat_material::FlatMaterial;
+pub use flat_texture::*;
 pub use flatten::{flatten, flatten_until, flatten_whole};
 pub use gbuffer::*;
 pub use lights::{GpuLight, gpu_lights};
+pub use mesh_material::mesh_material;
+pub use meshes::model_pose;
 pub use modifier_table::{
     changes_value, is_copying, is_rough, modifier_payload, modifier_payload_row, modifier_rows, moves_point,
 };
@@ -115,3 +124,4 @@ pub use reflatten::Flattener;
 pub use shading::Shading;
 pub use survey::is_quick;
 pub use tape::*;
+pub use textures_in_view::gpu_textures;

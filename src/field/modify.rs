@@ -3,7 +3,8 @@
 //! A deformation stretches space. Its field is divided by the largest stretch (its Lipschitz constant), which is
 //! known only near the content. So every deformation has a bound with a margin m: at a distance d from the bound the
 //! field is max(d, min(g, 2m − d)), where g is the divided field. This never grows faster than 1 per meter, has the
-//! sign of g within, and is simply d far away.
+//! sign of g within, and is simply d far away. Values up to m describe the content, larger ones its bound: where
+//! modifiers around it make a surface of larger values, m grows to these.
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -11,6 +12,7 @@ use std::rc::Rc;
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
 use super::lower_bound::LowerBound;
+use super::modifier_reach::too_fine;
 use super::modifier_table::modifier_rows;
 use super::operand::Modified;
 use super::prepare::spline;
@@ -40,6 +42,9 @@ const MOST_SIDEWAYS: u32 = 1 << 16;
 const MARGIN: f64 = 0.1;
 /// The least margin, in meters.
 const LEAST_MARGIN: f64 = 1e-6;
+/// Most that values to be read widen a margin, relative to the size of the content: what is moved outward farther
+/// looks like its bounds anyway.
+const MOST_READ: f64 = 4.0;
 /// Stands for infinity: far beyond any camera, and its square still fits f32.
 const ENDLESS: f64 = 1e18;
 /// A bend turns by at most this angle on each side, in radians.
@@ -49,10 +54,12 @@ const MOST_INWARD: f64 = 0.9;
 /// A taper narrows at most to this fraction.
 const NARROWEST: f64 = 0.05;
 
-/// Applies a modifier to its content; an error says why it cannot act.
+/// Applies a modifier to its content; an error says why it cannot act. Modifiers around it make surfaces of its field
+/// up to the value `read_to`.
 pub(super) fn modify(
     modifier: &Modifier,
     content: &LowerBound,
+    read_to: f64,
     splines: &mut Splines,
 ) -> Result<Modified, ModifierRefusal> {
     let same = Modified {
@@ -67,15 +74,15 @@ pub(super) fn modify(
     let radians = f64::to_radians;
     let mut modified = match *modifier {
         Modifier::Mirror { .. } | Modifier::Polar { .. } => unreachable!("these are copied, see operands"),
-        Modifier::Repeat { .. } => repeat(modifier, content, same)?,
+        Modifier::Repeat { .. } => repeat(modifier, content, read_to, same)?,
         Modifier::Recursion { count, offset, rotation, scale, mirrored } => {
             let turn = rotation.map(f64::to_radians);
             let rotation = DQuat::from_euler(EulerRot::ZYX, turn[2], turn[1], turn[0]);
             recursion(count, offset.into(), DMat3::from_quat(rotation), scale, mirrored, same)
         }
-        Modifier::Twist { angle } => twist(radians(angle), bounded(content, "twisted")?, content.radius, same),
-        Modifier::Bend { angle } => bend(radians(angle), bounded(content, "bent")?, same),
-        Modifier::Taper { change } => taper(change, bounded(content, "tapered")?, same),
+        Modifier::Twist { angle } => twist(radians(angle), bounded(content, "twisted")?, content.radius, read_to, same),
+        Modifier::Bend { angle } => bend(radians(angle), bounded(content, "bent")?, read_to, same),
+        Modifier::Taper { change } => taper(change, bounded(content, "tapered")?, read_to, same),
         Modifier::Elongate { length } => {
             let half = DVec3::from(length) * 0.5;
             let grown = |b: Aabb| Aabb::new(b.min - half, b.max + half);
@@ -110,6 +117,9 @@ pub(super) fn modify(
             displacement(image, made.clone(), height, tile, axis, same)
         }
     };
+    if let Some(warning) = too_fine(modifier, &content.bounds) {
+        modified.warning = Some(warning);
+    }
     modified.rows.resize(modifier_rows(modifier.kind()), [0.0; 4]);
     if !modified.cull_box.is_finite() {
         modified.bound_slope = 0.0;
@@ -145,6 +155,11 @@ fn bounded(content: &LowerBound, deformed: &str) -> Result<Aabb, ModifierRefusal
         return Ok(content.bounds);
     }
     Err(ModifierRefusal::Cannot(format!("has no end, so it cannot be {deformed}")))
+}
+
+/// The margin around the bounds of a deformation's content of this size: the usual one, or what is read.
+fn margin(usual: f64, size: f64, read_to: f64) -> f64 {
+    usual.max(read_to.min(MOST_READ * size)).max(LEAST_MARGIN)
 }
 
 fn grown(same: Modified, by: f64, rows: Vec<[f64; 4]>) -> Modified {
@@ -189,16 +204,16 @@ fn shear(slope: f64) -> f64 {
     0.5 * (slope + (slope * slope + 4.0).sqrt())
 }
 
-fn twist(angle: f64, content: Aabb, radius: f64, same: Modified) -> Modified {
+fn twist(angle: f64, content: Aabb, radius: f64, read_to: f64, same: Modified) -> Modified {
     let radius = radius_of(&content).min(radius);
     let (middle, half) = (content.center().y, content.half().y);
-    let margin = (MARGIN * radius.max(0.1 * half)).max(LEAST_MARGIN);
+    let margin = margin(MARGIN * radius.max(0.1 * half), radius.max(half), read_to);
     let stretch = shear(angle.abs() * (radius + margin));
     let bounds = Aabb::new(DVec3::new(-radius, content.min.y, -radius), DVec3::new(radius, content.max.y, radius));
     enclosed(same, bounds, vec![[angle, 1.0 / stretch, radius, margin], [middle, half, 0.0, 0.0]])
 }
 
-fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
+fn bend(angle: f64, content: Aabb, read_to: f64, same: Modified) -> Modified {
     let sign = angle.signum();
     let reach = content.min.x.abs().max(content.max.x.abs());
     // Toward the center of the arc, and away from it.
@@ -206,7 +221,7 @@ fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
     let inward = if high > 0.0 { MOST_INWARD / high } else { f64::INFINITY };
     let around = if reach > 0.0 { MOST_BENT / reach } else { f64::INFINITY };
     let curvature = angle.abs().min(inward).min(around);
-    let warning = (curvature < angle.abs()).then(|| {
+    let mut warning = (curvature < angle.abs()).then(|| {
         let degrees = (curvature.to_degrees() * 100.0).round() / 100.0;
         if inward < around {
             format!("is bent by {degrees}°/m only: its inner side would fold over")
@@ -217,7 +232,12 @@ fn bend(angle: f64, content: Aabb, same: Modified) -> Modified {
     let radius = 1.0 / curvature;
     let open = (std::f64::consts::PI - reach * curvature).min(std::f64::consts::FRAC_PI_2);
     let room = radius - high;
-    let margin = (MARGIN * content.half().max_element()).min(0.5 * room * open.sin()).max(LEAST_MARGIN);
+    let size = content.half().max_element();
+    let wide = margin(MARGIN * size, size, read_to);
+    let margin = wide.min(0.5 * room * open.sin()).max(LEAST_MARGIN);
+    if warning.is_none() && read_to > margin && margin < wide {
+        warning = Some(format!("is bent too tightly for its surface to be moved outward by more than {margin:.3} m"));
+    }
     let stretch = (radius / (room - margin).max(1e-3 * room)).max(1.0);
     let bounds = bent_bounds(curvature, sign, reach, [low, high], &content);
     let (center, half) = (bounds.center(), bounds.half());
@@ -248,7 +268,7 @@ fn bent_bounds(curvature: f64, sign: f64, reach: f64, [low, high]: [f64; 2], con
     Aabb::new(flat.min + z(content.min.z), flat.max + z(content.max.z))
 }
 
-fn taper(change: f64, content: Aabb, same: Modified) -> Modified {
+fn taper(change: f64, content: Aabb, read_to: f64, same: Modified) -> Modified {
     let width = |y: f64, change: f64| 1.0 + change * y;
     let narrow = |change: f64| width(content.min.y, change).min(width(content.max.y, change));
     let mut warning = None;
@@ -261,7 +281,8 @@ fn taper(change: f64, content: Aabb, same: Modified) -> Modified {
     }
     let ends = [width(content.min.y, used), width(content.max.y, used)];
     let (narrowest, widest) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-    let margin = (MARGIN * content.half().max_element()).max(LEAST_MARGIN);
+    let size = content.half().max_element();
+    let margin = margin(MARGIN * size, size, read_to);
     let radius = radius_of(&content) + 1.5 * margin / narrowest;
     let (a, b) = (1.0 / narrowest, radius * used.abs() / narrowest);
     let sum = a * a + b * b + 1.0;
@@ -335,7 +356,25 @@ fn candidates(half: f64, spacing: f64) -> u32 {
     if reach <= 0.375 { 1 } else { 2 * ((reach + 0.125).ceil() as u32).clamp(1, MOST_SIDEWAYS) }
 }
 
-fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<Modified, ModifierRefusal> {
+/// Sets the number of cells to evaluate along each axis so that those left out are farther away than `read_to`.
+/// Returns their product.
+fn visit(axes: &mut [Cells], counts: [u32; 3], spacing: [f64; 3], read_to: f64) -> u64 {
+    for (i, axis) in axes.iter_mut().enumerate() {
+        axis.candidates = match counts[i] {
+            0 => candidates(axis.half + read_to, spacing[i]),
+            1 => 1,
+            n => candidates(axis.half + read_to, spacing[i]).min(2 * n),
+        };
+    }
+    axes.iter().map(|axis| u64::from(axis.candidates)).product()
+}
+
+fn repeat(
+    modifier: &Modifier,
+    content: &LowerBound,
+    read_to: f64,
+    same: Modified,
+) -> Result<Modified, ModifierRefusal> {
     let Modifier::Repeat { counts, spacing, mut offset, turn, mirrored, carve_from, carve_to } = *modifier else {
         unreachable!("called for repeats only")
     };
@@ -361,18 +400,19 @@ fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<M
             let axis = ["X", "Y", "Z"][i];
             return Err(ModifierRefusal::Cannot(format!("has no end along {axis}, so it cannot be repeated along it")));
         }
-        let mut candidates = if counts[i] == 1 { 1 } else { candidates(half[i], spacing[i]) };
-        if counts[i] > 1 {
-            candidates = candidates.min(2 * counts[i]);
-        }
-        axes.push(Cells { first, last, middle: center[i], half: half[i], candidates });
+        axes.push(Cells { first, last, middle: center[i], half: half[i], candidates: 1 });
+    }
+    let mut warning = None;
+    let mut copies = visit(&mut axes, counts, spacing, read_to);
+    if copies > u64::from(MAX_NEIGHBORS) && read_to > 0.0 {
+        warning = Some("has more copies within reach than are evaluated where its surface is moved outward".into());
+        copies = visit(&mut axes, counts, spacing, 0.0);
     }
     // An offset along an axis with cells of its own would leave these cells; bricks need both X and Y.
     for i in [1, 2] {
         offset[i] = if counts[i] == 1 && counts[0] != 1 { offset[i] } else { 0.0 };
     }
     offset[0] = if counts[0] != 1 && counts[1] != 1 { offset[0] } else { 0.0 };
-    let copies = axes.iter().map(|a| u64::from(a.candidates)).product::<u64>();
     if copies > u64::from(MAX_NEIGHBORS) {
         return Err(ModifierRefusal::TooMany(copies as usize));
     }
@@ -395,7 +435,7 @@ fn repeat(modifier: &Modifier, content: &LowerBound, same: Modified) -> Result<M
         bounds.max.clamp(DVec3::splat(-ENDLESS), DVec3::splat(ENDLESS)).extend(0.0).to_array(),
     ];
     let bound_slope = content.bound_slope.min(1.0);
-    Ok(Modified { rows, bounds, cull_box: bounds, bound_slope, copies: copies as u32, ..same })
+    Ok(Modified { rows, bounds, cull_box: bounds, bound_slope, copies: copies as u32, warning, ..same })
 }
 
 fn repeated_bounds(cell: &Aabb, axes: &[Cells], counts: [u32; 3], spacing: [f64; 3], offset: [f64; 3]) -> Aabb {

@@ -39,8 +39,15 @@ pub(super) struct Operand<'a> {
 /// Kind and content of an operand.
 #[derive(Clone)]
 pub(super) enum Value<'a> {
-    /// A shape: local-from-world, factor on its local distance, prepared shape, material.
-    Leaf { local_from_world: DAffine3, distance_scale: f64, prepared: Rc<PreparedShape>, material: MaterialId },
+    /// A shape: local-from-world, factor on its local distance, prepared shape, material, and the space of its object if
+    /// textures of the material need it.
+    Leaf {
+        local_from_world: DAffine3,
+        distance_scale: f64,
+        prepared: Rc<PreparedShape>,
+        material: MaterialId,
+        object_from_world: Option<Rc<DAffine3>>,
+    },
     /// A nested fold; never of one operand.
     Fold(Rc<Vec<Operand<'a>>>),
     /// A fold in the local space of a modifier: local-from-world, factor on its local distance, the modifier.

@@ -6,7 +6,7 @@ use super::arrays::{Component, FlatScene};
 use super::batch::{may_be_joined, united};
 use super::budget::Cancel;
 use super::collect::{component_of, is_opened};
-use super::emit::emit;
+use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flatten::flatten_with_cuts;
 use super::lower_bound::fold_bounds;
@@ -105,6 +105,9 @@ impl Last {
             }
             self.nodes[index] = scene.nodes()[index].clone();
         }
+        if self.flat.display != scene.display {
+            Arc::make_mut(&mut self.flat).display = scene.display;
+        }
         true
     }
 
@@ -124,8 +127,18 @@ impl Last {
         let materials = std::mem::take(&mut flat.materials);
         let mut scratch = FlatScene { environment: flat.environment, materials, ..FlatScene::default() };
         let mut known = true;
-        let new = emit(&mut scratch, &operands, &mut |_, id| {
-            let found = flat.material_ids.iter().position(|m| *m == id);
+        let mut moved = Vec::new();
+        let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world }| {
+            let found = match object_from_world {
+                None => flat.material_ids.iter().position(|m| *m == id),
+                Some(object) => {
+                    // The leaf that is about to be written keeps its own entry.
+                    let leaf = flat.nodes.get(old.first as usize + scratch.nodes.len());
+                    let at = leaf.map_or(usize::MAX, |leaf| leaf.material as usize);
+                    moved.push((id, at, object));
+                    flat.material_ids.get(at).filter(|m| **m == id).map(|_| at)
+                }
+            };
             known &= found.is_some();
             found.unwrap_or(0) as u32
         });
@@ -138,6 +151,11 @@ impl Last {
         }
         for node in &mut scratch.nodes {
             node.params += old.params;
+        }
+        for (id, at, object_from_world) in moved {
+            if let Some(material) = scene.material(id) {
+                flat.textures.replace(material, at, &object_from_world);
+            }
         }
         let range = |first: u32, count: u32| first as usize..(first + count) as usize;
         flat.nodes[range(old.first, old.count)].copy_from_slice(&scratch.nodes);

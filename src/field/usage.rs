@@ -2,6 +2,7 @@
 
 use super::arrays::*;
 use super::budget::Usage;
+use isolith_scene::limits::MAX_TEXTURE_BYTES;
 
 impl FlatScene {
     /// Bytes of the arrays.
@@ -33,6 +34,8 @@ pub(super) fn usage(flat: &FlatScene, steps: usize) -> Vec<Usage> {
         row("stack", stack, MAX_STACK as usize, stack_node),
         row("rows", flat.params.len(), MAX_FLAT_ROWS, rows_node),
         row("bytes", flat.bytes(), MAX_FLAT_BYTES, rows_node),
+        row("materials, per object with textures", flat.materials.len(), MAX_PLACED_MATERIALS, None),
+        row("bytes of images of textures", flat.textures.image_bytes(), MAX_TEXTURE_BYTES, None),
         row("steps", steps, MAX_FLAT_STEPS, largest_node),
     ]
 }

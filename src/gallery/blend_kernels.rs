@@ -13,11 +13,11 @@ pub(super) fn scene() -> Scene {
         (BlendKernel::Quadratic, [0.27, 0.50, 0.075], [0.030, 0.27, 0.20]),
         (BlendKernel::Cubic, [0.13, 0.36, 0.72], [0.11, 0.085, 0.45]),
     ];
-    let tray = builder.matte("Slate", [0.075, 0.085, 0.11]);
+    let tray = builder.phong("Slate", [0.075, 0.085, 0.11], 0.08, 16.0);
     builder.add(None, object("Tray", cuboid(4.9, 0.3, 4.9, 0.12), tray).at(v(0.0, -0.13, 0.0)));
     for (column, (kernel, slab_color, post_color)) in columns.into_iter().enumerate() {
-        let slab = builder.glossy(&format!("{} slab", kernel.label()), slab_color, 0.3, 50.0);
-        let post = builder.glossy(&format!("{} post", kernel.label()), post_color, 0.3, 50.0);
+        let slab = builder.phong(&format!("{} slab", kernel.label()), slab_color, 0.3, 50.0);
+        let post = builder.phong(&format!("{} post", kernel.label()), post_color, 0.3, 50.0);
         for (row, operator) in Operator::SETS[..3].iter().copied().enumerate() {
             let name = format!("{} {}", kernel.label(), operator.label().to_lowercase());
             let at = v((column as f64 - 1.0) * 1.55, 0.27, (row as f64 - 1.0) * 1.55);

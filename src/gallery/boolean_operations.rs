@@ -5,8 +5,8 @@ use isolith_scene::{BlendKernel, MaterialId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.05, 0.10, 0.16], [0.16, 0.215, 0.26], [0.28, 0.30, 0.34]);
-    let cube = builder.glossy("Teal", [0.030, 0.29, 0.31], 0.3, 60.0);
-    let ball = builder.glossy("Coral", [0.82, 0.17, 0.085], 0.3, 60.0);
+    let cube = builder.coated("Teal", [0.05, 0.46, 0.48], 0.06);
+    let ball = builder.glossy("Coral", [0.82, 0.17, 0.085], 0.3);
     let plinth = builder.matte("Plaster", [0.47, 0.45, 0.42]);
 
     let stand = builder.add(None, blended("Stand", Operator::Union, BlendKernel::Circular, 0.06));

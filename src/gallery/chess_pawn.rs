@@ -9,11 +9,11 @@ use isolith_scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.05, 0.07, 0.10], [0.135, 0.115, 0.10], [0.26, 0.26, 0.28]);
-    let ivory = builder.glossy("Ivory", [0.74, 0.60, 0.40], 0.35, 60.0);
-    let ebony = builder.glossy("Ebony", [0.035, 0.026, 0.024], 0.5, 70.0);
-    let maple = builder.glossy("Maple", [0.60, 0.40, 0.20], 0.12, 30.0);
-    let walnut = builder.glossy("Walnut", [0.13, 0.052, 0.024], 0.18, 30.0);
-    let frame = builder.glossy("Frame", [0.06, 0.022, 0.012], 0.3, 40.0);
+    let ivory = builder.glossy("Ivory", [0.76, 0.63, 0.43], 0.28);
+    let ebony = builder.coated("Ebony", [0.028, 0.020, 0.018], 0.1);
+    let maple = builder.glossy("Maple", [0.60, 0.40, 0.20], 0.62);
+    let walnut = builder.glossy("Walnut", [0.13, 0.052, 0.024], 0.55);
+    let frame = builder.coated("Frame", [0.06, 0.022, 0.012], 0.15);
 
     board(&mut builder, [maple, walnut, frame]);
     pawn(&mut builder, None, ("White pawn", ivory), v(0.0, 0.0, 0.0));

@@ -9,11 +9,11 @@ const SQUARE: f64 = 1.0;
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.20, 0.26, 0.33], [0.42, 0.44, 0.46], [0.30, 0.31, 0.34]);
-    let ivory = builder.glossy("Ivory", [0.72, 0.62, 0.45], 0.35, 70.0);
-    let ebony = builder.glossy("Ebony", [0.055, 0.040, 0.034], 0.5, 90.0);
-    let light = builder.glossy("Light squares", [0.60, 0.47, 0.29], 0.2, 40.0);
-    let dark = builder.glossy("Dark squares", [0.16, 0.075, 0.035], 0.2, 40.0);
-    let frame = builder.glossy("Frame", [0.10, 0.045, 0.022], 0.25, 40.0);
+    let ivory = builder.glossy("Ivory", [0.72, 0.62, 0.45], 0.28);
+    let ebony = builder.coated("Ebony", [0.048, 0.034, 0.028], 0.1);
+    let light = builder.glossy("Light squares", [0.60, 0.47, 0.29], 0.4);
+    let dark = builder.glossy("Dark squares", [0.16, 0.075, 0.035], 0.36);
+    let frame = builder.coated("Frame", [0.10, 0.045, 0.022], 0.18);
 
     let half = 4.0 * SQUARE;
     builder.add(

@@ -10,7 +10,7 @@ use isolith_scene::{BlendKernel, Operator, Scene};
 pub fn crowd(leaves: usize, is_blended: bool, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
     let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
-    let clay = builder.glossy("Clay", [0.80, 0.42, 0.22], 0.3, 50.0);
+    let clay = builder.phong("Clay", [0.80, 0.42, 0.22], 0.3, 50.0);
     let union = if is_blended {
         blended("Crowd", Operator::Union, BlendKernel::Quadratic, 0.1)
     } else {
@@ -38,7 +38,7 @@ pub fn crowd(leaves: usize, is_blended: bool, seed: u64) -> Scene {
 pub fn boxes(boxes: usize, seed: u64) -> Scene {
     let mut random = SplitMix(seed);
     let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
-    let clay = builder.glossy("Clay", [0.24, 0.40, 0.62], 0.3, 50.0);
+    let clay = builder.phong("Clay", [0.24, 0.40, 0.62], 0.3, 50.0);
     let parent = builder.add(None, blended("Boxes", Operator::Union, BlendKernel::Quadratic, 0.05));
     for _ in 0..boxes {
         let [x, y, z] = [0; 3].map(|_| random.between(0.3, 0.9));
@@ -54,7 +54,7 @@ pub fn boxes(boxes: usize, seed: u64) -> Scene {
 pub fn spheres(seed: u64) -> Scene {
     let mut random = SplitMix(seed);
     let mut builder = SceneBuilder::new([0.02, 0.03, 0.055], [0.05, 0.055, 0.075], [0.27, 0.28, 0.32]);
-    let clay = builder.glossy("Clay", [0.62, 0.30, 0.40], 0.3, 50.0);
+    let clay = builder.phong("Clay", [0.62, 0.30, 0.40], 0.3, 50.0);
     let parent = builder.add(None, blended("Spheres", Operator::Union, BlendKernel::Quadratic, 0.05));
     let mut places: Vec<[usize; 3]> = (0..1001).map(|i| [i % 13, i / 13 % 11, i / 143]).collect();
     for i in (1..places.len()).rev() {

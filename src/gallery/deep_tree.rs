@@ -22,10 +22,10 @@ pub(super) fn scene() -> Scene {
             let at = f64::from(i) / f64::from(steps) * (stops.len() - 1) as f64;
             let (low, share) = (at as usize, at.fract());
             let mix = |c: usize| ((stops[low][c] * (1.0 - share) + stops[low + 1][c] * share) * 1e4).round() / 1e4;
-            builder.glossy(&format!("Nacre {}", i + 1), [mix(0), mix(1), mix(2)], 0.4, 50.0)
+            builder.phong(&format!("Nacre {}", i + 1), [mix(0), mix(1), mix(2)], 0.4, 50.0)
         })
         .collect();
-    let stone = builder.matte("Stone", [0.20, 0.215, 0.22]);
+    let stone = builder.phong("Stone", [0.20, 0.215, 0.22], 0.08, 16.0);
 
     let shell =
         builder.add(None, group("Shell", Operator::Union).at(v(0.0, 1.32, 0.0)).rotated(turn_y(-24.0) * turn_z(-62.0)));

@@ -10,12 +10,12 @@ const KNOT_POINTS: i32 = 64;
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.05, 0.10, 0.20], [0.30, 0.34, 0.42], [0.24, 0.26, 0.30]);
-    let brass = builder.glossy("Brass", [0.70, 0.42, 0.12], 0.8, 70.0);
-    let clay = builder.glossy("Glaze", [0.09, 0.30, 0.34], 0.6, 60.0);
-    let red = builder.glossy("Lacquer", [0.62, 0.05, 0.06], 0.5, 80.0);
-    let ivory = builder.glossy("Ivory", [0.72, 0.68, 0.58], 0.4, 50.0);
+    let brass = builder.metal("Brass", [0.92, 0.66, 0.24], 0.32);
+    let clay = builder.coated("Glaze", [0.13, 0.46, 0.50], 0.05);
+    let red = builder.coated("Lacquer", [0.80, 0.06, 0.06], 0.08);
+    let ivory = builder.glossy("Ivory", [0.75, 0.70, 0.58], 0.25);
     let grass = builder.matte("Grass", [0.20, 0.30, 0.10]);
-    let water = builder.glossy("Water", [0.03, 0.14, 0.22], 0.9, 120.0);
+    let water = builder.water("Water", [0.03, 0.14, 0.22]);
     let stone = builder.matte("Stone", [0.34, 0.33, 0.32]);
 
     builder.add(None, object("Table", cuboid(6.4, 0.2, 4.4, 0.05), stone).at(v(0.0, -0.1, 0.0)));

@@ -7,10 +7,10 @@ use isolith_scene::{BlendKernel, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.10, 0.25, 0.52], [0.55, 0.60, 0.66], [0.30, 0.33, 0.40]);
-    let sand = builder.matte("Sand", [0.72, 0.50, 0.31]);
-    let ink = builder.glossy("Ink", [0.016, 0.075, 0.17], 0.7, 90.0);
-    let shell = builder.glossy("Shell", [0.84, 0.76, 0.66], 0.35, 50.0);
-    let rust = builder.glossy("Rust", [0.52, 0.12, 0.045], 0.25, 40.0);
+    let sand = builder.phong("Sand", [0.72, 0.50, 0.31], 0.08, 16.0);
+    let ink = builder.phong("Ink", [0.016, 0.075, 0.17], 0.7, 90.0);
+    let shell = builder.phong("Shell", [0.84, 0.76, 0.66], 0.35, 50.0);
+    let rust = builder.phong("Rust", [0.52, 0.12, 0.045], 0.25, 40.0);
 
     let beach = builder.add(None, blended("Beach", Operator::Union, BlendKernel::Circular, 0.5));
     builder.add(beach, object("Ground", Shape::Plane {}, sand));

@@ -6,13 +6,13 @@ use isolith_scene::{BlendKernel, Modifier, Operator, Scene, Shape};
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.012, 0.016, 0.03], [0.07, 0.08, 0.11], [0.24, 0.26, 0.31]);
-    let copper = builder.glossy("Copper", [0.62, 0.24, 0.11], 0.55, 60.0);
-    let jade = builder.glossy("Jade", [0.10, 0.36, 0.24], 0.5, 60.0);
-    let ivory = builder.glossy("Ivory", [0.70, 0.64, 0.52], 0.3, 40.0);
-    let glaze = builder.glossy("Glaze", [0.10, 0.28, 0.60], 0.5, 60.0);
-    let coral = builder.glossy("Coral", [0.50, 0.13, 0.16], 0.3, 40.0);
-    let floor = builder.glossy("Floor", [0.055, 0.06, 0.075], 0.25, 30.0);
-    let stone = builder.glossy("Stands", [0.17, 0.175, 0.19], 0.2, 30.0);
+    let copper = builder.glossy("Copper", [0.62, 0.24, 0.11], 0.5);
+    let jade = builder.glossy("Jade", [0.10, 0.36, 0.24], 0.2);
+    let ivory = builder.glossy("Ivory", [0.72, 0.65, 0.52], 0.32);
+    let glaze = builder.coated("Glaze", [0.08, 0.25, 0.58], 0.06);
+    let coral = builder.glossy("Coral", [0.50, 0.13, 0.16], 0.45);
+    let floor = builder.glossy("Floor", [0.055, 0.06, 0.075], 0.85);
+    let stone = builder.glossy("Stands", [0.17, 0.175, 0.19], 0.7);
 
     builder.add(None, object("Floor", Shape::Plane {}, floor));
     for ([x, z], radius, height) in [

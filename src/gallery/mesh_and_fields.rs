@@ -9,9 +9,9 @@ use isolith_scene::{BlendKernel, MaterialId, NodeId, Operator, Scene};
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.02, 0.075, 0.09], [0.10, 0.20, 0.20], [0.25, 0.27, 0.28]);
     let felt = builder.matte("Felt", [0.030, 0.032, 0.055]);
-    let ribbon = builder.glossy("Ribbon", [0.62, 0.035, 0.045], 0.3, 40.0);
-    let brass = builder.glossy("Brass", [0.70, 0.43, 0.11], 0.8, 70.0);
-    let marble = builder.glossy("Marble", [0.52, 0.51, 0.49], 0.3, 60.0);
+    let ribbon = builder.glossy("Ribbon", [0.62, 0.035, 0.045], 0.35);
+    let brass = builder.metal("Brass", [0.92, 0.66, 0.24], 0.28);
+    let marble = builder.glossy("Marble", [0.55, 0.54, 0.52], 0.22);
     let wool = builder.matte("Wool", [0.055, 0.30, 0.30]);
 
     let head = mesh("Suzanne", "models/suzanne.glb");

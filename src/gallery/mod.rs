@@ -12,6 +12,7 @@ mod deep_tree;
 mod drawn;
 mod ellipsoid_and_plane;
 mod fractals;
+mod materials;
 mod mesh_and_fields;
 mod modifiers;
 mod operators;
@@ -19,6 +20,7 @@ mod random_groups;
 mod scene_builder;
 mod shapes;
 mod showcase;
+mod textures;
 mod write;
 
 use isolith_scene::Scene;
@@ -56,6 +58,8 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("fractals", fractals::scene()),
         ("chessboard", chessboard::scene()),
         ("drawn", drawn::scene()),
+        ("materials", materials::scene()),
+        ("textures", textures::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

@@ -14,8 +14,8 @@ const SPACING: f64 = 1.9;
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.30, 0.36, 0.42], [0.52, 0.54, 0.55], [0.34, 0.36, 0.40]);
-    let clay = builder.glossy("Clay", [0.62, 0.24, 0.13], 0.25, 40.0);
-    let slate = builder.glossy("Slate", [0.10, 0.22, 0.32], 0.3, 50.0);
+    let clay = builder.glossy("Clay", [0.62, 0.24, 0.13], 0.42);
+    let slate = builder.glossy("Slate", [0.10, 0.22, 0.32], 0.32);
     let floor = builder.matte("Floor", [0.20, 0.21, 0.22]);
     let stand_material = builder.matte("Stands", [0.42, 0.41, 0.40]);
     builder.add(None, object("Floor", Shape::Plane {}, floor));

@@ -17,12 +17,12 @@ pub(super) fn scene() -> Scene {
     let tray = builder.matte("Slate", [0.075, 0.085, 0.11]);
     builder.add(None, object("Tray", cuboid(9.8, 0.3, 7.1, 0.12), tray).at(v(0.0, -0.13, 0.0)));
     let slabs = [
-        builder.glossy("Amber", [0.74, 0.30, 0.030], 0.3, 50.0),
-        builder.glossy("Lime", [0.27, 0.50, 0.075], 0.3, 50.0),
-        builder.glossy("Sky", [0.13, 0.36, 0.72], 0.3, 50.0),
-        builder.glossy("Rose", [0.66, 0.13, 0.22], 0.3, 50.0),
+        builder.coated("Amber", [0.74, 0.30, 0.030], 0.1),
+        builder.coated("Lime", [0.27, 0.50, 0.075], 0.1),
+        builder.coated("Sky", [0.13, 0.36, 0.72], 0.1),
+        builder.coated("Rose", [0.66, 0.13, 0.22], 0.1),
     ];
-    let post = builder.glossy("Ivory", [0.62, 0.58, 0.50], 0.3, 50.0);
+    let post = builder.glossy("Ivory", [0.62, 0.58, 0.50], 0.35);
     for (row, operator) in Operator::SETS.into_iter().enumerate() {
         for (column, kernel) in BlendKernel::ALL.into_iter().enumerate() {
             let blend = Blend { steps: 3, ..Blend::new(kernel, RADIUS) };

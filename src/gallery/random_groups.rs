@@ -25,7 +25,7 @@ pub fn random(leaves: usize, seed: u64) -> Scene {
         ("Indigo", [0.070, 0.085, 0.42]),
         ("Plum", [0.34, 0.055, 0.25]),
     ];
-    let materials = palette.map(|(name, albedo)| builder.glossy(name, albedo, 0.3, 50.0));
+    let materials = palette.map(|(name, albedo)| builder.phong(name, albedo, 0.3, 50.0));
     let groups = leaves.div_ceil(GROUP_LEAVES);
     let cells = cells(groups);
     let all = builder.add(None, group("All", Operator::Union));

@@ -24,49 +24,72 @@ impl SceneBuilder {
         Self { scene }
     }
 
-    /// A matte material.
-    pub fn matte(&mut self, name: &str, albedo: [f64; 3]) -> MaterialId {
-        self.glossy(name, albedo, 0.08, 16.0)
-    }
-
-    /// A material with a highlight.
-    pub fn glossy(&mut self, name: &str, albedo: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
-        self.phong(name, albedo, [specular, shininess], [0.0; 3])
-    }
-
-    /// A material with emission.
-    pub fn glowing(&mut self, name: &str, albedo: [f64; 3], emission: [f64; 3]) -> MaterialId {
-        self.phong(name, albedo, [0.0, 48.0], emission)
-    }
-
-    /// A material with a highlight and emission.
-    pub fn glass(
-        &mut self,
-        name: &str,
-        albedo: [f64; 3],
-        [specular, shininess]: [f64; 2],
-        emission: [f64; 3],
-    ) -> MaterialId {
-        self.phong(name, albedo, [specular, shininess], emission)
-    }
-
-    fn phong(
-        &mut self,
-        name: &str,
-        base_color: [f64; 3],
-        [specular, shininess]: [f64; 2],
-        emission: [f64; 3],
-    ) -> MaterialId {
-        let lit = emission.iter().any(|v| *v > 0.0);
+    /// A dry material without a visible highlight.
+    pub fn matte(&mut self, name: &str, base_color: [f64; 3]) -> MaterialId {
+        let (base_diffuse_roughness, specular_weight, specular_roughness) = (0.5, 0.5, 0.8);
         self.material(Material {
-            emission_luminance: if lit { 1.0 } else { 0.0 },
-            emission_color: if lit { emission } else { [1.0; 3] },
-            model: ReflectionModel::BlinnPhong { specular, shininess },
+            base_diffuse_roughness,
+            specular_weight,
+            specular_roughness,
             ..Material::new(MaterialId(0), name, base_color)
         })
     }
 
-    fn material(&mut self, material: Material) -> MaterialId {
+    /// A plastic of this roughness.
+    pub fn glossy(&mut self, name: &str, base_color: [f64; 3], specular_roughness: f64) -> MaterialId {
+        self.material(Material { specular_roughness, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// A rough material under a clear coat of this roughness: enamel, glaze, lacquer.
+    pub fn coated(&mut self, name: &str, base_color: [f64; 3], coat_roughness: f64) -> MaterialId {
+        let (specular_roughness, coat_weight, coat_ior) = (0.5, 1.0, 1.5);
+        self.material(Material {
+            specular_roughness,
+            coat_weight,
+            coat_roughness,
+            coat_ior,
+            ..Material::new(MaterialId(0), name, base_color)
+        })
+    }
+
+    /// A metal of this roughness.
+    pub fn metal(&mut self, name: &str, base_color: [f64; 3], specular_roughness: f64) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, base_color);
+        self.material(Material { specular_roughness, base_metalness: 1.0, ..material })
+    }
+
+    /// A material that emits light.
+    pub fn glowing(&mut self, name: &str, base_color: [f64; 3], emission_color: [f64; 3]) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, base_color);
+        self.material(Material { specular_weight: 0.0, emission_luminance: 1.0, emission_color, ..material })
+    }
+
+    /// A smooth material that glows from within.
+    pub fn gem(&mut self, name: &str, base_color: [f64; 3], emission_color: [f64; 3]) -> MaterialId {
+        let (specular_roughness, specular_ior, emission_luminance) = (0.12, 1.8, 1.0);
+        self.material(Material {
+            specular_roughness,
+            specular_ior,
+            emission_luminance,
+            emission_color,
+            ..Material::new(MaterialId(0), name, base_color)
+        })
+    }
+
+    /// A smooth liquid.
+    pub fn water(&mut self, name: &str, base_color: [f64; 3]) -> MaterialId {
+        let (specular_roughness, specular_ior) = (0.1, 1.33);
+        self.material(Material { specular_roughness, specular_ior, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// A material by Blinn and Phong.
+    pub fn phong(&mut self, name: &str, base_color: [f64; 3], specular: f64, shininess: f64) -> MaterialId {
+        let model = ReflectionModel::BlinnPhong { specular, shininess };
+        self.material(Material { model, ..Material::new(MaterialId(0), name, base_color) })
+    }
+
+    /// Any material, under a new id.
+    pub fn material(&mut self, material: Material) -> MaterialId {
         let id = self.scene.next_material_id();
         self.scene.insert_material(Material { id, ..material }).expect("the id is new");
         id
@@ -137,7 +160,7 @@ pub(super) fn object(name: &str, shape: Shape, material: MaterialId) -> Node {
 
 /// A mesh from a glTF file.
 pub(super) fn mesh(name: &str, path: &str) -> Node {
-    Node::new(name, NodeKind::Mesh(MeshNode { path: path.into(), material: None }))
+    Node::new(name, NodeKind::Mesh(MeshNode::new(path)))
 }
 
 pub(super) fn sphere(radius: f64) -> Shape {

@@ -23,7 +23,7 @@ pub(super) fn scene() -> Scene {
         ("Sky", [0.12, 0.36, 0.74]),
         ("Violet", [0.32, 0.17, 0.62]),
     ]
-    .map(|(name, albedo)| builder.glossy(name, albedo, 0.25, 50.0));
+    .map(|(name, albedo)| builder.glossy(name, albedo, 0.3));
     let tile = builder.matte("Slate", [0.10, 0.11, 0.135]);
     let rows = ShapeKind::ALL.len().div_ceil(COLUMNS);
     for (index, &kind) in ShapeKind::ALL.iter().enumerate() {

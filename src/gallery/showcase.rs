@@ -54,7 +54,7 @@ fn planet(builder: &mut SceneBuilder) {
 }
 
 fn crystals(builder: &mut SceneBuilder) {
-    let crystal = builder.glass("Crystal", [0.04, 0.50, 0.52], [0.9, 80.0], [0.0, 0.10, 0.11]);
+    let crystal = builder.gem("Crystal", [0.03, 0.46, 0.50], [0.0, 0.06, 0.07]);
     let cluster = builder.add(None, group("Crystals", Operator::Union));
     for (tilt, heading, size, lean) in [
         (24.0, 52.0, 0.30, -14.0),
@@ -94,11 +94,11 @@ fn smoke(builder: &mut SceneBuilder) {
 }
 
 fn rocket(builder: &mut SceneBuilder) {
-    let white = builder.glossy("Enamel", [0.80, 0.78, 0.74], 0.5, 70.0);
-    let red = builder.glossy("Red", [0.74, 0.055, 0.045], 0.5, 70.0);
-    let steel = builder.glossy("Steel", [0.12, 0.125, 0.15], 0.7, 50.0);
-    let brass = builder.glossy("Brass", [0.72, 0.45, 0.13], 0.8, 60.0);
-    let glass = builder.glass("Glass", [0.02, 0.15, 0.26], [1.0, 120.0], [0.02, 0.09, 0.13]);
+    let white = builder.coated("Enamel", [0.84, 0.82, 0.78], 0.05);
+    let red = builder.coated("Red", [0.86, 0.050, 0.038], 0.05);
+    let steel = builder.metal("Steel", [0.562, 0.565, 0.578], 0.32);
+    let brass = builder.metal("Brass", [0.92, 0.66, 0.24], 0.25);
+    let glass = builder.gem("Glass", [0.02, 0.15, 0.26], [0.02, 0.09, 0.13]);
 
     let rocket = builder
         .add(None, group("Rocket", Operator::Union).at(v(0.12, 1.62, 0.0)).rotated(turn_z(-9.0) * turn_y(-14.0)));
@@ -153,8 +153,8 @@ fn flame(builder: &mut SceneBuilder, rocket: NodeId) {
 
 /// A ringed moon and stars.
 fn sky(builder: &mut SceneBuilder) {
-    let moon = builder.glossy("Moon", [0.83, 0.50, 0.24], 0.15, 20.0);
-    let ring = builder.glossy("Ring", [0.66, 0.56, 0.62], 0.2, 20.0);
+    let moon = builder.glossy("Moon", [0.83, 0.50, 0.24], 0.6);
+    let ring = builder.glossy("Ring", [0.66, 0.56, 0.62], 0.5);
     let star = builder.glowing("Star", [0.4, 0.4, 0.4], [0.80, 0.76, 0.62]);
     let saturn = builder
         .add(None, group("Ringed moon", Operator::Union).at(v(3.1, 3.35, -4.2)).rotated(turn_z(-22.0) * turn_x(20.0)));

@@ -7,6 +7,7 @@ mod aabb;
 mod arc;
 mod arc_union;
 mod camera;
+mod jitter;
 mod ray;
 mod transform;
 
@@ -14,5 +15,6 @@ pub use aabb::Aabb;
 pub use arc::{ArcPiece, biarc, smooth_curve, straight_curve};
 pub use arc_union::{TooDense, arc_union};
 pub use camera::Camera;
+pub use jitter::pixel_jitter;
 pub use ray::Ray;
 pub use transform::{Transform, singular_values};

@@ -14,8 +14,16 @@ pub(super) struct GltfDocument<'a> {
 }
 
 /// Supported extensions. Files that require another one are refused.
-pub(super) const SUPPORTED: &[&str] =
-    &["KHR_mesh_quantization", "KHR_texture_transform", "KHR_materials_pbrSpecularGlossiness"];
+pub(super) const SUPPORTED: &[&str] = &[
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
 
 /// Parses a .gltf or .glb file.
 pub(super) fn read_document(bytes: &[u8]) -> Result<GltfDocument<'_>, LoadRefusal> {

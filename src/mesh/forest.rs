@@ -2,11 +2,12 @@
 
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 
+use super::clip::{NodePose, Poses};
 use super::error::LoadRefusal;
 use super::limits::MAX_NODES;
 use super::schema::{GltfNode, Root};
 
-/// The nodes of a document in the rest pose: animations are not played.
+/// The nodes of a document.
 pub(super) struct Forest {
     /// The transform of each node to the file's space.
     pub world_from_node: Vec<DAffine3>,
@@ -14,8 +15,8 @@ pub(super) struct Forest {
     pub shown: Vec<usize>,
 }
 
-/// Traverses the hierarchy. Shows the default scene; without a default the first scene; without any scene, every tree.
-pub(super) fn walk(root: &Root) -> Result<Forest, LoadRefusal> {
+/// Traverses the hierarchy, with what a clip sets. Shows the default scene; without a default the first scene; without any scene, every tree.
+pub(super) fn walk(root: &Root, poses: &Poses) -> Result<Forest, LoadRefusal> {
     if root.nodes.len() > MAX_NODES {
         return Err(LoadRefusal::at("nodes", format!("has {} entries, more than {MAX_NODES}", root.nodes.len())));
     }
@@ -23,7 +24,7 @@ pub(super) fn walk(root: &Root) -> Result<Forest, LoadRefusal> {
     // Joints of skins may stand outside of the scene, so every node gets a transform.
     let mut world_from_node = vec![DAffine3::IDENTITY; root.nodes.len()];
     for index in order {
-        let local = local_transform(&root.nodes[index], &format!("nodes[{index}]"))?;
+        let local = local_transform(&root.nodes[index], poses.get(&index), &format!("nodes[{index}]"))?;
         let parent = parents[index].map_or(DAffine3::IDENTITY, |parent| world_from_node[parent]);
         world_from_node[index] = parent * local;
     }
@@ -92,9 +93,11 @@ fn check_forest(root: &Root) -> Result<(Vec<Option<usize>>, Vec<usize>), LoadRef
 /// Exporters that compute in f32 leave an error of this size in the last row of a matrix, which should be 0 0 0 1.
 const ROUNDING: f64 = 1e-5;
 
-fn local_transform(node: &GltfNode, place: &str) -> Result<DAffine3, LoadRefusal> {
+fn local_transform(node: &GltfNode, pose: Option<&NodePose>, place: &str) -> Result<DAffine3, LoadRefusal> {
     let refuse = |field: &str, reason: &str| Err(LoadRefusal::at(format!("{place}.{field}"), reason));
-    if let Some(m) = &node.matrix {
+    let pose = pose.filter(|pose| pose.translation.is_some() || pose.rotation.is_some() || pose.scale.is_some());
+    // A clip moves nodes by translation, rotation and scale, so a matrix beside it has no part (specification, 3.5.3).
+    if let Some(m) = node.matrix.as_ref().filter(|_| pose.is_none()) {
         if m.iter().any(|v| !v.is_finite()) {
             return refuse("matrix", "holds a number that is not finite");
         }
@@ -107,15 +110,18 @@ fn local_transform(node: &GltfNode, place: &str) -> Result<DAffine3, LoadRefusal
         let m = m * (1.0 / last.w);
         return Ok(DAffine3::from_mat3_translation(DMat3::from_mat4(m), m.w_axis.truncate()));
     }
-    let (translation, scale) =
-        (node.translation.map_or(DVec3::ZERO, DVec3::from), node.scale.map_or(DVec3::ONE, DVec3::from));
+    let set = |of: fn(&NodePose) -> Option<DVec3>| pose.and_then(of);
+    let own = |value: Option<[f64; 3]>, default: DVec3| value.map_or(default, DVec3::from);
+    let translation = set(|pose| pose.translation).unwrap_or_else(|| own(node.translation, DVec3::ZERO));
+    let scale = set(|pose| pose.scale).unwrap_or_else(|| own(node.scale, DVec3::ONE));
     if !translation.is_finite() {
         return refuse("translation", "holds a number that is not finite");
     }
     if !scale.is_finite() {
         return refuse("scale", "holds a number that is not finite");
     }
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, DQuat::from_array);
+    let rotation = pose.and_then(|pose| pose.rotation);
+    let rotation = rotation.or(node.rotation.map(DQuat::from_array)).unwrap_or(DQuat::IDENTITY);
     if !rotation.is_finite() || rotation.length() < 1e-6 {
         return refuse("rotation", "is not a rotation");
     }

@@ -1,24 +1,26 @@
 //! The meshes of a scene: each is loaded once, and again when its files change.
 
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::limits::MAX_TEXTURE_BYTES;
 use super::load::parse_within;
+use super::model_pose::ModelPose;
 use super::resolve::{MeshFileStamp, Reader, inside, read_file};
+use super::texture::SharedTextures;
 use super::{MeshError, TriangleMesh};
 
 /// A mesh, or the error why it could not be loaded.
 pub type MeshResult = Result<Arc<TriangleMesh>, Arc<MeshError>>;
 
-/// The meshes that a scene names, by their paths relative to the scene's folder. The library keeps failures too, so
+/// The meshes that a scene names, by their paths relative to the scene's folder and their poses. The library keeps failures too, so
 /// that a broken file is read once, not once per frame.
 #[derive(Clone, Debug, Default)]
 pub struct MeshLibrary {
     folder: Option<PathBuf>,
-    loaded: HashMap<String, Loaded>,
+    loaded: HashMap<ModelPose, Loaded>,
     revision: u64,
 }
 
@@ -29,14 +31,16 @@ struct Loaded {
     files: Vec<MeshFileStamp>,
 }
 
-/// The source of a mesh: its path and the stamps of its files. Enough to read the mesh again on another thread.
+/// The source of a mesh: its path, its pose and the stamps of its files. Enough to read the mesh again on another thread.
 #[derive(Clone, Debug)]
 pub struct MeshSource {
     folder: Option<PathBuf>,
-    path: String,
+    pose: ModelPose,
     files: Vec<MeshFileStamp>,
     /// Bytes available for its textures.
     texture_budget: u64,
+    /// The same file in another pose, with the stamps of its files: it shares its textures.
+    other: Option<(Arc<TriangleMesh>, Vec<MeshFileStamp>)>,
 }
 
 /// The result of reading a mesh again.
@@ -82,22 +86,38 @@ impl MeshLibrary {
         self.revision
     }
 
-    /// The mesh in the file of this name, loaded on the first request. The path must stay inside the folder; the error
+    /// The mesh in this file and pose, loaded on the first request. The path must stay inside the folder; the error
     /// names it as the scene does.
-    pub fn get(&mut self, path: &str) -> MeshResult {
-        if let Some(known) = self.loaded.get(path) {
+    pub fn get(&mut self, pose: impl Into<ModelPose>) -> MeshResult {
+        let pose = pose.into();
+        if let Some(known) = self.loaded.get(&pose) {
             return known.result.clone();
         }
-        let source = self.source(path.to_owned(), Vec::new());
-        let Reread { source, result } = source.read();
-        self.loaded.insert(path.to_owned(), Loaded { result: result.clone(), files: source.files });
+        let Reread { source, result } = self.source(pose.clone(), Vec::new()).read();
+        self.loaded.insert(pose, Loaded { result: result.clone(), files: source.files });
         self.revision += 1;
         result
     }
 
-    /// The mesh of this name, if it was requested before.
-    pub fn known(&self, path: &str) -> Option<&MeshResult> {
-        self.loaded.get(path).map(|loaded| &loaded.result)
+    /// The mesh in this file and pose, if it was requested before.
+    pub fn known(&self, pose: impl Into<ModelPose>) -> Option<&MeshResult> {
+        self.loaded.get(&pose.into()).map(|loaded| &loaded.result)
+    }
+
+    /// The mesh in this file and pose; while it is not loaded yet, that of the same file in the pose of the nearest
+    /// time.
+    pub fn nearest(&self, pose: &ModelPose) -> Option<&MeshResult> {
+        let time = |pose: &ModelPose| pose.clip.as_ref().map_or(0.0, |clip| clip.time);
+        let off = |other: &ModelPose| (time(other) - time(pose)).abs();
+        let others = self.loaded.iter().filter(|(other, _)| other.path == pose.path);
+        let nearest = || others.min_by(|(a, _), (b, _)| off(a).total_cmp(&off(b))).map(|(_, loaded)| &loaded.result);
+        self.known(pose).or_else(nearest)
+    }
+
+    /// Forgets the poses of clips that are not among these; rest poses stay.
+    pub fn keep_poses<'a>(&mut self, used: impl Iterator<Item = &'a ModelPose>) {
+        let used: HashSet<&ModelPose> = used.collect();
+        self.loaded.retain(|pose, _| pose.clip.is_none() || used.contains(pose));
     }
 
     /// Takes over the meshes that a copy of this library has read since; does nothing if this one has moved to another
@@ -106,40 +126,47 @@ impl MeshLibrary {
         if self.folder != other.folder {
             return;
         }
-        for (path, loaded) in other.loaded {
-            if let Entry::Vacant(place) = self.loaded.entry(path) {
+        for (pose, loaded) in other.loaded {
+            if let Entry::Vacant(place) = self.loaded.entry(pose) {
                 place.insert(loaded);
                 self.revision += 1;
             }
         }
     }
 
-    /// Records that the mesh of this name cannot be loaded, and why, until it is read again.
-    pub fn refuse(&mut self, path: &str, reason: &str) {
-        let files = self.folder.iter().map(|folder| MeshFileStamp::of(&folder.join(path))).collect();
-        let result = Err(Arc::new(MeshError::new(path, "", reason)));
-        self.loaded.insert(path.to_owned(), Loaded { result, files });
+    /// Records that this mesh cannot be loaded, and why, until it is read again.
+    pub fn refuse(&mut self, pose: &ModelPose, reason: &str) {
+        let files = self.folder.iter().map(|folder| MeshFileStamp::of(&folder.join(&pose.path))).collect();
+        let result = Err(Arc::new(MeshError::new(&pose.path, "", reason)));
+        self.loaded.insert(pose.clone(), Loaded { result, files });
         self.revision += 1;
     }
 
     /// The sources of all requested meshes.
     pub fn sources(&self) -> Vec<MeshSource> {
-        let sources = self.loaded.iter().map(|(path, loaded)| self.source(path.clone(), loaded.files.clone()));
+        let sources = self.loaded.iter().map(|(pose, loaded)| self.source(pose.clone(), loaded.files.clone()));
         sources.collect()
     }
 
-    fn source(&self, path: String, files: Vec<MeshFileStamp>) -> MeshSource {
-        let others = self.loaded.iter().filter(|(other, _)| **other != path);
-        let taken: u64 =
-            others.filter_map(|(_, loaded)| loaded.result.as_ref().ok()).map(|mesh| texture_bytes(mesh)).sum();
-        let texture_budget = MAX_TEXTURE_BYTES.saturating_sub(taken);
-        MeshSource { folder: self.folder.clone(), path, files, texture_budget }
+    fn source(&self, pose: ModelPose, files: Vec<MeshFileStamp>) -> MeshSource {
+        let others = || self.loaded.iter().filter(|(other, _)| **other != pose);
+        let meshes =
+            || others().filter_map(|(other, loaded)| Some((other, loaded.result.as_ref().ok()?, &loaded.files)));
+        let textures: HashMap<_, _> = meshes()
+            .filter(|(other, ..)| other.path != pose.path)
+            .flat_map(|(_, mesh, _)| &mesh.textures)
+            .map(|texture| (Arc::as_ptr(texture), texture.rgba.len() as u64))
+            .collect();
+        let texture_budget = MAX_TEXTURE_BYTES.saturating_sub(textures.values().sum());
+        let other = meshes().find(|(other, ..)| other.path == pose.path);
+        let other = other.map(|(_, mesh, files)| (mesh.clone(), files.clone()));
+        MeshSource { folder: self.folder.clone(), pose, files, texture_budget, other }
     }
 
     /// Replaces a mesh by a newly read one, unless the new one is broken and the old one is not.
     pub fn replace(&mut self, fresh: Reread) -> ReloadOutcome {
         let Reread { source, result } = fresh;
-        let Some(loaded) = self.loaded.get_mut(&source.path).filter(|_| self.folder == source.folder) else {
+        let Some(loaded) = self.loaded.get_mut(&source.pose).filter(|_| self.folder == source.folder) else {
             return ReloadOutcome::Unwanted;
         };
         self.revision += 1;
@@ -164,7 +191,7 @@ impl MeshLibrary {
 impl MeshSource {
     /// The path as the scene names it.
     pub fn path(&self) -> &str {
-        &self.path
+        &self.pose.path
     }
 
     /// The stamps of the files as they are now; equal to the recorded ones if nothing has changed.
@@ -186,18 +213,23 @@ impl MeshSource {
     }
 
     fn read_into(&self, files: &mut Vec<MeshFileStamp>) -> Result<TriangleMesh, MeshError> {
-        let refuse = |reason: String| MeshError::new(&self.path, "", &reason);
+        let path = &self.pose.path;
+        let refuse = |reason: String| MeshError::new(path, "", &reason);
         let Some(folder) = &self.folder else {
             return Err(refuse("the scene has no folder to look in until it is saved".into()));
         };
         // Stamped before reading, so that a change during the read is noticed later.
-        files.push(MeshFileStamp::of(&folder.join(&self.path)));
-        let file = inside(folder, &self.path).map_err(refuse)?;
+        files.push(MeshFileStamp::of(&folder.join(path)));
+        let file = inside(folder, path).map_err(refuse)?;
         let bytes = read_file(&file).map_err(refuse)?;
         // Files that the glTF names must lie in its folder or below, as for any glTF.
         let reader = Reader::new(file.parent());
         let mut budget = self.texture_budget;
-        let result = parse_within(&bytes, Path::new(&self.path), &reader, &mut budget);
+        let unchanged = self.other.as_ref().filter(|(_, files)| files.iter().all(|file| file.again() == *file));
+        let shared = unchanged.map_or_else(SharedTextures::new, |(mesh, _)| mesh.shared_textures());
+        let result = parse_within(&bytes, Path::new(path), &reader, &mut budget, (self.pose.clip.as_ref(), shared));
+        // Files of shared textures are not read again, but watched as well.
+        files.extend(unchanged.into_iter().flat_map(|(_, files)| files.clone()));
         files.extend(reader.into_files());
         result
     }
@@ -208,8 +240,4 @@ impl Reread {
     pub fn source(&self) -> &MeshSource {
         &self.source
     }
-}
-
-fn texture_bytes(mesh: &TriangleMesh) -> u64 {
-    mesh.textures.iter().map(|texture| texture.rgba.len() as u64).sum()
 }

@@ -26,6 +26,8 @@ pub const MAX_ACCESSOR_COUNT: usize = MAX_TRIANGLES * 3;
 pub const MAX_ENTRIES_READ: u64 = 4 * (MAX_ACCESSOR_COUNT as u64);
 /// Most attributes of primitives and of their morph targets, with every instance of every mesh written out.
 pub const MAX_ATTRIBUTES: usize = 4 << 20;
+/// Most keys of an animated property.
+pub const MAX_KEYS: usize = 1 << 20;
 /// Most joints of a skin.
 pub const MAX_JOINTS: usize = 16_384;
 /// Greatest distance of a coordinate from the origin, in meters.

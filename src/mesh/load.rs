@@ -6,14 +6,18 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use super::accessor::Source;
+use super::clip::{Poses, poses};
 use super::document::{GltfDocument, read_document};
 use super::error::LoadRefusal;
 use super::forest::walk;
 use super::limits::{MAX_BUFFER_BYTES, MAX_FILE_BYTES, MAX_TEXTURE_BYTES};
+use super::model_pose::ClipTime;
 use super::pose::{Pose, morph_weights};
 use super::primitive::Writer;
+use super::remarks::Remarks;
 use super::resolve::{Reader, read_file};
 use super::surface::Surfaces;
+use super::texture::SharedTextures;
 use super::{MeshError, TriangleMesh};
 
 /// Reads a .gltf or .glb file, with the buffers and images that it names in its own folder.
@@ -30,16 +34,31 @@ pub fn load(path: &Path) -> Result<TriangleMesh, MeshError> {
 /// # Errors
 /// As [`load`].
 pub fn parse(bytes: &[u8], file: &Path, folder: Option<&Path>) -> Result<TriangleMesh, MeshError> {
-    let mut texture_budget = MAX_TEXTURE_BYTES;
-    parse_within(bytes, file, &Reader::new(folder), &mut texture_budget)
+    parse_posed(bytes, file, folder, None)
 }
 
-/// Like [`parse`], with a given reader; `texture_budget` is the number of bytes left for decoded textures.
+/// Like [`parse`], in the pose of a clip.
+///
+/// # Errors
+/// As [`load`]; also what is broken in the clip.
+pub fn parse_posed(
+    bytes: &[u8],
+    file: &Path,
+    folder: Option<&Path>,
+    clip: Option<&ClipTime>,
+) -> Result<TriangleMesh, MeshError> {
+    let mut texture_budget = MAX_TEXTURE_BYTES;
+    parse_within(bytes, file, &Reader::new(folder), &mut texture_budget, (clip, SharedTextures::new()))
+}
+
+/// Like [`parse_posed`], with a given reader, and textures of the same file that were decoded before. `texture_budget`
+/// is the number of bytes left for decoded textures.
 pub(super) fn parse_within(
     bytes: &[u8],
     file: &Path,
     reader: &Reader<'_>,
     texture_budget: &mut u64,
+    (clip, shared): (Option<&ClipTime>, SharedTextures),
 ) -> Result<TriangleMesh, MeshError> {
     let read = || {
         if bytes.len() as u64 > MAX_FILE_BYTES {
@@ -48,7 +67,7 @@ pub(super) fn parse_within(
         let document = read_document(bytes)?;
         let buffers = read_buffers(&document, reader)?;
         let source = Source { root: &document.root, buffers: &buffers, entries_read: Cell::new(0) };
-        write_out(&source, Surfaces::new(&source, reader, texture_budget))
+        write_out(&source, Surfaces::new(&source, reader, texture_budget, shared), clip)
     };
     // No input is known to cause a panic, but the image decoders and this code read untrusted files.
     catch_unwind(AssertUnwindSafe(read))
@@ -85,17 +104,25 @@ fn read_buffers<'a>(document: &GltfDocument<'a>, reader: &Reader<'_>) -> Result<
     Ok(buffers)
 }
 
-fn write_out<'a>(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Result<TriangleMesh, LoadRefusal> {
+fn write_out<'a>(
+    source: &'a Source<'a>,
+    surfaces: Surfaces<'a>,
+    clip: Option<&ClipTime>,
+) -> Result<TriangleMesh, LoadRefusal> {
     let root = source.root;
-    let forest = walk(root)?;
-    let mut writer = Writer::new(source, surfaces);
+    let mut remarks = Remarks::of(root);
+    let poses = clip.map_or(Ok(Poses::new()), |clip| poses(source, clip, &mut remarks))?;
+    let forest = walk(root, &poses)?;
+    let mut writer = Writer::new(source, surfaces, remarks);
     for &index in &forest.shown {
         let node = &root.nodes[index];
         let Some((number, mesh)) = node.mesh.and_then(|mesh| Some((mesh.0, root.meshes.get(mesh.index())?))) else {
             continue;
         };
         let pose = Pose::of(source, &forest.world_from_node, index)?;
-        writer.add(mesh, &pose, morph_weights(root, node), &format!("meshes[{number}]"))?;
+        let weights = poses.get(&index).and_then(|pose| pose.weights.as_deref());
+        let weights = weights.unwrap_or_else(|| morph_weights(root, node));
+        writer.add(mesh, &pose, weights, &format!("meshes[{number}]"))?;
     }
     let mesh = writer.finish();
     if mesh.indices.is_empty() { Err(LoadRefusal::at("", "shows no triangles")) } else { Ok(mesh) }

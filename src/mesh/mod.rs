@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! .gltf / .glb ──► resolve (files, data URIs) ──► document (JSON, checked) ──► forest (placement of nodes)
-//!              ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
+//!              ──► clip (what an animation moves) ──► primitive (accessors, poses, surfaces) ──► TriangleMesh ──► bvh (on the first ray)
 //! ```
 //!
 //! Files are untrusted. Every number is checked before it sizes a read or an allocation, all of it runs behind
@@ -11,12 +11,16 @@
 
 mod accessor;
 mod bvh;
+mod clip;
+mod clip_schema;
 mod document;
 mod error;
 mod forest;
 mod library;
 pub mod limits;
 mod load;
+mod material_schema;
+mod model_pose;
 mod pose;
 mod primitive;
 mod references;
@@ -27,12 +31,15 @@ mod surface;
 mod texture;
 mod triangle_mesh;
 mod watch;
+mod whole;
 
 pub use bvh::{Bvh, BvhNode};
+pub use clip::ClipInfo;
 pub use error::MeshError;
 pub use library::{MeshLibrary, MeshResult, MeshSource, ReloadOutcome, Reread};
-pub use load::{load, parse};
-pub use surface::Surface;
+pub use load::{load, parse, parse_posed};
+pub use model_pose::{ClipTime, ModelPose};
+pub use surface::{Surface, TextureUse};
 pub use texture::{Sampler, Texture, Wrap};
-pub use triangle_mesh::{MeshHit, MeshPart, TriangleMesh};
+pub use triangle_mesh::{MeshHit, MeshLook, MeshPart, TriangleMesh};
 pub use watch::Watcher;

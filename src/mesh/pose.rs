@@ -73,6 +73,8 @@ pub(super) struct Vertices<'a> {
     pub positions: Vec<[f32; 3]>,
     /// `None` if the file has none.
     pub normals: Option<Vec<[f32; 3]>>,
+    /// With the sign of the bitangent; `None` if nothing needs them or the file has none.
+    pub tangents: Option<Vec<[f32; 4]>>,
     pose: &'a Pose,
     /// Joints and their weights, four at a time; empty if the pose is rigid.
     influences: Vec<Influences>,
@@ -90,6 +92,7 @@ impl<'a> Vertices<'a> {
         primitive: &Primitive,
         pose: &'a Pose,
         morph: &[f64],
+        with_tangents: bool,
         place: &str,
     ) -> Result<Self, LoadRefusal> {
         let at = |name: &str| format!("{place}.attributes.{name}");
@@ -112,7 +115,18 @@ impl<'a> Vertices<'a> {
                 Some(normals)
             }
         };
-        let mut vertices = Self { positions, normals, pose, influences: Vec::new() };
+        let tangents = match primitive.attributes.get("TANGENT").filter(|_| with_tangents && normals.is_some()) {
+            None => None,
+            Some(accessor) => {
+                same_count(source.count(*accessor), count, &at("TANGENT"))?;
+                let tangents = source.floats::<4>(*accessor, 4, &at("TANGENT"))?;
+                if let Some(i) = tangents.iter().position(|t| t.iter().any(|c| !c.is_finite())) {
+                    return Err(LoadRefusal::at(at("TANGENT"), format!("is not finite at vertex {i}")));
+                }
+                Some(tangents)
+            }
+        };
+        let mut vertices = Self { positions, normals, tangents, pose, influences: Vec::new() };
         vertices.morph(source, primitive, morph, place)?;
         if let Pose::Skinned { joints, .. } = pose {
             vertices.read_influences(source, primitive, joints.len(), place)?;
@@ -217,6 +231,19 @@ impl<'a> Vertices<'a> {
         let normal = DVec3::from(self.normals.as_ref()?[vertex].map(f64::from));
         let cofactors = cofactors(&self.world_from_local(vertex).matrix3);
         Some((cofactors * normal).try_normalize().unwrap_or(DVec3::ZERO))
+    }
+
+    /// The unit tangent of a vertex in the file's space, with the sign of the bitangent; zero if the file's tangent is
+    /// zero; `None` without tangents.
+    pub fn tangent(&self, vertex: usize) -> Option<[f32; 4]> {
+        let [x, y, z, sign] = self.tangents.as_ref()?[vertex];
+        let matrix = self.world_from_local(vertex).matrix3;
+        let tangent = matrix * DVec3::from([x, y, z].map(f64::from));
+        let Some(tangent) = tangent.try_normalize() else { return Some([0.0; 4]) };
+        // A mirror reverses the cross product of normal and tangent.
+        let sign = if (sign < 0.0) == (matrix.determinant() < 0.0) { 1.0 } else { -1.0 };
+        let [x, y, z] = tangent.as_vec3().to_array();
+        Some([x, y, z, sign])
     }
 
     /// Whether the pose mirrors a triangle at this vertex, so that its winding is reversed.

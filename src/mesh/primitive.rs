@@ -9,12 +9,13 @@ use std::sync::OnceLock;
 use glam::DVec3;
 
 use super::accessor::Source;
+use super::clip::clips;
 use super::error::LoadRefusal;
 use super::limits::{MAX_ATTRIBUTES, MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES};
 use super::pose::{Pose, Vertices, same_count};
 use super::remarks::Remarks;
 use super::schema::{GltfMesh, Primitive, Whole};
-use super::surface::{Surface, Surfaces};
+use super::surface::{Surface, Surfaces, UvSets};
 use super::{MeshPart, TriangleMesh};
 use isolith_geometry::Aabb;
 
@@ -33,8 +34,8 @@ struct Group<'p> {
     /// The first of them; the attributes of the others are the same.
     primitive: &'p Primitive,
     place: String,
-    /// The set of texture coordinates.
-    uv_set: u64,
+    /// The sets of texture coordinates.
+    uv_sets: UvSets,
     runs: Vec<Run>,
 }
 
@@ -45,23 +46,26 @@ struct Run {
 }
 
 /// Primitives with equal keys share vertices.
-type Key = (Vec<(String, Whole)>, Vec<Vec<(String, Whole)>>, u64);
+type Key = (Vec<(String, Whole)>, Vec<Vec<(String, Whole)>>, UvSets);
 
 impl<'a> Writer<'a> {
-    pub fn new(source: &'a Source<'a>, surfaces: Surfaces<'a>) -> Self {
+    pub fn new(source: &'a Source<'a>, surfaces: Surfaces<'a>, remarks: Remarks) -> Self {
         let mesh = TriangleMesh {
             positions: Vec::new(),
             normals: Vec::new(),
             colors: Vec::new(),
             uvs: Vec::new(),
+            tangents: Vec::new(),
             indices: Vec::new(),
             parts: Vec::new(),
             textures: Vec::new(),
+            images: Vec::new(),
+            clips: clips(source),
             bounds: Aabb::EMPTY,
             warnings: Vec::new(),
             bvh: OnceLock::new(),
         };
-        Self { source, surfaces, mesh, remarks: Remarks::of(source.root), attributes: 0 }
+        Self { source, surfaces, mesh, remarks, attributes: 0 }
     }
 
     pub fn finish(mut self) -> TriangleMesh {
@@ -71,7 +75,10 @@ impl<'a> Writer<'a> {
             indices.iter().map(|i| part.origin + point(mesh.positions[*i as usize]))
         });
         self.mesh.bounds = Aabb::from_points(corners);
-        self.mesh.textures = self.surfaces.textures;
+        if !self.mesh.tangents.is_empty() {
+            self.mesh.tangents.resize(self.mesh.positions.len(), [0.0; 4]);
+        }
+        (self.mesh.textures, self.mesh.images) = self.surfaces.into_textures();
         self.mesh.warnings = self.remarks.finish();
         self.mesh
     }
@@ -100,17 +107,17 @@ impl<'a> Writer<'a> {
                 continue;
             }
             let place = format!("{place}.primitives[{p}]");
-            let (surface, uv_set) = self.surfaces.of(primitive, &mut self.remarks);
+            let (surface, uv_sets) = self.surfaces.of(primitive, &mut self.remarks);
             let triangles = self.triangles(primitive, mode, &place)?;
             found += triangles.len();
             self.reserve(0, found, &place)?;
             let list = |attributes: &super::schema::Attributes| -> Vec<_> {
                 attributes.iter().map(|(name, accessor)| (name.clone(), *accessor)).collect()
             };
-            let key = (list(&primitive.attributes), primitive.targets.iter().map(list).collect(), uv_set);
+            let key = (list(&primitive.attributes), primitive.targets.iter().map(list).collect(), uv_sets);
             let group = *known.entry(key).or_insert(groups.len());
             if group == groups.len() {
-                groups.push(Group { primitive, place, uv_set, runs: Vec::new() });
+                groups.push(Group { primitive, place, uv_sets, runs: Vec::new() });
             }
             groups[group].runs.push(Run { surface, triangles });
         }
@@ -154,7 +161,8 @@ impl<'a> Writer<'a> {
 
     fn add_group(&mut self, group: &Group<'_>, pose: &Pose, morph: &[f64]) -> Result<(), LoadRefusal> {
         let place = &group.place;
-        let vertices = Vertices::read(self.source, group.primitive, pose, morph, place)?;
+        let is_bumpy = group.runs.iter().any(|run| run.surface.normal.is_some());
+        let vertices = Vertices::read(self.source, group.primitive, pose, morph, is_bumpy, place)?;
         let colors = self.colors(group.primitive, vertices.positions.len(), place)?;
         let uvs = self.uvs(group, vertices.positions.len())?;
         let used = Used::by(&group.runs, vertices.positions.len());
@@ -169,13 +177,19 @@ impl<'a> Writer<'a> {
         let write = |mesh: &mut TriangleMesh, v: u32, position: [f32; 3]| {
             mesh.positions.push(position);
             mesh.colors.push(colors.as_ref().map_or([1.0; 4], |colors| colors[v as usize]));
-            mesh.uvs.push(uvs.as_ref().map_or([0.0; 2], |uvs| uvs[v as usize]));
+            let uv = |slot: usize| uvs[slot].as_ref().map_or([0.0; 2], |uvs| uvs[v as usize]);
+            let ([u, v], [u2, v2]) = (uv(0), uv(1));
+            mesh.uvs.push([u, v, u2, v2]);
         };
         if vertices.normals.is_some() {
             self.reserve(used.list.len(), count, place)?;
             let base = self.mesh.positions.len() as u32;
             let mut normals = Vec::with_capacity(used.list.len());
+            if vertices.tangents.is_some() {
+                self.mesh.tangents.resize(base as usize, [0.0; 4]);
+            }
             for v in &used.list {
+                self.mesh.tangents.extend(vertices.tangent(*v as usize));
                 write(&mut self.mesh, *v, local(*v));
                 normals.push(vertices.normal(*v as usize).unwrap_or(DVec3::ZERO));
             }
@@ -262,20 +276,21 @@ impl<'a> Writer<'a> {
         Ok(Some(colors))
     }
 
-    /// The texture coordinates, if a texture needs them.
-    fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<Option<Vec<[f32; 2]>>, LoadRefusal> {
-        if group.runs.iter().all(|run| run.surface.texture.is_none()) {
-            return Ok(None);
+    /// The texture coordinates of each slot, if a texture needs them.
+    fn uvs(&self, group: &Group<'_>, vertices: usize) -> Result<[Option<Vec<[f32; 2]>>; 2], LoadRefusal> {
+        let mut slots = [None, None];
+        for (slot, set) in slots.iter_mut().zip(group.uv_sets) {
+            let Some(name) = set.map(|set| format!("TEXCOORD_{set}")) else { continue };
+            let Some(accessor) = group.primitive.attributes.get(&name) else { continue };
+            let place = format!("{}.attributes.{name}", group.place);
+            same_count(self.source.count(*accessor), vertices, &place)?;
+            let uvs = self.source.floats::<2>(*accessor, 2, &place)?;
+            if let Some(i) = uvs.iter().position(|uv| uv.iter().any(|c| !c.is_finite())) {
+                return Err(LoadRefusal::at(place, format!("is not finite at vertex {i}")));
+            }
+            *slot = Some(uvs);
         }
-        let name = format!("TEXCOORD_{}", group.uv_set);
-        let Some(accessor) = group.primitive.attributes.get(&name) else { return Ok(None) };
-        let place = format!("{}.attributes.{name}", group.place);
-        same_count(self.source.count(*accessor), vertices, &place)?;
-        let uvs = self.source.floats::<2>(*accessor, 2, &place)?;
-        match uvs.iter().position(|uv| uv.iter().any(|c| !c.is_finite())) {
-            Some(i) => Err(LoadRefusal::at(place, format!("is not finite at vertex {i}"))),
-            None => Ok(Some(uvs)),
-        }
+        Ok(slots)
     }
 }
 

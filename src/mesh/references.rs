@@ -50,12 +50,7 @@ fn check_surfaces(root: &Root) -> Result<(), LoadRefusal> {
         check("sampler", texture.sampler, root.samplers.len(), || format!("textures[{i}].sampler"))?;
     }
     for (i, material) in root.materials.iter().enumerate() {
-        let diffuse = material.extensions.specular_glossiness.as_ref().and_then(|s| s.diffuse_texture.as_ref());
-        let fields = [
-            (material.pbr_metallic_roughness.base_color_texture.as_ref(), "pbrMetallicRoughness.baseColorTexture"),
-            (diffuse, "extensions.KHR_materials_pbrSpecularGlossiness.diffuseTexture"),
-        ];
-        for (info, field) in fields {
+        for (info, field) in material.textures() {
             check("texture", info.map(|i| i.index), root.textures.len(), || format!("materials[{i}].{field}.index"))?;
         }
     }

@@ -6,7 +6,8 @@ use super::document::SUPPORTED;
 use super::error::{LONGEST_TEXT, name, shown};
 use super::forest::shown_scene;
 use super::limits::MAX_WARNINGS;
-use super::schema::{GltfMaterial, Root};
+use super::material_schema::{GltfMaterial, MaterialExtensions};
+use super::schema::Root;
 
 /// Extensions without visible effect, or with plain data as a fallback.
 const WITHOUT_EFFECT: &[&str] = &[
@@ -42,10 +43,6 @@ impl Remarks {
             }
         }
         let count = |n: usize, word: &str| if n == 1 { format!("1 {word}") } else { format!("{n} {word}s") };
-        if !root.animations.is_empty() {
-            let animations = count(root.animations.len(), "animation");
-            remarks.add(format!("{animations} not played: the model is shown at rest"));
-        }
         if !root.cameras.is_empty() {
             remarks.add(format!("{} not used", count(root.cameras.len(), "camera")));
         }
@@ -73,14 +70,17 @@ impl Remarks {
 
     /// Adds the features of a used material that are not drawn.
     pub fn material(&mut self, index: usize, material: &GltfMaterial) {
-        let pbr = &material.pbr_metallic_roughness;
-        let emits = material.emissive_factor.is_some_and(|factor| factor.iter().any(|c| *c > 0.0));
+        let MaterialExtensions { specular_glossiness, specular, clearcoat, .. } = &material.extensions;
+        let older = specular_glossiness.as_ref();
+        let specular = specular.as_ref();
+        let coat = clearcoat.as_ref();
         let things = [
-            (material.normal_texture.is_some(), "normal textures"),
-            (material.occlusion_texture.is_some(), "occlusion textures"),
-            (pbr.metallic_roughness_texture.is_some(), "metallic-roughness textures"),
-            (emits, "emission"),
-            (material.alpha_mode.as_deref() == Some("BLEND"), "transparency (alphaMode BLEND, drawn as opaque)"),
+            (older.is_some_and(|o| o.specular_glossiness_texture.is_some()), "specular-glossiness textures"),
+            (specular.is_some_and(|s| s.specular_texture.is_some()), "textures of KHR_materials_specular"),
+            (specular.is_some_and(|s| s.specular_color_texture.is_some()), "textures of KHR_materials_specular"),
+            (coat.is_some_and(|c| c.clearcoat_texture.is_some()), "textures of KHR_materials_clearcoat"),
+            (coat.is_some_and(|c| c.clearcoat_roughness_texture.is_some()), "textures of KHR_materials_clearcoat"),
+            (coat.is_some_and(|c| c.clearcoat_normal_texture.is_some()), "textures of KHR_materials_clearcoat"),
         ];
         for (has, what) in things {
             if has {
@@ -117,7 +117,7 @@ impl Remarks {
 /// The effect on the picture if an extension is not supported; `None` for no effect.
 fn effect(extension: &str) -> Option<&'static str> {
     Some(match extension {
-        "KHR_materials_pbrSpecularGlossiness" => "only its diffuse color is drawn",
+        "KHR_materials_pbrSpecularGlossiness" => "only its diffuse color and glossiness factor are drawn",
         "KHR_lights_punctual" => "the lights of the file are not used",
         "KHR_materials_variants" => "only the first variant is drawn",
         "EXT_mesh_gpu_instancing" => "not supported: each instanced mesh is drawn once",

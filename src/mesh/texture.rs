@@ -1,6 +1,8 @@
-//! Base color textures: decoded within a budget, and sampled as a renderer does.
+//! Textures: decoded within a budget, and sampled as a renderer does.
 
+use std::collections::HashMap;
 use std::io::Cursor;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec4};
 use image::{DynamicImage, ImageDecoder as _, ImageFormat, ImageReader, Limits};
@@ -14,7 +16,7 @@ pub struct Texture {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Rows from the top, four bytes per pixel, sRGB with straight alpha.
+    /// Rows from the top, four bytes per pixel; colors are sRGB with straight alpha.
     pub rgba: Vec<u8>,
 }
 
@@ -23,6 +25,9 @@ impl std::fmt::Debug for Texture {
         write!(f, "Texture({} × {})", self.width, self.height)
     }
 }
+
+/// Textures by the index of their image in the file.
+pub(super) type SharedTextures = HashMap<usize, Arc<Texture>>;
 
 /// The wrapping mode beyond the edge of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

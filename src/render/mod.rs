@@ -37,7 +37,7 @@ pub use frame::cost_model::coarse_size;
 pub use frame::plan;
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
-pub use gpu::{driver, probe, scene_probe};
+pub use gpu::{brdf_probe, driver, mesh_ray_probe, probe, scene_probe};
 pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::Overlay;
@@ -45,7 +45,10 @@ pub use passes::overlay_settings::OverlaySettings;
 pub use pipelines::cache::PipelineCache;
 pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
-pub use renderer::{Counts, Distribution, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts};
+pub use renderer::{
+    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts,
+};
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
+pub use resources::mesh_rays::{MAX_MESH_VISITS, RayMesh};
 pub use resources::targets::BACKGROUND;
 pub use resources::uniforms;

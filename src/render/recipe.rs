@@ -19,6 +19,8 @@ macro_rules! recipe {
             Surface: surface = SurfacePass, "surface.wgsl", over Hits;
             /// Lighting and background.
             Shade: shade = ShadePass, "shade.wgsl", over Light;
+            /// The mean of accumulated samples as a picture.
+            Display: display = DisplayPass, "display.wgsl", over Finished;
             /// Hits or counts as colors over the picture, for view modes that ask for it.
             DebugView: debug_view = DebugViewPass, "debug_view.wgsl", over Finished;
             /// Grid and selection outline, if the editor asks for them.
@@ -96,8 +98,15 @@ mod tests {
     use isolith_wgsl::{FILES, assemble_plain};
 
     /// Files in `shaders/` that belong to no pass of a frame.
-    const NO_PASSES: &[&str] =
-        &["driver.wgsl", "probe.wgsl", "probe_lookahead.wgsl", "probe_scene.wgsl", "probe_surface.wgsl"];
+    const NO_PASSES: &[&str] = &[
+        "driver.wgsl",
+        "probe.wgsl",
+        "probe_brdf.wgsl",
+        "probe_lookahead.wgsl",
+        "probe_mesh_rays.wgsl",
+        "probe_scene.wgsl",
+        "probe_surface.wgsl",
+    ];
 
     #[test]
     fn every_pass_has_a_label_and_a_file_with_an_entry_point() {

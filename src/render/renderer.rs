@@ -6,12 +6,14 @@ pub(super) mod evaluation;
 mod frame;
 mod going_on;
 mod measure;
-mod mesh_materials;
+pub(super) mod mesh_materials;
 mod pixel_counts;
 pub(super) mod recorder;
 pub(super) mod resources;
+mod samples;
 pub(super) mod scene;
 mod slot;
+mod still;
 pub(super) mod timings;
 mod unfinished;
 
@@ -19,14 +21,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::passes::Passes;
-use super::passes::frame_pass::Building;
-use super::passes::overlay_settings::OverlaySettings;
+use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
 use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
+use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::PipelineCache;
 use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
@@ -47,6 +48,7 @@ use recorder::{Recorder, meet};
 use resources::{FrameResources, SUBTILE_COUNTS, bytes_of_subtiles};
 use scene::SceneResources;
 pub use slot::Slot;
+pub use still::Film;
 pub use timings::PassTime;
 use timings::PassTimings;
 
@@ -242,15 +244,17 @@ impl Renderer {
         };
         let _span = tracing::debug_span!("upload").entered();
         self.gpu.check()?;
-        let Gpu { device, queue, .. } = &self.gpu;
+        let (Gpu { device, queue, .. }, materials) = (&self.gpu, mesh_materials::MeshMaterials::new(flat, meshes));
         self.resources.resize(device, slot, size, &overlay);
         let standpoints = Standpoints::new(flat, camera, size);
         let (scene_is_new, template_rows) =
             self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
-        if self.resources.upload(&self.gpu, flat, camera, size, &plan) || scene_is_new {
+        if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new {
             self.resources.forget_groups();
         }
-        self.passes.mesh.prepare(device, queue, flat, meshes, camera, size);
+        self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
+        let features = ShadeFeatures::new(flat, &materials.all);
+        self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);
         }
@@ -258,6 +262,7 @@ impl Renderer {
         self.timings.begin();
         let mut frame = Frame::new(slot, flat, chosen, plan, self.cost_model, overlay);
         frame.template_rows = template_rows;
+        frame.shade_features = features;
         if slot == Slot::Preview {
             // A preview must be quick, and the full picture follows it.
             frame.end_as_planned();
@@ -403,41 +408,6 @@ impl Renderer {
             }
         }
         Ok(false)
-    }
-
-    /// Renders a whole scene. Between dispatches it calls `progress` with the fraction that is done; `progress` returns
-    /// whether to continue.
-    pub fn render(
-        &mut self,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        self.render_as(ViewMode::Shaded, flat, meshes, camera, size, progress)
-    }
-
-    /// Renders with another view mode. View modes that show counts need a renderer that counts.
-    pub fn render_as(
-        &mut self,
-        view_mode: ViewMode,
-        flat: &FlatScene,
-        meshes: &[Option<Arc<TriangleMesh>>],
-        camera: &Camera,
-        size: [u32; 2],
-        progress: &mut dyn FnMut(f32) -> bool,
-    ) -> Result<(GBuffer, Vec<Warning>), RenderError> {
-        let mut frame = self.begin(Slot::Full, flat, meshes, camera, size, OverlaySettings::default())?;
-        self.debug_view(&mut frame, view_mode, flat, &DepthRange::of(&flat.content(meshes), camera.position))?;
-        while !frame.is_done() {
-            if !progress(frame.progress()) {
-                return Err(RenderError::Canceled);
-            }
-            self.advance(&mut frame, Duration::ZERO)?;
-        }
-        progress(1.0);
-        Ok((self.read(&frame)?, self.unfinished_rays(&frame)?))
     }
 
     /// The picture in a slot: complete once its frame is done. [`Renderer::begin`] with another size replaces the

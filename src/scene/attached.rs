@@ -2,6 +2,7 @@
 
 use super::attachment::{Attachment, Content};
 use super::heights::Heights;
+use super::texture_image::TextureImage;
 use isolith_font::Face;
 
 /// An attachment of any kind, as the value of a parameter.
@@ -9,6 +10,8 @@ use isolith_font::Face;
 pub enum Attached {
     /// An image of heights.
     Heights(Attachment<Heights>),
+    /// An image of a texture.
+    Texture(Attachment<TextureImage>),
     /// A font.
     Font(Attachment<Face>),
 }
@@ -18,7 +21,16 @@ impl Attached {
     pub fn name(&self) -> Option<&str> {
         match self {
             Self::Heights(file) => file.name(),
+            Self::Texture(file) => file.name(),
             Self::Font(file) => file.name(),
+        }
+    }
+
+    /// The size of the file in bytes; 0 without a file.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Heights(file) => file.size(),
+            Self::Font(file) => file.size(),
         }
     }
 
@@ -26,6 +38,7 @@ impl Attached {
     pub fn label(&self) -> &str {
         let without = match self {
             Self::Heights(_) => Heights::WITHOUT,
+            Self::Texture(_) => TextureImage::WITHOUT,
             Self::Font(_) => Face::WITHOUT,
         };
         self.name().unwrap_or(without)
@@ -35,6 +48,7 @@ impl Attached {
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             Self::Heights(_) => Heights::ENDINGS,
+            Self::Texture(_) => TextureImage::ENDINGS,
             Self::Font(_) => Face::ENDINGS,
         }
     }
@@ -43,6 +57,7 @@ impl Attached {
     pub fn without(&self) -> Self {
         match self {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
+            Self::Texture(_) => Self::Texture(Attachment::NONE),
             Self::Font(_) => Self::Font(Attachment::NONE),
         }
     }
@@ -51,6 +66,7 @@ impl Attached {
     pub fn with(&self, name: &str, bytes: Vec<u8>) -> Result<Self, String> {
         Ok(match self {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
+            Self::Texture(_) => Self::Texture(Attachment::new(name, bytes)?),
             Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
         })
     }

@@ -65,6 +65,11 @@ impl<T> Attachment<T> {
     pub fn name(&self) -> Option<&str> {
         self.0.as_deref().map(|held| &*held.name)
     }
+
+    /// The size of the file in bytes; 0 without a file.
+    pub fn size(&self) -> usize {
+        self.0.as_deref().map_or(0, |held| held.bytes.len())
+    }
 }
 
 impl<T: Content> Attachment<T> {

@@ -7,8 +7,8 @@ use super::drawn::text_fault;
 use super::limits::{Limits, MAX_APART, MAX_NAME, MAX_PATH, Rule};
 use super::params::{Param, Params};
 use super::{
-    Attenuation, CameraNode, Environment, Light, LightKind, List, MAX_MODIFIERS, Material, Node, NodeKind, ParamValue,
-    Part, SceneError, Shape,
+    Attenuation, CameraNode, DisplaySettings, Environment, Light, LightKind, List, MAX_MODIFIERS, Material, Node,
+    NodeKind, ParamValue, Part, SceneError, Shape,
 };
 
 /// A value that fails a check.
@@ -75,6 +75,11 @@ pub(crate) fn named(name: &str, params: &dyn Params) -> Result<(), Fault> {
 /// Checks every value of an environment.
 pub fn environment(environment: &Environment) -> Result<(), Fault> {
     values(environment)
+}
+
+/// Checks every value of display settings.
+pub fn display(display: &DisplaySettings) -> Result<(), Fault> {
+    values(display)
 }
 
 /// Checks every parameter against the limits of its table.

@@ -1,19 +1,17 @@
 //! Heights from an image, as a grid for a smooth surface.
 
-mod exr;
+pub(super) mod exr;
 
 use std::io::Cursor;
 use std::sync::LazyLock;
 
 use image::imageops::{FilterType, resize};
 use image::metadata::Orientation;
-use image::{
-    DynamicImage, GrayImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Luma, Primitive, guess_format,
-};
+use image::{DynamicImage, GrayImage, ImageBuffer, ImageFormat, Luma, Primitive, guess_format};
 
 use super::attachment::{Attachment, Content};
-use super::decode_budget::{check_size, spend};
-use super::limits::{MAX_HEIGHTS, MAX_IMAGE_BYTES};
+use super::image_file;
+use super::limits::MAX_HEIGHTS;
 
 /// A grid of heights from 0 to 1, row by row; each height belongs to the middle of its cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,34 +79,14 @@ impl Content for Heights {
 }
 
 fn decoded(bytes: &[u8], format: ImageFormat) -> Result<Heights, String> {
-    let mut limits = Limits::default();
-    limits.max_alloc = Some(MAX_IMAGE_BYTES);
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    reader.limits(limits);
-    let mut decoder = reader.into_decoder().map_err(|e| e.to_string())?;
-    let (width, height) = decoder.dimensions();
-    let pixels = check_size([width.into(), height.into()], decoder.total_bytes())?;
-    spend(pixels * passes(bytes, format))?;
-    // Ignores a damaged orientation tag.
-    let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-    Ok(match DynamicImage::from_decoder(decoder).map_err(|e| e.to_string())? {
+    let (image, orientation, pixels) = image_file::decoded(bytes, format)?;
+    Ok(match image {
         // Most images are of this kind; this avoids a copy.
         DynamicImage::ImageLuma8(image) if square_side(&image) > 1 => {
             Heights::from_image(&image, u8::MAX.into(), orientation, pixels)
         }
         image => Heights::from_image(&image.into_luma16(), u16::MAX.into(), orientation, pixels),
     })
-}
-
-/// How often decoding passes over the pixels: a progressive JPEG repeats them for each scan, of which it may have
-/// thousands.
-fn passes(bytes: &[u8], format: ImageFormat) -> u64 {
-    const USUAL_SCANS: u64 = 16;
-    if format != ImageFormat::Jpeg {
-        return 1;
-    }
-    let scans = bytes.windows(2).filter(|pair| *pair == [0xff, 0xda]).count() as u64;
-    scans.div_ceil(USUAL_SCANS).max(1)
 }
 
 impl Heights {
@@ -256,12 +234,5 @@ mod tests {
         let ramp = Heights::from_image(&image, 255.0, Orientation::NoTransforms, 0);
         let steps = (4..MAX_HEIGHTS - 4).map(|x| ramp.values[x] - ramp.values[x - 1]);
         assert!(steps.clone().all(|step| (step - 1.0 / 255.0).abs() < 5e-4), "{:?}", steps.collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn scans_of_a_jpeg_are_counted() {
-        assert_eq!(passes(&[0xff, 0xda].repeat(10), ImageFormat::Jpeg), 1);
-        assert_eq!(passes(&[0xff, 0xda].repeat(1_000), ImageFormat::Jpeg), 63);
-        assert_eq!(passes(&[0xff, 0xda].repeat(1_000), ImageFormat::Png), 1);
     }
 }

@@ -102,6 +102,13 @@ pub const LETTERS: Limits = Limits::new([0.0, MAX_TEXT as f64], [0.0, MAX_TEXT a
 /// Length of the path of a file, in letters.
 pub const PATH_LENGTH: Limits = Limits::new([1.0, MAX_PATH as f64], [1.0, MAX_PATH as f64], "").whole();
 
+/// Characters of the name of an animation clip.
+pub const CLIP_NAME_LENGTH: Limits = Limits::new([0.0, MAX_NAME as f64], [0.0, MAX_NAME as f64], "").whole();
+/// Times within an animation clip.
+pub const CLIP_TIME: Limits = Limits::new([0.0, 10.0], [-1e6, 1e6], "s");
+/// Speeds of animation clips.
+pub const CLIP_SPEED: Limits = Limits::new([0.0, 2.0], [-1e3, 1e3], "");
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits::new([0.0, 5.0], [0.0, 1e6], "m");
 /// Thicknesses and roundings.
@@ -126,12 +133,16 @@ pub const STEPS: Limits = Limits::new([1.0, 12.0], [1.0, 64.0], "").whole();
 pub const MAX_APART: usize = 64;
 /// Weights and reflectances.
 pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
+/// Strength of a specular reflection; above 1 a dielectric reflects more than its index of refraction says.
+pub const SPECULAR: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
 /// Index of refraction.
 pub const IOR: Limits = Limits::new([1.0, 3.0], [1.0, 100.0], "");
 /// Strength of emitted light.
 pub const LUMINANCE: Limits = Limits::new([0.0, 20.0], [0.0, 1e6], "");
+/// Exposure of a picture.
+pub const EXPOSURE: Limits = Limits::new([-5.0, 5.0], [-20.0, 20.0], "stops");
 /// Blinn-Phong exponent.
 pub const SHININESS: Limits = Limits::new([1.0, 256.0], [1.0, 1e4], "");
 /// Reach of a point or spot light.
@@ -178,3 +189,17 @@ pub const AMPLITUDE: Limits = Limits::new([0.0, 0.5], [0.0, 1e6], "m");
 pub const DISPLACEMENT: Limits = Limits::new([-0.5, 0.5], [-1e6, 1e6], "m");
 /// Width of a repeated tile.
 pub const TILE: Limits = Limits::new([0.1, 5.0], [1e-4, 1e6], "m");
+/// Tiles, images and patterns of a texture per tile.
+pub const TEXTURE_SCALE: Limits = Limits::new([0.1, 32.0], [1e-3, 1e3], "");
+/// Factor on the width of a texture's tile.
+pub const STRETCH: Limits = Limits::new([0.1, 10.0], [1e-3, 1e3], "");
+/// The power of the normal that weights projections.
+pub const SHARPNESS: Limits = Limits::new([1.0, 64.0], [1.0, 1e3], "");
+/// Height of what a texture embosses, outward or inward.
+pub const BUMP: Limits = Limits::new([-0.1, 0.1], [-1e3, 1e3], "m");
+/// Height of a row of bricks, in lengths of a brick.
+pub const PATTERN_SHARE: Limits = Limits::new([0.1, 2.0], [0.01, 100.0], "");
+/// How far a pattern wanders, in its own widths; factors on slopes.
+pub const TURBULENCE: Limits = Limits::new([0.0, 2.0], [0.0, 100.0], "");
+/// Most bytes of all images of textures on the device: beyond it, the largest are shown at half their size.
+pub const MAX_TEXTURE_BYTES: usize = 127 << 20;

@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::limits::{INTENSITY, IOR, LUMINANCE, NO_LIMITS, SHININESS, UNIT};
+use super::limits::{INTENSITY, IOR, LUMINANCE, NO_LIMITS, SHININESS, SPECULAR, UNIT};
 use super::params::{Variants, nested_variants, param_rows, param_struct, param_variants};
+use super::texture::Textures;
 use super::whole;
 
 /// Stable identity of a material; never reused within a document.
@@ -43,7 +44,7 @@ param_struct! {
         /// Roughness of the diffuse reflection; 0 is Lambert's.
         base_diffuse_roughness: f64 = 0.0, UNIT.labeled("Diffuse roughness");
         /// Strength of the specular reflection.
-        specular_weight: f64 = 1.0, UNIT;
+        specular_weight: f64 = 1.0, SPECULAR;
         /// Tint of the specular reflection.
         specular_color: [f64; 3] = [1.0; 3], UNIT.color();
         /// 0 is a mirror, 1 has a wide and weak highlight.
@@ -58,14 +59,17 @@ param_struct! {
         coat_roughness: f64 = 0.0, UNIT;
         /// Index of refraction of the coat.
         coat_ior: f64 = 1.6, IOR.labeled("Coat index of refraction");
+        /// How much the light that the coat reflects back darkens what is below; 1 is physical.
+        coat_darkening: f64 = 1.0, UNIT;
         /// Strength of the emitted light; 1 shows the emission color as it is.
         emission_luminance: f64 = 0.0, LUMINANCE.labeled("Emission strength");
         /// Color of the emitted light.
         emission_color: [f64; 3] = [1.0; 3], INTENSITY.color();
-        /// 0 is invisible, 1 opaque.
-        geometry_opacity: f64 = 1.0, UNIT.labeled("Opacity");
         /// How it reflects light.
         model: ReflectionModel = ReflectionModel::OpenPbr {}, NO_LIMITS;
+        /// What varies over the surface.
+        #[serde(skip_serializing_if = "Textures::is_none")]
+        textures: Textures = Textures::None {}, NO_LIMITS;
     }
 }
 
@@ -76,7 +80,7 @@ pub enum ReflectionModel {
     /// The layers of OpenPBR, with GGX highlights.
     OpenPbr {},
     /// Lambert's diffuse reflection with a highlight by Blinn and Phong. Of the other parameters it uses base color
-    /// and weight, emission and opacity.
+    /// and weight, and emission.
     BlinnPhong {
         /// Strength of the highlight; 0 is matte.
         specular: f64,

@@ -23,12 +23,14 @@ mod attachment;
 mod axis;
 pub mod check;
 mod decode_budget;
+mod display;
 mod drawn;
 mod empty_set;
 mod error;
 pub mod file;
 mod heights;
 mod image_budget;
+mod image_file;
 mod light;
 pub mod limits;
 mod material;
@@ -37,13 +39,18 @@ mod node;
 mod operator;
 mod param_path;
 mod params;
+mod presets;
 mod shape;
 mod table;
+mod texture;
+mod texture_image;
+mod texture_source;
 mod whole;
 
 pub use attached::Attached;
 pub use attachment::{Attachment, Content};
 pub use axis::Axis;
+pub use display::{DisplaySettings, ViewTransform};
 pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
 pub use empty_set::EmptyOperandResult;
 pub use error::SceneError;
@@ -58,5 +65,11 @@ pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{
     Choice, LIST_COLUMNS, List, Param, ParamField, ParamSlot, ParamSpec, ParamValue, Params, Variants, Visit,
 };
+pub use presets::material_presets;
 pub use shape::{Degrees, SHAPE_FLOATS, Shape, ShapeKind, Sides};
 pub use table::Scene;
+pub use texture::{NormalTexture, TextureSpace, Textures};
+pub use texture_image::{Pyramid, TexelForm, TexelLevel, TextureImage};
+pub use texture_source::{
+    ColorSpace, ColorTexture, HeightTexture, PatternKind, RoughnessTexture, TextureSource, TextureWrap,
+};

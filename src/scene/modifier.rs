@@ -21,8 +21,7 @@ pub const MAX_MODIFIERS: usize = 32;
 
 param_kinds! {
     /// A modifier with its parameters, in the node's own space.
-    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-    #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+    #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
     pub enum Modifier;
 
     /// The kind of a modifier, without its parameters. The number is the code that the GPU reads.

@@ -4,7 +4,9 @@ use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::limits::{CLIP, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT};
+use super::limits::{
+    CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT,
+};
 use super::params::{param_struct, param_table};
 use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
 use isolith_geometry::Transform;
@@ -197,6 +199,34 @@ pub struct MeshNode {
     pub path: String,
     /// A material instead of the file's own.
     pub material: Option<MaterialId>,
+    /// The animation clip that poses it, by its name or its number in the file; empty for the rest pose.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub clip: String,
+    /// Where in the clip the scene begins.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub clip_time: f64,
+    /// How fast the clip runs.
+    #[serde(default = "usual_speed", skip_serializing_if = "is_usual_speed")]
+    pub clip_speed: f64,
+}
+
+fn is_zero(time: &f64) -> bool {
+    *time == 0.0
+}
+
+const fn usual_speed() -> f64 {
+    1.0
+}
+
+fn is_usual_speed(speed: &f64) -> bool {
+    *speed == usual_speed()
+}
+
+impl MeshNode {
+    /// A model in its rest pose, with its own materials.
+    pub fn new(path: impl Into<String>) -> Self {
+        Self { path: path.into(), material: None, clip: String::new(), clip_time: 0.0, clip_speed: usual_speed() }
+    }
 }
 
 param_struct! {
@@ -236,4 +266,10 @@ param_table! { Transform {
 param_table! { MeshNode {
     /// A .gltf or .glb file, relative to the scene's folder, with forward slashes.
     path: String = String::new(), PATH_LENGTH.labeled("File");
+    /// The animation clip that poses it, by its name or its number in the file; empty for the rest pose.
+    clip: String = String::new(), CLIP_NAME_LENGTH;
+    /// Where in the clip the scene begins.
+    clip_time: f64 = 0.0, CLIP_TIME;
+    /// How fast the clip runs; negative is backward, 0 stands still.
+    clip_speed: f64 = usual_speed(), CLIP_SPEED;
 } }

@@ -1,14 +1,15 @@
 //! Paths: names for every parameter of a scene.
 //!
 //! In text a path is the owner and the field as files and their errors name it: `node.12.object.shape.radius`,
-//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`, `environment.sky`.
+//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`, `environment.sky`,
+//! `display.exposure`.
 
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use super::params::{Param, ParamValue, Params};
-use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError};
+use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError};
 
 /// Names a parameter of a scene, or one element of a parameter with three.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -30,6 +31,8 @@ pub enum ParamOwner {
     Material(MaterialId),
     /// The environment.
     Environment,
+    /// The display settings.
+    Display,
 }
 
 /// A part of a node that has parameters.
@@ -161,6 +164,11 @@ impl ParamPath {
         Self { owner: ParamOwner::Environment, name: name.into(), element: None }
     }
 
+    /// A parameter of the display settings.
+    pub fn of_display(name: impl Into<Cow<'static, str>>) -> Self {
+        Self { owner: ParamOwner::Display, name: name.into(), element: None }
+    }
+
     /// The path of one of the parameter's three elements.
     pub fn element(self, index: usize) -> Self {
         Self { element: Some(index), ..self }
@@ -177,10 +185,11 @@ impl ParamPath {
         all
     }
 
-    /// All parameters of a scene: those of the environment, the materials and the nodes.
+    /// All parameters of a scene: those of the environment, the display, the materials and the nodes.
     pub fn all(scene: &Scene) -> Vec<(Self, &'static Param, ParamValue)> {
         let mut all = Vec::new();
         collect(ParamOwner::Environment, &scene.environment, &mut all);
+        collect(ParamOwner::Display, &scene.display, &mut all);
         for material in scene.materials() {
             collect(ParamOwner::Material(material.id), &**material, &mut all);
         }
@@ -233,7 +242,7 @@ impl ParamPath {
                 if !self.set_value(&mut material, value.clone()) {
                     return Err(refusal(&material));
                 }
-                Ok(Changed::Material(material))
+                Ok(Changed::Material(Box::new(material)))
             }
             ParamOwner::Environment => {
                 let mut environment = scene.environment;
@@ -241,6 +250,13 @@ impl ParamPath {
                     return Err(refusal(&environment));
                 }
                 Ok(Changed::Environment(environment))
+            }
+            ParamOwner::Display => {
+                let mut display = scene.display;
+                if !self.set_value(&mut display, value.clone()) {
+                    return Err(refusal(&display));
+                }
+                Ok(Changed::Display(display))
             }
         }
     }
@@ -253,6 +269,7 @@ impl ParamPath {
             }
             ParamOwner::Material(id) => Ok(&**scene.material(id).ok_or(SceneError::NoMaterial(id))?),
             ParamOwner::Environment => Ok(&scene.environment),
+            ParamOwner::Display => Ok(&scene.display),
         }
     }
 
@@ -300,9 +317,11 @@ pub enum Changed {
     /// A node.
     Node(Box<Node>),
     /// A material.
-    Material(Material),
+    Material(Box<Material>),
     /// The environment.
     Environment(Environment),
+    /// The display settings.
+    Display(DisplaySettings),
 }
 
 impl fmt::Display for ParamPath {
@@ -311,6 +330,7 @@ impl fmt::Display for ParamPath {
             ParamOwner::Node(id, part) => write!(f, "node.{}.{}", id.0, part.field(&self.name)),
             ParamOwner::Material(id) => write!(f, "material.{}.{}", id.0, self.name),
             ParamOwner::Environment => write!(f, "environment.{}", self.name),
+            ParamOwner::Display => write!(f, "display.{}", self.name),
         }?;
         self.element.map_or(Ok(()), |index| write!(f, "[{index}]"))
     }
@@ -336,6 +356,7 @@ fn parse(text: &str) -> Option<ParamPath> {
     let (owner, rest) = text.split_once('.')?;
     let (owner, name) = match owner {
         "environment" => (ParamOwner::Environment, rest),
+        "display" => (ParamOwner::Display, rest),
         "material" => {
             let (id, name) = rest.split_once('.')?;
             (ParamOwner::Material(MaterialId(whole(id)?)), name)

@@ -6,7 +6,7 @@
 //! derives from its parameters.
 
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::attachment::Attachment;
 use super::drawn::{Corners, Points};

@@ -8,7 +8,7 @@ use glam::DAffine3;
 
 use super::image_budget;
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
-use super::{Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
+use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
 /// A scene.
 ///
@@ -25,6 +25,8 @@ pub struct Scene {
     next_id: u64,
     /// The environment.
     pub environment: Environment,
+    /// How its light becomes the colors of a screen.
+    pub display: DisplaySettings,
 }
 
 impl PartialEq for Scene {
@@ -35,6 +37,7 @@ impl PartialEq for Scene {
         }
         self.next_id == other.next_id
             && self.environment == other.environment
+            && self.display == other.display
             && same(&self.materials, &other.materials)
             && same(&self.nodes, &other.nodes)
     }
@@ -56,6 +59,7 @@ impl Scene {
             materials: vec![Arc::new(Material::new(MaterialId(1), "Clay", [0.62, 0.56, 0.50]))],
             next_id: 1,
             environment: Environment::default(),
+            display: DisplaySettings::default(),
         }
     }
 
@@ -101,6 +105,11 @@ impl Scene {
     /// All nodes in depth-first pre-order.
     pub fn nodes(&self) -> &[Arc<Node>] {
         &self.nodes
+    }
+
+    /// The pixels of all its images, each file counted once: at most [`super::limits::MAX_SCENE_PIXELS`].
+    pub fn image_pixels(&self) -> u64 {
+        image_budget::used(&self.nodes, &self.materials)
     }
 
     /// The depth of each node, parallel to [`Scene::nodes`]; 0 at the top.
@@ -180,7 +189,7 @@ impl Scene {
             Some(id) => self.depths[self.group_index(id)?] as usize + 1,
         };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
-        image_budget::check(&self.nodes, None, &subtree)?;
+        image_budget::check(&self.nodes, &self.materials, None, &subtree)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
@@ -252,7 +261,8 @@ impl Scene {
         if has_children && !matches!(node.kind, NodeKind::Group(_)) {
             return Err(SceneError::NotAGroup(node.id));
         }
-        image_budget::check(&self.nodes, Some(&self.nodes[index]), std::slice::from_ref(&node))?;
+        let old = Some(&*self.nodes[index]);
+        image_budget::check(&self.nodes, &self.materials, old, std::slice::from_ref(&node))?;
         let parent = self.nodes[index].parent;
         self.nodes[index] = Arc::new(Node { parent, ..node });
         Ok(())
@@ -279,6 +289,7 @@ impl Scene {
             return Err(SceneError::DuplicateMaterial(material.id));
         }
         check_limit("the number of materials", self.materials.len() + 1, MAX_MATERIALS)?;
+        image_budget::check_material(&self.nodes, &self.materials, &material)?;
         self.materials.push(Arc::new(material));
         Ok(())
     }
@@ -286,6 +297,7 @@ impl Scene {
     /// Replaces the material of the same id.
     pub fn replace_material(&mut self, material: Material) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == material.id).ok_or(SceneError::NoMaterial(material.id))?;
+        image_budget::check_material(&self.nodes, &self.materials, &material)?;
         self.materials[at] = Arc::new(material);
         Ok(())
     }

@@ -9,7 +9,7 @@ use super::notice::{Notice, NoticeLevel};
 use super::prepare::read_models;
 use isolith_field::{FlatMesh, FlatScene};
 use isolith_jobs::{Job, JobEnd, Jobs, Task};
-use isolith_mesh::{MeshLibrary, ReloadOutcome, TriangleMesh, Watcher};
+use isolith_mesh::{MeshLibrary, ModelPose, ReloadOutcome, TriangleMesh, Watcher};
 use isolith_scene::NodeId;
 
 /// Loads the models and watches their files.
@@ -22,8 +22,8 @@ pub(super) struct Models {
     watcher: Option<Watcher>,
     /// The revision of the library at the last update of the watcher.
     revision: Option<u64>,
-    /// The meshes already reported, by path.
-    told: HashMap<String, Weak<TriangleMesh>>,
+    /// The meshes already reported, by path and clip.
+    told: HashMap<(String, Option<String>), Weak<TriangleMesh>>,
     /// A node whose model cannot be read, and why.
     problem: Option<(NodeId, String)>,
     notices: Vec<Notice>,
@@ -32,7 +32,7 @@ pub(super) struct Models {
 #[derive(Debug)]
 struct Reading {
     job: Job<MeshLibrary>,
-    paths: Vec<String>,
+    poses: Vec<ModelPose>,
 }
 
 /// Most items in one message about a model.
@@ -117,43 +117,46 @@ impl Models {
 
     fn take_read(&mut self) {
         let Some(end) = self.reading.as_ref().and_then(|reading| reading.job.poll()) else { return };
-        let Some(Reading { paths, .. }) = self.reading.take() else { return };
+        let Some(Reading { poses, .. }) = self.reading.take() else { return };
         let reason = match end {
             JobEnd::Done(library) => return self.library.take_new(library),
             JobEnd::Failed(reason) => reason,
             JobEnd::Canceled => "reading it was canceled; File, Reload models reads it".into(),
         };
-        for path in paths.iter().filter(|path| self.library.known(path).is_none()).cloned().collect::<Vec<_>>() {
-            self.library.refuse(&path, &reason);
+        for pose in poses.iter().filter(|pose| self.library.known(*pose).is_none()).cloned().collect::<Vec<_>>() {
+            self.library.refuse(&pose, &reason);
         }
     }
 
     fn read_missing(&mut self, jobs: &Jobs, flat: &FlatScene) {
-        let missing = flat.meshes.iter().filter(|mesh| self.library.known(&mesh.path).is_none());
-        let paths: Vec<String> = missing.map(|mesh| mesh.path.clone()).collect();
-        let name = match &*paths {
-            [] => return,
-            [one] => format!("Reading {one}"),
+        let missing = flat.meshes.iter().filter(|mesh| self.library.known(&mesh.model).is_none());
+        let poses: Vec<ModelPose> = missing.map(|mesh| mesh.model.clone()).collect();
+        let name = match &*poses {
+            [] => return self.library.keep_poses(flat.meshes.iter().map(|mesh| &mesh.model)),
+            [one] => format!("Reading {}", one.path),
             many => format!("Reading {} models", many.len()),
         };
-        let (mut library, wanted) = (self.library.clone(), paths.clone());
+        let (mut library, wanted) = (self.library.clone(), poses.clone());
         let job = jobs.start(Task::new(name), move |task| {
             read_models(&wanted, &mut library, task, 0.0);
             library
         });
-        self.reading = Some(Reading { job, paths });
+        self.reading = Some(Reading { job, poses });
     }
 
     fn find_problem(&self, flat: &FlatScene) -> Option<(NodeId, String)> {
-        let error = |mesh: &FlatMesh| self.library.known(&mesh.path)?.as_ref().err().map(|e| (mesh.id, e.to_string()));
+        let error = |mesh: &FlatMesh| self.library.known(&mesh.model)?.as_ref().err().map(|e| (mesh.id, e.to_string()));
         flat.meshes.iter().find_map(error)
     }
 
     fn tell_what_is_not_drawn(&mut self, flat: &FlatScene) {
-        for FlatMesh { path, .. } in &flat.meshes {
-            let Some(Ok(mesh)) = self.library.known(path) else { continue };
-            let told = self.told.insert(path.clone(), Arc::downgrade(mesh));
-            let is_told = told.is_some_and(|told| told.as_ptr() == Arc::as_ptr(mesh));
+        for FlatMesh { model, .. } in &flat.meshes {
+            let (Some(Ok(mesh)), path) = (self.library.known(model), &model.path) else { continue };
+            let clip = model.clip.as_ref().map(|clip| clip.name.clone());
+            let is_posed = clip.is_some();
+            let told = self.told.insert((path.clone(), clip), Arc::downgrade(mesh));
+            // Each time of a clip is another mesh of the same file.
+            let is_told = told.is_some_and(|told| is_posed || told.as_ptr() == Arc::as_ptr(mesh));
             if is_told || mesh.warnings.is_empty() {
                 continue;
             }

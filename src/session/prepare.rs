@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use isolith_field::{FlatScene, FlattenError, Flattener};
 use isolith_jobs::Task;
-use isolith_mesh::MeshLibrary;
+use isolith_mesh::{MeshLibrary, ModelPose};
 use isolith_scene::Scene;
 
 /// Progress of a task after flattening. The part before belongs to reading the scene.
@@ -33,22 +33,22 @@ impl PreparedScene {
         let Some(flat) = flattener.flatten_until(scene, time, task.flag())? else { return Ok(None) };
         task.set_progress(FLATTENED);
         let mut library = MeshLibrary::new(folder);
-        let paths: Vec<_> = flat.meshes.iter().map(|mesh| mesh.path.clone()).collect();
-        let is_whole = read_models(&paths, &mut library, task, FLATTENED);
+        let poses: Vec<_> = flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
+        let is_whole = read_models(&poses, &mut library, task, FLATTENED);
         Ok(is_whole.then_some(Self { flat, library, flattener }))
     }
 }
 
 /// Reads the models that the library lacks; false if the task was canceled. `start` is the progress of the task so far.
-pub(super) fn read_models(paths: &[String], library: &mut MeshLibrary, task: &Task, start: f32) -> bool {
+pub(super) fn read_models(poses: &[ModelPose], library: &mut MeshLibrary, task: &Task, start: f32) -> bool {
     task.set_stage("models");
-    for (index, path) in paths.iter().enumerate() {
+    for (index, pose) in poses.iter().enumerate() {
         if task.is_canceled() {
             return false;
         }
-        task.set_progress(start + (1.0 - start) * index as f32 / paths.len() as f32);
+        task.set_progress(start + (1.0 - start) * index as f32 / poses.len() as f32);
         // The library records models that cannot be read.
-        let _ = library.get(path);
+        let _ = library.get(pose);
     }
     !task.is_canceled()
 }

@@ -15,13 +15,23 @@ use super::specialize::{Fold, specialize};
 
 /// The whole source of the shader `entry`. It contains each file once, before its first user.
 pub fn assemble(entry: &str, evaluator: &Evaluator, options: Options) -> Result<String, ShaderError> {
+    assemble_with(entry, evaluator, options, &[])
+}
+
+/// The same with the parts between `#if` and `#end` for these features.
+pub fn assemble_with(
+    entry: &str,
+    evaluator: &Evaluator,
+    options: Options,
+    features: &[&str],
+) -> Result<String, ShaderError> {
     let mut out = String::new();
     let (fineness, ops) = (options.quality.fineness(), evaluator.op_set());
     let extended = ops.extended;
     write!(
         out,
         "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst RELAXED: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
-         {fineness:?};\nconst MIN_STEP_SCALE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst EXTENDED_JOINS: bool = {};\nconst EXTENDED_KERNELS: bool = {};\n",
+         {fineness:?};\nconst MIN_STEP_SCALE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst EXTENDED_JOINS: bool = {};\nconst EXTENDED_KERNELS: bool = {};\nconst LAYERS: bool = {};\n",
         options.counting,
         options.cones,
         options.relaxed,
@@ -30,18 +40,26 @@ pub fn assemble(entry: &str, evaluator: &Evaluator, options: Options) -> Result<
         fineness.sqrt(),
         !ops.is_rough(),
         extended.joins,
-        extended.kernels
+        extended.kernels,
+        options.layers
     )
     .expect("strings take all");
     out += &lookahead::constants(evaluator, options);
-    out += &resolve(entry, !ops.modifiers.is_empty(), &|name| generated(name, evaluator, options))?;
+    let modifiers = (!ops.modifiers.is_empty()).then_some("MODIFIERS");
+    let features: Vec<&str> = features.iter().copied().chain(modifiers).collect();
+    out += &resolve(entry, &features, &|name| generated(name, evaluator, options))?;
     Ok(out)
 }
 
 /// The source of a shader that evaluates no field.
 pub fn assemble_plain(entry: &str) -> Result<String, ShaderError> {
+    assemble_featured(entry, &[])
+}
+
+/// The same with the parts between `#if` and `#end` for these features.
+pub fn assemble_featured(entry: &str, features: &[&str]) -> Result<String, ShaderError> {
     let nothing = Evaluator::Interpreter(OpSet::none());
-    assemble(entry, &nothing, Options::default())
+    assemble_with(entry, &nothing, Options::default(), features)
 }
 
 /// The text of files that exist only as generated text, which depends on the evaluator.

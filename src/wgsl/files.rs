@@ -39,23 +39,23 @@ pub enum ShaderError {
 /// The text of `entry` with all its includes, each file once, before its first user. It may not include generated
 /// files.
 pub fn library(entry: &str) -> Result<String, ShaderError> {
-    resolve(entry, false, &|_| None)
+    resolve(entry, &[], &|_| None)
 }
 
-/// Like [`library`], where `generated` returns the text of files that do not exist. The part between `#if MODIFIERS`
-/// and `#end` remains only for scenes with modifiers.
+/// Like [`library`], where `generated` returns the text of files that do not exist. The part between `#if` and `#end`
+/// remains only if `features` has the word behind `#if`.
 pub fn resolve(
     entry: &str,
-    has_modifiers: bool,
+    features: &[&str],
     generated: &dyn Fn(&str) -> Option<String>,
 ) -> Result<String, ShaderError> {
-    let mut resolver = Resolver { has_modifiers, generated, seen: BTreeSet::new(), out: String::new() };
+    let mut resolver = Resolver { features, generated, seen: BTreeSet::new(), out: String::new() };
     resolver.include(entry, entry)?;
     Ok(resolver.out)
 }
 
 struct Resolver<'a> {
-    has_modifiers: bool,
+    features: &'a [&'a str],
     generated: &'a dyn Fn(&str) -> Option<String>,
     seen: BTreeSet<String>,
     out: String,
@@ -81,9 +81,9 @@ impl Resolver<'_> {
         };
         let mut is_wanted = true;
         for line in text.lines() {
-            match line {
-                "#if MODIFIERS" => is_wanted = self.has_modifiers,
-                "#end" => is_wanted = true,
+            match (line, line.strip_prefix("#if ")) {
+                (_, Some(feature)) => is_wanted = self.features.contains(&feature),
+                ("#end", _) => is_wanted = true,
                 _ if is_wanted => self.line(line, name)?,
                 _ => {}
             }

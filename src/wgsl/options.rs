@@ -61,6 +61,8 @@ pub struct Options {
     pub relaxed: bool,
     /// Tolerance of the march at the surface.
     pub quality: Quality,
+    /// Whether materials may have the layers of OpenPBR. Without them, shading knows Blinn and Phong only.
+    pub layers: bool,
 }
 
 impl Default for Options {
@@ -71,6 +73,7 @@ impl Default for Options {
             cones: true,
             relaxed: true,
             quality: Quality::default(),
+            layers: true,
         }
     }
 }

@@ -12,7 +12,7 @@ fn scene(with_model: bool) -> Scene {
     let ball = NodeKind::Object(Object { shape: Shape::Sphere { radius: 0.5 }, material: MaterialId(1) });
     scene.insert(None, 0, Node::new("ball", ball)).expect("the scene has room");
     if with_model {
-        let mesh = NodeKind::Mesh(MeshNode { path: "no.glb".into(), material: None });
+        let mesh = NodeKind::Mesh(MeshNode::new("no.glb"));
         scene.insert(None, 0, Node::new("statue", mesh)).expect("the scene has room");
     }
     scene

@@ -209,6 +209,47 @@ fn pockets_are_open_wherever_they_are_and_however_they_are_cut() {
     });
 }
 
+/// A block of 100 km with a pocket, seen from 20 m above it: in its middle, and where numbers are relative to a point
+/// near the eye. What is rounded there is far less than the block.
+#[test]
+fn pockets_in_a_large_face_are_open_near_and_far() {
+    const SIZE: [u32; 2] = [48; 2];
+    let pocket = |x: f64, far: f64, size: f64, out: f64| {
+        let height = 0.3 * size + out;
+        let at = DVec3::new(x, 500.0 - 0.3 * size + 0.5 * height, -far);
+        let pocket = cuboid([size, height, size]).at(at).rotated(DQuat::from_rotation_y(0.4 + far));
+        scene(group(Operator::Difference, 0.0).rotated(turn()), [cuboid([1e5, 1e3, 1e5]), pocket])
+    };
+    let mut faults = Vec::new();
+    for (x, far, size, fov) in
+        [(0.0, 25.0, 4.0, 0.3), (0.0, 200.0, 40.0, 0.04), (0.0, 2_000.0, 900.0, 0.01), (3e4, 200.0, 40.0, 0.04)]
+    {
+        let shown = |out: f64| {
+            let mut bench_scene = BenchScene::new("a large face", &pocket(x, far, size, out), None);
+            let [eye, target] = [DVec3::new(x, 520.0, 0.0), DVec3::new(x, 500.0, -far)].map(|p| turn() * p);
+            bench_scene.camera = Camera::looking_at(eye, target, fov);
+            bench_scene
+        };
+        // A millimeter would be visible at such an angle.
+        let (flush, open) = (shown(0.0), shown(1e-4));
+        let right = reference(&open, SIZE);
+        let (closed, _) = draw(&mut renderers()[0], &shown(-0.1), SIZE, EvalStrategy::Interpreter);
+        let footprint = open.camera.footprint(f64::from(SIZE[1]));
+        let told = found(&closed, &right, footprint).other_surface;
+        assert!(told > 75, "{far}: {told} pixels show the pocket");
+        for strategy in STRATEGIES {
+            let (picture, _) = draw(&mut renderers()[0], &flush, SIZE, strategy);
+            let found = found(&picture, &right, footprint);
+            // Relative to a point near the eye, an edge moves by up to 1/64 footprint: about one pixel of a hundred.
+            let is_right = found == Found { other_surface: found.other_surface, ..NOTHING };
+            if !is_right || found.other_surface > if x == 0.0 { 0 } else { 4 } {
+                faults.push(format!("at {x}, {far} m, {strategy:?}: {found:?}"));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
 #[test]
 fn what_is_taken_from_itself_is_nothing() {
     let ball = || object(Shape::Sphere { radius: 0.7 });

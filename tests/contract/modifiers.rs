@@ -2,6 +2,7 @@
 
 use glam::{DQuat, DVec3};
 use isolith::field::eval::{field, gradient};
+use isolith::field::unflattened::SceneField;
 use isolith::field::{Component, FlatScene, flatten};
 use isolith::gallery;
 use isolith::scene::{
@@ -384,4 +385,70 @@ fn large_content_in_tiny_cells_is_refused_by_its_node() {
     let id = scene.insert(None, 0, node).unwrap();
     let error = flatten(&scene, 0.0).unwrap_err();
     assert_eq!(error.node, id);
+}
+
+/// Modifiers that move a surface outward, each by this much at most.
+const OUTWARD: f64 = 0.2;
+
+fn outward() -> [Modifier; 5] {
+    let mut displacement = usual(ModifierKind::Displacement);
+    if let Modifier::Displacement { height, .. } = &mut displacement {
+        *height = OUTWARD;
+    }
+    [
+        Modifier::Round { radius: OUTWARD },
+        Modifier::Onion { thickness: 2.0 * OUTWARD, walls: 1, spacing: 1.0 },
+        Modifier::Waves { amplitude: OUTWARD, length: 0.5, phase: 0.0 },
+        Modifier::Noise { amplitude: OUTWARD, size: 0.3, octaves: 2, seed: 1 },
+        displacement,
+    ]
+}
+
+/// Nothing appears between what is deformed or repeated and its bounds when its surface is moved. A deformation
+/// stretches or compresses by no more than the factor given here, so its surface may be moved by as many times as much.
+#[test]
+fn a_surface_that_is_moved_keeps_its_shape() {
+    let repeat = Modifier::Repeat {
+        counts: [2, 2, 2],
+        spacing: [1.5, 1.4, 1.0],
+        offset: [0.0; 3],
+        turn: 0.0,
+        mirrored: [false; 3],
+        carve_from: [0; 3],
+        carve_to: [0; 3],
+    };
+    let inner = [
+        (Modifier::Twist { angle: 60.0 }, 2.5),
+        (Modifier::Bend { angle: 45.0 }, 3.0),
+        (Modifier::Taper { change: -0.4 }, 2.5),
+        (repeat, 1.0),
+    ];
+    let (mut faults, mut told) = (Vec::new(), [0; 2]);
+    for (deformed, stretch) in inner {
+        let tree = SceneField::new(&modified(std::slice::from_ref(&deformed))).unwrap();
+        for moved in outward() {
+            let scene = modified(&[deformed.clone(), moved.clone()]);
+            let flat = flatten(&scene, 0.0).unwrap();
+            let component = &flat.components[0];
+            let (center, reach) = surroundings(component);
+            // The content is 1.2 times as large as its node.
+            let by = 1.2 * OUTWARD;
+            let mut random = Random::new(3);
+            let wrong = (0..many(20_000)).filter(|_| {
+                let p = center + random.point(reach);
+                let (value, is_inside) = (tree.value(p + component.origin), field(&flat, component, p) < 0.0);
+                let is_far = value > 1.001 * stretch * by;
+                let is_near = matches!(moved, Modifier::Round { .. }) && value < 0.999 * by / stretch;
+                told[0] += usize::from(is_far);
+                told[1] += usize::from(is_near);
+                (is_far && is_inside) || (is_near && !is_inside)
+            });
+            let wrong = wrong.count();
+            if wrong > 0 {
+                faults.push(format!("{deformed:?}, {moved:?}: {wrong} points"));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(told[0] > 50_000 && told[1] > 300, "{told:?}");
 }

@@ -160,7 +160,7 @@ fn a_reference_picture_has_every_buffer() {
 #[test]
 fn meshes_stand_among_fields() {
     let mut scene = Scene::new();
-    let mesh = NodeKind::Mesh(MeshNode { path: "models/suzanne.glb".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("models/suzanne.glb"));
     let stretched = Node::new("Mesh", mesh).at(DVec3::new(0.3, 0.0, 0.0)).scaled(DVec3::new(1.5, 1.0, 0.5));
     let mesh_id = scene.insert(None, 0, stretched).unwrap();
     // In front of the lower half.

@@ -7,9 +7,9 @@ use egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use isolith::editor::Editor;
-use isolith::scene::{NodeId, NodeKind, ParamValue, ShapeKind};
+use isolith::scene::{ColorTexture, NodeId, NodeKind, ParamPath, ParamValue, ShapeKind, Textures, Variants};
 
-use super::{open, press, scene, undo_all};
+use super::{open, open_tall, press, scene, undo_all};
 
 fn file_of(harness: &Harness<'_, Editor>, id: NodeId) -> String {
     let NodeKind::Object(object) = &harness.state().document().scene().node(id).unwrap().kind else {
@@ -119,4 +119,35 @@ fn a_file_is_read_beside_the_frames_and_dropped_with_its_document() {
     harness.run();
     assert_eq!(harness.state().document().scene().nodes().len(), 1, "a new scene has a sun");
     assert_eq!(undo_all(&mut harness), 0);
+}
+
+#[test]
+fn an_image_is_chosen_for_a_texture_of_a_material() {
+    let folder = tempfile::tempdir().unwrap();
+    let [image, broken] = ["wall.png", "broken.png"].map(|name| folder.path().join(name));
+    image::RgbImage::from_fn(8, 8, |x, y| image::Rgb([x as u8, y as u8, 9])).save(&image).unwrap();
+    std::fs::write(&broken, &std::fs::read(&image).unwrap()[..40]).unwrap();
+    let (mut scene, [_, ball, ..]) = scene();
+    let mut material = scene.materials()[0].as_ref().clone();
+    material.textures = Textures::triplanar();
+    if let Textures::Triplanar { color, .. } = &mut material.textures {
+        *color = ColorTexture::variants().swap_remove(1).0;
+    }
+    let path = ParamPath::of_material(material.id, "textures.color.image");
+    let place = format!("{}: textures.color.image: ", material.name);
+    scene.replace_material(material).unwrap();
+    let mut harness = open_tall(scene);
+    harness.state_mut().document_mut().select(vec![ball]);
+    harness.run();
+    choose(&mut harness, "Color image: No image", &image);
+    let now = |harness: &Harness<'_, Editor>| match path.get(harness.state().document().scene()) {
+        Ok(ParamValue::File(file)) => file.label().to_owned(),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(now(&harness), "wall.png");
+    choose(&mut harness, "Color image: wall.png", &broken);
+    let message = harness.state().messages().last().unwrap().text.clone();
+    assert!(message.starts_with(&format!("{place}\"broken.png\" must be a PNG, JPEG or EXR image: ")), "{message}");
+    assert_eq!(now(&harness), "wall.png");
+    assert_eq!(undo_all(&mut harness), 1);
 }

@@ -4,9 +4,12 @@ use egui::accesskit::Toggled;
 use egui::{Event, Key, Modifiers, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use isolith::editor::Editor;
+use isolith::document::Document;
+use isolith::editor::{Editor, Picture};
 use isolith::field::Shading;
 use isolith::field::debug_view::ViewMode;
+
+use crate::settle::Settle;
 
 use super::{click, open, pointer, press, scene, select, undo_all};
 
@@ -226,4 +229,26 @@ fn an_idle_editor_asks_for_no_frames() {
         let viewport = &harness.output().viewport_output[&egui::ViewportId::ROOT];
         assert!(viewport.repaint_delay > std::time::Duration::from_secs(1), "{:?}", viewport.repaint_delay);
     }
+}
+
+#[test]
+fn samples_are_counted_chosen_and_stopped() {
+    let sampling = || Picture { samples: Some([16, 64]), is_sampling: true, ..Picture::default() };
+    let mut harness =
+        Harness::builder().with_size(vec2(1280.0, 800.0)).with_context_setup(Editor::setup).build_ui_state(
+            move |ui, editor: &mut Editor| editor.show(ui, &sampling()),
+            Editor::new(Document::new(scene().0)),
+        );
+    harness.settle();
+    harness.get_by_label("16 / 64 samples");
+    assert!(!harness.state_mut().take_stop_drawing());
+    harness.get_by_label("Stop drawing").click();
+    harness.run();
+    assert!(harness.state_mut().take_stop_drawing());
+    assert_eq!(harness.state().view().samples, 64);
+    for name in ["Viewport shading", "Samples", "256 samples"] {
+        harness.get_by_label(name).click();
+        harness.run();
+    }
+    assert_eq!(harness.state().view().samples, 256);
 }

@@ -16,7 +16,7 @@ fn the_shipped_model_loads_as_it_is_documented() {
     assert_eq!((mesh.positions.len(), mesh.triangle_count()), (7503, 14_842));
     assert_eq!(mesh.parts.len(), 1);
     assert_eq!(mesh.parts[0].indices, 0..3 * 14_842);
-    assert!(mesh.textures.is_empty() && mesh.warnings.is_empty() && mesh.parts[0].surface.texture.is_none());
+    assert!(mesh.textures.is_empty() && mesh.warnings.is_empty() && mesh.parts[0].surface.base_color.is_none());
     assert!((mesh.bounds.half() - DVec3::new(0.9297, 0.6690, 0.5605)).length() < 1e-3, "{:?}", mesh.bounds);
     assert!(mesh.bounds.center().length() < 0.02);
     let readme = std::fs::read_to_string(scenes().join("../assets/README.md")).unwrap();

@@ -168,7 +168,7 @@ fn materials_and_images() {
 #[track_caller]
 fn without_texture(tiny: &Tiny, reason: &str) {
     let mesh = parse(&tiny.gltf(), Path::new("x.gltf"), None).expect(reason);
-    assert!(mesh.textures.is_empty() && mesh.parts.iter().all(|part| part.surface.texture.is_none()));
+    assert!(mesh.textures.is_empty() && mesh.parts.iter().all(|part| part.surface.base_color.is_none()));
     let [warning] = &mesh.warnings[..] else { panic!("{reason}: {:?}", mesh.warnings) };
     assert!(warning.starts_with("images[0]: ") && warning.contains(reason), "{warning}");
 }

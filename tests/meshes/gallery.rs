@@ -44,7 +44,7 @@ fn every_shipped_scene_can_be_shown() {
         assert!(flat.cameras.iter().any(|c| c.name == "Camera"), "{name}");
         assert!(!flat.lights.is_empty() && !flat.components.is_empty(), "{name}");
         for mesh in &flat.meshes {
-            assert!(library.get(&mesh.path).is_ok(), "{name}");
+            assert!(library.get(&mesh.model).is_ok(), "{name}");
         }
     }
 }

@@ -66,7 +66,10 @@ fn check_sound(mesh: &TriangleMesh) {
     assert!(mesh.parts.iter().all(|p| p.origin.is_finite()));
     assert_eq!(mesh.parts.first().map(|p| p.indices.start), Some(0));
     assert_eq!(mesh.parts.last().map(|p| p.indices.end as usize), Some(mesh.indices.len()));
-    assert!(mesh.parts.iter().all(|p| p.surface.texture.is_none_or(|t| t < mesh.textures.len())));
+    assert!(mesh.parts.iter().all(|p| {
+        let all = p.surface.maps().into_iter().chain([p.surface.base_color]);
+        all.flatten().all(|used| used.texture < mesh.textures.len() && used.slot < 2)
+    }));
     let ray = Ray { origin: mesh.bounds.center() + DVec3::new(0.01, 0.02, 3.0), direction: DVec3::NEG_Z };
     if let Some(hit) = mesh.hit(&ray, f64::INFINITY) {
         let opacity = mesh.color(hit.triangle, hit.weights, |_| DVec4::ONE).w;

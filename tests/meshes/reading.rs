@@ -108,9 +108,10 @@ fn colors_textures_and_sparse_accessors() {
     assert_eq!((mesh.triangle_count(), mesh.textures.len()), (4, 1));
     assert_eq!((mesh.textures[0].width, mesh.textures[0].height), (2, 2));
     assert_eq!(&mesh.textures[0].rgba[..4], [200, 100, 50, 255]);
-    let textures: Vec<_> = mesh.parts.iter().map(|p| (p.indices.clone(), p.surface.texture)).collect();
+    let textures: Vec<_> =
+        mesh.parts.iter().map(|p| (p.indices.clone(), p.surface.base_color.map(|used| used.texture))).collect();
     assert_eq!(textures, [(0..6, Some(0)), (6..12, None)]);
-    assert_eq!(mesh.uvs[1], [1.0, 1.0]);
+    assert_eq!(mesh.uvs[1], [1.0, 1.0, 0.0, 0.0]);
     let [r, g, b, a] = mesh.colors[0];
     assert_eq!((r, b, a), (1.0, 0.0, 1.0));
     assert_eq!(mesh.parts[0].surface.color, [0.5, 1.0, 1.0, 1.0]);

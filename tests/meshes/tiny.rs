@@ -154,10 +154,15 @@ pub fn posed() -> Tiny {
     tiny
 }
 
-/// A PNG of one color.
+/// A PNG of this size.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
+    of_color([width, height], [200, 100, 50, 255])
+}
+
+/// A PNG of one color.
+pub fn of_color([width, height]: [u32; 2], color: [u8; 4]) -> Vec<u8> {
     let mut out = std::io::Cursor::new(Vec::new());
-    image::RgbaImage::from_pixel(width, height, image::Rgba([200, 100, 50, 255]))
+    image::RgbaImage::from_pixel(width, height, image::Rgba(color))
         .write_to(&mut out, image::ImageFormat::Png)
         .unwrap();
     out.into_inner()

@@ -98,7 +98,7 @@ fn a_file_that_appears_is_read() {
 /// An editor with a scene that uses the model of this folder.
 fn open(folder: &Path) -> Harness<'static, Editor> {
     let mut scene = Scene::new();
-    let mesh = NodeKind::Mesh(MeshNode { path: "model.gltf".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("model.gltf"));
     scene.insert(None, 0, Node::new("Model", mesh)).unwrap();
     fs::write(folder.join("scene.json"), file::to_json(&scene).unwrap()).unwrap();
     let document = Document::open(&folder.join("scene.json")).unwrap();
@@ -171,7 +171,7 @@ fn the_editor_reads_a_model_beside_its_frames_and_leaves_it_out_when_that_is_can
     write(folder.path(), 1.0);
     assert!(far > 1.5 * distance(&open(folder.path())), "{far}");
     // A canceled read gives a message for the node; a request reads the model again.
-    let mesh = NodeKind::Mesh(MeshNode { path: "other.gltf".into(), material: None });
+    let mesh = NodeKind::Mesh(MeshNode::new("other.gltf"));
     fs::copy(folder.path().join("model.gltf"), folder.path().join("other.gltf")).unwrap();
     let insert = Edit::Insert { parent: None, position: 0, node: Node::new("Other", mesh) };
     harness.state_mut().document_mut().apply(insert).unwrap();

@@ -96,4 +96,6 @@ pub enum Command {
     CycleShading,
     /// Switch to this view for debugging, or back.
     ShowView(ViewMode),
+    /// Accumulate this many samples per pixel.
+    Samples(u32),
 }

@@ -29,7 +29,7 @@ pub fn menu_entries(ui: &mut Ui, state: &EditorState, menu: Menu) -> Option<Comm
     chosen
 }
 
-/// Shows the shadings, and the views for debugging in a submenu; returns the chosen command.
+/// Shows the shadings, with the views for debugging and the samples in submenus; returns the chosen command.
 pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
     let chosen = menu_entries(ui, state, Menu::Shading);
     ui.separator();
@@ -37,7 +37,8 @@ pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
         ui.set_min_width(190.0);
         menu_entries(ui, state, Menu::Debug)
     });
-    debug.inner.flatten().or(chosen)
+    let samples = ui.menu_button("Samples", |ui| menu_entries(ui, state, Menu::Samples));
+    debug.inner.flatten().or(samples.inner.flatten()).or(chosen)
 }
 
 /// Shows the context menu of the selection; returns the chosen command.

@@ -26,6 +26,8 @@ pub enum Menu {
     Shading,
     /// Views for debugging; a submenu of View.
     Debug,
+    /// Samples per pixel; a submenu of View.
+    Samples,
 }
 
 /// An icon of a command.
@@ -122,8 +124,8 @@ impl CommandInfo {
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
         match (self.menu, on) {
-            (Menu::Shading | Menu::Debug, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Menu::Shading | Menu::Debug, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Menu::Shading | Menu::Debug | Menu::Samples, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Menu::Shading | Menu::Debug | Menu::Samples, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

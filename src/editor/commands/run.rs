@@ -68,6 +68,7 @@ impl Editor {
             Command::ShowShading(shading) => state.view.show_shading(shading),
             Command::CycleShading => state.view.cycle_shading(),
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
+            Command::Samples(samples) => state.view.samples = samples,
         }
     }
 

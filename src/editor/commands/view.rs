@@ -73,5 +73,12 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         let info = info.switch(|state, command| command == Command::ShowView(state.view.view_mode));
         if matches!(view_mode, ViewMode::Distance | ViewMode::Nodes) { info.group() } else { info }
     }));
+    all.extend([1, 16, 64, 256, 1024].map(|samples| {
+        let label = if samples == 1 { "1 sample".to_owned() } else { format!("{samples} samples") };
+        CommandInfo::new(Menu::Samples, Command::Samples(samples), None, label, SAMPLES)
+            .switch(|state, command| command == Command::Samples(state.view.samples))
+    }));
     all
 }
+
+const SAMPLES: &str = "Smooth edges: samples per pixel that the viewport adds up while nothing changes";

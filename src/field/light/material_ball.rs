@@ -39,8 +39,6 @@ struct Lamp {
 /// The studio: three lamps above a floor.
 struct Studio {
     lamps: [Lamp; 3],
-    /// That of the ball.
-    opacity: f64,
 }
 
 /// A lobe of a material: where its samples go.
@@ -52,12 +50,12 @@ enum Lobe {
     Glossy(f64),
 }
 
-/// The picture of a material of this opacity: `side` rows of as many pixels from the top, red, green, blue and 255.
-pub fn material_ball(material: &FlatMaterial, opacity: f64, side: usize) -> Vec<[u8; 4]> {
+/// The picture of a material: `side` rows of as many pixels from the top, red, green, blue and 255.
+pub fn material_ball(material: &FlatMaterial, side: usize) -> Vec<[u8; 4]> {
     let mut material = SurfaceMaterial::from(material);
     material.roughness = material.roughness.max(LEAST_ROUGHNESS);
     material.coat_roughness = material.coat_roughness.max(LEAST_ROUGHNESS);
-    let studio = Studio::new(opacity);
+    let studio = Studio::new();
     let back = (EYE - TARGET).normalize();
     let right = DVec3::Y.cross(back).normalize();
     let world_from_view = DMat3::from_cols(right, back.cross(right), back);
@@ -80,14 +78,13 @@ fn shoulder(color: DVec3) -> DVec3 {
 }
 
 impl Studio {
-    fn new(opacity: f64) -> Self {
+    fn new() -> Self {
         let lamp = |direction: [f64; 3], half_size: [f64; 2], radiance: [f64; 3]| Lamp {
             direction: DVec3::from(direction).normalize(),
             half_size: half_size.into(),
             radiance: radiance.into(),
         };
         Self {
-            opacity,
             lamps: [
                 // The key over the left shoulder, a weak fill from the right, a rim from behind.
                 lamp([-0.62, 0.80, 0.72], [0.42, 0.36], [4.6, 4.45, 4.2]),
@@ -103,7 +100,7 @@ impl Studio {
         let depth = -EYE.dot(direction);
         let nearest = EYE + direction * depth;
         let outside = nearest.length() - 1.0;
-        let coverage = (0.5 - outside / (pixel * depth)).clamp(0.0, 1.0) * self.opacity;
+        let coverage = (0.5 - outside / (pixel * depth)).clamp(0.0, 1.0);
         if coverage <= 0.0 {
             return behind;
         }
@@ -159,10 +156,10 @@ impl Studio {
         let at = EYE + direction * ((-1.0 - EYE.y) / direction.y);
         let way = DVec2::new(at.x, at.z).length_squared();
         // What the ball hides of the sky over the floor, as seen from the floor.
-        let open = 1.0 - self.opacity * (way + 1.0).powf(-1.5);
+        let open = 1.0 - (way + 1.0).powf(-1.5);
         let key = self.lamps[0].direction;
         let beside = at.reject_from_normalized(key).length();
-        let lit = 1.0 - self.opacity * (1.0 - smooth((beside - 0.62) / 0.75)) * 0.8;
+        let lit = 1.0 - (1.0 - smooth((beside - 0.62) / 0.75)) * 0.8;
         let pool = (-0.1 * way).exp();
         let glow = material.emission * 0.30 / (1.0 + way).powf(1.5);
         let floor = DVec3::new(0.030, 0.032, 0.037) * open + DVec3::new(0.155, 0.15, 0.142) * (pool * lit * open);
@@ -249,7 +246,7 @@ mod tests {
     }
 
     fn ball(material: &Material) -> Vec<[u8; 4]> {
-        material_ball(&FlatMaterial::new(material), 1.0, SIDE)
+        material_ball(&FlatMaterial::new(material), SIDE)
     }
 
     /// Mean of the middle of the ball.
@@ -271,7 +268,7 @@ mod tests {
     #[test]
     fn a_white_ball_reflects_no_more_than_the_lamps_give() {
         let material = SurfaceMaterial { base_color: DVec3::ONE, ..SurfaceMaterial::default() };
-        let studio = Studio::new(1.0);
+        let studio = Studio::new();
         for normal in [DVec3::Z, DVec3::new(-0.6, 0.6, 0.5).normalize(), DVec3::new(0.7, -0.4, 0.6).normalize()] {
             let point = ShadingPoint { material, position: normal - EYE, normal, to_eye: (EYE - normal).normalize() };
             let seen = studio.reflected(&point, &DMat3::IDENTITY).y;
@@ -280,9 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn opacity_shows_what_is_behind_and_emission_shines() {
-        let clear = |color| material_ball(&FlatMaterial::new(&plastic(color)), 0.0, SIDE);
-        assert_eq!(clear([0.8; 3]), clear([0.1, 0.5, 0.2]), "an invisible ball has no color");
+    fn emission_shines_and_lights_the_floor() {
         let dark = plastic([0.02; 3]);
         let lamp = Material { emission_luminance: 1.0, emission_color: [0.1, 0.9, 0.2], ..dark.clone() };
         let [[_, before, _], [red, green, _]] = [middle(&ball(&dark)), middle(&ball(&lamp))];

@@ -3,13 +3,25 @@
 //! | module | what it does |
 //! |---|---|
 //! | `brdf` | the light that a surface reflects toward the eye |
+//! | `layers` | the layers of OpenPBR |
+//! | `albedo` | the light that a GGX lobe reflects in all |
 //! | `lighting` | the sum over all lights |
 //! | `environment` | light from everywhere, and the background |
+//! | `texture` | colors and values that vary over a surface |
 //! | `display` | linear light to the colors of a screen |
 //! | `material_ball` | thumbnails of materials; has no counterpart |
 
+pub mod albedo;
 pub mod brdf;
 pub mod display;
+#[cfg(test)]
+mod energy;
 pub mod environment;
+pub mod layers;
 pub mod lighting;
+#[cfg(test)]
+mod lobes;
 pub mod material_ball;
+pub mod texture;
+#[cfg(test)]
+mod walk;

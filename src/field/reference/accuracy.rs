@@ -240,6 +240,7 @@ mod tests {
             leaf: (0..200).map(|i| if hit(i) { BLOCK } else { NO_LEAF }).collect(),
             normal: vec![[0.0, 0.0, 1.0]; 200],
             color: vec![[0; 4]; 200],
+            radiance: Vec::new(),
         }
     }
 

@@ -4,21 +4,24 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use glam::{DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
+use crate::coverage::PixelSample;
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::brdf::ShadingPoint;
-use crate::light::display::{display_decode, display_encode};
+use crate::light::display::{display_color, display_decode};
 use crate::light::environment::environment_background;
 use crate::light::lighting::lighting_surface;
+use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
-use crate::mesh_rays::{Meshes, trace_meshes};
-use crate::{BACKGROUND_DEPTH, FlatMaterial, FlatScene, GBuffer, HitTarget, MESH_BIT, NO_LEAF};
+use crate::mesh_material::mesh_material;
+use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
+use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, GpuPlacedTextures, HitTarget, MESH_BIT, NO_LEAF, gpu_textures};
 use isolith_geometry::{Camera, Ray};
-use isolith_mesh::{MeshHit, TriangleMesh};
+use isolith_mesh::{MeshHit, MeshLook, TriangleMesh};
 use isolith_scene::NodeId;
 
 /// An image with the certainty of each pixel.
@@ -97,10 +100,24 @@ pub fn render_reference(
     flat: &FlatScene,
     meshes: &Meshes,
     camera: &Camera,
+    size: [u32; 2],
+    progress: &(dyn Fn(f64) + Sync),
+) -> Result<ReferenceImage, TraceError> {
+    render_reference_at(DVec2::ZERO, flat, meshes, camera, size, progress)
+}
+
+/// The same beside the centers of the pixels, by `jitter` pixels.
+pub fn render_reference_at(
+    jitter: DVec2,
+    flat: &FlatScene,
+    meshes: &Meshes,
+    camera: &Camera,
     [width, height]: [u32; 2],
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceImage, TraceError> {
-    let view = View { flat, meshes, camera, lights: gpu_lights(flat, camera), size: [width, height] };
+    let center = jitter + 0.5;
+    let (lights, textures) = (gpu_lights(flat, camera), gpu_textures(flat, camera));
+    let view = View { flat, meshes, camera, lights, textures, size: [width, height], center };
     let tracer = Tracer::new(flat);
     let done = AtomicU32::new(0);
     let rows: Vec<Vec<Pixel>> = (0..height)
@@ -119,8 +136,9 @@ pub fn render_reference(
         buffers.depth[i] = pixel.depth;
         buffers.leaf[i] = pixel.leaf;
         buffers.normal[i] = pixel.normal.as_vec3().to_array();
-        let [r, g, b] = (display_encode(pixel.color) * 255.0).round().to_array().map(|v| v as u8);
+        let [r, g, b] = (display_color(pixel.color, &flat.display) * 255.0).round().to_array().map(|v| v as u8);
         buffers.color[i] = [r, g, b, 255];
+        buffers.radiance.push(pixel.color.as_vec3().extend(1.0).to_array());
         margin.push(pixel.margin);
         tied.push(pixel.tied);
         if !pixel.turned.is_empty() {
@@ -136,7 +154,10 @@ struct View<'a> {
     meshes: &'a Meshes,
     camera: &'a Camera,
     lights: Vec<GpuLight>,
+    textures: Vec<GpuPlacedTextures>,
     size: [u32; 2],
+    /// The place within each pixel.
+    center: DVec2,
 }
 
 struct Pixel {
@@ -155,47 +176,58 @@ type Met = (March, Option<(usize, MeshHit)>);
 impl View<'_> {
     fn pixel(&self, tracer: &mut Tracer<'_>, x: u32, y: u32) -> Result<Pixel, TraceError> {
         let size = DVec2::new(self.size[0].into(), self.size[1].into());
-        let ray = self.camera.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5), size);
-        let (march, mesh) = self.meet(tracer, &ray)?;
+        let ray = self.camera.ray(DVec2::new(x.into(), y.into()) + self.center, size);
+        let at = PixelSample { pixel: [x, y], sample: 0 };
+        let (march, mesh) = self.meet(tracer, &ray, at)?;
         let footprint = self.camera.footprint(size.y);
         let margin = (march.margin / footprint) as f32;
         let mut is_close = march.margin <= NEAR_AN_EDGE * GRAZING_ANGLE;
         let mut tied = false;
-        let (t, leaf, normal, material) = if let Some(hit) = march.hit {
+        let mut shading_normal = None;
+        let (t, leaf, normal, material, occlusion) = if let Some(hit) = march.hit {
             let component = &self.flat.components[hit.component as usize];
             let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
             tied = point.tied;
-            (hit.t, hit.leaf, point.gradient.try_normalize().unwrap_or(-ray.direction), point.material)
+            let normal = point.gradient.try_normalize().unwrap_or(-ray.direction);
+            let mut material = point.material;
+            if !self.textures.is_empty() {
+                let at = textured_point(ray.direction, hit.t, normal, footprint);
+                let FlatScene { materials, textures, .. } = self.flat;
+                let (textured, bent) = textured_mixture(&point.materials, materials, textures, &self.textures, &at);
+                (material, shading_normal) = (textured, Some(bent));
+            }
+            (hit.t, hit.leaf, normal, material, 1.0)
         } else if let Some((index, hit)) = mesh {
-            let (normal, material) = self.mesh_surface(index, &hit, ray.direction);
-            (hit.t, MESH_BIT | index as u32, normal, material)
+            let (normal, material, occlusion) = self.mesh_surface(index, &hit, ray.direction);
+            (hit.t, MESH_BIT | index as u32, normal, material, occlusion)
         } else {
             let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
             let color = environment_background(ray.direction.y, sky, horizon);
-            let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
+            let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
         };
         // A turn by the angle moves the depth along a surface at this angle by more than a footprint.
         is_close |= normal.dot(ray.direction).abs() <= NEAR_AN_EDGE * GRAZING_ANGLE / footprint;
-        let turned = if is_close { self.turned(tracer, &ray)? } else { Vec::new() };
-        let color = self.shade(&ray, t, normal, &material);
+        let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
+        let color = self.shade(&ray, t, shading_normal.unwrap_or(normal), &material, occlusion);
         Ok(Pixel { depth: t as f32, leaf, normal, color, margin, tied, turned })
     }
 
-    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Met, TraceError> {
-        let mesh = trace_meshes(self.flat, self.meshes, ray, self.camera.near, self.camera.far);
+    fn meet(&self, tracer: &mut Tracer<'_>, ray: &Ray, at: PixelSample) -> Result<Met, TraceError> {
+        let range = [self.camera.near, self.camera.far];
+        let mesh = trace_meshes_of_pixel(self.flat, self.meshes, ray, range, at);
         let limit = mesh.map_or(self.camera.far, |(_, hit)| hit.t);
         Ok((tracer.march(ray, self.camera.near, limit)?, mesh))
     }
 
     /// What rays turned by [`GRAZING_ANGLE`] to all sides show.
-    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray) -> Result<Vec<Glimpse>, TraceError> {
+    fn turned(&self, tracer: &mut Tracer<'_>, ray: &Ray, at: PixelSample) -> Result<Vec<Glimpse>, TraceError> {
         let (right, up) = ray.direction.any_orthonormal_pair();
         let glimpse = |i: u32| {
             let (sine, cosine) = (TAU * f64::from(i) / f64::from(TURNS)).sin_cos();
             let direction = ray.direction + (right * cosine + up * sine) * GRAZING_ANGLE;
-            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray })?;
+            let (march, mesh) = self.meet(tracer, &Ray { direction: direction.normalize(), ..*ray }, at)?;
             Ok(match (march.hit, mesh) {
                 (Some(hit), _) => Glimpse { depth: hit.t as f32, node: node_of(self.flat, hit.leaf) },
                 (None, Some((index, hit))) => Glimpse { depth: hit.t as f32, node: Some(self.flat.meshes[index].id) },
@@ -205,41 +237,47 @@ impl View<'_> {
         (0..TURNS).map(glimpse).collect()
     }
 
-    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial) -> DVec3 {
-        let ambient = DVec3::from(self.flat.environment.ambient);
+    fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial, occlusion: f64) -> DVec3 {
+        let ambient = DVec3::from(self.flat.environment.ambient) * occlusion;
         let position = ray.direction * t;
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
         lighting_surface(&point, ambient, &self.lights)
     }
 
-    fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial) {
+    /// Normal, material and the share of the ambient light at a hit on a mesh.
+    fn mesh_surface(&self, index: usize, hit: &MeshHit, direction: DVec3) -> (DVec3, SurfaceMaterial, f64) {
         let placed = &self.flat.meshes[index];
         let normal_from_local = placed.world_from_local.matrix3.inverse().transpose();
         let normal = (normal_from_local * hit.normal).try_normalize().unwrap_or(-direction);
+        let mesh = self.meshes[index].as_ref().expect("it was hit");
+        let own = placed.material.map(|material| SurfaceMaterial::from(&self.flat.materials[material as usize]));
+        let (normal, material, occlusion) = match own {
+            Some(material) => (normal, material, 1.0),
+            None => {
+                let normal = mesh.mapped_normal(hit.triangle, hit.weights, normal, &placed.world_from_local.matrix3);
+                let (material, occlusion) = mesh_look(mesh, hit);
+                (normal, material, occlusion)
+            }
+        };
         // Both sides are visible. The triangle decides which side the ray sees: near a silhouette the interpolated
         // normal may point away though the triangle faces the eye.
-        let face = self.meshes[index].as_ref().map_or(hit.normal, |mesh| mesh.face_normal(hit.triangle));
-        let normal = if (normal_from_local * face).dot(direction) > 0.0 { -normal } else { normal };
-        let material = match (placed.material, &self.meshes[index]) {
-            (Some(material), _) => (&self.flat.materials[material as usize]).into(),
-            (None, Some(mesh)) => SurfaceMaterial { base_color: base_color(mesh, hit), ..file_material() },
-            (None, None) => file_material(),
-        };
-        (normal, material)
+        let face = normal_from_local * mesh.face_normal(hit.triangle);
+        (if face.dot(direction) > 0.0 { -normal } else { normal }, material, occlusion)
     }
 }
 
-/// The material of a mesh that keeps its file's colors.
-pub fn file_material() -> SurfaceMaterial {
-    (&FlatMaterial::of_file()).into()
-}
-
-/// The mesh's own color: the product of vertex, part and texture colors.
-fn base_color(mesh: &TriangleMesh, hit: &MeshHit) -> DVec3 {
+/// The file's own material at a hit, and the share of the ambient light that it lets arrive.
+fn mesh_look(mesh: &TriangleMesh, hit: &MeshHit) -> (SurfaceMaterial, f64) {
     let linear = |[r, g, b, a]: [u8; 4]| {
         let [r, g, b, a] = [r, g, b, a].map(|c| f64::from(c) / 255.0);
         display_decode(DVec3::new(r, g, b)).extend(a)
     };
-    let color: DVec4 = mesh.color(hit.triangle, hit.weights, linear);
-    color.truncate()
+    let surface = &mesh.part(hit.triangle).surface;
+    let plain = SurfaceMaterial::from(&mesh_material(surface));
+    let MeshLook { color, metalness, roughness, occlusion, emission } = mesh.look(hit.triangle, hit.weights, linear);
+    let color = color.truncate();
+    if surface.is_unlit {
+        return (SurfaceMaterial { emission: color, ..plain }, 1.0);
+    }
+    (SurfaceMaterial { base_color: color, metalness, roughness, emission, ..plain }, occlusion)
 }

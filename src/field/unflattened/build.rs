@@ -90,6 +90,9 @@ impl Builder<'_> {
             }
             other => {
                 let Some(content) = self.modified(node, rest, &DAffine3::IDENTITY)? else { return Ok(None) };
+                if moves_by_values(other) && !content.is_exact() {
+                    return Err(Unsupported { node: node.id, reason: MOVED });
+                }
                 let deformation = Deformation::new(other, || content.bounds())
                     .map_err(|reason| Unsupported { node: node.id, reason })?;
                 Ok(Some(Part::Deformed(Deformed {
@@ -117,7 +120,11 @@ impl Builder<'_> {
 
     fn plain(&self, node: &Node, outer: &DAffine3) -> Found {
         match &node.kind {
-            NodeKind::Object(object) => Ok(Some(Part::Leaf(leaf(&object.shape, outer)))),
+            NodeKind::Object(object) => {
+                let leaf = leaf(&object.shape, outer);
+                let is_blank = object.shape.is_blank(&leaf.prepared.bounds);
+                Ok(Some(if is_blank { Part::Nothing } else { Part::Leaf(leaf) }))
+            }
             NodeKind::Group(group) => self.fold(Some(node.id), group, outer),
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => Ok(None),
         }
@@ -180,6 +187,22 @@ fn joined(group: &Group, before: Part, so_far: &[SiblingOperand<'_>], link: Link
 
 /// Why a blend cannot be compared.
 const BLENDED: &str = "it joins by the values of a deformation or repetition, of which only the surface is given";
+
+/// Why a moved surface cannot be compared.
+const MOVED: &str =
+    "it moves the surface by the values of a deformation or repetition, of which only the surface is given";
+
+/// Whether a modifier makes its surface of values of its content other than 0.
+fn moves_by_values(modifier: &Modifier) -> bool {
+    matches!(
+        modifier,
+        Modifier::Round { .. }
+            | Modifier::Onion { .. }
+            | Modifier::Waves { .. }
+            | Modifier::Noise { .. }
+            | Modifier::Displacement { .. }
+    )
+}
 
 /// Whether a hard join depends on inside and outside only.
 fn is_on_sets(link: Link) -> bool {

@@ -325,6 +325,10 @@ impl ScreenProjection {
     }
 }
 
+/// Margin around the image of a component, in pixels: half a pixel from a pixel's corner to its center, half for the
+/// jitter of samples, and a sixteenth for rounding.
+const MARGIN: f64 = 1.0625;
+
 /// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Rect {
@@ -358,9 +362,8 @@ impl Rect {
             // A part of it lies beside or behind the eye, so its projection has no simple outline.
             _ => return Some(whole),
         }
-        // A margin of one pixel for rounding.
-        let low = (low - 1.0).floor().max(DVec2::ZERO);
-        let high = (high + 1.0).ceil().min(pixels);
+        let low = (low - MARGIN).floor().max(DVec2::ZERO);
+        let high = (high + MARGIN).ceil().min(pixels);
         if low.cmpge(high).any() {
             return None;
         }

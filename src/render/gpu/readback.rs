@@ -23,7 +23,14 @@ pub fn read_buffers(gpu: &Gpu, targets: &Targets) -> Result<GBuffer, GpuError> {
         leaf,
         normal: normal.iter().map(|n| [n[0], n[1], n[2]]).collect(),
         color,
+        radiance: Vec::new(),
     })
+}
+
+/// The mean of `samples` accumulated samples.
+pub fn read_radiance(gpu: &Gpu, sum: &Target, samples: u32) -> Result<Vec<[f32; 4]>, GpuError> {
+    let sums: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(&read_texture(gpu, sum, 16)?);
+    Ok(sums.into_iter().map(|sum| sum.map(|value| value / samples as f32)).collect())
 }
 
 /// The colors of a target, row by row.

@@ -1,16 +1,18 @@
 //! Pass `mesh`: clears the targets that fields and meshes share, and draws the meshes into them.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, Weak};
 
-use bytemuck::{Pod, Zeroable};
-use glam::{DAffine3, DVec3};
+use wgpu::VertexFormat::{Float32x3, Float32x4};
 use wgpu::util::DeviceExt as _;
 use wgpu::{BindGroup, BindGroupLayout, BufferUsages, ShaderStages, TextureFormat};
 
 use super::frame_pass::{Building, FramePass};
+pub use super::mesh_instance::Instance;
+use super::mesh_instance::PlacedInstance;
+use super::mesh_textures::{samplers, upload_texture};
+use crate::gpu::Gpu;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::timings::Stamps;
@@ -18,61 +20,26 @@ use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::*;
 use crate::resources::targets::{BACKGROUND, Targets};
 use isolith_field::standpoint::ray_origin_depth;
-use isolith_field::{FlatMesh, FlatScene, MESH_BIT, NO_LEAF};
+use isolith_field::{FlatScene, NO_LEAF};
 use isolith_geometry::Camera;
-use isolith_mesh::{MeshPart, Sampler, Surface, Texture, TriangleMesh, Wrap};
+use isolith_mesh::{MeshPart, Sampler, Surface, Texture, TextureUse, TriangleMesh};
 use isolith_wgsl::{ShaderError, assemble_plain};
 
 /// The pass and the uploaded meshes.
 #[derive(Debug)]
 pub struct MeshPass {
-    pipeline: wgpu::RenderPipeline,
+    pipelines: [MeshPipeline; 2],
     instance_layout: BindGroupLayout,
-    texture_layout: BindGroupLayout,
     /// A sampler for each kind of texture lookup.
     samplers: HashMap<Sampler, wgpu::Sampler>,
     instances: SyncedBuffer,
     instance_group: Option<BindGroup>,
     /// By the address of the mesh on the CPU. Dropped together with that mesh.
     uploaded: HashMap<usize, Uploaded>,
+    /// By the address of the texture on the CPU and whether it holds colors: the same may hold colors here and numbers
+    /// there. Poses of a model share them. Dropped together with that texture.
+    textures: HashMap<(usize, bool), (Weak<Texture>, wgpu::TextureView)>,
     draws: Vec<Draw>,
-}
-
-/// A part of a placed mesh, in the layout of the shader.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Instance {
-    /// First row of the matrix from mesh space to world space, relative to the eye or to the point of
-    /// `ray_origin_depth`.
-    pub eye_from_local_x: [f32; 4],
-    /// Second row.
-    pub eye_from_local_y: [f32; 4],
-    /// Third row.
-    pub eye_from_local_z: [f32; 4],
-    /// First row of the normal matrix.
-    pub normal_x: [f32; 4],
-    /// Second row.
-    pub normal_y: [f32; 4],
-    /// Third row.
-    pub normal_z: [f32; 4],
-    /// Factor of the vertex colors and their opacity.
-    pub color: [f32; 4],
-    /// Row that computes the texture's U from the vertices' texture coordinates.
-    pub texture_x: [f32; 4],
-    /// Row that computes the texture's V.
-    pub texture_y: [f32; 4],
-    /// Base color, used if `overridden` is 1.
-    pub base_color: [f32; 3],
-    /// Value for the visibility target.
-    pub visibility: u32,
-    /// 1: `base_color` replaces the mesh's own colors.
-    pub overridden: u32,
-    /// 1: the placement mirrors the mesh, which reverses the winding of its triangles.
-    pub mirrored: u32,
-    /// Opacity below which there is no surface; negative: the surface is everywhere.
-    pub alpha_cutoff: f32,
-    /// Distance from the eye to the point that positions are relative to, see `shaders/common/ray.wgsl`.
-    pub ray_origin_depth: f32,
 }
 
 /// A draw of one part.
@@ -84,10 +51,21 @@ struct Draw {
     part: usize,
     /// Offset of its instance.
     offset: u32,
+    /// Whether the file's own material is drawn, and has textures besides that of the base color.
+    is_mapped: bool,
 }
 
 /// Alignment of dynamic offsets.
-const STRIDE: usize = 256;
+const STRIDE: usize = 512;
+const _: () = assert!(size_of::<Instance>() <= STRIDE);
+
+/// A pipeline with the layout of its textures: for surfaces with a texture of the base color at most, and for those
+/// with more.
+#[derive(Debug)]
+struct MeshPipeline {
+    pipeline: wgpu::RenderPipeline,
+    textures: BindGroupLayout,
+}
 
 #[derive(Debug)]
 struct Uploaded {
@@ -96,34 +74,34 @@ struct Uploaded {
     normals: wgpu::Buffer,
     colors: wgpu::Buffer,
     uvs: wgpu::Buffer,
+    /// Made if a part is mapped.
+    tangents: Option<wgpu::Buffer>,
     indices: wgpu::Buffer,
-    parts: Vec<(Range<u32>, BindGroup)>,
+    parts: Vec<UploadedPart>,
+}
+
+/// A part with its textures: for each pipeline that may draw it.
+#[derive(Clone, Debug)]
+struct UploadedPart {
+    indices: Range<u32>,
+    plain: BindGroup,
+    mapped: Option<BindGroup>,
 }
 
 impl FramePass for MeshPass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
         let both = ShaderStages::VERTEX_FRAGMENT;
         let instance_layout = layout(device, "mesh instance", &[entry(0, both, uniform(true))]);
-        let filtered = wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
-            view_dimension: wgpu::TextureViewDimension::D2,
-            multisampled: false,
-        };
-        let sampling = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
-        let texture_layout = layout(
-            device,
-            "mesh texture",
-            &[entry(0, ShaderStages::FRAGMENT, filtered), entry(1, ShaderStages::FRAGMENT, sampling)],
-        );
-        let pipeline = build_pipeline(device, &[&layouts.view, &instance_layout, &texture_layout])?;
+        let plain = MeshPipeline::new(device, &layouts.view, &instance_layout, false)?;
+        let mapped = MeshPipeline::new(device, &layouts.view, &instance_layout, true)?;
         Ok(Self {
-            pipeline,
+            pipelines: [plain, mapped],
             instance_layout,
-            texture_layout,
             samplers: samplers(device),
             instances: SyncedBuffer::uniform(device, "mesh instances"),
             instance_group: None,
             uploaded: HashMap::new(),
+            textures: HashMap::new(),
             draws: Vec::new(),
         })
     }
@@ -141,40 +119,44 @@ impl FramePass for MeshPass {
 
 impl MeshPass {
     /// Uploads the meshes of the frame. `meshes` is parallel to `flat.meshes`, with `None` for files that could not be
-    /// read.
+    /// read; `materials` holds the index of the material of each part.
     pub fn prepare(
         &mut self,
-        device: &wgpu::Device,
-        queue: &wgpu::Queue,
+        Gpu { device, queue, .. }: &Gpu,
         flat: &FlatScene,
         meshes: &[Option<Arc<TriangleMesh>>],
+        materials: &[Vec<u32>],
         camera: &Camera,
         size: [u32; 2],
     ) {
         self.uploaded.retain(|_, u| u.mesh.strong_count() > 0);
+        self.textures.retain(|_, (texture, _)| texture.strong_count() > 0);
         self.draws.clear();
         let mut bytes = Vec::new();
         for (index, (placed, mesh)) in flat.meshes.iter().zip(meshes).enumerate() {
             let Some(mesh) = mesh else { continue };
             let key = Arc::as_ptr(mesh) as usize;
             if !self.uploaded.contains_key(&key) {
+                self.upload_textures(device, queue, mesh);
                 let uploaded = self.upload(device, queue, mesh);
                 self.uploaded.insert(key, uploaded);
             }
             let seen = mesh.bounds.transformed(&placed.world_from_local).translated(-camera.position);
+            let is_own = placed.material.is_none();
             let placed = PlacedInstance::new(flat, placed, index, camera, ray_origin_depth(&seen, camera, size));
             let mut last = None;
             for (part, look) in mesh.parts.iter().enumerate() {
-                let instance = placed.of_part(look);
+                let instance = placed.of_part(look, materials[index][part]);
+                let is_mapped = is_own && look.surface.has_maps();
                 // Most parts of a mesh differ only in their texture, which is not part of the instance.
                 if last != Some(instance) {
-                    self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32 });
+                    self.draws.push(Draw { mesh: key, part, offset: bytes.len() as u32, is_mapped });
                     bytes.extend_from_slice(bytemuck::bytes_of(&instance));
                     bytes.resize(bytes.len().next_multiple_of(STRIDE), 0);
                     last = Some(instance);
                 } else {
                     let offset = self.draws.last().map_or(0, |draw| draw.offset);
-                    self.draws.push(Draw { mesh: key, part, offset });
+                    self.draws.push(Draw { mesh: key, part, offset, is_mapped });
                 }
             }
         }
@@ -200,14 +182,17 @@ impl MeshPass {
             timestamp_writes: first,
             ..Default::default()
         }));
+        let all = [
+            cleared(&targets.depth.view, f64::from(BACKGROUND)),
+            cleared(&targets.visibility.view, f64::from(NO_LEAF)),
+            cleared(&targets.normal.view, 0.0),
+            cleared(&targets.base_color.view, 0.0),
+            cleared(&targets.material.view, 0.0),
+        ];
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(Pass::Mesh.label()),
-            color_attachments: &[
-                cleared(&targets.depth.view, f64::from(BACKGROUND)),
-                cleared(&targets.visibility.view, f64::from(NO_LEAF)),
-                cleared(&targets.normal.view, 0.0),
-                cleared(&targets.base_color.view, 0.0),
-            ],
+            // The last two hold nothing but the look of meshes.
+            color_attachments: if self.draws.is_empty() { &all[..3] } else { &all },
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
                 view: &targets.hardware_depth.view,
                 depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Discard }),
@@ -221,23 +206,26 @@ impl MeshPass {
         if self.draws.is_empty() {
             return;
         }
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, view, &[]);
-        let mut bound = None;
-        for Draw { mesh: key, part, offset } in &self.draws {
+        let (mut bound, mut set) = (None, None);
+        for Draw { mesh: key, part, offset, is_mapped } in &self.draws {
             let mesh = &self.uploaded[key];
+            if set != Some(is_mapped) {
+                pass.set_pipeline(&self.pipelines[usize::from(*is_mapped)].pipeline);
+                set = Some(is_mapped);
+            }
             pass.set_bind_group(1, instances, &[*offset]);
             if bound != Some(key) {
                 let buffers = [&mesh.positions, &mesh.normals, &mesh.colors, &mesh.uvs];
-                for (slot, buffer) in buffers.into_iter().enumerate() {
+                for (slot, buffer) in buffers.into_iter().chain(&mesh.tangents).enumerate() {
                     pass.set_vertex_buffer(slot as u32, buffer.slice(..));
                 }
                 pass.set_index_buffer(mesh.indices.slice(..), wgpu::IndexFormat::Uint32);
                 bound = Some(key);
             }
-            let (range, texture) = &mesh.parts[*part];
-            pass.set_bind_group(2, texture, &[]);
-            pass.draw_indexed(range.clone(), 0, 0..1);
+            let UploadedPart { indices, plain, mapped } = &mesh.parts[*part];
+            pass.set_bind_group(2, mapped.as_ref().filter(|_| *is_mapped).unwrap_or(plain), &[]);
+            pass.draw_indexed(indices.clone(), 0, 0..1);
         }
     }
 
@@ -245,85 +233,76 @@ impl MeshPass {
         let buffer = |label, contents: &[u8], usage| {
             device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents, usage })
         };
-        let white = Texture { width: 1, height: 1, rgba: vec![255; 4] };
-        let white = upload_texture(device, queue, &white);
-        let views: Vec<_> = mesh.textures.iter().map(|texture| upload_texture(device, queue, texture)).collect();
-        // Many parts share a texture.
-        let mut groups: HashMap<(Option<usize>, Sampler), BindGroup> = HashMap::new();
-        let mut group = |Surface { texture, sampler, .. }: Surface| {
-            let make = || {
-                let view = wgpu::BindingResource::TextureView(texture.map_or(&white, |i| &views[i]));
-                let sampler = wgpu::BindingResource::Sampler(&self.samplers[&sampler]);
-                bind(device, "mesh texture", &self.texture_layout, &[view, sampler])
-            };
-            groups.entry((texture, sampler)).or_insert_with(make).clone()
-        };
-        let parts = mesh.parts.iter().map(|part| (part.indices.clone(), group(part.surface))).collect();
+        let parts = self.bind_textures(device, queue, mesh);
+        let mut tangents = mesh.tangents.clone();
+        tangents.resize(mesh.positions.len(), [0.0; 4]);
+        let tangents = parts.iter().any(|part| part.mapped.is_some()).then_some(tangents);
         Uploaded {
             mesh: Arc::downgrade(mesh),
             positions: buffer("positions", bytemuck::cast_slice(&mesh.positions), BufferUsages::VERTEX),
             normals: buffer("normals", bytemuck::cast_slice(&mesh.normals), BufferUsages::VERTEX),
             colors: buffer("colors", bytemuck::cast_slice(&mesh.colors), BufferUsages::VERTEX),
             uvs: buffer("uvs", bytemuck::cast_slice(&mesh.uvs), BufferUsages::VERTEX),
+            tangents: tangents
+                .map(|tangents| buffer("tangents", bytemuck::cast_slice(&tangents), BufferUsages::VERTEX)),
             indices: buffer("indices", bytemuck::cast_slice(&mesh.indices), BufferUsages::INDEX),
             parts,
         }
     }
-}
 
-fn upload_texture(device: &wgpu::Device, queue: &wgpu::Queue, texture: &Texture) -> wgpu::TextureView {
-    let texture = fitting(texture, device.limits().max_texture_dimension_2d);
-    let descriptor = wgpu::TextureDescriptor {
-        label: Some("base color"),
-        size: wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: TextureFormat::Rgba8UnormSrgb,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    };
-    let order = wgpu::util::TextureDataOrder::LayerMajor;
-    device
-        .create_texture_with_data(queue, &descriptor, order, &texture.rgba)
-        .create_view(&wgpu::TextureViewDescriptor::default())
-}
-
-/// The texture, halved until it fits the device's limit.
-fn fitting(texture: &Texture, longest: u32) -> Cow<'_, Texture> {
-    let mut fitting = Cow::Borrowed(texture);
-    while fitting.width.max(fitting.height) > longest {
-        let [width, height] = [fitting.width, fitting.height].map(|side| side.div_ceil(2));
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-        let start = |(x, y): (u32, u32)| 4 * (2 * y as usize * fitting.width as usize + 2 * x as usize);
-        let rgba = pixels.map(start).flat_map(|at| fitting.rgba[at..at + 4].iter().copied()).collect();
-        fitting = Cow::Owned(Texture { width, height, rgba });
+    /// Uploads the textures of a mesh.
+    fn upload_textures(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &TriangleMesh) {
+        let all = mesh.parts.iter().flat_map(|part| [&colors(&part.surface)[..], &numbers(&part.surface)[..]].concat());
+        for (texture_use, is_color) in all {
+            let Some(texture) = texture_use.map(|texture_use| &mesh.textures[texture_use.texture]) else { continue };
+            let make = || (Arc::downgrade(texture), upload_texture(device, queue, texture, is_color));
+            self.textures.entry((Arc::as_ptr(texture) as usize, is_color)).or_insert_with(make);
+        }
     }
-    fitting
+
+    /// Binds the textures of each part of a mesh.
+    fn bind_textures(&self, device: &wgpu::Device, queue: &wgpu::Queue, mesh: &TriangleMesh) -> Vec<UploadedPart> {
+        let white = upload_texture(device, queue, &Texture { width: 1, height: 1, rgba: vec![255; 4] }, true);
+        let view_of = |texture: usize, is_color: bool| {
+            &self.textures[&(Arc::as_ptr(&mesh.textures[texture]) as usize, is_color)].1
+        };
+        // Many parts share their textures.
+        let mut groups: HashMap<Vec<Option<(usize, Sampler)>>, BindGroup> = HashMap::new();
+        let mut group = |uses: &[(Option<TextureUse>, bool)], pipeline: usize| {
+            let make = || {
+                let resources: Vec<_> = uses
+                    .iter()
+                    .flat_map(|(texture_use, is_color)| {
+                        let view = texture_use.map_or(&white, |texture_use| view_of(texture_use.texture, *is_color));
+                        let sampler =
+                            &self.samplers[&texture_use.map_or(Sampler::default(), |texture_use| texture_use.sampler)];
+                        [wgpu::BindingResource::TextureView(view), wgpu::BindingResource::Sampler(sampler)]
+                    })
+                    .collect();
+                bind(device, "mesh textures", &self.pipelines[pipeline].textures, &resources)
+            };
+            let key = uses.iter().map(|(texture_use, _)| texture_use.map(|one| (one.texture, one.sampler))).collect();
+            groups.entry(key).or_insert_with(make).clone()
+        };
+        let part = |MeshPart { indices, surface, .. }: &MeshPart| {
+            let [base, emissive] = colors(surface);
+            let [metal_rough, normal, occlusion] = numbers(surface);
+            let all = [base, metal_rough, normal, occlusion, emissive];
+            let mapped = surface.has_maps().then(|| group(&all, 1));
+            UploadedPart { indices: indices.clone(), plain: group(&all[..1], 0), mapped }
+        };
+        mesh.parts.iter().map(part).collect()
+    }
 }
 
-fn samplers(device: &wgpu::Device) -> HashMap<Sampler, wgpu::Sampler> {
-    const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
-    let address = |wrap| match wrap {
-        Wrap::Repeat => wgpu::AddressMode::Repeat,
-        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
-        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
-    };
-    let ways = WRAPS.iter().flat_map(|u| WRAPS.iter().map(move |v| [*u, *v]));
-    let ways = ways.flat_map(|wrap| [false, true].map(|nearest| Sampler { wrap, nearest }));
-    ways.map(|way| {
-        let filter = if way.nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
-        let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
-            label: Some("mesh"),
-            address_mode_u: address(way.wrap[0]),
-            address_mode_v: address(way.wrap[1]),
-            mag_filter: filter,
-            min_filter: filter,
-            ..Default::default()
-        });
-        (way, sampler)
-    })
-    .collect()
+/// The textures of a surface that hold colors.
+fn colors(surface: &Surface) -> [(Option<TextureUse>, bool); 2] {
+    [(surface.base_color, true), (surface.emissive, true)]
+}
+
+/// Those that hold numbers.
+fn numbers(surface: &Surface) -> [(Option<TextureUse>, bool); 3] {
+    [(surface.metal_rough, false), (surface.normal, false), (surface.occlusion, false)]
 }
 
 /// An attachment that is cleared to `value`.
@@ -333,69 +312,45 @@ fn cleared(view: &wgpu::TextureView, value: f64) -> Option<wgpu::RenderPassColor
     Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
 }
 
-/// A placed mesh: the data that its parts share.
-struct PlacedInstance {
-    eye_from_local: DAffine3,
-    /// The instance of a part at the mesh's own origin with default appearance.
-    common: Instance,
-}
-
-impl PlacedInstance {
-    fn new(flat: &FlatScene, placed: &FlatMesh, index: usize, camera: &Camera, ray_origin_depth: f64) -> Self {
-        let eye = camera.position + camera.rotation * DVec3::NEG_Z * ray_origin_depth;
-        let m = DAffine3 { translation: placed.world_from_local.translation - eye, ..placed.world_from_local };
-        // Normals transform by the inverse transpose; only their direction matters.
-        let n = m.matrix3.inverse().transpose();
-        let n = n * (1.0 / n.x_axis.abs().max(n.y_axis.abs()).max(n.z_axis.abs()).max_element());
-        let normal_row = |i: usize| {
-            let r = n.row(i);
-            [r.x as f32, r.y as f32, r.z as f32, 0.0]
+impl MeshPipeline {
+    fn new(
+        device: &wgpu::Device,
+        view: &BindGroupLayout,
+        instance: &BindGroupLayout,
+        is_mapped: bool,
+    ) -> Result<Self, ShaderError> {
+        let filtered = wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
         };
-        let material = placed.material.map(|i| flat.materials[i as usize]);
-        let common = Instance {
-            normal_x: normal_row(0),
-            normal_y: normal_row(1),
-            normal_z: normal_row(2),
-            base_color: material.map_or([1.0; 3], |m| m.base_color),
-            visibility: MESH_BIT | index as u32,
-            overridden: u32::from(material.is_some()),
-            mirrored: u32::from(m.matrix3.determinant() < 0.0),
-            ray_origin_depth: ray_origin_depth as f32,
-            ..Instance::zeroed()
+        let sampling = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+        let count = if is_mapped { 5 } else { 1 };
+        let texture = |i: u32| {
+            [entry(2 * i, ShaderStages::FRAGMENT, filtered), entry(2 * i + 1, ShaderStages::FRAGMENT, sampling)]
         };
-        Self { eye_from_local: m, common }
-    }
-
-    fn of_part(&self, part: &MeshPart) -> Instance {
-        let MeshPart { origin, surface, .. } = part;
-        let m = &self.eye_from_local;
-        let translation = m.translation + m.matrix3 * *origin;
-        let row = |i: usize| {
-            let r = m.matrix3.row(i);
-            [r.x as f32, r.y as f32, r.z as f32, translation[i] as f32]
-        };
-        let [texture_x, texture_y] = surface.texture_from_uv.map(|[a, b, c]| [a, b, c, 0.0]);
-        Instance {
-            eye_from_local_x: row(0),
-            eye_from_local_y: row(1),
-            eye_from_local_z: row(2),
-            color: surface.color,
-            texture_x,
-            texture_y,
-            alpha_cutoff: surface.alpha_cutoff.unwrap_or(-1.0),
-            ..self.common
-        }
+        let entries: Vec<_> = (0..count).flat_map(texture).collect();
+        let textures = layout(device, "mesh textures", &entries);
+        let entry_points =
+            if is_mapped { ["mesh_mapped_vertex", "mesh_mapped_fragment"] } else { ["mesh_vertex", "mesh_fragment"] };
+        // Position, normal, color, texture coordinates, tangent.
+        let formats = [Float32x3, Float32x3, Float32x4, Float32x4, Float32x4];
+        let formats = if is_mapped { &formats[..] } else { &formats[..4] };
+        let pipeline = build_pipeline(device, &[view, instance, &textures], entry_points, formats)?;
+        Ok(Self { pipeline, textures })
     }
 }
 
-fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<wgpu::RenderPipeline, ShaderError> {
+fn build_pipeline(
+    device: &wgpu::Device,
+    groups: &[&BindGroupLayout],
+    [vertex, fragment]: [&str; 2],
+    formats: &[wgpu::VertexFormat],
+) -> Result<wgpu::RenderPipeline, ShaderError> {
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("mesh"),
         source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Mesh.file())?.into()),
     });
-    use wgpu::VertexFormat::{Float32x2, Float32x3, Float32x4};
-    // Position, normal, color, texture coordinate.
-    let formats = [Float32x3, Float32x3, Float32x4, Float32x2];
     let attributes: Vec<_> = formats
         .iter()
         .enumerate()
@@ -411,14 +366,14 @@ fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<
             })
         })
         .collect();
-    let targets =
-        [TextureFormat::R32Float, TextureFormat::R32Uint, TextureFormat::Rgba32Float, TextureFormat::Rgba16Float];
+    use TextureFormat::{R32Float, R32Uint, Rgba16Float, Rgba32Float, Rgba32Uint};
+    let targets = [R32Float, R32Uint, Rgba32Float, Rgba16Float, Rgba32Uint];
     Ok(device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("mesh"),
         layout: Some(&pipeline_layout(device, "mesh", groups)),
         vertex: wgpu::VertexState {
             module: &module,
-            entry_point: Some("mesh_vertex"),
+            entry_point: Some(vertex),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             buffers: &vertex_buffers,
         },
@@ -433,7 +388,7 @@ fn build_pipeline(device: &wgpu::Device, groups: &[&BindGroupLayout]) -> Result<
         multisample: wgpu::MultisampleState::default(),
         fragment: Some(wgpu::FragmentState {
             module: &module,
-            entry_point: Some("mesh_fragment"),
+            entry_point: Some(fragment),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &targets.map(|format| Some(format.into())),
         }),

@@ -1,13 +1,17 @@
 //! The passes, each with its shader of the same name. [`super::recipe`] defines their order.
 
 pub mod debug_view;
+pub mod display;
 pub mod field;
 pub mod frame_pass;
 pub mod hiz;
 pub mod mesh;
+mod mesh_instance;
+mod mesh_textures;
 pub mod overlay;
 pub mod overlay_settings;
 pub mod shade;
+pub mod shade_features;
 
 use std::ops::Range;
 
@@ -15,6 +19,7 @@ use super::recipe::{Pass, recipe};
 use super::renderer::recorder::Recorder;
 use super::renderer::resources::Bound;
 use debug_view::DebugViewPass;
+use display::DisplayPass;
 use field::{ConePass, SurfacePass, TracePass};
 use frame_pass::{Building, FramePass};
 use hiz::HizPass;

@@ -108,6 +108,13 @@ impl FramePass for OverlayPass {
         let Some(own) = self.own_group.as_ref().filter(|_| !recorder.frame.overlay.is_empty()) else { return };
         let ([view, inputs], [_, picture]) = (recorder.groups(0), recorder.groups(1));
         let (targets, enlarged, plan) = (recorder.targets, recorder.enlarged, &recorder.frame.plan);
+        // Later samples have hits beside the pixels' centers: marks keep to the first.
+        let later = recorder.frame.sampling.filter(|sampling| sampling.index > 0);
+        let kept = later.and(recorder.accumulation).map(|accumulation| {
+            let inputs = [accumulation.depth.binding(), accumulation.leaf.binding()];
+            bind(&recorder.gpu.device, "overlay of samples", &self.targets, &inputs)
+        });
+        let inputs = kept.as_ref().unwrap_or(inputs);
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
         let color = &enlarged.unwrap_or(&targets.color).view;

@@ -1,16 +1,19 @@
 //! Pass `shade`: lighting of the hits, and the background.
 
+use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-use wgpu::{BindGroup, BindGroupLayout};
+use wgpu::{BindGroup, BindGroupLayout, RenderPipeline, ShaderModule};
 
 use super::frame_pass::{Building, FramePass};
+use super::shade_features::{ShadeExtras, ShadeFeatures, ShadeOutput};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
 use crate::resources::layouts::*;
 use crate::resources::uniforms::DispatchParams;
-use isolith_wgsl::{ShaderError, assemble_plain};
+use isolith_wgsl::ShaderError;
 
 bindings! {
     /// Group 1.
@@ -35,21 +38,31 @@ bindings! {
 /// The pass.
 #[derive(Debug)]
 pub struct ShadePass {
-    pipeline: wgpu::RenderPipeline,
+    view: BindGroupLayout,
     lights: BindGroupLayout,
     targets: BindGroupLayout,
+    /// The sources that pictures have needed so far.
+    modules: HashMap<ShadeFeatures, ShaderModule>,
+    /// Their pipelines, built on first use.
+    pipelines: Mutex<HashMap<(ShadeFeatures, ShadeOutput), ShadePipeline>>,
+}
+
+/// A pipeline with the layout of its group 3.
+#[derive(Clone, Debug)]
+struct ShadePipeline {
+    pipeline: RenderPipeline,
+    extras_layout: BindGroupLayout,
 }
 
 impl FramePass for ShadePass {
     fn new(Building { device, layouts, .. }: Building<'_>) -> Result<Self, ShaderError> {
-        let (lights, targets) = (LightBindings::layout(device), ShadeBindings::layout(device));
-        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(Pass::Shade.label()),
-            source: wgpu::ShaderSource::Wgsl(assemble_plain(Pass::Shade.file())?.into()),
-        });
-        let layout = pipeline_layout(device, Pass::Shade.label(), &[&layouts.view, &lights, &targets]);
-        let pipeline = screen_pipeline(device, &module, "shade_fragment", &layout, None);
-        Ok(Self { pipeline, lights, targets })
+        Ok(Self {
+            view: layouts.view.clone(),
+            lights: LightBindings::layout(device),
+            targets: ShadeBindings::layout(device),
+            modules: HashMap::new(),
+            pipelines: Mutex::default(),
+        })
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
@@ -71,11 +84,23 @@ impl FramePass for ShadePass {
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
         let (frame, targets) = (recorder.frame, recorder.targets);
         let ([view, lights], [_, textures]) = (recorder.groups(0), recorder.groups(1));
+        let device = &recorder.gpu.device;
+        let sampled = frame.sampling.zip(recorder.accumulation);
+        let extras = ShadeExtras {
+            sum: sampled.map(|(sampling, accumulation)| accumulation.sum_before(sampling.index).binding()),
+            textures: recorder.resources.textures(),
+        };
+        let (output, target) = match sampled {
+            Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),
+            None => (ShadeOutput::Picture(frame.view_transform), &targets.color),
+        };
+        let ShadePipeline { pipeline, extras_layout } = self.pipeline(device, frame.shade_features, output);
+        let extras = extras.bind(device, &extras_layout);
         let (encoder, stamps) = recorder.drawing();
         let stamps = stamps.map(|stamps| stamps.of_drawing());
-        let mut pass = screen_pass(encoder, Pass::Shade.label(), &targets.color.view, stamps);
-        pass.set_pipeline(&self.pipeline);
-        for (at, group) in (0..).zip([view, lights, textures]) {
+        let mut pass = screen_pass(encoder, Pass::Shade.label(), &target.view, stamps);
+        pass.set_pipeline(&pipeline);
+        for (at, group) in (0..).zip([view, lights, textures, &extras]) {
             pass.set_bind_group(at, group, &[]);
         }
         for DispatchParams { origin, end, .. } in
@@ -84,5 +109,35 @@ impl FramePass for ShadePass {
             pass.set_scissor_rect(origin[0], origin[1], end[0] - origin[0], end[1] - origin[1]);
             pass.draw(0..3, 0..1);
         }
+    }
+}
+
+impl ShadePass {
+    /// Loads the source for these features.
+    ///
+    /// # Errors
+    /// A shader file is missing.
+    pub fn prepare(&mut self, device: &wgpu::Device, features: ShadeFeatures) -> Result<(), ShaderError> {
+        if let std::collections::hash_map::Entry::Vacant(place) = self.modules.entry(features) {
+            let source = wgpu::ShaderSource::Wgsl(features.source()?.into());
+            let descriptor = wgpu::ShaderModuleDescriptor { label: Some(Pass::Shade.label()), source };
+            place.insert(device.create_shader_module(descriptor));
+        }
+        Ok(())
+    }
+
+    /// The pipeline; the frame has prepared its features.
+    fn pipeline(&self, device: &wgpu::Device, features: ShadeFeatures, output: ShadeOutput) -> ShadePipeline {
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        let build = || {
+            let extras_layout = features.extras_layout(device, output);
+            let groups = [&self.view, &self.lights, &self.targets, &extras_layout];
+            let layout = pipeline_layout(device, Pass::Shade.label(), &groups);
+            let format = output.format();
+            let module = &self.modules[&features];
+            let pipeline = screen_pipeline_to(format, device, module, output.entry_point(), &layout, None);
+            ShadePipeline { pipeline, extras_layout }
+        };
+        pipelines.entry((features, output)).or_insert_with(build).clone()
     }
 }

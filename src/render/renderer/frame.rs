@@ -8,12 +8,23 @@ use super::slot::Slot;
 use crate::frame::cost_model::{Cost, CostModel};
 use crate::frame::plan::{DISPATCH_TARGET, Dispatch, FramePlan, LONGER};
 use crate::passes::overlay_settings::OverlaySettings;
+use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::{EvalMode, PipelineChoice};
 use crate::pipelines::field::FieldPipelines;
 use crate::pipelines::key::PipelineKey;
 use crate::recipe::Pass;
 use isolith_field::debug_view::ViewMode;
 use isolith_field::{FlatScene, ParamRow};
+use isolith_scene::ViewTransform;
+
+/// Which sample a frame renders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampling {
+    /// Counted from 0.
+    pub index: u32,
+    /// Whether the background is without color and coverage.
+    pub is_transparent: bool,
+}
 
 /// A frame in progress.
 #[derive(Clone, Debug)]
@@ -33,6 +44,11 @@ pub struct Frame {
     pub(super) slot: Slot,
     pub(crate) overlay: OverlaySettings,
     pub(crate) view_mode: ViewMode,
+    pub(crate) view_transform: ViewTransform,
+    /// What pass `shade` needs.
+    pub(crate) shade_features: ShadeFeatures,
+    /// The sample that it renders; `None` for a picture of a single sample.
+    pub(crate) sampling: Option<Sampling>,
     /// State of the rays that continue beyond the plan.
     pub(super) going_on: GoingOn,
     pub(super) rows: Vec<u32>,
@@ -67,6 +83,9 @@ impl Frame {
             slot,
             overlay,
             view_mode: ViewMode::Shaded,
+            view_transform: flat.display.view_transform,
+            shade_features: ShadeFeatures::default(),
+            sampling: None,
             going_on: GoingOn::default(),
             template_rows: Vec::new(),
             rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
@@ -138,6 +157,17 @@ impl Frame {
     /// Ends the frame as planned, without checking for rays that have not ended.
     pub(super) fn end_as_planned(&mut self) {
         self.going_on.times = LONGER.len();
+    }
+
+    /// Number of accumulated samples in the picture; 0 if the frame does not accumulate. While a sample is in progress,
+    /// the picture still shows those before it.
+    pub fn samples(&self) -> u32 {
+        self.sampling.map_or(0, |sampling| sampling.index + u32::from(self.is_done()))
+    }
+
+    /// Whether it shows light, not a view mode for debugging.
+    pub fn is_lit(&self) -> bool {
+        self.view_mode == ViewMode::Shaded
     }
 
     /// Whether the picture is complete.

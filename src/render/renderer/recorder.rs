@@ -6,6 +6,7 @@ use super::timings::Stamps;
 use crate::gpu::Gpu;
 use crate::pipelines::field::FieldPipelines;
 use crate::recipe::{Extent, Pass};
+use crate::resources::accumulation::Accumulation;
 use crate::resources::targets::{Target, Targets};
 use crate::resources::uniforms::UNIFORM_STRIDE;
 
@@ -26,6 +27,8 @@ pub struct Recorder<'a> {
     pub targets: &'a Targets,
     /// Target of the enlarged coarse picture, if any.
     pub enlarged: Option<&'a Target>,
+    /// Textures of accumulated samples, if there are any.
+    pub accumulation: Option<&'a Accumulation>,
     groups: &'a Groups,
     encoder: wgpu::CommandEncoder,
     /// The open compute pass.
@@ -40,12 +43,12 @@ pub struct Recorder<'a> {
 impl<'a> Recorder<'a> {
     /// A recorder for the slot of `frame`. `stamps` limits how many passes can have timestamps.
     pub fn new(gpu: &'a Gpu, frame: &'a Frame, resources: &'a FrameResources, stamps: Option<Stamps<'a>>) -> Self {
-        let SlotState { targets, enlarged, groups } = resources.slot(frame.slot);
+        let SlotState { targets, enlarged, accumulation, groups } = resources.slot(frame.slot);
         let groups = groups.as_ref().expect("begin binds");
         let encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
         let (open, current, timed) = (None, Pass::ALL[0], Vec::new());
-        let enlarged = enlarged.as_ref();
-        Self { gpu, frame, resources, targets, enlarged, groups, encoder, open, current, stamps, timed }
+        let (enlarged, accumulation) = (enlarged.as_ref(), accumulation.as_ref());
+        Self { gpu, frame, resources, targets, enlarged, accumulation, groups, encoder, open, current, stamps, timed }
     }
 
     /// Whether there are timestamps left for another pass and for those over the finished picture.

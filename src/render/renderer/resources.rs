@@ -1,10 +1,11 @@
 //! The resources of a frame besides the scene: the view, its dispatches, the buffers between passes, and the targets of
 //! its slot.
 
+use bytemuck::Zeroable as _;
 use wgpu::BindGroup;
 
 use super::frame::Frame;
-use super::mesh_materials::mesh_materials;
+use super::mesh_materials::MeshMaterials;
 use super::pixel_counts::MarchCounts;
 use super::scene::SceneResources;
 use super::slot::Slot;
@@ -13,9 +14,11 @@ use crate::gpu::Gpu;
 use crate::passes::overlay_settings::OverlaySettings;
 use crate::pipelines::field::FieldBuffers;
 use crate::recipe::Pass;
+use crate::resources::accumulation::Accumulation;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::layouts::{Layouts, bind, window};
 use crate::resources::targets::{Target, Targets};
+use crate::resources::texture_resources::{TextureBindings, TextureResources};
 use crate::resources::uniforms::{DispatchParams, GpuView, strided};
 use isolith_field::{FlatScene, gpu_lights};
 use isolith_geometry::Camera;
@@ -64,6 +67,8 @@ pub struct SlotState {
     pub targets: Targets,
     /// Target of the enlarged picture, if marks are drawn over a picture that is too coarse for them.
     pub enlarged: Option<Target>,
+    /// Textures of accumulated samples, once there are any.
+    pub accumulation: Option<Accumulation>,
     pub groups: Option<Groups>,
 }
 
@@ -79,8 +84,11 @@ impl SlotState {
 pub struct FrameResources {
     layouts: Layouts,
     view: SyncedBuffer,
+    /// The contents of `view` for the first sample.
+    first_view: GpuView,
     lights: SyncedBuffer,
     mesh_materials: SyncedBuffer,
+    textures: TextureResources,
     dispatch_params: SyncedBuffer,
     subtiles: SyncedBuffer,
     pub subtile_counts: SyncedBuffer,
@@ -98,8 +106,10 @@ impl FrameResources {
         Self {
             layouts,
             view: SyncedBuffer::uniform(device, "view"),
+            first_view: GpuView::zeroed(),
             lights: storage("lights"),
             mesh_materials: storage("mesh materials"),
+            textures: TextureResources::default(),
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
             subtiles: storage("subtiles"),
             subtile_counts: SyncedBuffer::indirect(device, "subtile counts"),
@@ -130,7 +140,12 @@ impl FrameResources {
     pub fn resize(&mut self, device: &wgpu::Device, slot: Slot, size: [u32; 2], overlay: &OverlaySettings) {
         let state = &mut self.slots[slot as usize];
         if state.as_ref().is_none_or(|state| state.targets.size != size) {
-            *state = Some(SlotState { targets: Targets::new(device, size), enlarged: None, groups: None });
+            *state = Some(SlotState {
+                targets: Targets::new(device, size),
+                enlarged: None,
+                accumulation: None,
+                groups: None,
+            });
         }
         if let Some(state) = state {
             let shown = overlay.enlarged(size);
@@ -140,24 +155,56 @@ impl FrameResources {
     }
 
     /// Uploads changed data and reserves space for the plan. Returns whether a buffer was replaced.
-    pub fn upload(&mut self, gpu: &Gpu, flat: &FlatScene, camera: &Camera, size: [u32; 2], plan: &FramePlan) -> bool {
+    pub fn upload(
+        &mut self,
+        gpu: &Gpu,
+        flat: &FlatScene,
+        meshes: &MeshMaterials,
+        camera: &Camera,
+        size: [u32; 2],
+        plan: &FramePlan,
+    ) -> bool {
         let Gpu { device, queue, .. } = gpu;
-        let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
-        let no_rays = vec![NO_RAYS; plan.lists as usize];
         let lights = gpu_lights(flat, camera);
-        let view = GpuView::new(camera, size, flat, lights.len() as u32);
+        self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let uploads = [
-            self.view.set(device, queue, bytemuck::bytes_of(&view)),
+            self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
-            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&mesh_materials(flat))),
+            self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
+            self.textures.upload(gpu, flat, camera),
             self.set_work(gpu, &plan.dispatches),
             self.subtiles.reserve(device, bytes_of_subtiles(plan.subtiles.into()) as usize),
             self.rays.reserve(device, (plan.lists + plan.longest * TILE * TILE) as usize * 4),
-            self.subtile_counts.reset(device, queue, bytemuck::cast_slice(&no_subtiles)),
-            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
-            self.counts.reset(gpu, flat.components.len(), size),
+            self.reset_lists(gpu, plan, flat.components.len(), size),
         ];
         uploads.contains(&true)
+    }
+
+    /// Resets the lists and counts that the passes of a frame fill. Returns whether a buffer was replaced.
+    pub fn reset_lists(&mut self, gpu: &Gpu, plan: &FramePlan, components: usize, size: [u32; 2]) -> bool {
+        let Gpu { device, queue, .. } = gpu;
+        let no_subtiles = vec![NO_SUBTILES; plan.lists as usize];
+        let no_rays = vec![NO_RAYS; plan.lists as usize];
+        let resets = [
+            self.subtile_counts.reset(device, queue, bytemuck::cast_slice(&no_subtiles)),
+            self.ray_counts.reset(device, queue, bytemuck::cast_slice(&no_rays)),
+            self.counts.reset(gpu, components, size),
+        ];
+        resets.contains(&true)
+    }
+
+    /// Uploads the view of another sample of the frame.
+    pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
+        let view = self.first_view.of_sample(index, is_transparent);
+        self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
+    }
+
+    /// Gives the slot textures for accumulated samples, if it has none.
+    pub fn keep_accumulation(&mut self, device: &wgpu::Device, slot: Slot) {
+        if let Some(state) = &mut self.slots[slot as usize] {
+            let size = state.targets.size;
+            state.accumulation.get_or_insert_with(|| Accumulation::new(device, size));
+        }
     }
 
     /// Uploads dispatches. Returns whether the buffer was replaced.
@@ -217,6 +264,11 @@ impl FrameResources {
     /// The materials of the meshes.
     pub fn mesh_materials(&self) -> wgpu::BindingResource<'_> {
         self.mesh_materials.binding()
+    }
+
+    /// The textures, if the scene uses some.
+    pub fn textures(&self) -> Option<TextureBindings<'_>> {
+        self.textures.bindings()
     }
 
     /// Clears the counts of unfinished rays of `lists` lists, and the counters of pixels.

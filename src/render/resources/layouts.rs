@@ -10,6 +10,9 @@ pub const PARAMS_FORMAT: Format = Format::Rgba32Float;
 /// Format of the texture of tapes.
 pub const TAPES_FORMAT: Format = Format::Rg32Uint;
 
+/// Format of the texture of images.
+pub const TEXELS_FORMAT: Format = Format::R32Uint;
+
 /// Declares a group as a struct of resources, with fields in the order of the bindings, and its layout.
 macro_rules! bindings {
     ($(#[$doc:meta])* $name:ident, $label:literal, $stages:ident { $($(#[$field_doc:meta])* $field:ident: $type:expr,)* }) => {
@@ -42,13 +45,13 @@ bindings! {
         /// The subtree-extent array.
         nodes: read_storage(),
         /// All rows.
-        params: storage_texture(PARAMS_FORMAT, Access::ReadOnly),
+        params: read_only_texture(PARAMS_FORMAT),
         /// The component, at a dynamic offset.
         subject: uniform(true),
         /// The component's own rows again, at a dynamic offset.
         rows: uniform(true),
         /// Tapes.
-        tapes: storage_texture(TAPES_FORMAT, Access::ReadOnly),
+        tapes: read_only_texture(TAPES_FORMAT),
     }
 }
 
@@ -116,6 +119,11 @@ pub fn write_texture(format: Format) -> BindingType {
 /// A read-write storage texture.
 pub fn read_write_texture(format: Format) -> BindingType {
     storage_texture(format, Access::ReadWrite)
+}
+
+/// A storage texture for reading.
+pub fn read_only_texture(format: Format) -> BindingType {
+    storage_texture(format, Access::ReadOnly)
 }
 
 fn storage_texture(format: Format, access: Access) -> BindingType {
@@ -186,6 +194,18 @@ pub fn screen_pipeline(
     layout: &wgpu::PipelineLayout,
     blend: Option<wgpu::BlendState>,
 ) -> wgpu::RenderPipeline {
+    screen_pipeline_to(Format::Rgba8Unorm, device, module, entry_point, layout, blend)
+}
+
+/// The same for a target of another format.
+pub fn screen_pipeline_to(
+    format: Format,
+    device: &wgpu::Device,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    layout: &wgpu::PipelineLayout,
+    blend: Option<wgpu::BlendState>,
+) -> wgpu::RenderPipeline {
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some(entry_point),
         layout: Some(layout),
@@ -203,7 +223,7 @@ pub fn screen_pipeline(
             entry_point: Some(entry_point),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
             targets: &[Some(wgpu::ColorTargetState {
-                format: wgpu::TextureFormat::Rgba8Unorm,
+                format,
                 blend,
                 // Drawing over the picture must leave it opaque.
                 write_mask: if blend.is_some() { wgpu::ColorWrites::COLOR } else { wgpu::ColorWrites::ALL },

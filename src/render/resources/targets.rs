@@ -5,11 +5,10 @@
 //! | depth | R32Float | mesh, trace | distance along the pixel's ray, [`BACKGROUND`] without a hit |
 //! | visibility | R32Uint | mesh, trace | component, or `MESH_BIT` and mesh, or `NO_LEAF` |
 //! | march | R32Float | trace | where a march continues in the next relaunch |
-//! | hiz | R32Float | hiz, trace | the farthest depth in each subtile of 4 by 4 pixels; it may be wider |
 //! | normal | Rgba32Float | mesh, surface | unit normal in the world; length of the field's gradient, 0 for meshes |
 //! | hiz | R32Float | hiz, trace | the farthest depth in each subtile of 4 by 4 pixels; the texture may be wider |
-//! | material | Rgba32Uint | surface | of fields: the mixture of materials, see `shaders/common/mixture.wgsl` |
-//! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; where no field is, as visibility |
+//! | base color | Rgba16Float | mesh | of meshes: the linear base color |
+//! | material | Rgba32Uint | mesh, surface | of fields: `shaders/common/mixture.wgsl`; of meshes: `mesh_look.wgsl` there |
 //! | color | Rgba8Unorm | shade, debug_view, overlay | the picture, sRGB encoded |
 //! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; the value of visibility where no field is |
 //!
@@ -73,7 +72,7 @@ impl Targets {
             hiz: Target::new(device, "hiz", subtiles, TextureFormat::R32Float, both),
             normal: target("normal", TextureFormat::Rgba32Float, both),
             base_color: target("base color", TextureFormat::Rgba16Float, both),
-            material: target("material", TextureFormat::Rgba32Uint, compute),
+            material: target("material", TextureFormat::Rgba32Uint, both),
             leaf: target("leaf", TextureFormat::R32Uint, compute | TextureUsages::COPY_DST),
             color: target("color", TextureFormat::Rgba8Unorm, both),
             hardware_depth: target("hardware depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT),
@@ -106,7 +105,14 @@ impl Target {
         [size.width, size.height]
     }
 
-    fn new(device: &wgpu::Device, label: &str, size: [u32; 2], format: TextureFormat, usage: TextureUsages) -> Self {
+    /// A new target of `size` pixels.
+    pub fn new(
+        device: &wgpu::Device,
+        label: &str,
+        size: [u32; 2],
+        format: TextureFormat,
+        usage: TextureUsages,
+    ) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },

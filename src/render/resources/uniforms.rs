@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, Component, FlatScene};
-use isolith_geometry::Camera;
+use isolith_geometry::{Camera, pixel_jitter};
 
 /// The camera, the background and the lights of a frame.
 #[repr(C)]
@@ -35,6 +35,20 @@ pub struct GpuView {
     pub ambient: [f32; 3],
     /// Height of the picture, in pixels.
     pub height: u32,
+    /// Offset from pixel centers to the place of this sample, in pixels.
+    pub jitter: [f32; 2],
+    /// Factor of the exposure.
+    pub exposure: f32,
+    /// Index of the sample; see [`crate::Renderer::next_sample`].
+    pub sample_index: u32,
+    /// 1: the background is without color and coverage.
+    pub transparent: u32,
+    /// Padding.
+    pub padding_0: u32,
+    /// Padding.
+    pub padding_1: u32,
+    /// Padding.
+    pub padding_2: u32,
 }
 
 impl GpuView {
@@ -57,7 +71,15 @@ impl GpuView {
             width: size[0],
             ambient: color(flat.environment.ambient),
             height: size[1],
+            exposure: flat.display.exposure.exp2() as f32,
+            ..Self::zeroed()
         }
+    }
+
+    /// The same view for another sample.
+    pub fn of_sample(self, sample_index: u32, is_transparent: bool) -> Self {
+        let jitter = pixel_jitter(sample_index).as_vec2().to_array();
+        Self { jitter, sample_index, transparent: is_transparent.into(), ..self }
     }
 }
 
@@ -93,19 +115,20 @@ pub struct GpuComponent {
     /// Rounding bound: where the field is not below the negative of this, rounding may have separated two faces in one
     /// place.
     pub flush: f32,
-    /// Padding of eight bytes.
-    pub _padding: [u32; 2],
+    /// The same for a point at [`Self::eye`]; it grows with the distance, up to `flush`.
+    pub flush_near: f32,
+    /// Padding of four bytes.
+    pub _padding: u32,
 }
 
 /// Rounding distance of two coincident faces, relative to the coordinates that they are computed from: each moves by a
 /// few roundings of 2^-24.
 const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
-/// See [`GpuComponent::flush`]. Relative to a point near the eye, rounding moves visible points by at most the allowed
-/// amount.
-fn flush(component: &Component, at: &Standpoint) -> f64 {
-    let rounding = FLUSH_ROUNDING * component.flush_extent;
-    if at.shift == DVec3::ZERO { rounding } else { rounding.min(at.most_moved) }
+/// See [`GpuComponent::flush_near`]. Relative to a point near the eye, rounding moves the nearest visible points by at
+/// most the allowed amount.
+fn flush_near(component: &Component, at: &Standpoint) -> f64 {
+    if at.shift == DVec3::ZERO { FLUSH_ROUNDING * component.flush_placement } else { at.most_moved }
 }
 
 /// Alignment of uniforms at dynamic offsets, valid on every device.
@@ -146,8 +169,9 @@ impl GpuComponent {
             grid_counts: [0; 3],
             tapes: 0,
             ray_origin_depth: at.ray_origin_depth as f32,
-            flush: flush(component, at) as f32,
-            _padding: [0; 2],
+            flush: (FLUSH_ROUNDING * component.flush_extent) as f32,
+            flush_near: flush_near(component, at) as f32,
+            _padding: 0,
         }
     }
 }

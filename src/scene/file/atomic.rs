@@ -94,6 +94,7 @@ pub fn save_stamped(scene: &Scene, path: &Path) -> Result<Stamp, FileError> {
 fn is_same(scene: &Scene, again: &Scene) -> bool {
     let nodes = || scene.nodes().iter().zip(again.nodes());
     scene.environment == again.environment
+        && scene.display == again.display
         && scene.next_id() == again.next_id()
         && scene.materials() == again.materials()
         && scene.nodes().len() == again.nodes().len()

@@ -15,8 +15,8 @@ use serde_json::json;
 use super::watch;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
 use crate::{
-    BlendOverride, CameraNode, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot,
-    Node, NodeId, NodeKind, Object, whole,
+    BlendOverride, CameraNode, DisplaySettings, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId,
+    MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, whole,
 };
 use isolith_geometry::Transform;
 
@@ -37,6 +37,9 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// The environment.
     #[serde(default)]
     pub environment: E,
+    /// How its light becomes the colors of a screen.
+    #[serde(default)]
+    pub display: DisplaySettings,
     /// Materials, in the artist's order.
     #[serde(default, deserialize_with = "at_most::<_, _, MAX_MATERIALS>")]
     pub materials: Vec<M>,

@@ -88,6 +88,7 @@ impl SceneV1 {
             schema: self.schema,
             isolith: VERSION,
             environment: self.environment,
+            display: self.display,
             materials: self.materials.into_iter().map(MaterialV1::converted).collect(),
             next_id: self.next_id,
             nodes: self.nodes.into_iter().map(node).collect(),

@@ -100,6 +100,7 @@ fn located<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, serde_path_to_err
 
 fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
+    check::display(&scene.display).map_err(|f| FileError::from_fault(file, "display", f))?;
     if scene.next_id > MAX_ID + 1 {
         return Err(FileError::new(file, format!("must be at most {}", MAX_ID + 1)).at("next_id"));
     }
@@ -111,7 +112,9 @@ fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     }
     let nodes = order.into_iter().filter_map(|i| nodes[i].take()).collect();
     let tables = Scene::from_tables(nodes, scene.materials, scene.environment, scene.next_id);
-    tables.map_err(|e| FileError::new(file, e.to_string()))
+    let mut tables = tables.map_err(|e| FileError::new(file, e.to_string()))?;
+    tables.display = scene.display;
+    Ok(tables)
 }
 
 /// The node with its own values checked.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::ser::Formatter;
+use serde_json::{Map, Value};
 
 use super::FileError;
 use super::format::{NodeFile, SceneFile, VERSION};
@@ -17,6 +18,7 @@ use crate::{Material, Scene, check};
 pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     let file = Path::new("scene");
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
+    check::display(&scene.display).map_err(|f| FileError::from_fault(file, "display", f))?;
     for (i, material) in scene.materials().iter().enumerate() {
         check::material(material).map_err(|f| FileError::from_fault(file, &format!("materials[{i}]"), f))?;
     }
@@ -24,19 +26,32 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         check::node(node)
             .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
     }
+    let failed = |e: serde_json::Error| FileError::new(file, e.to_string());
     let table = SceneFile {
         schema: None,
         isolith: VERSION,
         environment: scene.environment,
-        materials: scene.materials().iter().map(|m| Material::clone(m)).collect(),
+        display: scene.display,
+        materials: scene.materials().iter().map(|m| short(m)).collect::<Result<_, _>>().map_err(failed)?,
         next_id: scene.next_id(),
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
     };
     let mut out = Vec::new();
     let written = table.serialize(&mut serde_json::Serializer::with_formatter(&mut out, OneValuePerLine::default()));
-    written.map_err(|e| FileError::new(file, e.to_string()))?;
+    written.map_err(failed)?;
     out.push(b'\n');
     String::from_utf8(out).map_err(|e| FileError::new(file, e.to_string()))
+}
+
+/// A material as files hold it: without the values that a new one has.
+fn short(material: &Material) -> Result<Map<String, Value>, serde_json::Error> {
+    let fields = |material: &Material| match serde_json::to_value(material)? {
+        Value::Object(fields) => Ok::<_, serde_json::Error>(fields),
+        _ => Ok(Map::new()),
+    };
+    let (mut own, new) = (fields(material)?, fields(&Material::default())?);
+    own.retain(|key, value| ["id", "name"].contains(&key.as_str()) || new.get(key) != Some(value));
+    Ok(own)
 }
 
 /// Puts every value of an object on its own line, and every object and list within a list too. A list of numbers stays

@@ -1,9 +1,10 @@
-//! OpenEXR images: selects the channels that make up the height.
+//! OpenEXR images: selects the channels that make up the height or the color.
 
 use std::io::Cursor;
 
-use exr::image::{AnyChannel, AnyChannels, FlatSamples, Layer};
+use exr::image::{AnyChannel, AnyChannels, FlatSamples, Image, Layer, Layers};
 use exr::meta::MetaData;
+use exr::meta::attribute::IntegerBounds;
 use exr::prelude::{ReadChannels, ReadLayers};
 use image::{ImageBuffer, Luma};
 
@@ -17,6 +18,39 @@ type Gray = ImageBuffer<Luma<f32>, Vec<f32>>;
 
 /// Luminance from 0 to 1 within the display window, black where there is no data; and the number of decoded pixels.
 pub fn read(bytes: &[u8]) -> Result<(Gray, u64), String> {
+    let Decoded { image, window, pixels } = decode(bytes)?;
+    let shown = Shown::new(&image, window)?;
+    let value = |x: u32, y: u32| Luma([shown.weighted(x, y, &LUMINANCE) as f32]);
+    Ok((ImageBuffer::from_fn(window.size.0 as u32, window.size.1 as u32, value), pixels))
+}
+
+/// The size of the display window, red, green and blue of its pixels from 0 to 1, black where there is no data; and the
+/// number of decoded pixels. An image of one channel is gray.
+pub fn read_colors(bytes: &[u8]) -> Result<([u32; 2], Vec<f64>, u64), String> {
+    let Decoded { image, window, pixels } = decode(bytes)?;
+    let shown = Shown::new(&image, window)?;
+    let size = [window.size.0 as u32, window.size.1 as u32];
+    let mut colors = Vec::with_capacity(3 * size[0] as usize * size[1] as usize);
+    for (x, y) in (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y))) {
+        colors.extend([0, 1, 2].map(|channel| {
+            let mut weights = [0.0; 3];
+            weights[channel] = 1.0;
+            shown.weighted(x, y, &weights)
+        }));
+    }
+    Ok((size, colors, pixels))
+}
+
+/// A decoded file.
+struct Decoded {
+    image: Image<Layers<AnyChannels<FlatSamples>>>,
+    /// The display window.
+    window: IntegerBounds,
+    /// Number of decoded pixels.
+    pixels: u64,
+}
+
+fn decode(bytes: &[u8]) -> Result<Decoded, String> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(|e| e.to_string())?;
     let (mut pixels, mut size) = (0_u64, 0_u64);
     for header in &meta.headers {
@@ -38,33 +72,53 @@ pub fn read(bytes: &[u8]) -> Result<(Gray, u64), String> {
         .all_attributes()
         .from_buffered(Cursor::new(bytes))
         .map_err(|e| e.to_string())?;
-    let (layer, sources) =
-        image.layer_data.iter().find_map(|layer| Some((layer, sources(layer)?))).ok_or_else(|| {
-            let channels = image.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
-            let names: Vec<String> =
-                channels.map(|channel| format!("{:?}", channel.name.to_string())).take(8).collect();
-            format!(
-                "of its channels {} none is Y, none are R, G and B, and more than one could be meant",
-                names.join(", ")
-            )
-        })?;
-    let offset = [0, 1].map(|axis| {
-        let [data, shown] =
-            [layer.attributes.layer_position, window.position].map(|p| if axis == 0 { p.0 } else { p.1 });
-        i64::from(shown) - i64::from(data)
-    });
-    let value = |x: u32, y: u32| {
-        let [x, y] = [i64::from(x) + offset[0], i64::from(y) + offset[1]];
-        if x < 0 || y < 0 || x >= layer.size.0 as i64 || y >= layer.size.1 as i64 {
+    Ok(Decoded { image, window, pixels: pixels.max(shown) })
+}
+
+/// The channels that an image shows, and where they are.
+struct Shown<'a> {
+    layer: &'a Layer<AnyChannels<FlatSamples>>,
+    /// Red, green and blue, or one for all.
+    sources: Vec<&'a FlatSamples>,
+    /// From the display window to the data.
+    offset: [i64; 2],
+}
+
+impl<'a> Shown<'a> {
+    fn new(image: &'a Image<Layers<AnyChannels<FlatSamples>>>, window: IntegerBounds) -> Result<Self, String> {
+        let (layer, sources) =
+            image.layer_data.iter().find_map(|layer| Some((layer, sources(layer)?))).ok_or_else(|| {
+                let channels = image.layer_data.iter().flat_map(|layer| &layer.channel_data.list);
+                let names: Vec<String> =
+                    channels.map(|channel| format!("{:?}", channel.name.to_string())).take(8).collect();
+                format!(
+                    "of its channels {} none is Y, none are R, G and B, and more than one could be meant",
+                    names.join(", ")
+                )
+            })?;
+        let offset = [0, 1].map(|axis| {
+            let [data, shown] =
+                [layer.attributes.layer_position, window.position].map(|p| if axis == 0 { p.0 } else { p.1 });
+            i64::from(shown) - i64::from(data)
+        });
+        Ok(Self { layer, sources, offset })
+    }
+
+    /// The sum of the channels of a pixel of the window, each between 0 and 1, with these weights.
+    fn weighted(&self, x: u32, y: u32, weights: &[f64; 3]) -> f64 {
+        let [x, y] = [i64::from(x) + self.offset[0], i64::from(y) + self.offset[1]];
+        let size = self.layer.size;
+        if x < 0 || y < 0 || x >= size.0 as i64 || y >= size.1 as i64 {
             return 0.0;
         }
-        let i = y as usize * layer.size.0 + x as usize;
-        let sum: f64 = sources.iter().map(|(samples, weight)| sample(samples, i) * weight).sum();
+        let i = y as usize * size.0 + x as usize;
+        let sum: f64 = match self.sources[..] {
+            [only] => sample(only, i),
+            _ => self.sources.iter().zip(weights).map(|(samples, weight)| sample(samples, i) * weight).sum(),
+        };
         // NaN becomes 0.
-        if sum > 0.0 { sum.min(1.0) as f32 } else { 0.0 }
-    };
-    let image = ImageBuffer::from_fn(window.size.0 as u32, window.size.1 as u32, |x, y| Luma([value(x, y)]));
-    Ok((image, pixels.max(shown)))
+        if sum > 0.0 { sum.min(1.0) } else { 0.0 }
+    }
 }
 
 fn sample(samples: &FlatSamples, i: usize) -> f64 {
@@ -75,9 +129,8 @@ fn sample(samples: &FlatSamples, i: usize) -> f64 {
     }
 }
 
-/// The channels of a layer that make up the luminance, with their weights: Y, or R, G and B, or the only one besides
-/// alpha. The part of a channel's name before the last dot is the name of a layer within the file.
-fn sources(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<Vec<(&FlatSamples, f64)>> {
+/// The channels of a layer that are shown: R, G and B, or Y, or the only one besides alpha. The part of a channel's name before the last dot is the name of a layer within the file.
+fn sources(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<Vec<&FlatSamples>> {
     let name = |channel: &AnyChannel<FlatSamples>| {
         let whole = channel.name.to_string();
         whole.rsplit('.').next().unwrap_or_default().to_owned()
@@ -86,14 +139,14 @@ fn sources(layer: &Layer<AnyChannels<FlatSamples>>) -> Option<Vec<(&FlatSamples,
     let all: Vec<_> = layer.channel_data.list.iter().filter(full).collect();
     let find = |wanted: &str| all.iter().find(|channel| name(channel) == wanted).map(|channel| &channel.sample_data);
     if let (Some(r), Some(g), Some(b)) = (find("R"), find("G"), find("B")) {
-        return Some([r, g, b].into_iter().zip(LUMINANCE).collect());
+        return Some(vec![r, g, b]);
     }
     if let Some(y) = find("Y") {
-        return Some(vec![(y, 1.0)]);
+        return Some(vec![y]);
     }
     let others: Vec<_> = all.iter().filter(|channel| name(channel) != "A").collect();
     match others[..] {
-        [only] => Some(vec![(&only.sample_data, 1.0)]),
+        [only] => Some(vec![&only.sample_data]),
         _ => None,
     }
 }

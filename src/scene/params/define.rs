@@ -115,7 +115,20 @@ macro_rules! param_table {
 }
 pub(crate) use param_table;
 
-/// Defines an enum whose variants have parameters, and the enum of its kinds, without parameters.
+/// The value of a parameter that is missing in a file: its default, if its row in the table is marked with
+/// `#[serde(default)]`.
+macro_rules! missing_param {
+    ([default] $param:ident, $default:expr) => {
+        $default
+    };
+    ([] $param:ident, $default:expr) => {
+        return Err(serde::de::Error::missing_field(stringify!($param)))
+    };
+}
+pub(crate) use missing_param;
+
+/// Defines an enum whose variants have parameters, and the enum of its kinds, without parameters. A row that is marked
+/// with `#[serde(default)]` may be missing in a file: it then has the default of the table.
 macro_rules! param_kinds {
     (
         $(#[$meta:meta])* pub enum $name:ident;
@@ -125,13 +138,33 @@ macro_rules! param_kinds {
         )* } )+
     ) => {
         $(#[$meta])*
+        #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
         pub enum $name {
-            $( $(#[doc = $doc])+ $variant { $(
-                $(#[doc = $help])+
-                #[serde(deserialize_with = "crate::params::ParamField::read" $(, $missing)?)]
-                $param: $type,
-            )* }, )+
+            $( $(#[doc = $doc])+ $variant { $( $(#[doc = $help])+ $(#[serde($missing)])? $param: $type, )* }, )+
         }
+
+        const _: () = {
+            /// What files contain: each parameter, unless it is missing.
+            #[derive(serde::Deserialize)]
+            #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+            enum Written {
+                $( $variant { $(
+                    #[serde(default, deserialize_with = "crate::params::given")]
+                    $param: Option<$type>,
+                )* }, )+
+            }
+
+            impl<'de> serde::Deserialize<'de> for $name {
+                fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    Ok(match Written::deserialize(deserializer)? { $(
+                        Written::$variant { $( $param, )* } => Self::$variant { $( $param: match $param {
+                            Some(value) => value,
+                            None => $crate::params::missing_param!([$($missing)?] $param, $default),
+                        }, )* },
+                    )+ })
+                }
+            }
+        };
 
         $(#[$kind_meta])*
         pub enum $kind { $( $(#[doc = $doc])+ $variant, )+ }

@@ -17,10 +17,19 @@ mod tests;
 mod value;
 
 pub(crate) use define::{
-    choices, nested_params, nested_variants, param_kinds, param_name, param_rows, param_struct, param_table,
-    param_variants,
+    choices, missing_param, nested_params, nested_variants, param_kinds, param_name, param_rows, param_struct,
+    param_table, param_variants,
 };
 pub use value::{LIST_COLUMNS, List, ParamValue};
+
+/// Reads a parameter that a file contains.
+pub(crate) fn given<'de, D, T>(deserializer: D) -> Result<Option<T>, D::Error>
+where
+    D: Deserializer<'de>,
+    T: ParamField + Deserialize<'de>,
+{
+    T::read(deserializer).map(Some)
+}
 
 /// The description of a parameter.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{
-    BlendKernel, BlendOverride, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object, Operator, ParamOwner, ParamPath, Part, RadiusUnit,
-    Scene, Shape, ShapeKind, check,
+    BlendKernel, BlendOverride, CameraNode, ColorTexture, Environment, Group, HeightTexture, Light, LightKind,
+    Material, MaterialId, MeshNode, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, NormalTexture, Object,
+    Operator, ParamOwner, ParamPath, Part, RadiusUnit, RoughnessTexture, Scene, Shape, ShapeKind, Textures, check,
 };
 
 /// A node of each kind, and objects with every shape and every modifier.
@@ -13,7 +13,7 @@ fn nodes() -> Vec<Node> {
     let light = |light| NodeKind::Light(Light { light, ..Light::default() });
     let mut all = vec![
         NodeKind::Group(Group::default()),
-        NodeKind::Mesh(MeshNode { path: "a.glb".into(), material: None }),
+        NodeKind::Mesh(MeshNode::new("a.glb")),
         NodeKind::Camera(CameraNode::default()),
     ];
     all.extend(LightKind::variants().into_iter().map(|(kind, ..)| light(kind)));
@@ -32,7 +32,28 @@ fn scene() -> Scene {
         let end = scene.nodes().len();
         scene.insert(None, end, node).expect("valid");
     }
+    for material in textured() {
+        scene.insert_material(Material { id: scene.next_material_id(), ..material }).expect("valid");
+    }
     scene
+}
+
+/// Materials with every kind of texture.
+fn textured() -> Vec<Material> {
+    let normals: Vec<_> = NormalTexture::variants().into_iter().map(|(normal, ..)| normal).collect();
+    let colors = ColorTexture::variants().into_iter().map(|(color, ..)| color);
+    let roughnesses = RoughnessTexture::variants().into_iter().map(|(roughness, ..)| roughness);
+    let heights = HeightTexture::variants().into_iter().map(|(height, ..)| height);
+    let all = colors.zip(roughnesses).zip(heights).enumerate();
+    all.map(|(i, ((new_color, new_roughness), new_height))| {
+        let mut textures = Textures::triplanar();
+        if let Textures::Triplanar { color, roughness, normal, height, .. } = &mut textures {
+            (*color, *roughness, *height) = (new_color, new_roughness, new_height);
+            *normal = normals[i % normals.len()].clone();
+        }
+        Material { textures, ..Material::default() }
+    })
+    .collect()
 }
 
 /// Another value of the same type; passes the checks wherever one can.
@@ -64,8 +85,9 @@ fn with(scene: &Scene, path: &ParamPath, value: ParamValue) -> Result<Scene, cra
     let mut scene = scene.clone();
     match path.changed(&scene, value)? {
         Changed::Node(node) => scene.replace(*node)?,
-        Changed::Material(material) => scene.replace_material(material)?,
+        Changed::Material(material) => scene.replace_material(*material)?,
         Changed::Environment(environment) => scene.environment = environment,
+        Changed::Display(display) => scene.display = display,
     }
     Ok(scene)
 }
@@ -118,6 +140,7 @@ fn checked(scene: &Scene, path: &ParamPath) -> Result<(), check::Fault> {
         ParamOwner::Node(id, _) => check::node(scene.node(id).expect("there")),
         ParamOwner::Material(id) => check::material(scene.material(id).expect("there")),
         ParamOwner::Environment => check::environment(&scene.environment),
+        ParamOwner::Display => check::display(&scene.display),
     }
 }
 
@@ -155,7 +178,7 @@ fn the_limits_of_the_tables_are_those_that_files_are_held_to() {
             let fault = checked(&changed, &path).expect_err(&path.to_string());
             let field = match path.owner {
                 ParamOwner::Node(_, part) => part.field(&path.name),
-                ParamOwner::Material(_) | ParamOwner::Environment => path.name.to_string(),
+                ParamOwner::Material(_) | ParamOwner::Environment | ParamOwner::Display => path.name.to_string(),
             };
             assert_eq!(fault.field, format!("{field}{suffix}"), "{path}: {bad}");
             count += 1;
@@ -201,6 +224,7 @@ fn what_is_no_path_and_what_is_not_there_are_errors_that_name_it() {
         (path("transform.translation[3]"), "no such element"),
         ("material.1.color".into(), "there is base_color, base_weight"),
         ("environment.fog".into(), "there is sky, horizon, ambient"),
+        ("display.gamma".into(), "there is exposure, view_transform"),
     ] {
         let error = text.parse::<ParamPath>().expect(&text).get(&scene).expect_err(&text).to_string();
         assert!(error.starts_with(&text) && error.contains(reason), "{text}: {error}");
@@ -223,6 +247,7 @@ fn choices_are_named_as_in_files() {
     same(&BlendKernel::ALL);
     same(&RadiusUnit::ALL);
     same(&crate::Axis::ALL);
+    same(&crate::ViewTransform::ALL);
 }
 
 #[test]
@@ -271,4 +296,53 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
     assert_eq!(names(&Group::default()), group);
+}
+
+/// A table with parameters that old files do not have.
+#[allow(dead_code, reason = "a sample uses only what it shows")]
+mod sample {
+    use schemars::JsonSchema;
+    use serde::Serialize;
+
+    use crate::limits::SIZE;
+    use crate::params::param_kinds;
+
+    param_kinds! {
+        /// A sample.
+        #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+        pub enum Sample;
+
+        /// Its kinds.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum SampleKind;
+
+        /// A ring.
+        Ring = "Ring" {
+            /// Its radius.
+            radius: f64 = 1.0, SIZE;
+            /// Came later.
+            #[serde(default)]
+            thickness: f64 = 0.25, SIZE;
+            /// Came later, too.
+            #[serde(default)]
+            sides: u32 = 6, SIZE;
+        }
+    }
+}
+
+#[test]
+fn a_parameter_that_a_file_does_not_have_is_its_default() {
+    use sample::Sample;
+    let read = |text: &str| serde_json::from_str::<Sample>(text).map_err(|error| error.to_string());
+    let old = read(r#"{"type": "ring", "radius": 2.0}"#);
+    assert_eq!(old, Ok(Sample::Ring { radius: 2.0, thickness: 0.25, sides: 6 }));
+    let new = read(r#"{"type": "ring", "radius": 2.0, "thickness": 0.0, "sides": 3}"#);
+    assert_eq!(new, Ok(Sample::Ring { radius: 2.0, thickness: 0.0, sides: 3 }));
+    for (wrong, part) in [
+        (r#"{"type": "ring"}"#, "missing field `radius`"),
+        (r#"{"type": "ring", "radius": 2.0, "thickness": null}"#, "invalid type"),
+        (r#"{"type": "ring", "radius": 2.0, "width": 1.0}"#, "unknown field `width`"),
+    ] {
+        assert!(read(wrong).is_err_and(|error| error.contains(part)), "{wrong}");
+    }
 }

@@ -11,6 +11,7 @@ use crate::attachment::Attachment;
 use crate::drawn::{Corners, Points};
 use crate::heights::Heights;
 use crate::limits::{CORNERS, Limits, POINTS, SIZE};
+use crate::texture_image::TextureImage;
 use crate::whole;
 use isolith_font::Face;
 
@@ -168,6 +169,7 @@ macro_rules! file {
     };
 }
 file!(Heights, Heights);
+file!(TextureImage, Texture);
 file!(Face, Font);
 
 impl ParamField for Points {

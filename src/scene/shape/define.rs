@@ -6,8 +6,7 @@ macro_rules! shapes {
     } )+) => {
         $crate::params::param_kinds! {
             /// A shape with its parameters, in meters, in local space.
-            #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-            #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+            #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
             pub enum Shape;
 
             /// The kind of a shape, without its parameters. The number is the code that the GPU reads.

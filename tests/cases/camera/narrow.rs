@@ -131,7 +131,7 @@ pub fn square(world_from_local: DAffine3, camera: Camera) -> BenchScene {
     let mut bench_scene = BenchScene::new("square", &Scene::new(), None);
     bench_scene.flat.meshes.push(FlatMesh {
         id: NodeId(1),
-        path: "quad.gltf".into(),
+        model: "quad.gltf".into(),
         world_from_local,
         material: None,
     });

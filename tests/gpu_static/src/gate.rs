@@ -1,5 +1,6 @@
 //! Limits and their exceptions.
 
+use crate::StageMetrics;
 use crate::cards::{Card, Report};
 use crate::subjects::{EvaluatorKind, Purpose, Subjects};
 
@@ -12,49 +13,35 @@ pub struct Row {
     pub purpose: Purpose,
     /// Number of pipelines.
     pub pipelines: usize,
-    /// Most vector registers.
-    pub vgprs: u64,
-    /// Most scalar registers.
-    pub sgprs: u64,
-    /// Most spilled vector registers.
-    pub spilled_vgprs: u64,
-    /// Most spilled scalar registers.
-    pub spilled_sgprs: u64,
-    /// Most scratch memory.
-    pub scratch: u64,
-    /// Fewest waves.
-    pub waves: u64,
-    /// Most cycles.
-    pub inverse_throughput: u64,
-    /// Most code, in bytes.
-    pub code_size: u64,
-    /// Time to compile all of them.
-    pub compile_ms: f64,
+    /// The worst of each figure.
+    pub metrics: StageMetrics,
+}
+
+impl StageMetrics {
+    /// The worse of each: the fewest waves, and the most of all others.
+    fn worst(self, other: Self) -> Self {
+        Self {
+            vgprs: self.vgprs.max(other.vgprs),
+            sgprs: self.sgprs.max(other.sgprs),
+            spilled_vgprs: self.spilled_vgprs.max(other.spilled_vgprs),
+            spilled_sgprs: self.spilled_sgprs.max(other.spilled_sgprs),
+            scratch: self.scratch.max(other.scratch),
+            waves: self.waves.min(other.waves),
+            inverse_throughput: self.inverse_throughput.max(other.inverse_throughput),
+            code_size: self.code_size.max(other.code_size),
+            compile_ms: self.compile_ms.max(other.compile_ms),
+        }
+    }
 }
 
 /// A row for each purpose.
 pub fn rows(card: &Card, subjects: &Subjects, report: &Report) -> Vec<Row> {
     let row = |(purpose, pipelines): &(Purpose, Vec<usize>)| {
-        let stages = || pipelines.iter().flat_map(|index| &report.statistics[*index]);
-        let most = |figure: fn(&crate::Statistics) -> u64| stages().map(figure).max().unwrap_or(0);
-        Row {
-            card: *card,
-            purpose: purpose.clone(),
-            pipelines: pipelines.len(),
-            vgprs: most(|s| s.vgprs),
-            sgprs: most(|s| s.sgprs),
-            spilled_vgprs: most(|s| s.spilled_vgprs),
-            spilled_sgprs: most(|s| s.spilled_sgprs),
-            scratch: most(|s| s.scratch),
-            waves: stages().map(|s| s.waves).min().unwrap_or(0),
-            inverse_throughput: most(|s| s.inverse_throughput),
-            code_size: most(|s| s.code_size),
-            compile_ms: pipelines
-                .iter()
-                .filter_map(|index| report.statistics[*index].first())
-                .map(|s| s.compile_ms)
-                .sum(),
-        }
+        let stages = || pipelines.iter().flat_map(|index| &report.statistics[*index]).map(|stage| stage.metrics);
+        let of_pipelines = pipelines.iter().filter_map(|index| report.statistics[*index].first());
+        let compile_ms = of_pipelines.map(|stage| stage.metrics.compile_ms).sum();
+        let metrics = StageMetrics { compile_ms, ..stages().reduce(StageMetrics::worst).unwrap_or_default() };
+        Row { card: *card, purpose: purpose.clone(), pipelines: pipelines.len(), metrics }
     };
     subjects.purposes.iter().map(row).collect()
 }
@@ -108,18 +95,21 @@ pub fn faults(rows: &[Row], exceptions: &[Exception]) -> Vec<String> {
         let Purpose { scene, way, pass } = &row.purpose;
         exception.scene == scene && exception.way == *way && exception.pass == pass
     };
-    let is_within = |row: &Row| row.vgprs <= row.card.max_vgprs && row.spilled_vgprs == 0;
+    let is_within = |row: &Row| row.metrics.vgprs <= row.card.max_vgprs && row.metrics.spilled_vgprs == 0;
     let mut faults = Vec::new();
     for row in rows {
         let exception = exceptions.iter().find(|exception| is_for(exception, row));
         let [vgprs, spilled] = exception.map_or([row.card.max_vgprs, 0], |e| [e.vgprs, e.spilled]);
         let Purpose { scene, way, pass } = &row.purpose;
         let what = format!("{}: {pass} of {scene} by {}", row.card.name, way.name());
-        if row.spilled_vgprs > spilled {
-            faults.push(format!("{what}: {} spilled vector registers are more than {spilled}", row.spilled_vgprs));
+        if row.metrics.spilled_vgprs > spilled {
+            faults.push(format!(
+                "{what}: {} spilled vector registers are more than {spilled}",
+                row.metrics.spilled_vgprs
+            ));
         }
-        if row.vgprs > vgprs {
-            faults.push(format!("{what}: {} vector registers are more than {vgprs}", row.vgprs));
+        if row.metrics.vgprs > vgprs {
+            faults.push(format!("{what}: {} vector registers are more than {vgprs}", row.metrics.vgprs));
         }
     }
     for exception in exceptions {
@@ -140,10 +130,7 @@ mod tests {
 
     fn row(vgprs: u64, spilled_vgprs: u64) -> Row {
         let purpose = Purpose { scene: "pawn".into(), way: EvaluatorKind::Straight, pass: "trace".into() };
-        Row {
-            card: CARDS[0],
-            purpose,
-            pipelines: 1,
+        let metrics = StageMetrics {
             vgprs,
             sgprs: 64,
             spilled_vgprs,
@@ -153,7 +140,8 @@ mod tests {
             inverse_throughput: 1000,
             code_size: 1000,
             compile_ms: 1.0,
-        }
+        };
+        Row { card: CARDS[0], purpose, pipelines: 1, metrics }
     }
 
     const FOR_PAWN: Exception = Exception {
@@ -164,6 +152,14 @@ mod tests {
         spilled: 2,
         reason: "a sample",
     };
+
+    #[test]
+    fn the_worst_of_metrics_has_the_fewest_waves_and_the_most_of_all_else() {
+        let [mut a, mut b] = [row(64, 1).metrics, row(80, 0).metrics];
+        (a.waves, b.waves, a.scratch, b.code_size) = (6, 12, 16, 2000);
+        let worst = StageMetrics { vgprs: 80, spilled_vgprs: 1, waves: 6, scratch: 16, code_size: 2000, ..a };
+        assert_eq!((a.worst(b), b.worst(a)), (worst, worst));
+    }
 
     #[test]
     fn what_spills_and_what_takes_too_many_registers_is_refused() {

@@ -51,6 +51,13 @@ pub enum Error {
 pub struct Statistics {
     /// The driver's name of the stage.
     pub stage: String,
+    /// The figures.
+    pub metrics: StageMetrics,
+}
+
+/// The driver's figures for a stage, or the worst of several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageMetrics {
     /// Vector registers per lane.
     pub vgprs: u64,
     /// Scalar registers per wave.
@@ -67,6 +74,6 @@ pub struct Statistics {
     pub inverse_throughput: u64,
     /// Bytes of machine code.
     pub code_size: u64,
-    /// Compile time of the whole pipeline.
+    /// Compile time of the whole pipeline; of several, the sum.
     pub compile_ms: f64,
 }

@@ -51,7 +51,8 @@ impl Shader {
     pub fn new(name: &str, source: &str) -> Result<Self, Error> {
         let refused = |reason: String| Error::Refused { what: name.to_owned(), reason };
         let module = naga::front::wgsl::parse_str(source).map_err(|error| refused(error.emit_to_string(source)))?;
-        let info = Validator::new(ValidationFlags::all(), Capabilities::default()).validate(&module);
+        let capabilities = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
+        let info = Validator::new(ValidationFlags::all(), capabilities).validate(&module);
         let info = info.map_err(|error| refused(error.emit_to_string(source)))?;
         Ok(Self { module, info, name: name.to_owned() })
     }

@@ -128,6 +128,7 @@ const OPTIONS: Options = Options {
     cones: true,
     relaxed: true,
     quality: isolith::wgsl::Quality::Default,
+    layers: true,
 };
 
 /// Passes that evaluate a field, with their entry points.

@@ -9,7 +9,7 @@ use ash::{khr, vk};
 
 use crate::spirv::{Resource, SpirvStage};
 use crate::subjects::{Format, Pipeline};
-use crate::{Error, Statistics};
+use crate::{Error, StageMetrics, Statistics};
 
 /// A device for compiling.
 pub struct Device {
@@ -299,15 +299,17 @@ fn statistics(
         let value = |name: &str| number(&found, name).ok_or_else(|| format!("the driver does not say its \"{name}\""));
         all.push(Statistics {
             stage: stage.name_as_c_str().unwrap_or_default().to_string_lossy().into_owned(),
-            vgprs: value("VGPRs")?,
-            sgprs: value("SGPRs")?,
-            spilled_vgprs: value("Spilled VGPRs")?,
-            spilled_sgprs: value("Spilled SGPRs")?,
-            scratch: value("Scratch size")?,
-            waves: value("Subgroups per SIMD")?,
-            inverse_throughput: value("Inverse Throughput")?,
-            code_size: value("Code size")?,
-            compile_ms,
+            metrics: StageMetrics {
+                vgprs: value("VGPRs")?,
+                sgprs: value("SGPRs")?,
+                spilled_vgprs: value("Spilled VGPRs")?,
+                spilled_sgprs: value("Spilled SGPRs")?,
+                scratch: value("Scratch size")?,
+                waves: value("Subgroups per SIMD")?,
+                inverse_throughput: value("Inverse Throughput")?,
+                code_size: value("Code size")?,
+                compile_ms,
+            },
         });
     }
     Ok(all)

@@ -65,7 +65,7 @@ fn crowded_shaders_are_seen_to_take_more_registers_and_to_spill() {
     for card in &CARDS {
         let report = measure(card, program(), &[crowded(8), crowded(80), crowded(400)]);
         let report = report.unwrap_or_else(|error| panic!("{error}"));
-        let [few, many, too_many] = [0, 1, 2].map(|i| &report.statistics[i][0]);
+        let [few, many, too_many] = [0, 1, 2].map(|i| report.statistics[i][0].metrics);
         assert!(few.vgprs < 40 && few.spilled_vgprs == 0, "{few:?}");
         assert!(many.vgprs > few.vgprs && many.spilled_vgprs == 0, "{many:?}");
         assert!(too_many.spilled_vgprs > 0 && too_many.scratch > 0, "{too_many:?}");

@@ -1,0 +1,107 @@
+//! What a picture needs of the pass `shade`. Each combination has a source and pipelines of its own, built when a
+//! picture first needs it, so that a scene pays for nothing that it does not use.
+
+use wgpu::{
+    BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, ShaderStages, TextureFormat,
+};
+
+use crate::recipe::Pass;
+use crate::resources::accumulation::SUM_FORMAT;
+use crate::resources::layouts::{TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture};
+use crate::resources::texture_resources::TextureBindings;
+use isolith_field::{FlatMaterial, FlatScene};
+use isolith_scene::ViewTransform;
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble_with};
+
+/// What a scene needs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ShadeFeatures {
+    /// The layers of OpenPBR: not every material is by Blinn and Phong.
+    pub layers: bool,
+    /// A material has textures.
+    pub textures: bool,
+}
+
+impl ShadeFeatures {
+    /// What a scene with these materials of its meshes needs.
+    pub fn new(flat: &FlatScene, of_meshes: &[FlatMaterial]) -> Self {
+        let layers = flat.materials.iter().chain(of_meshes).any(|material| material.phong_weight < 1.0);
+        Self { layers, textures: !flat.textures.sets.is_empty() }
+    }
+
+    /// The source of the pass.
+    ///
+    /// # Errors
+    /// A shader file is missing.
+    pub fn source(self) -> Result<String, ShaderError> {
+        let options = Options { layers: self.layers, ..Options::default() };
+        let features: &[&str] = if self.textures { &["TEXTURES"] } else { &[] };
+        assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, features)
+    }
+}
+
+/// What the pass writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ShadeOutput {
+    /// The picture of a single sample, encoded for the screen.
+    Picture(ViewTransform),
+    /// The sum of several samples.
+    Sum,
+}
+
+impl ShadeOutput {
+    /// The format of its target.
+    pub fn format(self) -> TextureFormat {
+        match self {
+            Self::Picture(_) => TextureFormat::Rgba8Unorm,
+            Self::Sum => SUM_FORMAT,
+        }
+    }
+
+    /// The entry point.
+    pub fn entry_point(self) -> &'static str {
+        match self {
+            Self::Picture(ViewTransform::None) => "shade_fragment",
+            Self::Picture(ViewTransform::Agx) => "shade_agx_fragment",
+            Self::Picture(ViewTransform::PbrNeutral) => "shade_neutral_fragment",
+            Self::Sum => "shade_sample_fragment",
+        }
+    }
+}
+
+/// Places in group 3, whose resources depend on the features: `shaders/shade.wgsl` declares them.
+const SUM: u32 = 0;
+const TEXTURES: [u32; 3] = [1, 2, 3];
+
+/// The resources of group 3.
+#[derive(Clone, Debug, Default)]
+pub struct ShadeExtras<'a> {
+    /// The sum of the samples so far, if the pass adds one.
+    pub sum: Option<BindingResource<'a>>,
+    /// The textures, if the scene has some.
+    pub textures: Option<TextureBindings<'a>>,
+}
+
+impl ShadeFeatures {
+    /// The layout of group 3.
+    pub fn extras_layout(self, device: &wgpu::Device, output: ShadeOutput) -> BindGroupLayout {
+        let sum = (output == ShadeOutput::Sum).then(|| (SUM, read_texture(false)));
+        let of_textures = [read_storage(), read_storage(), read_only_texture(TEXELS_FORMAT)];
+        let textures = TEXTURES.into_iter().zip(of_textures).filter(|_| self.textures);
+        let entries: Vec<_> =
+            sum.into_iter().chain(textures).map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
+        layout(device, "shade extras", &entries)
+    }
+}
+
+impl ShadeExtras<'_> {
+    /// The bind group of these resources.
+    pub fn bind(self, device: &wgpu::Device, layout: &BindGroupLayout) -> BindGroup {
+        let sum = self.sum.map(|sum| (SUM, sum));
+        let textures = self.textures.map(|TextureBindings { placed, sets, texels }| [placed, sets, texels]);
+        let textures = textures.into_iter().flat_map(|resources| TEXTURES.into_iter().zip(resources));
+        let entries: Vec<_> =
+            sum.into_iter().chain(textures).map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
+        device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
+    }
+}
