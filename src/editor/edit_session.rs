@@ -36,7 +36,7 @@ pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
     let (id, part) = match path.owner {
         ParamOwner::Node(id, part) => (id, part),
         ParamOwner::Material(id) => return Some(format!("{}: {}", scene.material(id)?.name, path.name)),
-        ParamOwner::Environment => return None,
+        ParamOwner::Environment | ParamOwner::Display => return None,
     };
     let node = scene.node(id)?;
     let of = match (part, &node.kind) {
