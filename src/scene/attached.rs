@@ -30,6 +30,7 @@ impl Attached {
     pub fn size(&self) -> usize {
         match self {
             Self::Heights(file) => file.size(),
+            Self::Texture(file) => file.size(),
             Self::Font(file) => file.size(),
         }
     }
