@@ -12,6 +12,8 @@
 @group(1) @binding(1) var<storage, read> materials: array<FlatMaterial>;
 // Materials of the meshes, without what their textures change.
 @group(1) @binding(2) var<storage, read> mesh_materials: array<FlatMaterial>;
+// The environment, unless it is a gradient.
+@group(1) @binding(3) var<storage, read> environment_map: array<u32>;
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var normal_target: texture_2d<f32>;
 // Of meshes.
@@ -62,7 +64,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
     let direction = view_direction(pixel);
     let depth = textureLoad(depth_target, pixel, 0).x;
     let visibility = textureLoad(visibility_target, pixel, 0).x;
-    var color = environment_background(direction.y, view.sky, view.horizon);
+    var color = environment_background(direction, view.sky, view.horizon);
     if depth < BACKGROUND {
         let is_mesh = (visibility & MESH_BIT) != 0u;
         let surface_normal = textureLoad(normal_target, pixel, 0).xyz;
@@ -72,7 +74,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
 #end
         let stored = textureLoad(material_target, pixel, 0);
         var material = mixture_material(select(stored, vec4u(0u), is_mesh));
-        var ambient = view.ambient;
+        var open = 1.0;
         if is_mesh {
             let surface = mesh_encoded_surface(stored);
             material = mesh_materials[stored.x];
@@ -80,7 +82,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
             material.metalness = surface.x;
             material.roughness = surface.y;
             material.emission = mesh_encoded_emission(stored);
-            ambient *= surface.z;
+            open = surface.z;
         }
         var normal = surface_normal;
 #if TEXTURES
@@ -89,7 +91,7 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
         let point = brdf_point(material, direction * depth, normal, -direction);
         // Depends on the pixel as well: otherwise lavapipe recompiles the loop for each buffer that
         // holds the count.
-        color = lighting_surface(point, ambient, select(view.light_count, 0u, depth >= BACKGROUND));
+        color = lighting_surface(point, view.ambient, open, select(view.light_count, 0u, depth >= BACKGROUND));
     }
     let is_empty = view.transparent == 1u && depth >= BACKGROUND;
     return select(vec4f(color, 1.0), vec4f(0.0), is_empty);

@@ -324,12 +324,14 @@ fn check_lists_every_parameter_with_unit_limits_and_default() {
         assert_eq!(entry["default"].as_str(), Some(param.default.to_string().as_str()));
     }
     let text = place.run(&["check", "scene.json", "--params"]).succeeded().out.clone();
-    for part in
-        ["environment.sky = [", "material.1.specular_roughness = 0.3 (0 to 1, default 0.3)", ".camera.fov_y = 40 ° ("]
-    {
+    for part in [
+        "environment.background.sky = [",
+        "material.1.specular_roughness = 0.3 (0 to 1, default 0.3)",
+        ".camera.fov_y = 40 ° (",
+    ] {
         assert!(text.contains(part), "{part} is not in {text}");
     }
-    assert!(!place.run(&["check", "scene.json"]).succeeded().out.contains("environment.sky"));
+    assert!(!place.run(&["check", "scene.json"]).succeeded().out.contains("environment.background.sky"));
 }
 
 #[test]

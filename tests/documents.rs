@@ -49,7 +49,7 @@ fn parameters_are_set_by_their_paths_undone_and_held_to_their_limits() {
         (format!("node.{id}.object.shape.radius").replace('#', ""), ParamValue::Scalar(2.0)),
         (format!("node.{id}.transform.translation[1]").replace('#', ""), ParamValue::Scalar(3.0)),
         ("material.1.specular_weight".into(), ParamValue::Scalar(0.5)),
-        ("environment.sky".into(), ParamValue::Vector(DVec3::ONE)),
+        ("environment.background.sky".into(), ParamValue::Vector(DVec3::ONE)),
         ("display.exposure".into(), ParamValue::Scalar(1.5)),
     ] {
         let revision = document.revision();

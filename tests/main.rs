@@ -16,6 +16,7 @@ mod embed;
 mod files;
 mod golden;
 mod gpu;
+mod lights;
 mod materials;
 mod meshes;
 mod overlay;

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use isolith::geometry::Transform;
 use isolith::scene::{
-    Attenuation, Blend, BlendKernel, BlendOverride, CameraNode, DisplaySettings, Environment, Group, Light, LightKind,
+    Blend, BlendKernel, BlendOverride, CameraNode, DisplaySettings, Environment, Falloff, Group, Light, LightKind,
     Limits, Material, MaterialId, MeshNode, Modifier, ModifierKind, ModifierSlot, Node, NodeId, NodeKind, Object,
     Operator, ParamValue, RadiusUnit, Scene, Shape, ShapeKind, ViewTransform, limits,
 };
@@ -152,7 +152,7 @@ impl Random {
     /// An environment within its limits.
     pub fn environment(&mut self) -> Environment {
         let mut color = || self.numbers(&limits::INTENSITY);
-        Environment { sky: color(), horizon: color(), ambient: color() }
+        Environment::sky(color(), color(), color())
     }
 
     /// Display settings within their limits.
@@ -161,19 +161,26 @@ impl Random {
     }
 
     fn light(&mut self) -> Light {
-        let attenuation = Attenuation {
+        let falloff = Falloff::Attenuation {
             constant: 0.5 + self.number(&limits::UNIT),
             linear: self.number(&limits::ATTENUATION),
             quadratic: self.number(&limits::ATTENUATION),
             range: self.number(&limits::RANGE),
         };
         let (a, b) = (self.number(&limits::CONE), self.number(&limits::CONE));
-        let light = match self.below(3) {
-            0 => LightKind::Sun {},
-            1 => LightKind::Point { attenuation },
-            _ => LightKind::Spot { attenuation, inner: a.min(b), outer: a.max(b) },
+        let falloff = if self.once_in(2) { falloff } else { Falloff::InverseSquare {} };
+        let (power, radius) = (self.number(&limits::LIGHT_POWER), self.number(&limits::LIGHT_RADIUS));
+        let light = match self.below(4) {
+            0 => LightKind::Sun { strength: self.number(&limits::IRRADIANCE), angle: self.number(&limits::SUN_ANGLE) },
+            1 => LightKind::Point { power, radius, falloff },
+            2 => LightKind::Spot { power, radius, falloff, inner: a.min(b), outer: a.max(b) },
+            _ => LightKind::Rectangle {
+                power,
+                width: self.number(&limits::LIGHT_SIDE),
+                height: self.number(&limits::LIGHT_SIDE),
+            },
         };
-        Light { color: self.numbers(&limits::INTENSITY), intensity: self.number(&limits::INTENSITY), light }
+        Light { color: self.numbers(&limits::INTENSITY), cast_shadows: self.once_in(2), light }
     }
 
     /// Operator and blend of a group.

@@ -124,7 +124,7 @@ fn saving_where_nothing_can_be_saved_says_why_and_stays_changed() {
         (PathBuf::new(), "cannot be saved"),
     ];
     let mut document = Document::new(random_scene(7, 5));
-    let environment = isolith::scene::Environment { sky: [0.5; 3], ..document.scene().environment };
+    let environment = isolith::scene::Environment::sky([0.5; 3], [0.25; 3], [0.25; 3]);
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
     for (path, reason) in cases {
         let error = document.save_as(&path).expect_err("cannot work");
@@ -145,7 +145,7 @@ fn a_read_only_folder_is_told_of_and_loses_nothing() {
     let mut document = Document::new(random_scene(7, 5));
     let path = folder.path().join("scene.json");
     document.save_as(&path).expect("saved");
-    let environment = isolith::scene::Environment { sky: [0.5; 3], ..document.scene().environment };
+    let environment = isolith::scene::Environment::sky([0.5; 3], [0.25; 3], [0.25; 3]);
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
     let set_mode = |mode| fs::set_permissions(folder.path(), fs::Permissions::from_mode(mode)).expect("set");
     set_mode(0o555);

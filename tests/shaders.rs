@@ -249,6 +249,27 @@ fn flat_material() -> Layout {
     )
 }
 
+fn light() -> Layout {
+    layout!(
+        "Light" = GpuLight {
+            position,
+            kind,
+            direction,
+            range,
+            color,
+            radius,
+            right,
+            cos_inner,
+            up,
+            cos_outer,
+            constant,
+            linear,
+            quadratic,
+            cast_shadows
+        }
+    )
+}
+
 #[test]
 fn rust_and_wgsl_agree_about_every_struct() {
     let layouts = [
@@ -285,10 +306,7 @@ fn rust_and_wgsl_agree_about_every_struct() {
             "DebugView" =
                 DebugView { view_mode, top, bottom, spacing, first_mesh, first_component, padding_0, padding_1 }
         ),
-        layout!(
-            "Light" =
-                GpuLight { position, kind, direction, range, color, constant, linear, quadratic, cos_inner, cos_outer }
-        ),
+        light(),
     ];
     let modules: Vec<_> = passes()
         .map(|pass| {

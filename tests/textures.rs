@@ -32,7 +32,7 @@ fn squares() -> ColorTexture {
 }
 
 fn image(side: u32, name: &str) -> Attachment<TextureImage> {
-    Attachment::painted(name, [side, side], |x, y| {
+    Attachment::<TextureImage>::painted(name, [side, side], |x, y| {
         [(x * 255 / side) as u8, (y * 255 / side) as u8, ((x ^ y) & 255) as u8]
     })
 }
@@ -139,7 +139,7 @@ fn textures_are_steady_far_from_the_origin() {
 fn far_patterns_tend_to_their_mean() {
     let noise = ColorTexture::Noise { first: [0.0; 3], second: [1.0; 3], scale: 4.0, layers: 6, seed: 0 };
     let bricks = ColorTexture::Bricks { first: [1.0; 3], second: [0.0; 3], scale: 4.0, row: 0.4, joint: 0.1 };
-    let lines = Attachment::painted("lines.png", [64, 64], |x, _| [(255 * (x & 1)) as u8; 3]);
+    let lines = Attachment::<TextureImage>::painted("lines.png", [64, 64], |x, _| [(255 * (x & 1)) as u8; 3]);
     for (color, mean) in [(squares(), 0.5), (noise, 0.5), (bricks, 0.9 * 0.75), (pictured(lines), 0.5)] {
         let flat = flatten(&scene(textured(7, color.clone(), TextureSpace::Object), Shape::Plane {}, |node| node), 0.0);
         let flat = flat.expect("within limits");
@@ -165,7 +165,8 @@ fn two_hundred_textures_of_many_sizes_are_each_shown() {
     let mut scene = Scene::new();
     for i in 0..200_u32 {
         let [r, g] = [(i % 15) as u8 * 17, (i / 15) as u8 * 17];
-        let image = Attachment::painted(&format!("{i}.png"), [1 + i % 40, 1 + i / 3], |_, _| [r, g, 90]);
+        let image =
+            Attachment::<TextureImage>::painted(&format!("{i}.png"), [1 + i % 40, 1 + i / 3], |_, _| [r, g, 90]);
         let material = textured(u64::from(i) + 2, pictured(image), TextureSpace::Object);
         let object = Object { shape: Shape::Sphere { radius: 0.4 }, material: material.id };
         scene.insert_material(material).expect("a new material");
@@ -191,7 +192,8 @@ fn two_hundred_textures_of_many_sizes_are_each_shown() {
 
 #[test]
 fn images_beyond_the_budget_are_reduced_with_a_warning() {
-    let large = Attachment::painted("large.png", [8192, 4500], |x, y| [(x & 255) as u8, (y & 255) as u8, 0]);
+    let large =
+        Attachment::<TextureImage>::painted("large.png", [8192, 4500], |x, y| [(x & 255) as u8, (y & 255) as u8, 0]);
     let flat = flatten(&scene(textured(7, pictured(large), TextureSpace::Object), BOX, |node| node), 0.0);
     let flat = flat.expect("within limits");
     let [warning] = &flat.warnings[..] else { panic!("{:?}", flat.warnings) };

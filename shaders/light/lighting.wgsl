@@ -2,36 +2,71 @@
 // `src/field/light/lighting.rs`. Needs `lights: array<Light>`. Colors are linear.
 
 #include "light/brdf.wgsl"
+#include "light/area.wgsl"
 #include "light/environment.wgsl"
 
-fn lighting_surface(point: ShadingPoint, ambient: vec3f, light_count: u32) -> vec3f {
-    var color = point.material.emission + brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
+// `open` is the share of the environment's light that arrives.
+fn lighting_surface(point: ShadingPoint, ambient: vec3f, open: f32, light_count: u32) -> vec3f {
+    var color = point.material.emission + lighting_around(point, ambient) * open;
     for (var i = 0u; i < light_count; i++) {
-        let light = lights[i];
-        let incoming = lighting_incoming(light, point.position);
-        color += brdf_direct(point, incoming.xyz) * light.color * incoming.w;
+        color += lighting_reflected(point, lights[i]);
     }
     return color;
 }
 
-// Unit vector toward the light, and the share of its light that arrives, without shadows.
-fn lighting_incoming(light: Light, position: vec3f) -> vec4f {
+// The light of the environment that the surface reflects toward the eye.
+fn lighting_around(point: ShadingPoint, ambient: vec3f) -> vec3f {
+    if IMAGE_LIT {
+        let shares = brdf_environment(point);
+        return shares.diffuse * environment_irradiance(point.normal)
+            + shares.specular * environment_reflected(shares.direction, shares.roughness)
+            + shares.coat * environment_reflected(shares.direction, shares.coat_roughness);
+    }
+    return brdf_ambient(point) * environment_ambient(point.normal.y, ambient);
+}
+
+// The light of one source that the surface reflects toward the eye, without shadows.
+fn lighting_reflected(point: ShadingPoint, light: Light) -> vec3f {
+    let incoming = lighting_incoming(light, point.position);
+    if incoming.share <= 0.0 {
+        return vec3f(0.0);
+    }
+    if AREA_LIGHTS {
+        return area_reflected(point, light, incoming) * light.color;
+    }
+    return brdf_direct(point, incoming.to_light) * light.color * incoming.share;
+}
+
+// How the point meets the light, without shadows.
+fn lighting_incoming(light: Light, position: vec3f) -> IncomingLight {
     if light.kind == LIGHT_DIRECTIONAL {
-        return vec4f(-light.direction, 1.0);
+        return IncomingLight(-light.direction, 1.0, light.radius * light.radius);
     }
     let offset = light.position - position;
     let distance = length(offset);
+    if AREA_LIGHTS && light.kind == LIGHT_RECTANGLE {
+        var incoming = area_rectangle(light, position);
+        incoming.share *= lighting_window(light, distance);
+        return incoming;
+    }
     let to_light = offset / max(distance, 1e-6);
     var share = lighting_attenuation(light, distance);
     if light.kind == LIGHT_SPOT {
         share *= smoothstep(light.cos_outer, light.cos_inner, -dot(to_light, light.direction));
     }
-    return vec4f(to_light, share);
+    let sine = min(light.radius / max(distance, 1e-6), 1.0);
+    return IncomingLight(to_light, share, sine * sine);
 }
 
-// Attenuation with distance; fades to zero at the light's range.
-fn lighting_attenuation(light: Light, distance: f32) -> f32 {
+// Fades to zero at the light's range.
+fn lighting_window(light: Light, distance: f32) -> f32 {
     let ratio = min(distance / light.range, 1.0);
     let window = 1.0 - ratio * ratio * ratio * ratio;
-    return window * window / max(light.constant + (light.linear + light.quadratic * distance) * distance, 1e-4);
+    return window * window;
+}
+
+// Attenuation with distance, the same everywhere within the light; fades to zero at its range.
+fn lighting_attenuation(light: Light, distance: f32) -> f32 {
+    let d = max(distance, light.radius);
+    return lighting_window(light, distance) / max(light.constant + (light.linear + light.quadratic * d) * d, 1e-4);
 }

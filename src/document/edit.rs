@@ -150,7 +150,7 @@ impl Edit {
                     return Ok(Change::NONE);
                 }
                 check::environment(&environment).map_err(|f| f.into_error("environment"))?;
-                Arc::make_mut(scene).environment = environment;
+                Arc::make_mut(scene).set_environment(environment)?;
                 Ok(Change::VALUE)
             }
             Self::SetDisplay(display) => {

@@ -42,9 +42,10 @@ impl Purpose {
             Self::Open => "Open a scene",
             Self::Save(_) => "Save the scene",
             Self::Mesh => "Add a mesh",
-            Self::Attach(WantedFile { instead_of: Attached::Heights(_) | Attached::Texture(_), .. }) => {
-                "Choose an image"
-            }
+            Self::Attach(WantedFile {
+                instead_of: Attached::Heights(_) | Attached::Texture(_) | Attached::Environment(_),
+                ..
+            }) => "Choose an image",
             Self::Attach(WantedFile { instead_of: Attached::Font(_), .. }) => "Choose a font",
         }
     }

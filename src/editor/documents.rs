@@ -12,7 +12,7 @@ use super::messages::Message;
 use super::root::Editor;
 use isolith_document::{Document, OverwriteRisk};
 use isolith_jobs::{JobEnd, Task};
-use isolith_scene::{Light, Node, NodeKind, Scene};
+use isolith_scene::{Light, LightKind, Node, NodeKind, Scene};
 use isolith_session::{folder_of, read_file};
 
 impl Editor {
@@ -179,7 +179,7 @@ pub fn new_document() -> Document {
     let mut scene = Scene::new();
     let direction = glam::DQuat::from_euler(glam::EulerRot::YXZ, 0.6, -0.9, 0.0);
     // Keep bright clay below white on its lit side.
-    let light = Light { intensity: 1.2, ..Light::sun() };
+    let light = Light::new(LightKind::Sun { strength: 3.7, angle: 0.53 });
     let sun = Node::new("Sun", NodeKind::Light(light)).rotated(direction).at(glam::DVec3::new(2.0, 4.0, 3.0));
     scene.insert(None, 0, sun).expect("an empty scene takes a light");
     Document::new(scene)

@@ -3,9 +3,9 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT,
-    ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM,
-    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL,
+    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM,
+    ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
 pub use super::shape_icons::paint_shape;
@@ -55,9 +55,10 @@ pub fn operator_icon(operator: Operator) -> MaterialIcon {
 /// Icon of a kind of light.
 pub fn light_icon(light: &LightKind) -> MaterialIcon {
     match light {
-        LightKind::Sun {} => ICON_WB_SUNNY,
+        LightKind::Sun { .. } => ICON_WB_SUNNY,
         LightKind::Point { .. } => ICON_LIGHTBULB,
         LightKind::Spot { .. } => ICON_FLASHLIGHT_ON,
+        LightKind::Rectangle { .. } => ICON_FLUORESCENT,
     }
 }
 

@@ -77,7 +77,7 @@ pub fn mesh(ui: &mut Ui, edit: &mut MultiEdit<'_>, mesh: &MeshNode) {
     });
 }
 
-/// Type, color, strength and range.
+/// Type, color, strength, size and falloff.
 pub fn light(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
     widgets::card(ui, "Light", |ui| {
         inspector_params::row(ui, edit, Part::Light, "light.type");

@@ -4,14 +4,17 @@ use egui::{RichText, Ui};
 
 use super::edit_session::EditSession;
 use super::{inspector_params, theme, widgets};
-use isolith_scene::{DisplaySettings, Environment, ParamPath, Params};
+use isolith_scene::{DisplaySettings, ParamPath, Params};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
     ui.label(RichText::new("Scene").heading().color(egui::Color32::WHITE));
     widgets::card(ui, "World", |ui| {
-        for param in Environment::default().params() {
-            inspector_params::single(ui, session, ParamPath::of_environment(param.name));
+        let mut names = Vec::new();
+        let environment = &session.document.scene().environment;
+        environment.visit("", &mut |prefix, param, _| names.push(format!("{prefix}{}", param.name)));
+        for name in names {
+            inspector_params::single(ui, session, ParamPath::of_environment(name));
         }
     });
     widgets::card(ui, "Display", |ui| {

@@ -62,7 +62,7 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
             state,
             ui,
             theme::LIGHT,
-            &[Command::AddSun, Command::AddPointLight, Command::AddSpotLight],
+            &[Command::AddSun, Command::AddPointLight, Command::AddSpotLight, Command::AddAreaLight],
             &mut chosen,
         );
         buttons(state, ui, theme::MESH, &[Command::AddMesh], &mut chosen);

@@ -248,7 +248,7 @@ fn take_dropped_material(state: &mut EditorState, ui: &Ui, response: &Response) 
 
 /// Before the first picture: the color of the sky and a text.
 fn background(state: &EditorState, painter: &egui::Painter, rect: Rect) {
-    let horizon = state.session.document.scene().environment.horizon;
+    let [_, horizon, _] = state.session.document.scene().environment.gradient();
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));
     let text = "Preparing the viewport…";
     let font = egui::FontId::proportional(14.0);

@@ -9,6 +9,7 @@ use glam::{DAffine3, DVec3};
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
+use crate::light::environment_map::PlacedMap;
 use isolith_geometry::{Aabb, Camera};
 use isolith_mesh::ModelPose;
 use isolith_scene::{DisplaySettings, Environment, Light, MaterialId, ModifierKind, NodeId, Operator, ShapeKind};
@@ -213,6 +214,10 @@ pub struct FlatLight {
     pub position: DVec3,
     /// Unit world direction in which it shines.
     pub direction: DVec3,
+    /// World vectors of one meter along the node's X and Y axis.
+    pub axes: [DVec3; 2],
+    /// Factor on lengths of the node that have no axis.
+    pub scale: f64,
     /// The light.
     pub light: Light,
 }
@@ -359,10 +364,12 @@ pub struct FlatScene {
     pub meshes: Vec<FlatMesh>,
     /// All cameras.
     pub cameras: Vec<FlatCamera>,
-    /// Surroundings.
+    /// The environment.
     pub environment: Environment,
     /// How the light becomes the colors of a screen.
     pub display: DisplaySettings,
+    /// Its light, unless it is a gradient.
+    pub environment_map: Option<PlacedMap>,
     /// Warnings for the artist.
     pub warnings: Vec<Warning>,
     /// See [`FlatScene::hierarchy`].
@@ -413,6 +420,8 @@ impl PartialEq for LazyHierarchy {
 pub const LARGE: f64 = 64.0;
 /// Largest stack that evaluators support, see [`Component::stack`].
 pub const MAX_STACK: u32 = 128;
+/// Most lights of a scene: shading visits them in one loop, and lavapipe ends loops after 65 535 iterations.
+pub const MAX_LIGHTS: usize = 1 << 14;
 /// Most entries of one component: for a normal and a material an invocation visits them seven times, twice each, and
 /// lavapipe ends every loop after 65 535 iterations.
 pub const MAX_COMPONENT_NODES: usize = 4_200;

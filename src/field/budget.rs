@@ -16,6 +16,8 @@ pub(super) const STEPS: &str = "the number of steps that flattening takes, copie
 pub(super) const LEVELS: &str = "the nesting of groups and modifiers";
 /// See [`super::MAX_FLAT_BYTES`].
 pub(super) const BYTES: &str = "the number of bytes that the scene takes on the device";
+/// See [`super::MAX_LIGHTS`].
+pub(super) const LIGHTS: &str = "the number of lights";
 /// See [`super::MAX_STACK`].
 pub(super) const STACK: &str = "the nesting of groups that cannot be simplified";
 

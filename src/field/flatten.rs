@@ -25,6 +25,7 @@ use super::meshes::model_pose;
 use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
+use crate::light::environment_map::PlacedMap;
 use isolith_geometry::Camera;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
@@ -143,8 +144,9 @@ fn flatten_surveyed(
         nodes: Vec::with_capacity(scene.nodes().len()),
         params: Vec::with_capacity(scene.nodes().len() * 6),
         ids: Vec::with_capacity(scene.nodes().len()),
-        environment: scene.environment,
+        environment: scene.environment.clone(),
         display: scene.display,
+        environment_map: PlacedMap::of(&scene.environment),
         ..FlatScene::default()
     };
     let textured = TexturedMaterials::new(scene.materials());
@@ -246,6 +248,8 @@ fn add_non_field(
             id: node.id,
             position: world_from_local.translation,
             direction: forward,
+            axes: [world_from_local.matrix3.x_axis, world_from_local.matrix3.y_axis],
+            scale: world_from_local.matrix3.determinant().abs().cbrt(),
             light: *light,
         }),
         NodeKind::Mesh(mesh) => {

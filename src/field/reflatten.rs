@@ -125,7 +125,7 @@ impl Last {
         let flat = Arc::make_mut(&mut self.flat);
         // Lent for a moment: their values stand among the rows.
         let materials = std::mem::take(&mut flat.materials);
-        let mut scratch = FlatScene { environment: flat.environment, materials, ..FlatScene::default() };
+        let mut scratch = FlatScene { materials, ..FlatScene::default() };
         let mut known = true;
         let mut moved = Vec::new();
         let new = emit(&mut scratch, &operands, &mut |scratch, MaterialUse { id, object_from_world }| {

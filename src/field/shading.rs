@@ -71,6 +71,7 @@ impl FlatScene {
         shown.lights.clear();
         shown.environment = studio(shading);
         shown.display = DisplaySettings::default();
+        shown.environment_map = None;
         if shading == Shading::Solid {
             shown.wear(clay());
         }
@@ -99,8 +100,8 @@ fn clay() -> FlatMaterial {
 fn studio(shading: Shading) -> Environment {
     let gray = |v: f64| [v, v * 1.02, v * 1.06];
     match shading {
-        Shading::Solid => Environment { sky: gray(0.03), horizon: gray(0.065), ambient: gray(0.22) },
-        _ => Environment { sky: gray(0.11), horizon: gray(0.32), ambient: gray(0.34) },
+        Shading::Solid => Environment::sky(gray(0.03), gray(0.065), gray(0.22)),
+        _ => Environment::sky(gray(0.11), gray(0.32), gray(0.34)),
     }
 }
 
@@ -135,7 +136,7 @@ mod tests {
         for shown in [&solid, &material] {
             assert!((&shown.nodes, &shown.params, &shown.ids) == (&flat.nodes, &flat.params, &flat.ids));
             assert_eq!((&shown.components, &shown.cameras), (&flat.components, &flat.cameras));
-            assert_ne!(gpu_lights(shown, &camera), gpu_lights(&flat, &camera));
+            assert_ne!(gpu_lights(shown, &camera, [64, 64]), gpu_lights(&flat, &camera, [64, 64]));
         }
         assert_eq!(material.materials, flat.materials);
         assert_eq!(solid.materials.len(), flat.materials.len());
@@ -146,7 +147,7 @@ mod tests {
     fn the_studio_light_follows_the_view() {
         let solid = scene().shaded(Shading::Solid);
         let [front, back] = [DVec3::Z, DVec3::NEG_Z]
-            .map(|at| gpu_lights(&solid, &Camera::looking_at(at * 9.0, DVec3::ZERO, 0.7))[0].direction[2]);
+            .map(|at| gpu_lights(&solid, &Camera::looking_at(at * 9.0, DVec3::ZERO, 0.7), [64, 64])[0].direction[2]);
         assert!(front < 0.0 && back > 0.0, "{front} {back}");
     }
 

@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 
-use super::arrays::{MAX_FLAT_LEVELS, MAX_STACK};
-use super::budget::{ENTRIES, FlattenLimits, LEVELS, STACK, STEPS};
+use super::arrays::{MAX_FLAT_LEVELS, MAX_LIGHTS, MAX_STACK};
+use super::budget::{ENTRIES, FlattenLimits, LEVELS, LIGHTS, STACK, STEPS};
 use super::error::FlattenError;
 use super::modify::is_idle;
 use isolith_scene::{Modifier, Node, NodeKind, Object, Scene, Shape};
@@ -81,6 +81,10 @@ impl Survey {
         for index in range.clone().rev() {
             survey.count(scene, index);
             survey.check(&scene.nodes()[index], index, limits)?;
+        }
+        let lights = scene.nodes()[range.clone()].iter().filter(|node| matches!(node.kind, NodeKind::Light(_)));
+        for (before, light) in lights.enumerate() {
+            within(light, LIGHTS, before + 1, MAX_LIGHTS)?;
         }
         let (mut total, mut at) = (Counts::default(), range.start);
         while at < range.end {

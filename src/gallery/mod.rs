@@ -12,6 +12,8 @@ mod deep_tree;
 mod drawn;
 mod ellipsoid_and_plane;
 mod fractals;
+mod image_lit;
+mod lights;
 mod materials;
 mod mesh_and_fields;
 mod modifiers;
@@ -60,6 +62,8 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("drawn", drawn::scene()),
         ("materials", materials::scene()),
         ("textures", textures::scene()),
+        ("lights", lights::scene()),
+        ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),

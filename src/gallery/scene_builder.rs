@@ -1,11 +1,13 @@
 //! The builder of the example scenes.
 
+use std::f64::consts::PI;
+
 use glam::{DQuat, DVec3};
 
 use isolith_geometry::Camera;
 use isolith_scene::{
-    Attenuation, Blend, BlendKernel, CameraNode, Environment, Group, Light, LightKind, Material, MaterialId, MeshNode,
-    Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
+    Blend, BlendKernel, CameraNode, Environment, EnvironmentKind, Falloff, Group, Light, LightKind, Material,
+    MaterialId, MeshNode, Node, NodeId, NodeKind, Object, Operator, ParamValue, ReflectionModel, Scene, Shape,
 };
 
 /// A scene under construction.
@@ -19,7 +21,7 @@ pub(super) struct SceneBuilder {
 impl SceneBuilder {
     /// An empty scene with this environment.
     pub fn new(sky: [f64; 3], horizon: [f64; 3], ambient: [f64; 3]) -> Self {
-        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment { sky, horizon, ambient }, 1)
+        let scene = Scene::from_tables(Vec::new(), Vec::new(), Environment::sky(sky, horizon, ambient), 1)
             .expect("an empty scene is within every limit");
         Self { scene }
     }
@@ -101,16 +103,18 @@ impl SceneBuilder {
         inserted.expect("example scenes are within every limit")
     }
 
-    /// Parallel light from the direction `from`.
-    pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], intensity: f64) {
+    /// Parallel light from the direction `from`, under which a white surface has the radiance `white`.
+    pub fn sun(&mut self, name: &str, from: [f64; 3], color: [f64; 3], white: f64) {
         let rotation = Camera::looking_at(DVec3::from(from), DVec3::ZERO, 1.0).rotation;
-        let light = Light { color, intensity, light: LightKind::Sun {} };
+        let sun = LightKind::Sun { strength: rounded(white * PI), angle: 0.0 };
+        let light = Light { color, ..Light::new(sun) };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(from)).rotated(rotation));
     }
 
-    /// A point light.
-    pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], intensity: f64, attenuation: Attenuation) {
-        let light = Light { color, intensity, light: LightKind::Point { attenuation } };
+    /// A point light under which a white surface has the radiance `white`, where the falloff is 1.
+    pub fn lamp(&mut self, name: &str, at: [f64; 3], color: [f64; 3], white: f64, falloff: Falloff) {
+        let point = LightKind::Point { power: rounded(white * (4.0 * PI * PI)), radius: 0.0, falloff };
+        let light = Light { color, ..Light::new(point) };
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)));
     }
 
@@ -120,13 +124,33 @@ impl SceneBuilder {
         name: &str,
         [at, target]: [[f64; 3]; 2],
         color: [f64; 3],
-        intensity: f64,
+        white: f64,
         [inner, outer]: [f64; 2],
     ) {
-        let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.02, range: 40.0 };
-        let light = Light { color, intensity, light: LightKind::Spot { attenuation, inner, outer } };
+        let falloff = Falloff::Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.02, range: 40.0 };
+        let power = rounded(white * (4.0 * PI * PI));
+        let light = Light { color, ..Light::new(LightKind::Spot { power, radius: 0.0, falloff, inner, outer }) };
         let rotation = Camera::looking_at(DVec3::from(at), DVec3::from(target), 1.0).rotation;
         self.add(None, Node::new(name, NodeKind::Light(light)).at(DVec3::from(at)).rotated(rotation));
+    }
+
+    /// A material by OpenPBR.
+    pub fn surface(&mut self, name: &str, color: [f64; 3], metalness: f64, roughness: f64) -> MaterialId {
+        let material = Material::new(MaterialId(0), name, color);
+        self.material(Material { base_metalness: metalness, specular_roughness: roughness, ..material })
+    }
+
+    /// A light at `at`, aimed at `target`.
+    pub fn light(&mut self, name: &str, [at, target]: [[f64; 3]; 2], color: [f64; 3], kind: LightKind) {
+        let (at, target) = (DVec3::from(at), DVec3::from(target));
+        let rotation = Camera::looking_at(at, target, 1.0).rotation;
+        let light = Light { color, ..Light::new(kind) };
+        self.add(None, Node::new(name, NodeKind::Light(light)).at(at).rotated(rotation));
+    }
+
+    /// Replaces the environment.
+    pub fn environment(&mut self, background: EnvironmentKind) {
+        self.scene.set_environment(Environment { background }).expect("its image is small");
     }
 
     /// Adds the camera.
@@ -215,9 +239,14 @@ pub(super) fn v(x: f64, y: f64, z: f64) -> DVec3 {
     DVec3::new(x, y, z)
 }
 
+/// A computed number, to nine decimals.
+fn rounded(v: f64) -> f64 {
+    (v * 1e9).round() / 1e9 + 0.0
+}
+
 /// The node with every computed number rounded.
 fn settled(mut node: Node) -> Node {
-    let round = |v: f64| (v * 1e9).round() / 1e9 + 0.0;
+    let round = rounded;
     let round3 = |v: DVec3| DVec3::new(round(v.x), round(v.y), round(v.z));
     let transform = &mut node.transform;
     transform.translation = round3(transform.translation);

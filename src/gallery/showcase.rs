@@ -6,7 +6,7 @@ use super::scene_builder::{
     SceneBuilder, blended, capsule, cone, cuboid, cylinder, ellipsoid, group, object, round_cone, sphere, torus,
     turn_x, turn_y, turn_z, v,
 };
-use isolith_scene::{Attenuation, BlendKernel, MaterialId, NodeId, Operator, Scene, Shape};
+use isolith_scene::{BlendKernel, Falloff, MaterialId, NodeId, Operator, Scene, Shape};
 
 /// The planet's center and radius.
 const PLANET: (DVec3, f64) = (DVec3::new(0.0, -3.3, 0.0), 2.6);
@@ -22,7 +22,7 @@ pub(super) fn scene() -> Scene {
     builder.sun("Sun", [-0.75, 0.65, 0.75], [1.0, 0.90, 0.78], 0.92);
     builder.sun("Planet light", [0.9, 0.15, 0.15], [0.45, 0.50, 1.0], 0.45);
     builder.sun("Back light", [0.35, 0.35, -1.0], [0.75, 0.60, 1.0], 0.8);
-    let falloff = Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.1, range: 6.0 };
+    let falloff = Falloff::Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.1, range: 6.0 };
     builder.lamp("Flame light", [0.05, 0.32, 0.65], [1.0, 0.36, 0.08], 1.7, falloff);
     builder.camera([-0.7, 1.55, 7.7], [0.12, 0.68, 0.0], 41.0);
     builder.finish()

@@ -18,7 +18,7 @@ pub(super) fn scene() -> Scene {
     let slab = cuboid(11.0, 0.2, 9.0, 0.02);
     builder.add(None, object("Floor", slab, floor).at(v(0.0, -0.1, -1.0)));
 
-    let image = Attachment::painted("tile.png", [64, 64], tile);
+    let image = Attachment::<isolith_scene::TextureImage>::painted("tile.png", [64, 64], tile);
     for (at, power) in (0..).zip(POWERS) {
         let material = builder.material(projected(&image, power));
         let cube = object(&format!("Power {power}"), cuboid(1.2, 1.2, 1.2, 0.45), material);

@@ -34,7 +34,7 @@ use crate::resources::layouts::Layouts;
 use crate::resources::uniforms::UNIFORM_STRIDE;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
-use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning};
+use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning, gpu_lights};
 use isolith_geometry::Camera;
 use isolith_mesh::TriangleMesh;
 use isolith_wgsl::{Options, SkipMode};
@@ -253,7 +253,7 @@ impl Renderer {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
-        let features = ShadeFeatures::new(flat, &materials.all);
+        let features = ShadeFeatures::new(flat, &gpu_lights(flat, camera, size), &materials.all);
         self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);

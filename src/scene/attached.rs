@@ -1,6 +1,7 @@
 //! Attachments of any kind.
 
 use super::attachment::{Attachment, Content};
+use super::environment_image::EnvironmentImage;
 use super::heights::Heights;
 use super::texture_image::TextureImage;
 use isolith_font::Face;
@@ -14,6 +15,8 @@ pub enum Attached {
     Texture(Attachment<TextureImage>),
     /// A font.
     Font(Attachment<Face>),
+    /// An image of everything around the scene.
+    Environment(Attachment<EnvironmentImage>),
 }
 
 impl Attached {
@@ -23,6 +26,7 @@ impl Attached {
             Self::Heights(file) => file.name(),
             Self::Texture(file) => file.name(),
             Self::Font(file) => file.name(),
+            Self::Environment(file) => file.name(),
         }
     }
 
@@ -32,6 +36,7 @@ impl Attached {
             Self::Heights(file) => file.size(),
             Self::Texture(file) => file.size(),
             Self::Font(file) => file.size(),
+            Self::Environment(file) => file.size(),
         }
     }
 
@@ -41,6 +46,7 @@ impl Attached {
             Self::Heights(_) => Heights::WITHOUT,
             Self::Texture(_) => TextureImage::WITHOUT,
             Self::Font(_) => Face::WITHOUT,
+            Self::Environment(_) => EnvironmentImage::WITHOUT,
         };
         self.name().unwrap_or(without)
     }
@@ -51,6 +57,7 @@ impl Attached {
             Self::Heights(_) => Heights::ENDINGS,
             Self::Texture(_) => TextureImage::ENDINGS,
             Self::Font(_) => Face::ENDINGS,
+            Self::Environment(_) => EnvironmentImage::ENDINGS,
         }
     }
 
@@ -60,6 +67,7 @@ impl Attached {
             Self::Heights(_) => Self::Heights(Attachment::NONE),
             Self::Texture(_) => Self::Texture(Attachment::NONE),
             Self::Font(_) => Self::Font(Attachment::NONE),
+            Self::Environment(_) => Self::Environment(Attachment::NONE),
         }
     }
 
@@ -69,6 +77,7 @@ impl Attached {
             Self::Heights(_) => Self::Heights(Attachment::new(name, bytes)?),
             Self::Texture(_) => Self::Texture(Attachment::new(name, bytes)?),
             Self::Font(_) => Self::Font(Attachment::new(name, bytes)?),
+            Self::Environment(_) => Self::Environment(Attachment::new(name, bytes)?),
         })
     }
 }

@@ -7,8 +7,8 @@ use super::drawn::text_fault;
 use super::limits::{Limits, MAX_APART, MAX_NAME, MAX_PATH, Rule};
 use super::params::{Param, Params};
 use super::{
-    Attenuation, CameraNode, DisplaySettings, Environment, Light, LightKind, List, MAX_MODIFIERS, Material, Node,
-    NodeKind, ParamValue, Part, SceneError, Shape,
+    CameraNode, DisplaySettings, Environment, Falloff, Light, LightKind, List, MAX_MODIFIERS, Material, Node, NodeKind,
+    ParamValue, Part, SceneError, Shape,
 };
 
 /// A value that fails a check.
@@ -83,7 +83,7 @@ pub fn display(display: &DisplaySettings) -> Result<(), Fault> {
 }
 
 /// Checks every parameter against the limits of its table.
-fn values(params: &dyn Params) -> Result<(), Fault> {
+pub(super) fn values(params: &dyn Params) -> Result<(), Fault> {
     let mut found = Ok(());
     params.visit("", &mut |prefix, param, value| {
         if found.is_ok() {
@@ -207,25 +207,38 @@ fn list(field: &str, list: &List, limits: &Limits) -> Result<(), Fault> {
 
 /// Checks the values of a light against each other.
 fn light(light: &Light) -> Result<(), Fault> {
-    match &light.light {
-        LightKind::Sun {} => Ok(()),
-        LightKind::Point { attenuation: a } => attenuation(a),
-        LightKind::Spot { attenuation: a, inner, outer } => {
-            attenuation(a)?;
-            if outer < inner {
-                let reason = format!("must be at least the inner angle of {inner}, not {outer}");
-                return Err(Fault::new("light.outer", reason));
-            }
-            Ok(())
+    match light.light {
+        LightKind::Sun { .. } | LightKind::Rectangle { .. } => Ok(()),
+        LightKind::Point { falloff: f, .. } => falloff(f),
+        LightKind::Spot { falloff: f, inner, outer, .. } => {
+            falloff(f)?;
+            cone([inner, outer])
         }
     }
 }
 
-fn attenuation(attenuation: &Attenuation) -> Result<(), Fault> {
-    let Attenuation { constant, linear, quadratic, .. } = *attenuation;
-    if constant + linear + quadratic == 0.0 {
-        let reason = "must not be 0 when linear and quadratic are 0";
-        return Err(Fault::new("light.attenuation.constant", reason));
+fn falloff(falloff: Falloff) -> Result<(), Fault> {
+    match falloff {
+        Falloff::InverseSquare {} => Ok(()),
+        Falloff::Attenuation { constant, linear, quadratic, .. } => {
+            attenuation("light.falloff.constant", [constant, linear, quadratic])
+        }
+    }
+}
+
+/// Checks the half angles of a spot light: the inner and the outer one.
+pub(super) fn cone([inner, outer]: [f64; 2]) -> Result<(), Fault> {
+    if outer < inner {
+        let reason = format!("must be at least the inner angle of {inner}, not {outer}");
+        return Err(Fault::new("light.outer", reason));
+    }
+    Ok(())
+}
+
+/// Checks the constant, linear and quadratic term of an attenuation, the first of which is at `field`.
+pub(super) fn attenuation(field: &str, terms: [f64; 3]) -> Result<(), Fault> {
+    if terms.iter().sum::<f64>() == 0.0 {
+        return Err(Fault::new(field, "must not be 0 when linear and quadratic are 0"));
     }
     Ok(())
 }

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::limits::MAX_SCENE_PIXELS;
-use super::{Attached, Material, Node, NodeKind, ParamValue, Params, SceneError, Shape};
+use super::{Attached, Environment, Material, Node, NodeKind, ParamValue, Params, SceneError, Shape};
 
 /// The images of a node.
 fn images(node: &Node) -> Vec<Attached> {
@@ -41,6 +41,7 @@ fn pixels(image: &Attached) -> u64 {
     match image {
         Attached::Heights(image) => image.content().map_or(0, |heights| heights.pixels),
         Attached::Texture(image) => image.content().map_or(0, |texture| texture.pixels),
+        Attached::Environment(image) => image.content().map_or(0, |image| image.pixels),
         Attached::Font(_) => 0,
     }
 }
@@ -50,42 +51,73 @@ fn is_same(a: &Attached, b: &Attached) -> bool {
     match (a, b) {
         (Attached::Heights(a), Attached::Heights(b)) => a.is_same(b),
         (Attached::Texture(a), Attached::Texture(b)) => a.is_same(b),
+        (Attached::Environment(a), Attached::Environment(b)) => a.is_same(b),
         _ => false,
     }
 }
 
-/// Refuses `new` nodes whose images would exceed the budget of a scene of `nodes` and `materials`: it could not be read
-/// again. `old` is the node that they replace.
-pub(super) fn check(
-    nodes: &[Arc<Node>],
-    materials: &[Arc<Material>],
-    old: Option<&Node>,
-    new: &[Node],
-) -> Result<(), SceneError> {
+/// The parts of a scene that may hold images.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ImageHolders<'a> {
+    /// The nodes.
+    pub nodes: &'a [Arc<Node>],
+    /// The materials.
+    pub materials: &'a [Arc<Material>],
+    /// The environment.
+    pub environment: &'a Environment,
+}
+
+impl ImageHolders<'_> {
+    /// All images but those of this node, this material and, if it is replaced, the environment.
+    fn others(self, node: Option<&Node>, material: Option<&Material>, environment: bool) -> Vec<Attached> {
+        let nodes = self.nodes.iter().filter(|held| node.is_none_or(|node| node.id != held.id));
+        let materials = self.materials.iter().filter(|held| material.is_none_or(|material| material.id != held.id));
+        let around = (!environment).then(|| image_around(self.environment)).flatten();
+        let of_nodes = nodes.flat_map(|node| images(node));
+        of_nodes.chain(materials.flat_map(|material| images_of_material(material))).chain(around).collect()
+    }
+}
+
+/// The image of an environment.
+fn image_around(environment: &Environment) -> Option<Attached> {
+    environment.image().cloned().map(Attached::Environment)
+}
+
+/// Refuses `new` nodes whose images would exceed the budget of a scene: it could not be read again. `old` is the node
+/// that they replace.
+pub(super) fn check(scene: ImageHolders<'_>, old: Option<&Node>, new: &[Node]) -> Result<(), SceneError> {
     let added: Vec<_> = new.iter().flat_map(images).collect();
     let there = old.map(images).unwrap_or_default();
-    if added.iter().all(|image| there.iter().any(|known| is_same(known, image))) {
+    if are_known(&added, &there) {
         return Ok(());
     }
-    let others = nodes.iter().filter(|node| old.is_none_or(|old| old.id != node.id)).flat_map(|node| images(node));
-    let of_materials = materials.iter().flat_map(|material| images_of_material(material));
-    check_sum(others.chain(of_materials).chain(added))
+    check_sum(scene.others(old, None, false).into_iter().chain(added))
 }
 
 /// The same for a `new` material, which may replace one of the same id.
-pub(super) fn check_material(
-    nodes: &[Arc<Node>],
-    materials: &[Arc<Material>],
-    new: &Material,
-) -> Result<(), SceneError> {
+pub(super) fn check_material(scene: ImageHolders<'_>, new: &Material) -> Result<(), SceneError> {
     let added = images_of_material(new);
-    let old = materials.iter().find(|old| old.id == new.id);
+    let old = scene.materials.iter().find(|old| old.id == new.id);
     let there = old.map(|old| images_of_material(old)).unwrap_or_default();
-    if added.iter().all(|image| there.iter().any(|known| is_same(known, image))) {
+    if are_known(&added, &there) {
         return Ok(());
     }
-    let others = materials.iter().filter(|old| old.id != new.id).flat_map(|material| images_of_material(material));
-    check_sum(nodes.iter().flat_map(|node| images(node)).chain(others).chain(added))
+    check_sum(scene.others(None, Some(new), false).into_iter().chain(added))
+}
+
+/// The same for a new environment.
+pub(super) fn check_environment(scene: ImageHolders<'_>, new: &Environment) -> Result<(), SceneError> {
+    let Some(added) = image_around(new) else { return Ok(()) };
+    check_sum(scene.others(None, None, true).into_iter().chain([added]))
+}
+
+/// The pixels of all images of a scene.
+pub(super) fn used(scene: ImageHolders<'_>) -> u64 {
+    sum(scene.others(None, None, false).into_iter())
+}
+
+fn are_known(added: &[Attached], there: &[Attached]) -> bool {
+    added.iter().all(|image| there.iter().any(|known| is_same(known, image)))
 }
 
 fn check_sum(images: impl Iterator<Item = Attached>) -> Result<(), SceneError> {
@@ -106,10 +138,4 @@ fn sum(images: impl Iterator<Item = Attached>) -> u64 {
         }
     }
     sum
-}
-
-/// The pixels of all images of these nodes and materials.
-pub(super) fn used(nodes: &[Arc<Node>], materials: &[Arc<Material>]) -> u64 {
-    let of_materials = materials.iter().flat_map(|material| images_of_material(material));
-    sum(nodes.iter().flat_map(|node| images(node)).chain(of_materials))
 }

@@ -92,6 +92,10 @@ pub const MAX_IMAGE_SIDE: u32 = 8_192;
 pub const MAX_IMAGE_BYTES: u64 = 512 << 20;
 /// Most pixels of all images of a scene together, each file counted once: decoding so many takes seconds.
 pub const MAX_SCENE_PIXELS: u64 = 1 << 27;
+/// Most columns of the image of an environment; larger images are reduced.
+pub const MAX_ENVIRONMENT_WIDTH: usize = 1_024;
+/// Greatest radiance of the image of an environment; brighter pixels are clamped.
+pub const MAX_RADIANCE: f32 = 60_000.0;
 /// Most heights along a side of a grid; larger images are reduced.
 pub const MAX_HEIGHTS: usize = 256;
 
@@ -137,6 +141,18 @@ pub const UNIT: Limits = Limits::new([0.0, 1.0], [0.0, 1.0], "");
 pub const SPECULAR: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "");
 /// Light intensities and emitted colors.
 pub const INTENSITY: Limits = Limits::new([0.0, 10.0], [0.0, 1e6], "");
+/// Irradiance of a sun.
+pub const IRRADIANCE: Limits = Limits::new([0.0, 10.0], [0.0, 1e9], "W/m²");
+/// Power of a light.
+pub const LIGHT_POWER: Limits = Limits::new([0.0, 1e3], [0.0, 1e9], "W");
+/// Angular diameter of a sun, in degrees.
+pub const SUN_ANGLE: Limits = Limits::new([0.0, 30.0], [0.0, 90.0], "°");
+/// Factor on the colors of an environment's image.
+pub const ENVIRONMENT_STRENGTH: Limits = Limits::new([0.0, 4.0], [0.0, 1e4], "");
+/// Radius of a light.
+pub const LIGHT_RADIUS: Limits = Limits::new([0.0, 1.0], [0.0, 1e6], "m");
+/// Sides of a light that is a rectangle.
+pub const LIGHT_SIDE: Limits = Limits::new([0.1, 5.0], [1e-3, 1e6], "m");
 /// Index of refraction.
 pub const IOR: Limits = Limits::new([1.0, 3.0], [1.0, 100.0], "");
 /// Strength of emitted light.

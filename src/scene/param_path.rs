@@ -1,8 +1,8 @@
 //! Paths: names for every parameter of a scene.
 //!
 //! In text a path is the owner and the field as files and their errors name it: `node.12.object.shape.radius`,
-//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`, `environment.sky`,
-//! `display.exposure`.
+//! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`,
+//! `environment.background.sky`, `display.exposure`.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -245,7 +245,7 @@ impl ParamPath {
                 Ok(Changed::Material(Box::new(material)))
             }
             ParamOwner::Environment => {
-                let mut environment = scene.environment;
+                let mut environment = scene.environment.clone();
                 if !self.set_value(&mut environment, value.clone()) {
                     return Err(refusal(&environment));
                 }
@@ -342,7 +342,7 @@ impl FromStr for ParamPath {
     fn from_str(text: &str) -> Result<Self, SceneError> {
         parse(text).ok_or_else(|| SceneError::Param {
             path: text.to_owned(),
-            reason: "is not the path of a parameter, such as node.12.object.shape.radius, material.3.base_color[0] or environment.sky"
+            reason: "is not the path of a parameter, such as node.12.object.shape.radius, material.3.base_color[0] or environment.background.sky"
                 .into(),
         })
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use glam::DAffine3;
 
-use super::image_budget;
+use super::image_budget::{self, ImageHolders};
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
 use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
@@ -109,7 +109,11 @@ impl Scene {
 
     /// The pixels of all its images, each file counted once: at most [`super::limits::MAX_SCENE_PIXELS`].
     pub fn image_pixels(&self) -> u64 {
-        image_budget::used(&self.nodes, &self.materials)
+        image_budget::used(self.images())
+    }
+
+    fn images(&self) -> ImageHolders<'_> {
+        ImageHolders { nodes: &self.nodes, materials: &self.materials, environment: &self.environment }
     }
 
     /// The depth of each node, parallel to [`Scene::nodes`]; 0 at the top.
@@ -189,7 +193,7 @@ impl Scene {
             Some(id) => self.depths[self.group_index(id)?] as usize + 1,
         };
         check_limit("the number of nodes", self.nodes.len() + subtree.len(), MAX_NODES)?;
-        image_budget::check(&self.nodes, &self.materials, None, &subtree)?;
+        image_budget::check(self.images(), None, &subtree)?;
         if let Some(first) = subtree.first_mut() {
             first.parent = parent;
         }
@@ -262,7 +266,7 @@ impl Scene {
             return Err(SceneError::NotAGroup(node.id));
         }
         let old = Some(&*self.nodes[index]);
-        image_budget::check(&self.nodes, &self.materials, old, std::slice::from_ref(&node))?;
+        image_budget::check(self.images(), old, std::slice::from_ref(&node))?;
         let parent = self.nodes[index].parent;
         self.nodes[index] = Arc::new(Node { parent, ..node });
         Ok(())
@@ -289,7 +293,7 @@ impl Scene {
             return Err(SceneError::DuplicateMaterial(material.id));
         }
         check_limit("the number of materials", self.materials.len() + 1, MAX_MATERIALS)?;
-        image_budget::check_material(&self.nodes, &self.materials, &material)?;
+        image_budget::check_material(self.images(), &material)?;
         self.materials.push(Arc::new(material));
         Ok(())
     }
@@ -297,7 +301,7 @@ impl Scene {
     /// Replaces the material of the same id.
     pub fn replace_material(&mut self, material: Material) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == material.id).ok_or(SceneError::NoMaterial(material.id))?;
-        image_budget::check_material(&self.nodes, &self.materials, &material)?;
+        image_budget::check_material(self.images(), &material)?;
         self.materials[at] = Arc::new(material);
         Ok(())
     }
@@ -317,6 +321,13 @@ impl Scene {
             return Err(SceneError::MaterialInUse(id, node.id));
         }
         self.materials.remove(at);
+        Ok(())
+    }
+
+    /// Replaces the environment.
+    pub fn set_environment(&mut self, environment: Environment) -> Result<(), SceneError> {
+        image_budget::check_environment(self.images(), &environment)?;
+        self.environment = environment;
         Ok(())
     }
 

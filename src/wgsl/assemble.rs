@@ -31,7 +31,7 @@ pub fn assemble_with(
     write!(
         out,
         "const COUNTING: bool = {};\nconst CONES: bool = {};\nconst RELAXED: bool = {};\nconst SKIPPING: bool = {};\nconst RETURNS_EARLY: bool = {};\nconst FINENESS: f32 = \
-         {fineness:?};\nconst MIN_STEP_SCALE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst EXTENDED_JOINS: bool = {};\nconst EXTENDED_KERNELS: bool = {};\nconst LAYERS: bool = {};\n",
+         {fineness:?};\nconst MIN_STEP_SCALE: f32 = {:?};\nconst CLOSE_IS_HIT: bool = {};\nconst EXTENDED_JOINS: bool = {};\nconst EXTENDED_KERNELS: bool = {};\nconst LAYERS: bool = {};\nconst AREA_LIGHTS: bool = {};\nconst IMAGE_LIT: bool = {};\n",
         options.counting,
         options.cones,
         options.relaxed,
@@ -41,7 +41,9 @@ pub fn assemble_with(
         !ops.is_rough(),
         extended.joins,
         extended.kernels,
-        options.layers
+        options.layers,
+        options.area_lights,
+        options.image_lit
     )
     .expect("strings take all");
     out += &lookahead::constants(evaluator, options);

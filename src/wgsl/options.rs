@@ -63,6 +63,10 @@ pub struct Options {
     pub quality: Quality,
     /// Whether materials may have the layers of OpenPBR. Without them, shading knows Blinn and Phong only.
     pub layers: bool,
+    /// Whether a light has a size.
+    pub area_lights: bool,
+    /// Whether the environment is not a gradient.
+    pub image_lit: bool,
 }
 
 impl Default for Options {
@@ -74,6 +78,8 @@ impl Default for Options {
             relaxed: true,
             quality: Quality::default(),
             layers: true,
+            area_lights: false,
+            image_lit: false,
         }
     }
 }

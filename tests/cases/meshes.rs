@@ -9,7 +9,7 @@ use isolith::field::reference::image::render_reference;
 use isolith::field::{FlatMaterial, GBuffer, NO_LEAF, Warning, flatten};
 use isolith::mesh::{MeshLibrary, parse};
 use isolith::render::EvalStrategy;
-use isolith::scene::{Material, file};
+use isolith::scene::{Environment, LightKind, Material, file};
 use serde_json::{Value, json};
 
 use crate::gpu::BenchScene;
@@ -223,8 +223,9 @@ fn lit(material: Value) -> BenchScene {
         json["samplers"][0] = json!({ "wrapS": 10497, "wrapT": 33648 });
     });
     let light = &mut bench_scene.flat.lights[0];
-    (light.direction, light.light.intensity) = (DVec3::new(0.3, -0.8, -0.6).normalize(), 0.4);
-    bench_scene.flat.environment.ambient = [0.3; 3];
+    light.direction = DVec3::new(0.3, -0.8, -0.6).normalize();
+    light.light.light = LightKind::Sun { strength: 0.4 * std::f64::consts::PI, angle: 0.0 };
+    bench_scene.flat.environment = Environment::sky([0.1; 3], [0.2; 3], [0.3; 3]);
     bench_scene
 }
 

@@ -60,7 +60,7 @@ impl StressNode {
     pub fn scene(&self, place: StressPlacement) -> Scene {
         let mut scene = Scene::new();
         let from = DVec3::new(-0.5, 0.8, 0.6);
-        let sun = Light { color: [1.0; 3], intensity: 0.8, light: LightKind::Sun {} };
+        let sun = Light::new(LightKind::Sun { strength: 2.5, angle: 0.0 });
         let sun = Node::new("Sun", NodeKind::Light(sun)).rotated(Camera::looking_at(from, DVec3::ZERO, 1.0).rotation);
         let (node, parts) = match self {
             Self::Shape(shape) => (object(shape.clone()), vec![]),

@@ -2,7 +2,7 @@
 
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_FLASHLIGHT_ON, ICON_FOLDER, ICON_LIGHTBULB, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FOLDER, ICON_LIGHTBULB, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
 use super::command::Command;
@@ -24,6 +24,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         row(Command::AddSun, ICON_WB_SUNNY, "Sun", "Parallel light").group(),
         row(Command::AddPointLight, ICON_LIGHTBULB, "Point light", "Light from a point into every direction"),
         row(Command::AddSpotLight, ICON_FLASHLIGHT_ON, "Spot light", "Light from a point into a cone"),
+        row(Command::AddAreaLight, ICON_FLUORESCENT, "Area light", "Light from one side of a rectangle"),
         row(Command::AddCamera, ICON_VIDEOCAM, "Camera from view", "A camera that sees what the viewport shows now")
             .group(),
     ]);

@@ -72,6 +72,8 @@ pub enum Command {
     AddPointLight,
     /// Add a spot light.
     AddSpotLight,
+    /// Add a light that is a rectangle.
+    AddAreaLight,
     /// Add a camera with the current view.
     AddCamera,
     /// Frame the selection.

@@ -12,7 +12,7 @@ use crate::root::Editor;
 use crate::state::EditorState;
 use crate::{insertion, material_edits, selection};
 use isolith_document::Edit;
-use isolith_scene::{Attenuation, CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
+use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
 impl Editor {
     /// Runs a command if it is enabled.
@@ -56,6 +56,7 @@ impl Editor {
             Command::AddSun => add_sun(state),
             Command::AddPointLight => add_point_light(state),
             Command::AddSpotLight => add_spot_light(state),
+            Command::AddAreaLight => add_lamp(state, "Area light", LightKind::RECTANGLE),
             Command::AddCamera => add_camera(state),
             Command::FrameSelected => state.frame_selected(),
             Command::FrameAll => state.frame_all(),
@@ -116,19 +117,17 @@ fn add_sun(state: &mut EditorState) {
 }
 
 fn add_point_light(state: &mut EditorState) {
-    add_lamp(state, "Point light", LightKind::Point { attenuation: Attenuation::default() });
+    add_lamp(state, "Point light", LightKind::POINT);
 }
 
 fn add_spot_light(state: &mut EditorState) {
-    let attenuation = Attenuation::default();
-    add_lamp(state, "Spot light", LightKind::Spot { attenuation, inner: 20.0, outer: 30.0 });
+    add_lamp(state, "Spot light", LightKind::SPOT);
 }
 
-/// A spot light two meters above the view's target, shining down.
+/// A light two meters above the view's target, shining down.
 fn add_lamp(state: &mut EditorState, name: &str, light: LightKind) {
     let down = DQuat::from_rotation_x(-std::f64::consts::FRAC_PI_2);
-    let light = Light { color: [1.0; 3], intensity: 4.0, light };
-    let node = Node::new(name, NodeKind::Light(light)).rotated(down);
+    let node = Node::new(name, NodeKind::Light(Light::new(light))).rotated(down);
     insertion::node_above(state, node, 2.0);
 }
 

@@ -20,7 +20,7 @@ pub struct ShadingPoint {
 
 impl ShadingPoint {
     /// The layers of its material, seen from the eye.
-    fn layers(&self) -> Layers {
+    pub fn layers(&self) -> Layers {
         layers_of(&self.material, self.normal.dot(self.to_eye))
     }
 }
@@ -45,9 +45,14 @@ pub struct EnvironmentShares {
 /// The share of the light from the unit direction `to_light` that the surface reflects toward the eye: the BRDF times
 /// the cosine of the angle of incidence times π. A white Lambert surface that faces the light gives 1.
 pub fn brdf_direct(point: &ShadingPoint, to_light: DVec3) -> DVec3 {
+    brdf_layered(point, &point.layers(), to_light)
+}
+
+/// [`brdf_direct`] of a point whose layers are known.
+pub fn brdf_layered(point: &ShadingPoint, layers: &Layers, to_light: DVec3) -> DVec3 {
     let toward = to_light + point.to_eye;
     let halfway = toward / toward.length().max(1e-6);
-    let layers = layers_direct(&point.layers(), point.normal, point.to_eye, to_light, halfway);
+    let layers = layers_direct(layers, point.normal, point.to_eye, to_light, halfway);
     brdf_phong(point, to_light, halfway) + (1.0 - point.material.phong_weight) * layers
 }
 

@@ -6,17 +6,21 @@
 //! | `layers` | the layers of OpenPBR |
 //! | `albedo` | the light that a GGX lobe reflects in all |
 //! | `lighting` | the sum over all lights |
+//! | `area` | lights with a size |
 //! | `environment` | light from everywhere, and the background |
+//! | `environment_map` | images of it, prepared for lighting |
 //! | `texture` | colors and values that vary over a surface |
 //! | `display` | linear light to the colors of a screen |
 //! | `material_ball` | thumbnails of materials; has no counterpart |
 
 pub mod albedo;
+pub mod area;
 pub mod brdf;
 pub mod display;
 #[cfg(test)]
 mod energy;
 pub mod environment;
+pub mod environment_map;
 pub mod layers;
 pub mod lighting;
 #[cfg(test)]

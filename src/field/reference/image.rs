@@ -13,7 +13,7 @@ use crate::coverage::PixelSample;
 use crate::eval::{SurfaceMaterial, surface};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_color, display_decode};
-use crate::light::environment::environment_background;
+use crate::light::environment::{EnvironmentLight, environment_background};
 use crate::light::lighting::lighting_surface;
 use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
@@ -116,7 +116,7 @@ pub fn render_reference_at(
     progress: &(dyn Fn(f64) + Sync),
 ) -> Result<ReferenceImage, TraceError> {
     let center = jitter + 0.5;
-    let (lights, textures) = (gpu_lights(flat, camera), gpu_textures(flat, camera));
+    let (lights, textures) = (gpu_lights(flat, camera, [width, height]), gpu_textures(flat, camera));
     let view = View { flat, meshes, camera, lights, textures, size: [width, height], center };
     let tracer = Tracer::new(flat);
     let done = AtomicU32::new(0);
@@ -201,8 +201,7 @@ impl View<'_> {
             let (normal, material, occlusion) = self.mesh_surface(index, &hit, ray.direction);
             (hit.t, MESH_BIT | index as u32, normal, material, occlusion)
         } else {
-            let [sky, horizon] = [self.flat.environment.sky, self.flat.environment.horizon].map(DVec3::from);
-            let color = environment_background(ray.direction.y, sky, horizon);
+            let color = environment_background(ray.direction, &EnvironmentLight::of(self.flat));
             let turned = if is_close { self.turned(tracer, &ray, at)? } else { Vec::new() };
             let (depth, leaf, normal) = (BACKGROUND_DEPTH, NO_LEAF, DVec3::ZERO);
             return Ok(Pixel { depth, leaf, normal, color, margin, tied, turned });
@@ -238,10 +237,9 @@ impl View<'_> {
     }
 
     fn shade(&self, ray: &Ray, t: f64, normal: DVec3, material: &SurfaceMaterial, occlusion: f64) -> DVec3 {
-        let ambient = DVec3::from(self.flat.environment.ambient) * occlusion;
         let position = ray.direction * t;
         let point = ShadingPoint { material: *material, position, normal, to_eye: -ray.direction };
-        lighting_surface(&point, ambient, &self.lights)
+        lighting_surface(&point, &EnvironmentLight::of(self.flat), occlusion, &self.lights)
     }
 
     /// Normal, material and the share of the ambient light at a hit on a mesh.

@@ -10,9 +10,7 @@ use glam::DVec3;
 use isolith_field::{FlatScene, flatten};
 use isolith_geometry::Camera;
 use isolith_render::{EvalStrategy, Gpu, OverlaySettings, Renderer, Slot, device_descriptor};
-use isolith_scene::{
-    Blend, BlendKernel, Group, Light, LightKind, Node, NodeKind, Object, Operator, Scene, SceneError, Shape,
-};
+use isolith_scene::{Blend, BlendKernel, Group, Light, Node, NodeKind, Object, Operator, Scene, SceneError, Shape};
 
 /// Width and height of the picture. Rows of 256 pixels need no padding on readback.
 pub const SIZE: [u32; 2] = [256, 192];
@@ -36,7 +34,7 @@ pub fn scene() -> Result<Scene, SceneError> {
     let group = scene.insert(None, 0, Node::new("Drop", NodeKind::Group(Group::new(Operator::Union, blend))))?;
     scene.insert(Some(group), 0, object("Slab", Shape::Box { size: [2.0, 0.4, 2.0], rounding: 0.1 }))?;
     scene.insert(Some(group), 1, object("Ball", Shape::Sphere { radius: 0.6 }).at(DVec3::Y * 0.7))?;
-    let sun = Light { color: [1.0, 0.95, 0.85], intensity: 1.0, light: LightKind::Sun {} };
+    let sun = Light { color: [1.0, 0.95, 0.85], ..Light::sun() };
     let from = Camera::looking_at(DVec3::new(2.0, 3.0, 1.0), DVec3::ZERO, 1.0).rotation;
     scene.insert(None, 1, Node::new("Sun", NodeKind::Light(sun)).rotated(from))?;
     Ok(scene)

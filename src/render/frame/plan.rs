@@ -12,7 +12,7 @@ use crate::frame::cost_model::{Cost, CostModel};
 use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
 use crate::resources::uniforms::DispatchParams;
-use isolith_field::{Component, FlatScene};
+use isolith_field::{Component, FlatScene, gpu_lights};
 use isolith_geometry::Camera;
 
 /// Side of a tile, in pixels: the area that a cone starts with.
@@ -130,7 +130,7 @@ pub fn plan(
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
-    let shading = 0.3 + 0.2 * flat.lights.len() as f64;
+    let shading = 0.3 + 0.2 * gpu_lights(flat, camera, size).len() as f64;
     let most_shading = cost_model.cost_in(DISPATCH_TARGET, false);
     let others = 1 + usize::from(!flat.meshes.is_empty()) + whole.parts(shading, most_shading);
     if seen.iter().map(dispatches).fold(others, usize::saturating_add) > room.dispatches {

@@ -21,6 +21,7 @@ bindings! {
         lights: read_storage(),
         materials: read_storage(),
         mesh_materials: read_storage(),
+        environment_map: read_storage(),
     }
 }
 
@@ -70,6 +71,7 @@ impl FramePass for ShadePass {
             lights: bound.resources.lights(),
             materials: bound.materials.clone(),
             mesh_materials: bound.resources.mesh_materials(),
+            environment_map: bound.resources.environment_map(),
         };
         let targets = ShadeBindings {
             depth: bound.targets.depth.binding(),

@@ -9,7 +9,7 @@ use crate::recipe::Pass;
 use crate::resources::accumulation::SUM_FORMAT;
 use crate::resources::layouts::{TEXELS_FORMAT, entry, layout, read_only_texture, read_storage, read_texture};
 use crate::resources::texture_resources::TextureBindings;
-use isolith_field::{FlatMaterial, FlatScene};
+use isolith_field::{FlatMaterial, FlatScene, GpuLight};
 use isolith_scene::ViewTransform;
 use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble_with};
 
@@ -20,13 +20,22 @@ pub struct ShadeFeatures {
     pub layers: bool,
     /// A material has textures.
     pub textures: bool,
+    /// A light has a size.
+    pub area_lights: bool,
+    /// The environment is not a gradient.
+    pub image_lit: bool,
 }
 
 impl ShadeFeatures {
     /// What a scene with these materials of its meshes needs.
-    pub fn new(flat: &FlatScene, of_meshes: &[FlatMaterial]) -> Self {
+    pub fn new(flat: &FlatScene, lights: &[GpuLight], of_meshes: &[FlatMaterial]) -> Self {
         let layers = flat.materials.iter().chain(of_meshes).any(|material| material.phong_weight < 1.0);
-        Self { layers, textures: !flat.textures.sets.is_empty() }
+        Self {
+            layers,
+            textures: !flat.textures.sets.is_empty(),
+            area_lights: lights.iter().any(GpuLight::has_size),
+            image_lit: flat.environment_map.is_some(),
+        }
     }
 
     /// The source of the pass.
@@ -34,8 +43,9 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let options = Options { layers: self.layers, ..Options::default() };
-        let features: &[&str] = if self.textures { &["TEXTURES"] } else { &[] };
+        let Self { layers, textures, area_lights, image_lit } = self;
+        let options = Options { layers, area_lights, image_lit, ..Options::default() };
+        let features: &[&str] = if textures { &["TEXTURES"] } else { &[] };
         assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, features)
     }
 }

@@ -20,6 +20,7 @@ use crate::resources::layouts::{Layouts, bind, window};
 use crate::resources::targets::{Target, Targets};
 use crate::resources::texture_resources::{TextureBindings, TextureResources};
 use crate::resources::uniforms::{DispatchParams, GpuView, strided};
+use isolith_field::light::environment_map::{PlacedMap, map_words};
 use isolith_field::{FlatScene, gpu_lights};
 use isolith_geometry::Camera;
 
@@ -87,6 +88,9 @@ pub struct FrameResources {
     /// The contents of `view` for the first sample.
     first_view: GpuView,
     lights: SyncedBuffer,
+    environment_map: SyncedBuffer,
+    /// The environment in that buffer.
+    held_map: Option<Option<PlacedMap>>,
     mesh_materials: SyncedBuffer,
     textures: TextureResources,
     dispatch_params: SyncedBuffer,
@@ -108,6 +112,8 @@ impl FrameResources {
             view: SyncedBuffer::uniform(device, "view"),
             first_view: GpuView::zeroed(),
             lights: storage("lights"),
+            environment_map: storage("environment map"),
+            held_map: None,
             mesh_materials: storage("mesh materials"),
             textures: TextureResources::default(),
             dispatch_params: SyncedBuffer::uniform(device, "dispatch_params"),
@@ -165,9 +171,10 @@ impl FrameResources {
         plan: &FramePlan,
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
-        let lights = gpu_lights(flat, camera);
+        let lights = gpu_lights(flat, camera, size);
         self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let uploads = [
+            self.upload_map(gpu, flat),
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
             self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
             self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
@@ -197,6 +204,16 @@ impl FrameResources {
     pub fn set_sample(&mut self, gpu: &Gpu, index: u32, is_transparent: bool) {
         let view = self.first_view.of_sample(index, is_transparent);
         self.view.set(&gpu.device, &gpu.queue, bytemuck::bytes_of(&view));
+    }
+
+    /// Uploads the environment, if it is another one. Returns whether the buffer was replaced.
+    fn upload_map(&mut self, gpu: &Gpu, flat: &FlatScene) -> bool {
+        if self.held_map.as_ref() == Some(&flat.environment_map) {
+            return false;
+        }
+        self.held_map = Some(flat.environment_map.clone());
+        let words = map_words(flat.environment_map.as_ref());
+        self.environment_map.set(&gpu.device, &gpu.queue, bytemuck::cast_slice(&words))
     }
 
     /// Gives the slot textures for accumulated samples, if it has none.
@@ -259,6 +276,11 @@ impl FrameResources {
     /// The lights.
     pub fn lights(&self) -> wgpu::BindingResource<'_> {
         self.lights.binding()
+    }
+
+    /// The environment.
+    pub fn environment_map(&self) -> wgpu::BindingResource<'_> {
+        self.environment_map.binding()
     }
 
     /// The materials of the meshes.

@@ -57,7 +57,7 @@ impl GpuView {
         let (width, height) = (f64::from(size[0]), f64::from(size[1]));
         let tan = camera.tan_half_fov();
         let f32s = |v: DVec3| v.as_vec3().to_array();
-        let color = |c: [f64; 3]| c.map(|v| v as f32);
+        let [sky, horizon, ambient] = flat.environment.gradient().map(|color| color.map(|v| v as f32));
         Self {
             right: f32s(camera.rotation * DVec3::X * (tan * width / height)),
             near: camera.near as f32,
@@ -65,11 +65,11 @@ impl GpuView {
             far: camera.far as f32,
             forward: f32s(camera.rotation * DVec3::NEG_Z),
             footprint: camera.footprint(height) as f32,
-            sky: color(flat.environment.sky),
+            sky,
             light_count,
-            horizon: color(flat.environment.horizon),
+            horizon,
             width: size[0],
-            ambient: color(flat.environment.ambient),
+            ambient,
             height: size[1],
             exposure: flat.display.exposure.exp2() as f32,
             ..Self::zeroed()

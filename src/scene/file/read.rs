@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use super::error::{FileError, clipped};
 use super::format::{NodeFile, SceneFile, VERSION};
-use super::old_version::{FileMaterial, SceneV1};
+use super::old_version::{FileMaterial, LightV1, SceneV1};
 use super::place;
 use super::watch;
 use super::weight::weigh;
@@ -45,6 +45,8 @@ pub(super) fn parse_by(bytes: &[u8], file: &Path, task: &Task) -> Result<Scene, 
         1 => {
             let old: SceneV1 = watch::within(task, nodes, || decode_budget::within(|| typed(text, file)))?;
             check_materials(&old.materials, file)?;
+            check_lights(&old.nodes, file)?;
+            old.environment.check().map_err(|f| FileError::from_fault(file, "environment", f))?;
             checked_scene(old.converted(), file)
         }
         2 => {
@@ -143,6 +145,17 @@ fn check_materials<M: FileMaterial>(materials: &[M], file: &Path) -> Result<(), 
             return Err(FileError::new(file, reason).at(field + ".id"));
         }
         material.check().map_err(|f| FileError::from_fault(file, &field, f))?;
+    }
+    Ok(())
+}
+
+/// Checks the lights of a scene of version 1, before they lose the names of their fields.
+fn check_lights(nodes: &[NodeFile<LightV1>], file: &Path) -> Result<(), FileError> {
+    for (i, node) in nodes.iter().enumerate() {
+        if let Some(Err(fault)) = node.light.as_ref().map(LightV1::check) {
+            let field = format!("nodes[{i}].light");
+            return Err(FileError::from_fault(file, &field, fault).of_node(&node.name, node.id));
+        }
     }
     Ok(())
 }

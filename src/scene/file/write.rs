@@ -30,7 +30,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
     let table = SceneFile {
         schema: None,
         isolith: VERSION,
-        environment: scene.environment,
+        environment: scene.environment.clone(),
         display: scene.display,
         materials: scene.materials().iter().map(|m| short(m)).collect::<Result<_, _>>().map_err(failed)?,
         next_id: scene.next_id(),

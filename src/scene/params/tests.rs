@@ -223,7 +223,7 @@ fn what_is_no_path_and_what_is_not_there_are_errors_that_name_it() {
         (path("group.blend.radius[0]"), "no such element"),
         (path("transform.translation[3]"), "no such element"),
         ("material.1.color".into(), "there is base_color, base_weight"),
-        ("environment.fog".into(), "there is sky, horizon, ambient"),
+        ("environment.fog".into(), "there is no such parameter"),
         ("display.gamma".into(), "there is exposure, view_transform"),
     ] {
         let error = text.parse::<ParamPath>().expect(&text).get(&scene).expect_err(&text).to_string();
@@ -254,10 +254,11 @@ fn choices_are_named_as_in_files() {
 fn another_kind_of_light_keeps_what_both_have() {
     let mut light = Light::default();
     assert!(light.set("light.type", ParamValue::Choice("point")));
-    assert!(light.set("light.attenuation.range", ParamValue::Scalar(7.0)));
+    assert!(light.set("light.falloff.type", ParamValue::Choice("attenuation")));
+    assert!(light.set("light.falloff.range", ParamValue::Scalar(7.0)));
     assert!(!light.set("light.inner", ParamValue::Scalar(7.0)), "a point light has no cone");
     assert!(light.set("light.type", ParamValue::Choice("spot")));
-    assert_eq!(light.get("light.attenuation.range"), Some(ParamValue::Scalar(7.0)));
+    assert_eq!(light.get("light.falloff.range"), Some(ParamValue::Scalar(7.0)));
     assert_eq!(light.get("light.inner"), Some(ParamValue::Scalar(20.0)));
     assert!(!light.set("light.type", ParamValue::Choice("moon")));
 }
@@ -292,7 +293,10 @@ fn materials_surroundings_and_modifiers_are_reached_too() {
     };
     assert_eq!(names(&material)[..3], ["base_color", "base_weight", "base_metalness"]);
     assert_eq!(names(&material).last().map(String::as_str), Some("model.type"));
-    assert_eq!(names(&Environment::default()), ["sky", "horizon", "ambient"]);
+    assert_eq!(
+        names(&Environment::default()),
+        ["background.type", "background.sky", "background.horizon", "background.ambient"]
+    );
     assert_eq!(names(&ModifierSlot::from(ModifierKind::Twist.default_modifier())), ["enabled", "angle"]);
     let group = ["operator", "blend.kernel", "blend.radius", "blend.unit", "blend.steps", "width", "depth", "share"];
     assert_eq!(names(&Group::default()), group);

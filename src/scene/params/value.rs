@@ -9,6 +9,7 @@ use super::ParamField;
 use crate::attached::Attached;
 use crate::attachment::Attachment;
 use crate::drawn::{Corners, Points};
+use crate::environment_image::EnvironmentImage;
 use crate::heights::Heights;
 use crate::limits::{CORNERS, Limits, POINTS, SIZE};
 use crate::texture_image::TextureImage;
@@ -171,6 +172,7 @@ macro_rules! file {
 file!(Heights, Heights);
 file!(TextureImage, Texture);
 file!(Face, Font);
+file!(EnvironmentImage, Environment);
 
 impl ParamField for Points {
     const ANIMATABLE: bool = false;

@@ -21,7 +21,7 @@ fn saved(folder: &Path, seed: u64) -> PathBuf {
 }
 
 fn darken(document: &mut Document) {
-    let environment = Environment { sky: [0.125; 3], ..document.scene().environment };
+    let environment = Environment::sky([0.125; 3], [0.5; 3], [0.5; 3]);
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
 }
 
@@ -103,7 +103,7 @@ fn a_file_that_was_changed_is_not_written_over_unasked() {
 
 fn darken_more(harness: &mut Harness<'_, Editor>) {
     let document = harness.state_mut().document_mut();
-    let environment = Environment { sky: [0.25; 3], ..document.scene().environment };
+    let environment = Environment::sky([0.25; 3], [0.5; 3], [0.5; 3]);
     document.apply(Edit::SetEnvironment(environment)).expect("valid");
     harness.settle();
 }

@@ -129,6 +129,8 @@ const OPTIONS: Options = Options {
     relaxed: true,
     quality: isolith::wgsl::Quality::Default,
     layers: true,
+    area_lights: true,
+    image_lit: true,
 };
 
 /// Passes that evaluate a field, with their entry points.

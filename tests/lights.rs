@@ -1,0 +1,162 @@
+//! Light in pictures: the GPU against the reference renderer, for every kind of light and for very many of them.
+
+use glam::{DQuat, DVec3};
+use isolith::field::GBuffer;
+use isolith::field::reference::image::{ReferenceImage, render_reference};
+use isolith::field::{MAX_LIGHTS, flatten};
+use isolith::geometry::Camera;
+use isolith::render::EvalStrategy;
+use isolith::scene::{
+    Attachment, Environment, EnvironmentImage, EnvironmentKind, Falloff, Light, LightKind, Material, MaterialId, Node,
+    NodeKind, Object, ReflectionModel, Scene, Shape,
+};
+
+use crate::gpu::BenchScene;
+
+/// Width and height of the pictures, in pixels.
+const SIDE: u32 = 48;
+
+/// A floor with a ball and a box, one of them with a highlight by Blinn and Phong.
+fn shapes() -> Scene {
+    let mut scene = Scene::new();
+    let mut gloss = Material::new(scene.next_material_id(), "Gloss", [0.5, 0.3, 0.2]);
+    gloss.model = ReflectionModel::BlinnPhong { specular: 0.6, shininess: 60.0 };
+    let gloss = {
+        scene.insert_material(gloss.clone()).expect("room");
+        gloss.id
+    };
+    let mut add = |shape: Shape, at: [f64; 3], material: MaterialId| {
+        let node = Node::new("shape", NodeKind::Object(Object { shape, material })).at(at.into());
+        scene.insert(None, usize::MAX, node).expect("room for it");
+    };
+    add(Shape::Plane {}, [0.0, -0.5, 0.0], MaterialId(1));
+    add(Shape::Sphere { radius: 0.5 }, [-0.6, 0.0, 0.0], gloss);
+    add(Shape::Box { size: [0.7; 3], rounding: 0.1 }, [0.6, -0.1, 0.1], MaterialId(1));
+    scene
+}
+
+fn add_light(scene: &mut Scene, kind: LightKind, at: DVec3, target: DVec3) {
+    let rotation = Camera::looking_at(at, target, 1.0).rotation;
+    let light = Light { color: [1.0, 0.8, 0.6], ..Light::new(kind) };
+    let node = Node::new("Light", NodeKind::Light(light)).at(at).rotated(rotation);
+    scene.insert(None, usize::MAX, node).expect("room for it");
+}
+
+/// The picture by the GPU and by the reference.
+fn pictures(scene: &Scene) -> (GBuffer, ReferenceImage) {
+    let mut bench_scene = BenchScene::new("lights", scene, None);
+    bench_scene.camera = Camera::looking_at(DVec3::new(0.3, 1.2, 3.0), DVec3::new(0.0, -0.1, 0.0), 0.7);
+    let BenchScene { flat, meshes, camera, .. } = &bench_scene;
+    let reference = render_reference(flat, meshes, camera, [SIDE, SIDE], &|_| ()).expect("rays end");
+    (bench_scene.render(SIDE, EvalStrategy::Interpreter), reference)
+}
+
+/// The greatest difference of a channel among the pixels at which both see the same point.
+fn difference(gpu: &GBuffer, reference: &ReferenceImage) -> u8 {
+    let theirs = &reference.buffers;
+    let same = |i: &usize| (gpu.depth[*i] / theirs.depth[*i] - 1.0).abs() < 1e-4 && gpu.leaf[*i] == theirs.leaf[*i];
+    let seen: Vec<usize> = (0..gpu.depth.len()).filter(same).collect();
+    assert!(seen.len() > gpu.depth.len() / 2, "{}", seen.len());
+    let of = |i: usize| (0..3).map(move |c| gpu.color[i][c].abs_diff(theirs.color[i][c]));
+    seen.into_iter().flat_map(of).max().unwrap_or(0)
+}
+
+/// The mean of all channels, from 0 to 255.
+fn brightness(picture: &GBuffer) -> f64 {
+    let sum: f64 = picture.color.iter().flat_map(|c| &c[..3]).map(|c| f64::from(*c)).sum();
+    sum / (picture.color.len() * 3) as f64
+}
+
+#[test]
+fn every_kind_of_light_looks_as_in_the_reference() {
+    let falloff = Falloff::InverseSquare {};
+    let attenuation = Falloff::Attenuation { constant: 1.0, linear: 0.2, quadratic: 0.4, range: 4.0 };
+    let kinds = [
+        LightKind::Sun { strength: 2.0, angle: 0.0 },
+        LightKind::Sun { strength: 2.0, angle: 20.0 },
+        LightKind::Point { power: 60.0, radius: 0.0, falloff },
+        LightKind::Point { power: 60.0, radius: 0.5, falloff },
+        LightKind::Point { power: 60.0, radius: 0.3, falloff: attenuation },
+        LightKind::Spot { power: 200.0, radius: 0.2, falloff, inner: 10.0, outer: 25.0 },
+        LightKind::Rectangle { power: 40.0, width: 1.5, height: 0.6 },
+    ];
+    for kind in kinds {
+        let mut scene = shapes();
+        add_light(&mut scene, kind, DVec3::new(-1.2, 1.4, 1.0), DVec3::ZERO);
+        let (gpu, reference) = pictures(&scene);
+        let off = difference(&gpu, &reference);
+        assert!(off <= 2, "{kind:?}: {off}");
+        let mut dark = shapes();
+        add_light(&mut dark, LightKind::Sun { strength: 0.0, angle: 0.0 }, DVec3::Y, DVec3::ZERO);
+        assert!(brightness(&gpu) > brightness(&pictures(&dark).0) + 5.0, "{kind:?}");
+    }
+}
+
+/// A light that reaches nothing in view does not reach the GPU, so that it costs nothing.
+#[test]
+fn a_light_out_of_view_changes_nothing() {
+    let mut scene = shapes();
+    add_light(&mut scene, LightKind::Sun { strength: 2.0, angle: 0.0 }, DVec3::new(1.0, 2.0, 1.0), DVec3::ZERO);
+    let alone = pictures(&scene).0;
+    let kind = LightKind::Point { power: 10.0, radius: 0.0, falloff: Falloff::InverseSquare {} };
+    add_light(&mut scene, kind, DVec3::new(0.0, 60.0, 60.0), DVec3::ZERO);
+    assert_eq!(pictures(&scene).0.color, alone.color);
+    let turned = Node::new("Lamp", NodeKind::Light(Light::new(kind))).at(DVec3::new(0.5, 0.5, 1.0));
+    scene.insert(None, usize::MAX, turned.rotated(DQuat::IDENTITY)).expect("room for it");
+    assert_ne!(pictures(&scene).0.color, alone.color, "the comparison sees a light that is in view");
+}
+
+#[test]
+fn an_image_lights_and_surrounds_the_scene_as_in_the_reference() {
+    let painted = |x: u32, y: u32| match (x, y) {
+        (10..=20, 4..=12) => [8.0, 7.0, 5.0],
+        (_, 0..16) => [0.3, 0.5, 0.9],
+        _ => [0.2, 0.1, 0.05],
+    };
+    let image = Attachment::<EnvironmentImage>::painted("room.hdr", [64, 32], painted);
+    let mut pictures_of = Vec::new();
+    for rotation in [0.0, 130.0] {
+        let mut scene = shapes();
+        let mut metal = Material::new(scene.next_material_id(), "Metal", [0.9, 0.7, 0.4]);
+        (metal.base_metalness, metal.specular_roughness) = (1.0, 0.25);
+        let object = Object { shape: Shape::Sphere { radius: 0.3 }, material: metal.id };
+        scene.insert_material(metal).expect("room for it");
+        let node = Node::new("Ball", NodeKind::Object(object)).at(DVec3::new(0.1, -0.2, 0.8));
+        scene.insert(None, usize::MAX, node).expect("room for it");
+        let background = EnvironmentKind::Image { image: image.clone(), strength: 0.8, rotation };
+        scene.set_environment(Environment { background }).expect("a small image");
+        add_light(&mut scene, LightKind::Sun { strength: 0.0, angle: 0.0 }, DVec3::Y, DVec3::ZERO);
+        let (gpu, reference) = pictures(&scene);
+        let off = difference(&gpu, &reference);
+        assert!(off <= 2, "{rotation}: {off}");
+        pictures_of.push(gpu);
+    }
+    assert_ne!(pictures_of[0].color, pictures_of[1].color);
+    assert!(brightness(&pictures_of[0]) > 20.0, "{}", brightness(&pictures_of[0]));
+}
+
+#[test]
+fn a_thousand_lights_are_all_drawn() {
+    let mut scene = shapes();
+    let kind = |power: f64| LightKind::Point { power, radius: 0.02, falloff: Falloff::InverseSquare {} };
+    for i in 0..1_000 {
+        let at = DVec3::new(f64::from(i % 40) * 0.1 - 2.0, 0.8, f64::from(i / 40) * 0.15 - 2.0);
+        add_light(&mut scene, kind(0.02), at, DVec3::ZERO);
+    }
+    let (gpu, reference) = pictures(&scene);
+    let off = difference(&gpu, &reference);
+    assert!(off <= 2, "{off}");
+    assert!(brightness(&gpu) > 30.0, "{}", brightness(&gpu));
+}
+
+#[test]
+fn more_lights_than_the_limit_are_refused_by_name() {
+    let mut scene = Scene::new();
+    for i in 0..=MAX_LIGHTS {
+        let node = Node::new(format!("Lamp {i}"), NodeKind::Light(Light::sun()));
+        scene.insert(None, usize::MAX, node).expect("room for it");
+    }
+    let error = flatten(&scene, 0.0).expect_err("one too many").to_string();
+    assert!(error.contains("the number of lights is 16385, more than the limit of 16384"), "{error}");
+    assert!(error.starts_with("Lamp 16384"), "{error}");
+}
