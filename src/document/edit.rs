@@ -134,13 +134,7 @@ impl Edit {
                 Arc::make_mut(scene).insert_material(material)?;
                 Ok(Change::VALUE)
             }
-            Self::MoveMaterial { id, position } => {
-                if scene.materials().iter().position(|m| m.id == id) == Some(position) {
-                    return Ok(Change::NONE);
-                }
-                Arc::make_mut(scene).move_material(id, position)?;
-                Ok(Change::VALUE)
-            }
+            Self::MoveMaterial { id, position } => move_material(scene, id, position),
             Self::RemoveMaterial(id) => {
                 Arc::make_mut(scene).remove_material(id)?;
                 Ok(Change::VALUE)
@@ -211,6 +205,14 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else {
         format!("Change {name}")
     }
+}
+
+fn move_material(scene: &mut Arc<Scene>, id: MaterialId, position: usize) -> Result<Change, SceneError> {
+    if scene.materials().iter().position(|material| material.id == id) == Some(position) {
+        return Ok(Change::NONE);
+    }
+    Arc::make_mut(scene).move_material(id, position)?;
+    Ok(Change::VALUE)
 }
 
 fn material_name(scene: &Scene, id: MaterialId) -> String {
