@@ -109,6 +109,9 @@ fn some_edit(random: &mut Random, scene: &Scene) -> Edit {
             let id = random.below(8) as u64;
             Edit::InsertMaterial(random.material(id))
         }
+        9 if random.below(2) == 0 => {
+            Edit::MoveMaterial { id: MaterialId(random.below(8) as u64), position: random.below(6) }
+        }
         9 => Edit::RemoveMaterial(MaterialId(random.below(8) as u64)),
         10 => Edit::SetEnvironment(random.environment()),
         12 if random.once_in(3) => Edit::SetDisplay(random.display()),

@@ -4,6 +4,7 @@ mod attachments;
 mod fields;
 mod jobs;
 mod locks;
+mod materials;
 mod modifiers;
 mod names;
 mod order;

@@ -52,6 +52,13 @@ pub enum Edit {
     ReplaceMaterial(Material),
     /// Adds a material with its own id, see [`Scene::next_material_id`].
     InsertMaterial(Material),
+    /// Moves a material to a place in the list, counted without it.
+    MoveMaterial {
+        /// The material.
+        id: MaterialId,
+        /// Counted from 0.
+        position: usize,
+    },
     /// Removes a material that no node uses.
     RemoveMaterial(MaterialId),
     /// Replaces the environment.
@@ -127,6 +134,7 @@ impl Edit {
                 Arc::make_mut(scene).insert_material(material)?;
                 Ok(Change::VALUE)
             }
+            Self::MoveMaterial { id, position } => move_material(scene, id, position),
             Self::RemoveMaterial(id) => {
                 Arc::make_mut(scene).remove_material(id)?;
                 Ok(Change::VALUE)
@@ -172,10 +180,8 @@ impl Edit {
             Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
             Self::ReplaceMaterial(material) => format!("Change material {}", material.name),
             Self::InsertMaterial(material) => format!("Add material {}", material.name),
-            Self::RemoveMaterial(id) => {
-                let name = scene.material(*id).map(|m| m.name.clone());
-                format!("Delete material {}", name.unwrap_or_else(|| id.to_string()))
-            }
+            Self::MoveMaterial { id, .. } => format!("Reorder material {}", material_name(scene, *id)),
+            Self::RemoveMaterial(id) => format!("Delete material {}", material_name(scene, *id)),
             Self::SetEnvironment(_) => "Change environment".into(),
             Self::SetDisplay(_) => "Change display".into(),
             Self::SetParam { path, value } => match Self::of_param(scene, path, value.clone()) {
@@ -199,6 +205,18 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else {
         format!("Change {name}")
     }
+}
+
+fn move_material(scene: &mut Arc<Scene>, id: MaterialId, position: usize) -> Result<Change, SceneError> {
+    if scene.materials().iter().position(|material| material.id == id) == Some(position) {
+        return Ok(Change::NONE);
+    }
+    Arc::make_mut(scene).move_material(id, position)?;
+    Ok(Change::VALUE)
+}
+
+fn material_name(scene: &Scene, id: MaterialId) -> String {
+    scene.material(id).map_or_else(|| id.to_string(), |material| material.name.clone())
 }
 
 fn names(scene: &Scene, ids: &[NodeId]) -> String {

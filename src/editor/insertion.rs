@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use glam::DVec3;
 
+use super::material_edits::{self, NEW, next_color, users};
 use super::selection;
 use super::state::EditorState;
 use isolith_document::Edit;
@@ -67,17 +68,17 @@ fn free_name(scene: &Scene, base: &str) -> String {
     names.find(|name| !taken.contains(name.as_str())).unwrap_or_default()
 }
 
-/// The active object's material, or the scene's first, or a new one.
+/// A material of its own for a new shape, so that its color can be changed without a thought of others. The first shape
+/// of a scene takes the material that the scene begins with.
 fn material(state: &mut EditorState) -> MaterialId {
     let scene = state.session.document.scene();
-    let active = state.session.selected().last().and_then(|n| match &n.kind {
-        NodeKind::Object(object) => Some(object.material),
-        _ => None,
-    });
-    if let Some(id) = active.or_else(|| scene.materials().first().map(|m| m.id)) {
-        return id;
+    if let [only] = scene.materials()
+        && users(scene, only.id).is_empty()
+    {
+        return only.id;
     }
-    let id = scene.next_material_id();
-    state.session.apply(Edit::InsertMaterial(Material::new(id, "Clay", [0.62, 0.56, 0.50])));
-    id
+    let material = Material::new(MaterialId(0), NEW, next_color(scene));
+    let first = scene.materials().first().map(|first| first.id);
+    // If there are too many, the message says so, and the shape takes one of them.
+    material_edits::insert(&mut state.session, material).or(first).unwrap_or(MaterialId(1))
 }

@@ -6,6 +6,7 @@ use egui::{RichText, ScrollArea, TextEdit, Ui, vec2};
 use egui_material_icons::icons::{ICON_LOCK, ICON_LOCK_OPEN, ICON_VISIBILITY, ICON_VISIBILITY_OFF};
 
 use super::edit_session::EditSession;
+use super::material_library::MaterialLibrary;
 use super::multi_edit::MultiEdit;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
@@ -33,24 +34,28 @@ impl Panel for Inspector {
     }
 
     fn place(&self) -> PanelPlace {
-        PanelPlace::Right(300.0, 240.0)
+        PanelPlace::Right(316.0, 240.0)
     }
 
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui) {
-        widgets::fixed(ui, |ui| self.show(ui, &mut state.session));
+        widgets::fixed(ui, |ui| self.show(ui, &mut state.session, &mut state.materials));
     }
 }
 
 impl Inspector {
-    fn show(&mut self, ui: &mut Ui, session: &mut EditSession) {
+    fn show(&mut self, ui: &mut Ui, session: &mut EditSession, library: &mut MaterialLibrary) {
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = 8.0;
             let selected = session.selected();
             match selected.last() {
-                None => inspector_scene::show(ui, session),
+                None => match library.current {
+                    Some(material) => inspector_material::show_alone(ui, session, library, material),
+                    None => inspector_scene::show(ui, session),
+                },
                 // Text typed for one node must not reach another.
                 Some(active) => {
-                    ui.push_id(active.id, |ui| self.show_selection(ui, session, active.clone(), selected.clone()));
+                    let all = selected.clone();
+                    ui.push_id(active.id, |ui| self.show_selection(ui, session, library, active.clone(), all));
                 }
             }
             ui.add_space(12.0);
@@ -76,7 +81,14 @@ impl Inspector {
         }
     }
 
-    fn show_selection(&mut self, ui: &mut Ui, session: &mut EditSession, active: Arc<Node>, all: Vec<Arc<Node>>) {
+    fn show_selection(
+        &mut self,
+        ui: &mut Ui,
+        session: &mut EditSession,
+        library: &mut MaterialLibrary,
+        active: Arc<Node>,
+        all: Vec<Arc<Node>>,
+    ) {
         header(ui, session, &active, &all);
         if all.iter().all(|n| n.has_field())
             && let Some(mut edit) = MultiEdit::new(session, all.clone())
@@ -91,11 +103,11 @@ impl Inspector {
             NodeKind::Group(_) => inspector_blends::group(ui, &mut edit),
             NodeKind::Object(_) => {
                 inspector_kinds::shape(ui, &mut edit);
-                inspector_material::show(ui, &mut edit);
+                inspector_material::show(ui, &mut edit, library);
             }
             NodeKind::Mesh(mesh) => {
                 inspector_kinds::mesh(ui, &mut edit, mesh);
-                inspector_material::show(ui, &mut edit);
+                inspector_material::show(ui, &mut edit, library);
             }
             NodeKind::Light(_) => inspector_kinds::light(ui, &mut edit),
             NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut edit),

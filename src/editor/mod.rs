@@ -10,12 +10,13 @@
 //! | `panel`, `panels`, `shell` | the trait, the list and the layout of panels |
 //! | `root` | the editor: state, shell, and the windows in front |
 //! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
-//! | `outliner`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
-//! | `legend` | the meaning of the colors of a view mode |
 //! | `shading_bar` | the choice of the shading, over the picture |
+//! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
@@ -53,6 +54,9 @@ mod inspector_scene;
 mod inspector_transform;
 mod intent;
 mod legend;
+mod material_edits;
+mod material_library;
+mod materials;
 mod messages;
 mod multi_edit;
 mod navigation;
@@ -63,6 +67,7 @@ mod panel;
 mod panels;
 mod picking;
 mod portal;
+mod preset_picker;
 mod projection;
 mod recovery;
 mod root;
@@ -75,6 +80,7 @@ mod shell;
 mod state;
 mod status;
 mod theme;
+mod thumbnails;
 mod toolbar;
 mod view_state;
 mod viewport;

@@ -13,6 +13,8 @@ pub enum PanelPlace {
     Bottom,
     /// At the left, with default and minimum width in points.
     Left(f32, f32),
+    /// At the left, below the panel there, with default height in points.
+    BelowLeft(f32),
     /// At the right, with default and minimum width in points.
     Right(f32, f32),
     /// The area that the other panels leave. Only one panel can take it.

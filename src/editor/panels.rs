@@ -1,6 +1,7 @@
 //! The registry of panels: a new panel is a file and a line here.
 
 use super::inspector::Inspector;
+use super::materials::Materials;
 use super::outliner::Outliner;
 use super::panel::Panel;
 use super::status::StatusBar;
@@ -13,6 +14,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(Toolbar),
         Box::new(StatusBar),
         Box::<Outliner>::default(),
+        Box::<Materials>::default(),
         Box::<Inspector>::default(),
         Box::<Viewport>::default(),
     ]

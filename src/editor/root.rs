@@ -129,6 +129,7 @@ impl Editor {
         }
         self.state.session.settle(&ctx);
         self.follow_document();
+        self.state.materials.thumbnails.update(&ctx, self.state.derived.jobs());
         if self.state.derived.jobs().foremost().is_some() {
             ctx.request_repaint_after(PROGRESS_EVERY);
         }
@@ -262,6 +263,7 @@ impl Editor {
         self.state.session.finish();
         self.opening = None;
         self.state.files.forget_attachments();
+        self.state.materials.forget();
         self.forget_kept();
         self.shell.forget();
         self.wants_view = true;

@@ -7,6 +7,7 @@ use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
 use super::intent::Intent;
+use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
 use super::view_state::{Picture, ViewSettings, ViewState};
 use isolith_document::Document;
@@ -54,6 +55,8 @@ pub struct EditorState {
     pub view: ViewState,
     /// Data derived from the document, and the jobs that take longer than a frame.
     pub derived: SceneSession,
+    /// Its materials: use counts, thumbnails, the one in the foreground.
+    pub materials: MaterialLibrary,
     /// Jobs that read and write files for it.
     pub files: FileJobs,
     /// The picture of this frame.
@@ -76,6 +79,7 @@ impl Default for EditorState {
             session: EditSession::new(Document::new(Scene::new())),
             view: ViewState::default(),
             derived: SceneSession::default(),
+            materials: MaterialLibrary::default(),
             files: FileJobs::default(),
             picture: Picture::default(),
             examples: Vec::new(),
@@ -112,6 +116,7 @@ impl EditorState {
 
     /// Updates the derived data and forwards its notices as messages.
     pub fn follow_document(&mut self) {
+        self.materials.follow(&self.session.document);
         self.derived.follow(&self.session.document);
         for Notice { level, text } in self.derived.take_notices() {
             let severity = match level {

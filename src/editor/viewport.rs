@@ -10,7 +10,7 @@ use super::picking::pick_node;
 use super::projection::Projection;
 use super::state::EditorState;
 use super::view_state::PointerActivity;
-use super::{legend, selection, shading_bar, theme};
+use super::{legend, material_edits, materials, selection, shading_bar, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The current drag.
@@ -86,6 +86,7 @@ impl Viewport {
             let projection = Projection::new(&state.view, pixels_per_point);
             click(state, ui, response, &projection);
         }
+        take_dropped_material(state, ui, response);
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || now < self.zooming_until;
         state.view.pointer = self.activity(response);
@@ -166,6 +167,10 @@ impl Viewport {
             let depth_range = state.depth_range();
             legend::paint(&painter, rect, state.view.view_mode, &depth_range);
         }
+        if materials::is_over(response) {
+            let outline = egui::Stroke::new(2.0, theme::ACCENT);
+            painter.rect_stroke(rect, 0.0, outline, egui::StrokeKind::Inside);
+        }
         let compass = Compass::new(rect, state.view.navigation.rotation);
         compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));
         let nothing = state.flat().components.is_empty() && state.flat().meshes.is_empty();
@@ -223,8 +228,22 @@ fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: &Pro
         None if adding => {}
         None => selection.clear(),
     }
+    if selection.is_empty() {
+        state.materials.current = None;
+    }
     state.session.finish();
     state.session.document.select(selection);
+}
+
+/// Gives a material to the node that it is dropped on.
+fn take_dropped_material(state: &mut EditorState, ui: &Ui, response: &Response) {
+    let Some(material) = materials::dropped_on(response) else { return };
+    let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
+    let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+    if let Some(node) = pick_node(state, &projection.ray(pointer)) {
+        state.session.finish();
+        material_edits::assign(&mut state.session, &[node], Some(material));
+    }
 }
 
 /// Before the first picture: the color of the sky and a text.

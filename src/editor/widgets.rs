@@ -6,8 +6,9 @@ use egui::{Align, Color32, Context, Id, Key, Layout, Response, RichText, ScrollA
 pub use super::theme::MIXED;
 use super::{color_picker, theme};
 
-/// Width of the labels in points.
-const LABEL_WIDTH: f32 = 92.0;
+/// Width of the labels: a share of the row, within limits in points.
+const LABEL_SHARE: f32 = 0.42;
+const LABEL_WIDTH: [f32; 2] = [92.0, 118.0];
 
 /// A row: a label, and the content of `add` in the remaining width.
 ///
@@ -15,7 +16,8 @@ const LABEL_WIDTH: f32 = 92.0;
 pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) -> R) -> R {
     let id = ui.scope_id().with(("row", label));
     let horizontal = |ui: &mut Ui| {
-        let size = vec2(LABEL_WIDTH, theme::ROW_HEIGHT);
+        let width = (LABEL_SHARE * ui.available_width()).clamp(LABEL_WIDTH[0], LABEL_WIDTH[1]).round();
+        let size = vec2(width, theme::ROW_HEIGHT);
         let layout = Layout::left_to_right(Align::Center);
         ui.allocate_ui_with_layout(size, layout, |ui| {
             ui.set_min_size(size);

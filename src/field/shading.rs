@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use super::arrays::FlatScene;
 use super::flat_material::FlatMaterial;
-use isolith_scene::{Environment, Material};
+use super::flat_texture::FlatTextures;
+use isolith_scene::{DisplaySettings, Environment, Material};
 
 /// How a lit picture shows a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,6 +70,7 @@ impl FlatScene {
         let mut shown = Self::clone(self);
         shown.lights.clear();
         shown.environment = studio(shading);
+        shown.display = DisplaySettings::default();
         shown.environment_map = None;
         if shading == Shading::Solid {
             shown.wear(clay());
@@ -82,6 +84,7 @@ impl FlatScene {
             self.materials.push(material);
         }
         self.materials.fill(material);
+        self.textures = FlatTextures::default();
         for mesh in &mut self.meshes {
             mesh.material = Some(0);
         }

@@ -306,6 +306,14 @@ impl Scene {
         Ok(())
     }
 
+    /// Moves a material to a place in the list, counted without it.
+    pub fn move_material(&mut self, id: MaterialId, position: usize) -> Result<(), SceneError> {
+        let at = self.materials.iter().position(|m| m.id == id).ok_or(SceneError::NoMaterial(id))?;
+        let material = self.materials.remove(at);
+        self.materials.insert(position.min(self.materials.len()), material);
+        Ok(())
+    }
+
     /// Removes a material that no node uses.
     pub fn remove_material(&mut self, id: MaterialId) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == id).ok_or(SceneError::NoMaterial(id))?;

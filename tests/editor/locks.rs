@@ -155,7 +155,8 @@ pub fn drag(harness: &mut Harness<'_, Editor>, from: egui::Pos2, to: egui::Pos2)
 fn a_row_dropped_below_the_others_goes_to_the_top_level() {
     let (scene, [group, ball, cube, ring]) = scene();
     let mut harness = open(scene.clone());
-    let empty = egui::pos2(100.0, 600.0);
+    // Between the last row and the materials.
+    let empty = egui::pos2(100.0, 400.0);
     let from = row(&harness, "Ball");
     drag(&mut harness, from, empty);
     let order = |harness: &Harness<'_, Editor>| {

@@ -210,8 +210,11 @@ fn panels_are_hidden_and_shown_by_the_menu() {
         harness.run_steps(40);
     };
     toggle(&mut harness, "Outliner");
+    assert!(harness.query_by_label("Search").is_none(), "the tree is hidden");
+    assert_eq!(width(&harness), before, "the materials have its place");
+    toggle(&mut harness, "Materials");
     assert!(width(&harness) > before + 100.0, "{} {before}", width(&harness));
-    assert!(harness.query_by_label("Search").is_none(), "it is the tree that is hidden");
+    toggle(&mut harness, "Materials");
     toggle(&mut harness, "Outliner");
     assert_eq!(width(&harness), before);
 }

@@ -56,6 +56,8 @@ pub enum Command {
     ShowAll,
     /// Lock or unlock the selection.
     ToggleLock,
+    /// Give the selection copies of materials that others use, too.
+    MakeMaterialUnique,
     /// Remove unused materials.
     RemoveUnusedMaterials,
     /// Add an object of this shape.

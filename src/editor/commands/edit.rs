@@ -3,10 +3,10 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT, ICON_FOLDER,
-    ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LOCK,
-    ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM,
-    ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
+    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT,
+    ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT,
+    ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO,
+    ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
 };
 
 use super::command::Command;
@@ -120,15 +120,16 @@ fn extended_operators() -> Vec<CommandInfo> {
 }
 
 fn showing() -> Vec<CommandInfo> {
-    let [nothing, unused] =
-        ["Clears the selection and shows the scene's settings", "Removes materials that nothing uses"];
+    let nothing = "Clears the selection and shows the scene's settings";
+    let unused = "Removes materials that nothing uses";
+    let unique = "Copies of materials that others use, too, for the selection alone";
     vec![
         row(Command::SelectAll, ICON_SELECT_ALL, "Select all", "Selects every node that is not locked")
             .key(CTRL, Key::A)
             .group(),
         CommandInfo::new(Menu::Edit, Command::SelectNothing, None, "Deselect all", nothing)
             .key(NONE, Key::Escape)
-            .when(any),
+            .when(|state| any(state) || state.materials.current.is_some()),
         on_selection(
             Command::ToggleVisible,
             ICON_VISIBILITY_OFF,
@@ -140,6 +141,7 @@ fn showing() -> Vec<CommandInfo> {
             .key(Modifiers::ALT, Key::H),
         on_selection(Command::ToggleLock, ICON_LOCK, "Toggle lock", "Locked nodes are not picked in the viewport")
             .key(NONE, Key::L),
+        on_selection(Command::MakeMaterialUnique, ICON_CALL_SPLIT, "Make material unique", unique).group(),
         CommandInfo::new(Menu::Edit, Command::RemoveUnusedMaterials, None, "Remove unused materials", unused),
     ]
 }

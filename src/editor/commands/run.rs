@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{insertion, selection};
+use crate::{insertion, material_edits, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -44,10 +44,11 @@ impl Editor {
             Command::Join(operator) => selection::join(session, operator, false),
             Command::ToggleNegative => selection::toggle_negative(session),
             Command::SelectAll => selection::select_all(session),
-            Command::SelectNothing => session.document.select(Vec::new()),
+            Command::SelectNothing => select_nothing(state),
             Command::ToggleVisible => selection::toggle_visible(session),
             Command::ShowAll => selection::show_all(session),
             Command::ToggleLock => selection::toggle_locked(session),
+            Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
@@ -85,6 +86,16 @@ fn undo(session: &mut EditSession) {
 
 fn redo(session: &mut EditSession) {
     session.document.redo();
+}
+
+fn select_nothing(state: &mut EditorState) {
+    state.session.document.select(Vec::new());
+    state.materials.current = None;
+}
+
+fn make_material_unique(session: &mut EditSession) {
+    let nodes = session.document.selection().to_vec();
+    material_edits::make_unique(session, &nodes);
 }
 
 fn remove_unused_materials(session: &mut EditSession) {

@@ -14,6 +14,7 @@
 //! | `environment_map` | images of it, prepared for lighting |
 //! | `texture` | colors and values that vary over a surface |
 //! | `display` | linear light to the colors of a screen |
+//! | `material_ball` | thumbnails of materials; has no counterpart |
 
 pub mod albedo;
 pub mod area;
@@ -28,6 +29,7 @@ pub mod layers;
 pub mod lighting;
 #[cfg(test)]
 mod lobes;
+pub mod material_ball;
 pub mod occlusion;
 pub mod shadow;
 pub mod texture;
