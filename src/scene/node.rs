@@ -5,7 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::limits::{
-    APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS, UNIT,
+    APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS,
+    UNIT,
 };
 use super::params::{param_struct, param_table};
 use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
@@ -220,10 +221,6 @@ pub struct MeshNode {
     /// How fast the clip runs.
     #[serde(default = "usual_speed", skip_serializing_if = "is_usual_speed")]
     pub clip_speed: f64,
-}
-
-fn is_zero(time: &f64) -> bool {
-    *time == 0.0
 }
 
 const fn usual_speed() -> f64 {

@@ -160,6 +160,8 @@ impl MeshPass {
                 }
             }
         }
+        // The window on an instance must fit even if there is none.
+        bytes.resize(bytes.len().max(STRIDE), 0);
         if self.instances.set(device, queue, &bytes) || self.instance_group.is_none() {
             let binding = window(self.instances.buffer(), size_of::<Instance>());
             self.instance_group = Some(bind(device, "mesh instances", &self.instance_layout, &[binding]));
