@@ -7,6 +7,9 @@
 #include "common/dispatch_params.wgsl"
 #include "common/light.wgsl"
 #include "scene/surface_ray.wgsl"
+#if MESH_RAYS
+#include "scene/mesh_rays.wgsl"
+#end
 #include "scene/cone.wgsl"
 #include "light/shadow_settings.wgsl"
 #include "light/occlusion.wgsl"
@@ -88,7 +91,8 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
     }
     var cone: SceneCone;
     var has_cone = false;
-    while task < tasks && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits {
+    while task < tasks && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits
+        && scene_has_mesh_visits() {
         if !has_cone {
             scene_visits += 1u;
             cone = shadow_cone(point, task, (march.state & CONE_RAY) != 0u);
@@ -121,7 +125,12 @@ fn shadow(@builtin(global_invocation_id) id: vec3u) {
             let is_open = (march.state & (CONE_UNPROVEN | CONE_RAY)) == CONE_UNPROVEN;
             let needs_ray = is_open && settings.sample > 0u;
             if !needs_ray {
-                shadow_store(first, task, march.share * scene_mesh_share(cone));
+                // A sample asks the meshes along a ray to a point of the light; without samples, to its middle.
+                var share = march.share;
+                if share > 0.0 {
+                    share *= scene_mesh_share(shadow_cone(point, task, settings.sample > 0u));
+                }
+                shadow_store(first, task, share);
                 task += 1u;
             }
             march = cone_march_begin();

@@ -13,7 +13,7 @@ use isolith::field::light::shadow::{
 };
 use isolith::field::reference::image::render_reference;
 use isolith::field::scene_eval::{RayLimits, SceneEvaluator, surface_ray};
-use isolith::field::{GBuffer, flatten, gpu_lights};
+use isolith::field::{GBuffer, MESH_BIT, NO_LEAF, flatten, gpu_lights};
 use isolith::gallery;
 use isolith::geometry::{Camera, pixel_jitter};
 use isolith::render::{EvalStrategy, Frame, OverlaySettings, Renderer, Slot};
@@ -66,6 +66,27 @@ fn pictures_have_the_shadows_of_the_reference() {
         let [mean, _] = differences(&without.render(side, EvalStrategy::Interpreter), &reference);
         assert!(mean > 3.0, "{name}: without shadows it looks the same");
     }
+}
+
+#[test]
+fn meshes_and_fields_cast_shadows_on_each_other() {
+    let side = 64;
+    let mut scene = crate::gpu::scenes().find(|scene| scene.name == "mesh-and-fields").expect("it is shipped");
+    scene.flat.environment.shadowing = Shadowing { occlusion: false, ..Shadowing::default() };
+    let of = |meshes| render_reference(&scene.flat, meshes, &scene.camera, [side; 2], &|_| ()).unwrap().buffers;
+    let reference = of(&scene.meshes);
+    let drawn = scene.render(side, EvalStrategy::Tape);
+    let [mean, far] = differences(&drawn, &reference);
+    println!("mean {mean:.2} of 255, {far:.4} far off");
+    assert!(mean < 1.5 && far < 0.03, "mean {mean}, {far} far off");
+    // The same picture without these shadows is another one: on the fields below the meshes, and on the meshes.
+    let without = unshaded(&scene).render(side, EvalStrategy::Tape);
+    let darker = |is_mesh: bool| {
+        let pixels = (0..reference.leaf.len()).filter(|i| drawn.leaf[*i] != NO_LEAF);
+        let of_kind = pixels.filter(|i| (drawn.leaf[*i] & MESH_BIT != 0) == is_mesh);
+        of_kind.filter(|i| drawn.color[*i][1].saturating_add(12) < without.color[*i][1]).count()
+    };
+    assert!(darker(false) > 40 && darker(true) > 40, "{} and {} pixels", darker(false), darker(true));
 }
 
 /// A ball and a box over a floor, lit by a lamp alone.

@@ -196,7 +196,22 @@ fn cone_leave(cone: SceneCone, march: ptr<function, ConeMarch>) {
     march.state = select(open, CONE_ENDED | (march.state & CONE_RAY), is_dark);
 }
 
-// The share of the cone that meshes leave: they do not cast shadows yet.
+// The share of a cone's middle ray that meshes leave.
 fn scene_mesh_share(cone: SceneCone) -> f32 {
-    return 1.0;
+    var share = 1.0;
+#if MESH_RAYS
+    if mesh_rays_blocked(Ray(cone.origin, 0.0, cone.direction), cone.near, cone.far) {
+        share = 0.0;
+    }
+#end
+    return share;
+}
+
+// Whether the invocation may search the meshes once more.
+fn scene_has_mesh_visits() -> bool {
+    var has_room = true;
+#if MESH_RAYS
+    has_room = mesh_visits < MAX_MESH_VISITS / 2u;
+#end
+    return has_room;
 }

@@ -259,7 +259,7 @@ impl Renderer {
         let (scene_is_new, template_rows) =
             self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
         let parts = (&mut self.passes, &self.scene, &mut self.resources);
-        let seen = SeenScene { flat, camera, size, standpoints: &standpoints };
+        let seen = SeenScene { flat, meshes, camera, size, standpoints: &standpoints };
         let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), Self::options(&self.gpu))?;
         if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new || shadows_are_new {
             self.resources.forget_groups();
@@ -402,7 +402,7 @@ impl Renderer {
             Some(counts) => frame.warnings(counts),
             None => frame.warnings(&self.count_unfinished(frame)?),
         };
-        Ok([of_rays, frame.shadow_warnings()].concat())
+        Ok([of_rays, frame.shadow_warnings(self.resources.shadows.left_out())].concat())
     }
 
     /// Prewarms pipelines that have become ready, for about this time: lavapipe compiles a pipeline, or loads the

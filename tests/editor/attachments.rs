@@ -139,6 +139,8 @@ fn an_image_is_chosen_for_a_texture_of_a_material() {
     let mut harness = open_tall(scene);
     harness.state_mut().document_mut().select(vec![ball]);
     harness.run();
+    harness.get_by_label("Textures").click();
+    harness.run();
     choose(&mut harness, "Color image: No image", &image);
     let now = |harness: &Harness<'_, Editor>| match path.get(harness.state().document().scene()) {
         Ok(ParamValue::File(file)) => file.label().to_owned(),

@@ -42,7 +42,8 @@ fn every_shipped_scene_can_be_shown() {
         let flat = flatten(&scene, 0.0).expect(name);
         assert_eq!(flat.warnings, [], "{name}");
         assert!(flat.cameras.iter().any(|c| c.name == "Camera"), "{name}");
-        assert!(!flat.lights.is_empty() && !flat.components.is_empty(), "{name}");
+        let is_lit = !flat.lights.is_empty() || flat.environment_map.is_some();
+        assert!(is_lit && !flat.components.is_empty(), "{name}");
         for mesh in &flat.meshes {
             assert!(library.get(&mesh.model).is_ok(), "{name}");
         }

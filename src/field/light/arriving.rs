@@ -8,6 +8,7 @@ use super::shadow::{
     ShadowCone, ShadowProof, cone_fineness, light_extent, light_is_seen, light_sample, light_toward, shadow_share,
 };
 use crate::lights::GpuLight;
+use crate::mesh_rays::{Meshes, mesh_rays_blocked};
 use crate::reference::trace::TraceError;
 use crate::scene_eval::{SceneEvaluator, surface_ray};
 
@@ -52,13 +53,18 @@ impl Arriving {
     ///
     /// # Errors
     /// A ray could not be followed to its end.
-    pub fn at(evaluator: &mut SceneEvaluator<'_>, lights: &[GpuLight], point: &SeenPoint) -> Result<Self, TraceError> {
+    pub fn at(
+        evaluator: &mut SceneEvaluator<'_>,
+        meshes: &Meshes,
+        lights: &[GpuLight],
+        point: &SeenPoint,
+    ) -> Result<Self, TraceError> {
         let shadowing = evaluator.flat().environment.shadowing;
         let mut arriving = Self::all(point.normal);
         if shadowing.shadows {
             let fineness = cone_fineness(shadowing.shadow_quality);
             for (index, light) in (0..).zip(lights).take_while(|(_, light)| light.cast_shadows == 1) {
-                arriving.shares.push(light_share(evaluator, light, index, point, fineness)?);
+                arriving.shares.push(light_share(evaluator, meshes, (light, index), point, fineness)?);
             }
         }
         if shadowing.occlusion {
@@ -82,8 +88,8 @@ impl Arriving {
 /// The visible share of a light; 1 if it does not reach the surface anyway.
 fn light_share(
     evaluator: &mut SceneEvaluator<'_>,
-    light: &GpuLight,
-    index: u32,
+    meshes: &Meshes,
+    (light, index): (&GpuLight, u32),
     point: &SeenPoint,
     fineness: f64,
 ) -> Result<f64, TraceError> {
@@ -93,12 +99,16 @@ fn light_share(
     }
     let cone = ShadowCone::new(start(point, to_light), to_light, distance, light_extent(light), point.footprint);
     let cone = ShadowCone { fineness, ..cone };
+    // A sample takes a ray to a point of the light; without samples, the meshes are asked along the middle.
+    let place = if point.sample == 0 { [0.0; 2] } else { light_sample(point.pixel, index, point.sample) };
     let found = shadow_share(evaluator, &cone);
-    if found.proof != ShadowProof::None || point.sample == 0 {
-        return Ok(found.share);
-    }
-    let place = light_sample(point.pixel, index, point.sample);
-    Ok(f64::from(u8::from(light_is_seen(evaluator, &cone, place)?)))
+    let share = if found.proof != ShadowProof::None || point.sample == 0 {
+        found.share
+    } else {
+        f64::from(u8::from(light_is_seen(evaluator, &cone, place)?))
+    };
+    let is_blocked = share > 0.0 && mesh_rays_blocked(evaluator.flat(), meshes, &cone.ray_to(place), 0.0, cone.far);
+    Ok(if is_blocked { 0.0 } else { share })
 }
 
 fn start(point: &SeenPoint, direction: DVec3) -> DVec3 {

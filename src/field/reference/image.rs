@@ -250,7 +250,7 @@ impl View<'_> {
             let footprint = self.camera.footprint(self.size[1].into()) * point.position.length();
             let (eye, position) = (self.camera.position, point.position);
             let seen = SeenPoint { eye, position, normal, footprint, pixel, sample: 0 };
-            Arriving::at(&mut SceneEvaluator::new(self.flat), &self.lights, &seen)?
+            Arriving::at(&mut SceneEvaluator::new(self.flat), self.meshes, &self.lights, &seen)?
         } else {
             Arriving::all(point.normal)
         };

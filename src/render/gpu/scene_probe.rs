@@ -98,7 +98,7 @@ impl SceneProbe {
         let entries: Vec<_> =
             types.into_iter().enumerate().map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty)).collect();
         let own = layout(device, "scene probe", &entries);
-        let hierarchy = HierarchyBuffers::layout(device);
+        let hierarchy = HierarchyBuffers::layout(device, false);
         let text = assemble("probe_scene.wgsl", &evaluator, Options::default())?;
         let pipeline = |entry_point| {
             let groups = [&layouts.view, &layouts.scene, &own, &hierarchy];
@@ -162,7 +162,7 @@ impl SceneProbe {
         let groups = [
             bind(device, "view", &self.layouts.view, &[view.binding()]),
             bindings.bind(device, &self.layouts.scene),
-            buffers.bind(device, &self.hierarchy),
+            buffers.bind(device, &self.hierarchy, None),
         ];
         LoadedScene { probe: self, gpu, origin, groups }
     }

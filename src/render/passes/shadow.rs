@@ -11,9 +11,10 @@ use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::Bound;
 use crate::resources::hierarchy::HierarchyBuffers;
 use crate::resources::layouts::*;
+use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::{DispatchParams, UNIFORM_STRIDE};
 use isolith_field::FlatScene;
-use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble};
+use isolith_wgsl::{Evaluator, OpSet, Options, ShaderError, assemble_with};
 
 bindings! {
     /// Group 2.
@@ -37,6 +38,8 @@ const MOST_PIPELINES: usize = 4;
 struct ScenePipeline {
     ops: OpSet,
     by_tapes: bool,
+    /// Whether meshes cast shadows.
+    meshes: bool,
     /// Shadows, and occlusion; each is built when a scene first uses it.
     pipelines: [Option<ComputePipeline>; 2],
 }
@@ -50,12 +53,15 @@ pub struct ShadowPass {
     layouts: Layouts,
     own: BindGroupLayout,
     hierarchy: BindGroupLayout,
+    /// The same with the meshes.
+    with_meshes: BindGroupLayout,
     /// The one in use comes first.
     pipelines: Vec<ScenePipeline>,
 }
 
 impl ShadowPass {
-    /// Chooses the pipelines for a scene, and builds what is missing. `used`: whether there are shadows, and occlusion.
+    /// Chooses the pipelines for a scene, and builds what is missing. `by_tapes`: whether all components have
+    /// tapes; `meshes`: whether meshes cast shadows; `used`: whether there are shadows, and occlusion.
     ///
     /// # Errors
     /// A shader file is missing.
@@ -63,25 +69,28 @@ impl ShadowPass {
         &mut self,
         device: &wgpu::Device,
         flat: &FlatScene,
-        by_tapes: bool,
+        [by_tapes, meshes]: [bool; 2],
         used: [bool; 2],
         options: Options,
     ) -> Result<(), ShaderError> {
         let wanted = OpSet::of(flat);
-        let fits =
-            |one: &ScenePipeline| one.by_tapes == by_tapes && one.ops.covers(&wanted) && one.ops.is_near(&wanted);
+        let fits = |one: &ScenePipeline| {
+            one.by_tapes == by_tapes && one.meshes == meshes && one.ops.covers(&wanted) && one.ops.is_near(&wanted)
+        };
         match self.pipelines.iter().position(fits) {
             Some(at) => self.pipelines[..=at].rotate_right(1),
-            None => self.pipelines.insert(0, ScenePipeline { ops: wanted, by_tapes, pipelines: [None, None] }),
+            None => self.pipelines.insert(0, ScenePipeline { ops: wanted, by_tapes, meshes, pipelines: [None, None] }),
         }
         self.pipelines.truncate(MOST_PIPELINES);
-        let Self { layouts, own, hierarchy, pipelines } = self;
+        let Self { layouts, own, hierarchy, with_meshes, pipelines } = self;
+        let queried = if meshes { &*with_meshes } else { &*hierarchy };
+        let features: &[&str] = if meshes { &["MESH_RAYS"] } else { &[] };
         let ScenePipeline { ops, pipelines, .. } = &mut pipelines[0];
         let evaluator = if by_tapes { Evaluator::Tape(ops.clone()) } else { Evaluator::Interpreter(ops.clone()) };
         for ((pipeline, entry_point), _) in pipelines.iter_mut().zip(ENTRY_POINTS).zip(used).filter(|(_, used)| *used) {
             if pipeline.is_none() {
-                let text = assemble(Pass::Shadow.file(), &evaluator, options)?;
-                let groups = [&layouts.view, &layouts.scene, &*own, &*hierarchy];
+                let text = assemble_with(Pass::Shadow.file(), &evaluator, options, features)?;
+                let groups = [&layouts.view, &layouts.scene, &*own, queried];
                 *pipeline = Some(compute_pipeline(device, Pass::Shadow.label(), text, entry_point, &groups));
             }
         }
@@ -94,7 +103,8 @@ impl FramePass for ShadowPass {
         Ok(Self {
             layouts: layouts.clone(),
             own: ShadowBindings::layout(device),
-            hierarchy: HierarchyBuffers::layout(device),
+            hierarchy: HierarchyBuffers::layout(device, false),
+            with_meshes: HierarchyBuffers::layout(device, true),
             pipelines: Vec::new(),
         })
     }
@@ -114,7 +124,9 @@ impl FramePass for ShadowPass {
             settings: shadows.settings.binding(),
             dispatch: window(bound.resources.dispatch_params(), size_of::<DispatchParams>()),
         };
-        vec![own.bind(device, &self.own), shadows.hierarchy.bind(device, &self.hierarchy)]
+        let meshes = shadows.meshes.as_ref().filter(|_| shadows.has_meshes).map(MeshRayBuffer::binding);
+        let layout = if meshes.is_some() { &self.with_meshes } else { &self.hierarchy };
+        vec![own.bind(device, &self.own), shadows.hierarchy.bind(device, layout, meshes)]
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {

@@ -1,5 +1,7 @@
 //! Shadows and occlusion of a frame: what the pass `shadow` needs, and its relaunches.
 
+use std::sync::Arc;
+
 use super::choice::{Chosen, loop_trips};
 use super::error::RenderError;
 use super::evaluation::EvaluationCost;
@@ -15,6 +17,7 @@ use crate::resources::shadows::{SceneQuery, ShadowSettings};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Component, FlatScene, Warning};
 use isolith_geometry::Camera;
+use isolith_mesh::TriangleMesh;
 use isolith_wgsl::{OpSet, Options};
 
 /// Expected evaluations per pixel for a light, and for the cones of occlusion.
@@ -91,6 +94,8 @@ impl ShadowWork {
 pub struct SeenScene<'a> {
     /// The scene.
     pub flat: &'a FlatScene,
+    /// Its meshes.
+    pub meshes: &'a [Option<Arc<TriangleMesh>>],
     /// The eye.
     pub camera: &'a Camera,
     /// Size of the picture.
@@ -111,8 +116,9 @@ pub fn upload(
     options: Options,
 ) -> Result<bool, RenderError> {
     let Some(ShadowWork { settings, cost, .. }) = work else { return Ok(resources.shadows.switch_off()) };
-    let SeenScene { flat, camera, size, standpoints } = seen;
-    passes.shadow.prepare(&gpu.device, flat, cost.by_tapes, settings.parts(), options)?;
+    let SeenScene { flat, meshes, camera, size, standpoints } = seen;
+    let has_meshes = settings.lights > 0 && meshes.iter().any(Option::is_some);
+    passes.shadow.prepare(&gpu.device, flat, [cost.by_tapes, has_meshes], settings.parts(), options)?;
     let mut components = query_components(flat, camera.position, &standpoints.all);
     if cost.by_tapes {
         for ((component, tree), at) in components.iter_mut().zip(&chosen.trees).zip(&standpoints.all) {
@@ -121,7 +127,8 @@ pub fn upload(
             }
         }
     }
-    let query = SceneQuery { components, origin: camera.position, iterations: cost.iterations };
+    let (origin, iterations) = (camera.position, cost.iterations);
+    let query = SceneQuery { components, origin, iterations, meshes, has_meshes };
     Ok(resources.shadows.upload(gpu, flat, &query, settings, size))
 }
 
@@ -154,10 +161,12 @@ pub fn go_on(gpu: &Gpu, resources: &FrameResources, frame: &mut Frame, at: usize
 
 impl Frame {
     /// Warnings about shadows that are missing or not complete.
-    pub(super) fn shadow_warnings(&self) -> Vec<Warning> {
+    pub(super) fn shadow_warnings(&self, left_out: usize) -> Vec<Warning> {
         let [used, left] = self.shadowed_lights;
         let pixels = self.unfinished_shadows;
         let reasons = [
+            (left_out > 0)
+                .then(|| format!("{left_out} meshes cast no shadows: the device has no room for their triangles")),
             (pixels > 0).then(|| format!("the shadows of {pixels} pixels did not come to an end; they are too light")),
             (left > 0)
                 .then(|| format!("the last {left} lights cast no shadows: a picture of this size has room for {used}")),

@@ -99,11 +99,16 @@ pub struct HierarchyBuffers {
 }
 
 impl HierarchyBuffers {
-    /// The layout of the buffers.
-    pub fn layout(device: &wgpu::Device) -> BindGroupLayout {
+    /// The layout of the buffers, followed by that of the meshes if rays meet them too.
+    pub fn layout(device: &wgpu::Device, meshes: bool) -> BindGroupLayout {
         let types = [read_storage(), read_storage(), uniform(false)];
-        let entries: Vec<_> =
-            types.into_iter().enumerate().map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty)).collect();
+        let of_meshes = meshes.then(read_storage);
+        let entries: Vec<_> = types
+            .into_iter()
+            .chain(of_meshes)
+            .enumerate()
+            .map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty))
+            .collect();
         layout(device, "hierarchy", &entries)
     }
 
@@ -136,8 +141,15 @@ impl HierarchyBuffers {
         grown.contains(&true)
     }
 
-    /// Bind group of the buffers.
-    pub fn bind(&self, device: &wgpu::Device, layout: &BindGroupLayout) -> BindGroup {
-        bind(device, "hierarchy", layout, &[self.nodes.binding(), self.components.binding(), self.limits.binding()])
+    /// Bind group of the buffers, and of those of the meshes.
+    pub fn bind(
+        &self,
+        device: &wgpu::Device,
+        layout: &BindGroupLayout,
+        meshes: Option<wgpu::BindingResource<'_>>,
+    ) -> BindGroup {
+        let own = [self.nodes.binding(), self.components.binding(), self.limits.binding()];
+        let all: Vec<_> = own.into_iter().chain(meshes).collect();
+        bind(device, "hierarchy", layout, &all)
     }
 }

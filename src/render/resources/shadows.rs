@@ -1,16 +1,20 @@
 //! Input and output of the pass `shadow`. Only scenes with shadows or occlusion fill them.
 
+use std::sync::Arc;
+
 use bytemuck::{Pod, Zeroable};
 
 use crate::frame::plan::MOST_SHADOW_PIXELS;
 use crate::gpu::Gpu;
 use crate::resources::buffers::SyncedBuffer;
 use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits};
+use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::GpuComponent;
 use glam::DVec3;
 use isolith_field::FlatScene;
 use isolith_field::light::occlusion::OCCLUSION_CONES;
 use isolith_field::light::shadow::cone_fineness;
+use isolith_mesh::TriangleMesh;
 
 /// Settings of shadows and occlusion; `shaders/light/shadow_settings.wgsl` is its counterpart.
 #[repr(C)]
@@ -72,14 +76,18 @@ impl ShadowSettings {
 }
 
 /// What a frame asks of the scene.
-#[derive(Clone, Debug)]
-pub struct SceneQuery {
+#[derive(Debug)]
+pub struct SceneQuery<'a> {
     /// The components relative to the eye.
     pub components: Vec<GpuComponent>,
     /// The eye.
     pub origin: DVec3,
     /// Upper bound of the loop iterations of one evaluation of a component.
     pub iterations: u32,
+    /// The meshes, parallel to those of the scene.
+    pub meshes: &'a [Option<Arc<TriangleMesh>>],
+    /// Whether meshes cast shadows.
+    pub has_meshes: bool,
 }
 
 /// The buffers.
@@ -89,6 +97,10 @@ pub struct ShadowBuffers {
     pub used: ShadowSettings,
     /// The scene, for queries.
     pub hierarchy: HierarchyBuffers,
+    /// The meshes, once a scene had some.
+    pub meshes: Option<MeshRayBuffer>,
+    /// Whether meshes cast shadows in this frame.
+    pub has_meshes: bool,
     /// The settings.
     pub settings: SyncedBuffer,
     /// The shares of all lights and cones, for each pixel.
@@ -105,6 +117,8 @@ impl ShadowBuffers {
         Self {
             used: ShadowSettings::default(),
             hierarchy: HierarchyBuffers::new(device),
+            meshes: None,
+            has_meshes: false,
             settings: SyncedBuffer::uniform(device, "shadow settings"),
             shares: SyncedBuffer::read_back(device, "shadow shares"),
             states: SyncedBuffer::storage(device, "shadow states"),
@@ -117,15 +131,24 @@ impl ShadowBuffers {
         &mut self,
         gpu: &Gpu,
         flat: &FlatScene,
-        query: &SceneQuery,
+        query: &SceneQuery<'_>,
         settings: ShadowSettings,
         size: [u32; 2],
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
         let pixels = size[0] as usize * size[1] as usize;
         let hierarchy = flat.hierarchy();
-        let limits = SceneLimits::new(hierarchy, query.iterations);
+        let mut limits = SceneLimits::new(hierarchy, query.iterations);
+        let had_meshes = std::mem::replace(&mut self.has_meshes, query.has_meshes);
+        let mut meshes_are_new = had_meshes != self.has_meshes;
+        if self.has_meshes {
+            // Visits of meshes count as iterations, too.
+            limits.max_evaluations = (limits.max_evaluations * 3 / 5).max(2);
+            let held = self.meshes.get_or_insert_with(|| MeshRayBuffer::new(device));
+            meshes_are_new |= held.set(gpu, flat, query.meshes, query.origin);
+        }
         let changed = [
+            meshes_are_new,
             self.used.is_on() != settings.is_on(),
             self.hierarchy.set(gpu, hierarchy, query.origin, &query.components, limits),
             self.settings.set(device, queue, bytemuck::bytes_of(&settings)),
@@ -134,6 +157,12 @@ impl ShadowBuffers {
         ];
         self.used = settings;
         changed.contains(&true)
+    }
+
+    /// Number of meshes that cast no shadows for want of room.
+    pub fn left_out(&self) -> usize {
+        let meshes = self.meshes.as_ref().filter(|_| self.has_meshes);
+        meshes.map_or(0, |meshes| meshes.left_out().len())
     }
 
     /// Settings and shares as bindings, if there are some.

@@ -125,6 +125,13 @@ pub struct GpuComponent {
 /// few roundings of 2^-24.
 const FLUSH_ROUNDING: f64 = 4.0 / 16_777_216.0;
 
+/// See [`GpuComponent::flush`]. Relative to a point near the eye, rounding moves visible points by at most the allowed
+/// amount.
+fn flush(component: &Component, at: &Standpoint) -> f64 {
+    let rounding = FLUSH_ROUNDING * component.flush_extent;
+    if at.shift == DVec3::ZERO { rounding } else { rounding.min(at.most_moved) }
+}
+
 /// See [`GpuComponent::flush_near`]. Relative to a point near the eye, rounding moves the nearest visible points by at
 /// most the allowed amount.
 fn flush_near(component: &Component, at: &Standpoint) -> f64 {
@@ -169,7 +176,7 @@ impl GpuComponent {
             grid_counts: [0; 3],
             tapes: 0,
             ray_origin_depth: at.ray_origin_depth as f32,
-            flush: (FLUSH_ROUNDING * component.flush_extent) as f32,
+            flush: flush(component, at) as f32,
             flush_near: flush_near(component, at) as f32,
             _padding: 0,
         }

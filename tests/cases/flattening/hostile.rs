@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use isolith::field::{
-    Cancel, FlatScene, FlattenError, MAX_COMPONENT_NODES, MAX_FLAT_LEVELS, MAX_FLAT_NODES, MAX_STACK, flatten,
-    flatten_until,
+    Cancel, FlatScene, FlattenError, MAX_COMPONENT_NODES, MAX_FLAT_LEVELS, MAX_FLAT_NODES, MAX_LIGHTS, MAX_STACK,
+    flatten, flatten_until,
 };
 use isolith::scene::{Modifier, Node, NodeId, NodeKind, Operator, Scene, Shape, file};
 
@@ -253,6 +253,10 @@ fn deep_nesting_that_stays_is_named_and_deep_nesting_around_many_is_quick() {
     assert_eq!(flat.nodes.iter().filter(|node| node.is_leaf()).count(), 50_000);
 }
 
+fn sun() -> Node {
+    Node::new("sun", NodeKind::Light(isolith::scene::Light::sun()))
+}
+
 #[test]
 fn as_many_nodes_as_a_scene_holds_are_flattened() {
     let table = |node: &dyn Fn(u64) -> Node| {
@@ -267,8 +271,10 @@ fn as_many_nodes_as_a_scene_holds_are_flattened() {
     assert_eq!(flat.nodes.iter().filter(|node| node.is_leaf()).count(), 99_999);
     let empty = timed("empty groups", &table(&|_| group(Operator::Union))).expect("within every limit");
     assert!(empty.nodes.is_empty());
-    let lights = table(&|_| Node::new("sun", NodeKind::Light(isolith::scene::Light::sun())));
-    assert_eq!(timed("lights", &lights).expect("within every limit").lights.len(), 99_999);
+    let light = |i: u64| if i % 7 == 0 { sun() } else { group(Operator::Union) };
+    assert_eq!(timed("lights", &table(&light)).expect("within every limit").lights.len(), 14_285);
+    let (_, what, value) = refused("too many lights", &table(&|_| sun()));
+    assert!(what.contains("lights") && value == MAX_LIGHTS + 1, "{what}: {value}");
 }
 
 #[test]
@@ -311,8 +317,9 @@ fn flattening_is_canceled() {
     let (flat, usage) = flatten_until(&scene, 0.0, &cancel).expect("within every limit").expect("nobody says stop");
     let entries = usage.iter().find(|usage| usage.name == "entries").expect("a limit");
     assert_eq!((entries.used, entries.limit, entries.node), (flat.nodes.len(), MAX_FLAT_NODES, Some(NodeId(1))));
+    let may_be_none = ["stack", "bytes of images of textures"];
     assert!(
-        usage.iter().all(|usage| usage.used <= usage.limit && usage.used > 0 || usage.name == "stack"),
+        usage.iter().all(|usage| usage.used <= usage.limit && usage.used > 0 || may_be_none.contains(&usage.name)),
         "{usage:?}"
     );
     cancel.cancel();

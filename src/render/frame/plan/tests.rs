@@ -88,7 +88,8 @@ fn only_pictures_with_shadows_have_dispatches_for_them_two_for_each_part() {
     let evaluations = vec![cheap; flat.components.len()];
     let of = |shadows: f64| {
         let model = CostModel::new(true);
-        let plan = plan(&flat, &camera.into(), [320, 200], &evaluations, shadows, &model, Room::UNLIMITED).expect("room");
+        let plan =
+            plan(&flat, &camera.into(), [320, 200], &evaluations, shadows, &model, Room::UNLIMITED).expect("room");
         let shadows = plan.dispatches.into_iter().filter(|dispatch| dispatch.pass == Pass::Shadow);
         shadows.map(|dispatch| dispatch.params).collect::<Vec<_>>()
     };
