@@ -215,12 +215,15 @@ fn seconds(scene: &BenchScene, side: u32) -> [f64; 2] {
 }
 
 /// Figures; the gate is wide, for times scatter on a busy machine.
+/// A name, and what it changes.
+type Change = (&'static str, fn(&mut Shadowing));
+
 #[test]
 fn shadows_cost_a_few_times_what_visibility_costs() {
     const SIDE: u32 = 160;
     for name in ["shadows", "random-145", "random-577"] {
         let mut ratios = Vec::new();
-        let changes: [(&str, fn(&mut Shadowing)); 5] = [
+        let changes: [Change; 5] = [
             ("all", |_| ()),
             ("shadows", |s| s.occlusion = false),
             ("occlusion", |s| s.shadows = false),

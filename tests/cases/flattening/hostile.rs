@@ -271,7 +271,7 @@ fn as_many_nodes_as_a_scene_holds_are_flattened() {
     assert_eq!(flat.nodes.iter().filter(|node| node.is_leaf()).count(), 99_999);
     let empty = timed("empty groups", &table(&|_| group(Operator::Union))).expect("within every limit");
     assert!(empty.nodes.is_empty());
-    let light = |i: u64| if i % 7 == 0 { sun() } else { group(Operator::Union) };
+    let light = |i: u64| if i.is_multiple_of(7) { sun() } else { group(Operator::Union) };
     assert_eq!(timed("lights", &table(&light)).expect("within every limit").lights.len(), 14_285);
     let (_, what, value) = refused("too many lights", &table(&|_| sun()));
     assert!(what.contains("lights") && value == MAX_LIGHTS + 1, "{what}: {value}");
