@@ -296,7 +296,7 @@ mod tests {
                 .all(|name| first.iter().any(|path| path == name)),
             "{first:?}"
         );
-        assert!(by_phong(Section::Advanced).contains(&"model".to_owned()), "the way back");
-        assert!(by_layers(Section::Advanced).contains(&"model".to_owned()));
+        assert!(by_phong(Section::Advanced).contains(&"model.type".to_owned()), "the way back");
+        assert!(by_layers(Section::Advanced).contains(&"model.type".to_owned()));
     }
 }

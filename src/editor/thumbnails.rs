@@ -135,10 +135,11 @@ mod tests {
         let jobs = Jobs::default();
         let key = ThumbnailKey::OfScene(material.id);
         for _ in 0..2_000 {
-            let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            let mut output = ctx.run_ui(egui::RawInput::default(), |ui| {
                 thumbnails.paint(ui, Rect::from_min_size(pos2(0.0, 0.0), vec2(40.0, 40.0)), key, material);
                 thumbnails.update(ui.ctx(), &jobs);
             });
+            output.textures_delta.clear();
             match thumbnails.ready.get(&key) {
                 Some(ready) if looks_alike(&ready.of, material) => return (ready.texture.id(), ready.of.clone()),
                 _ => std::thread::sleep(Duration::from_millis(5)),

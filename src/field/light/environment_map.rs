@@ -60,7 +60,8 @@ impl PlacedMap {
             EnvironmentKind::Gradient { .. } => None,
             EnvironmentKind::Color { color } => {
                 let texel = color.map(|v| v as f32);
-                let image = EnvironmentImage { size: [1, 1], texels: vec![texel], pixels: 1 };
+                // As many texels as the sums over directions need to be exact.
+                let image = EnvironmentImage { size: [64, 32], texels: vec![texel; 2048], pixels: 2048 };
                 Some(Self { map: Arc::new(EnvironmentMap::new(&image)), strength: 1.0, rotation: 0.0 })
             }
             EnvironmentKind::Image { image, strength, rotation } => {
