@@ -36,6 +36,9 @@ const OCCLUSION_FAR: f32 = 0.76;
 const OCCLUSION_GROWTH: f32 = 3.0;
 const OCCLUSION_SINE: f32 = 0.5;
 
+// Least step of a ray, in footprints.
+const RAY_STEP: f32 = 0.004;
+
 // A point of a surface.
 struct ShadowPoint {
     pixel: vec2u,
@@ -54,7 +57,8 @@ fn shadow_cone(point: ShadowPoint, task: u32, is_ray: bool) -> SceneCone {
     let start = scene_surface_ray(point.position, point.normal, toward.xyz, point.depth);
     let far = select(0.0, toward.w, dot(point.normal, toward.xyz) > 0.0);
     let width = select(spread, 0.0, is_ray);
-    let least = 0.25 * view.footprint * point.depth;
+    // A ray must not step over the corner of a solid, which a cone sees at its side.
+    let least = select(0.25, RAY_STEP, is_ray) * view.footprint * point.depth;
     let fineness = select(settings.fineness, 0.0, is_ray);
     let along = select(toward.xyz, ray, is_ray);
     let climb = dot(point.normal, along);
