@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use isolith_scene::{Attachment, Environment, EnvironmentImage, EnvironmentKind};
 
@@ -14,8 +15,10 @@ pub const LEVELS: usize = 1 + ROUGH_LEVELS;
 pub const ROUGH_LEVELS: usize = 6;
 /// Sizes of the images for reflections, at most.
 const ROUGH_SIZES: [[usize; 2]; ROUGH_LEVELS] = [[256, 128], [256, 128], [128, 64], [64, 32], [32, 16], [32, 16]];
-/// Directions that a texel of the images for reflections averages.
-const SAMPLES: usize = 64;
+/// Directions that a texel of the images for reflections averages: the fewer texels, the more.
+const SAMPLES: std::ops::RangeInclusive<usize> = 64..=1024;
+/// Directions that all texels of such an image average together, within these limits.
+const LEVEL_SAMPLES: usize = 1 << 21;
 
 /// An equirectangular image with shared exponents: 9 bits of each color, and 5 of the exponent.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,6 +149,7 @@ fn rough_level(reduced: &[MapLevel], k: usize) -> MapLevel {
     let size = [0, 1].map(|axis| ROUGH_SIZES[k][axis].min(reduced[0].size[axis]));
     let roughness = (k as f64 / (ROUGH_LEVELS - 1) as f64).powf(1.5);
     let a2 = roughness.powi(4);
+    let samples = (LEVEL_SAMPLES / (size[0] * size[1])).clamp(*SAMPLES.start(), *SAMPLES.end());
     let place = MapLevel { size, texels: Vec::new() };
     // The reduction whose texels are as large as the solid angle `solid`.
     let sampled = |direction: DVec3, solid: f64| {
@@ -161,8 +165,8 @@ fn rough_level(reduced: &[MapLevel], k: usize) -> MapLevel {
         }
         let (right, up) = normal.any_orthonormal_pair();
         let (mut sum, mut weights) = (DVec3::ZERO, 0.0);
-        for i in 0..SAMPLES {
-            let (u, turn) = ((i as f64 + 0.5) / SAMPLES as f64, 2.0 * PI * radical_inverse(i as u32));
+        for i in 0..samples {
+            let (u, turn) = ((i as f64 + 0.5) / samples as f64, 2.0 * PI * radical_inverse(i as u32));
             let cosine = ((1.0 - u) / (1.0 + (a2 - 1.0) * u)).sqrt();
             let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
             let half = right * (sine * turn.cos()) + up * (sine * turn.sin()) + normal * cosine;
@@ -171,7 +175,7 @@ fn rough_level(reduced: &[MapLevel], k: usize) -> MapLevel {
             if weight > 0.0 {
                 // The density of the direction is that of the half vector by 4 cos.
                 let density = a2 / (PI * (cosine * cosine * (a2 - 1.0) + 1.0).powi(2)) * 0.25;
-                sum += sampled(direction, 4.0 / (SAMPLES as f64 * density)) * weight;
+                sum += sampled(direction, 1.0 / (samples as f64 * density)) * weight;
                 weights += weight;
             }
         }
@@ -186,8 +190,8 @@ fn radical_inverse(number: u32) -> f64 {
 }
 
 impl MapLevel {
-    fn new(size: [usize; 2], color: impl Fn(usize) -> DVec3) -> Self {
-        Self { size, texels: (0..size[0] * size[1]).map(|i| packed(color(i))).collect() }
+    fn new(size: [usize; 2], color: impl Fn(usize) -> DVec3 + Sync) -> Self {
+        Self { size, texels: (0..size[0] * size[1]).into_par_iter().map(|i| packed(color(i))).collect() }
     }
 
     /// The level with half as many columns and lines; `None` if there is one texel.
