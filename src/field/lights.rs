@@ -155,10 +155,10 @@ fn reach(color: DVec3) -> f64 {
 }
 
 /// The lights that may reach what the camera sees in a picture of `size` pixels, as seen from the camera. A scene
-/// without lights gets a studio setup that is fixed to the viewer: a key light from over the left shoulder and a weak
+/// without lights, and without an image or color around it, gets a studio setup that is fixed to the viewer: a key light from over the left shoulder and a weak
 /// one from the right.
 pub fn gpu_lights(flat: &FlatScene, camera: &Camera, size: [u32; 2]) -> Vec<GpuLight> {
-    if flat.lights.is_empty() {
+    if flat.lights.is_empty() && flat.environment_map.is_none() {
         let world = |direction: DVec3| camera.rotation * direction;
         return vec![
             GpuLight::directional(world(DVec3::new(0.55, -0.75, -0.9)), DVec3::new(1.12, 1.08, 1.02)),

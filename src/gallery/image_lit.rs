@@ -1,13 +1,14 @@
 //! Balls from smooth to rough and from plastic to metal, lit by an image of a studio.
 
 use super::scene_builder::{SceneBuilder, cuboid, object, sphere, v};
-use isolith_scene::{Attachment, EnvironmentImage, EnvironmentKind, Scene};
+use isolith_scene::{Attachment, EnvironmentImage, EnvironmentKind, Scene, Shadowing};
 
 /// Columns and lines of the studio's image.
 const STUDIO: [u32; 2] = [128, 64];
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.0; 3], [0.0; 3], [0.0; 3]);
+    builder.shade(Shadowing::default());
     let image = Attachment::<EnvironmentImage>::painted("studio.hdr", STUDIO, studio);
     builder.environment(EnvironmentKind::Image { image, strength: 1.0, rotation: 0.0 });
     let floor = builder.surface("Table", [0.16, 0.17, 0.19], 0.0, 0.45);

@@ -1,13 +1,15 @@
 //! Every kind of light, each over a ball and a box of its own.
 
 use super::scene_builder::{SceneBuilder, cuboid, object, sphere, turn_y, v};
-use isolith_scene::{Falloff, LightKind, Scene};
+use isolith_scene::{Falloff, LightKind, Scene, Shadowing};
 
 /// Distance from one pair of shapes to the next, in meters.
 const SPACING: f64 = 2.4;
 
 pub(super) fn scene() -> Scene {
     let mut builder = SceneBuilder::new([0.012, 0.014, 0.018], [0.03, 0.032, 0.036], [0.025, 0.027, 0.03]);
+    builder.shade(Shadowing::default());
+    builder.expose(1.5);
     let floor = builder.surface("Floor", [0.42, 0.40, 0.38], 0.0, 0.5);
     let ball = builder.surface("Ball", [0.72, 0.70, 0.66], 0.0, 0.28);
     let wood = builder.surface("Box", [0.46, 0.20, 0.08], 0.0, 0.4);
@@ -36,6 +38,6 @@ pub(super) fn scene() -> Scene {
     let lamp = Falloff::Attenuation { constant: 0.6, linear: 0.3, quadratic: 0.3, range: 3.2 };
     let flame = LightKind::Point { power: 60.0, radius: 0.15, falloff: lamp };
     builder.light("Flame", [at(4.0, 1.7, 1.2), below(4.0)], [1.0, 0.42, 0.12], flame);
-    builder.camera([0.0, 3.6, 12.5], [0.0, 0.85, 0.0], 42.0);
+    builder.camera([0.0, 3.4, 11.5], [0.0, 0.9, 0.0], 38.0);
     builder.finish()
 }

@@ -27,6 +27,11 @@ impl SceneBuilder {
         Self { scene }
     }
 
+    /// Brightens the picture by this many stops.
+    pub fn expose(&mut self, stops: f64) {
+        self.scene.display.exposure = stops;
+    }
+
     /// Switches shadows and occlusion on.
     pub fn shade(&mut self, shadowing: Shadowing) {
         self.scene.environment.shadowing = shadowing;
