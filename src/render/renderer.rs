@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 use super::passes::{Passes, frame_pass::Building, overlay_settings::OverlaySettings};
 use super::recipe::{Extent, Pass};
 use crate::frame::cost_model::CostModel;
-use crate::frame::plan::{FramePlan, Room, TooMuch, plan};
+use crate::frame::plan::{FramePlan, PixelLight, Room, TooMuch, plan};
 use crate::gpu::Gpu;
 use crate::gpu::readback::{read_buffers, read_color, read_words_at};
 use crate::passes::shade_features::ShadeFeatures;
@@ -34,7 +34,7 @@ use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
-use isolith_field::{Cancel, FlatScene, GBuffer, TapeCache, Warning, gpu_lights};
+use isolith_field::{Cancel, FlatScene, GBuffer, GpuLight, TapeCache, Warning, gpu_lights};
 use isolith_geometry::{Camera, SampleView};
 use isolith_mesh::TriangleMesh;
 use isolith_wgsl::{Options, SkipMode};
@@ -75,6 +75,7 @@ pub struct Renderer {
 struct Prepared {
     chosen: Chosen,
     plan: FramePlan,
+    lights: Vec<GpuLight>,
     shadows: Option<ShadowWork>,
 }
 
@@ -207,12 +208,13 @@ impl Renderer {
                 RenderError::ListBytes { size, node: node(component), needed: bytes_of_subtiles(subtiles), limit }
             }
         };
-        let casters = gpu_lights(flat, &view.camera, size).iter().filter(|light| light.cast_shadows == 1).count();
+        let lights = gpu_lights(flat, &view.camera, size);
+        let casters = lights.iter().filter(|light| light.cast_shadows == 1).count();
         let shadows = ShadowWork::of(flat, &chosen, casters, size, limit);
-        let per_pixel = shadows.map_or(0.0, |shadows| shadows.per_pixel());
-        let plan = plan(flat, view, size, &chosen.evaluations, per_pixel, &self.cost_model, room).map_err(refused)?;
+        let light = PixelLight { lights: lights.len(), shadows: shadows.map_or(0.0, |shadows| shadows.per_pixel()) };
+        let plan = plan(flat, view, size, &chosen.evaluations, light, &self.cost_model, room).map_err(refused)?;
         check(&self.cancel)?;
-        Ok(Prepared { chosen, plan, shadows })
+        Ok(Prepared { chosen, plan, lights, shadows })
     }
 
     /// Uploads changed data and plans the dispatches. `meshes` is parallel to `flat.meshes`.
@@ -247,7 +249,7 @@ impl Renderer {
         if !self.resources.counts.fit(flat.components.len(), size, limits.max_storage_buffer_binding_size) {
             return Err(RenderError::Counts(size[0], size[1]));
         }
-        let Prepared { chosen, plan, shadows } = {
+        let Prepared { chosen, plan, lights, shadows } = {
             let _span = tracing::debug_span!("plan", components = flat.components.len()).entered();
             self.prepare(flat, view, size)?
         };
@@ -261,12 +263,15 @@ impl Renderer {
         let parts = (&mut self.passes, &self.scene, &mut self.resources);
         let seen = SeenScene { flat, meshes, camera, size, standpoints: &standpoints };
         let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), Self::options(&self.gpu))?;
-        if self.resources.upload(&self.gpu, flat, &materials, camera, size, &plan) || scene_is_new || shadows_are_new {
+        if self.resources.upload(&self.gpu, flat, (&lights, &materials), camera, size, &plan)
+            || scene_is_new
+            || shadows_are_new
+        {
             self.resources.forget_groups();
         }
         self.passes.mesh.prepare(&self.gpu, flat, meshes, &materials.of_parts, camera, size);
         let shadowed = self.resources.shadows.used.is_on();
-        let features = ShadeFeatures::new(flat, &gpu_lights(flat, camera, size), &materials.all, shadowed);
+        let features = ShadeFeatures::new(flat, &lights, &materials.all, shadowed);
         self.passes.shade.prepare(device, features)?;
         if !overlay.is_empty() {
             self.passes.overlay.prepare(device, queue, flat, &overlay, size, camera.position);

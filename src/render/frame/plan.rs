@@ -12,7 +12,7 @@ use crate::frame::cost_model::{Cost, CostModel};
 use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
 use crate::resources::uniforms::DispatchParams;
-use isolith_field::{Component, FlatScene, gpu_lights};
+use isolith_field::{Component, FlatScene};
 use isolith_geometry::{Camera, SampleView};
 
 /// Side of a tile, in pixels: the area that a cone starts with.
@@ -110,8 +110,17 @@ pub enum TooMuch {
     },
 }
 
-/// Plans a frame that fits the device. `evaluations` is parallel to the components; `shadows` is the expected number of
-/// leaves of a pixel's shadows and occlusion, 0 without them.
+/// The work for the light of a pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PixelLight {
+    /// Number of lights.
+    pub lights: usize,
+    /// Expected number of leaves evaluated for shadows and occlusion; 0 without them.
+    pub shadows: f64,
+}
+
+/// Plans a frame that fits the device. `evaluations` is parallel to the components; `light` is the work
+/// for the light of a pixel.
 ///
 /// # Errors
 /// The frame would exceed `room`. The check precedes the first dispatch, since there may be millions.
@@ -120,7 +129,7 @@ pub fn plan(
     view: &SampleView,
     size: [u32; 2],
     evaluations: &[EvaluationCost],
-    shadows: f64,
+    light: PixelLight,
     cost_model: &CostModel,
     room: Room,
 ) -> Result<FramePlan, TooMuch> {
@@ -136,7 +145,8 @@ pub fn plan(
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
-    let shading = 0.3 + 0.2 * gpu_lights(flat, camera, size).len() as f64;
+    let PixelLight { lights, shadows } = light;
+    let shading = 0.3 + 0.2 * lights as f64;
     let most_shading = cost_model.cost_in(DISPATCH_TARGET, false);
     let most_shadows = most_shading.min(shadows * MOST_SHADOW_PIXELS);
     let shadow_parts = if shadows > 0.0 { 2 * whole.parts(shadows, most_shadows) } else { 0 };

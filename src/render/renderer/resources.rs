@@ -23,7 +23,7 @@ use crate::resources::targets::{Target, Targets};
 use crate::resources::texture_resources::{TextureBindings, TextureResources};
 use crate::resources::uniforms::{DispatchParams, GpuView, UNIFORM_STRIDE, strided};
 use isolith_field::light::environment_map::{PlacedMap, map_words};
-use isolith_field::{FlatScene, gpu_lights};
+use isolith_field::{FlatScene, GpuLight};
 use isolith_geometry::Camera;
 
 /// Bytes of a subtile in a list.
@@ -180,18 +180,17 @@ impl FrameResources {
         &mut self,
         gpu: &Gpu,
         flat: &FlatScene,
-        meshes: &MeshMaterials,
+        (lights, meshes): (&[GpuLight], &MeshMaterials),
         camera: &Camera,
         size: [u32; 2],
         plan: &FramePlan,
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
-        let lights = gpu_lights(flat, camera, size);
         self.first_view = GpuView::new(camera, size, flat, lights.len() as u32);
         let uploads = [
             self.upload_map(gpu, flat),
             self.view.set(device, queue, bytemuck::bytes_of(&self.first_view)),
-            self.lights.set(device, queue, bytemuck::cast_slice(&lights)),
+            self.lights.set(device, queue, bytemuck::cast_slice(lights)),
             self.mesh_materials.set(device, queue, bytemuck::cast_slice(&meshes.all)),
             self.textures.upload(gpu, flat, camera),
             self.set_work(gpu, &plan.dispatches),
