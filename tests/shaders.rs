@@ -8,7 +8,8 @@ use isolith::render::uniforms::{DispatchParams, GpuComponent, GpuView};
 use isolith::render::{DebugView, GpuHierarchyNode, Instance, Overlay, RayMesh, SceneLimits, ShadowSettings};
 use isolith::scene::ShapeKind;
 use isolith::wgsl::{
-    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, fits_templates,
+    Evaluator, FILES, OpSet, Options, ShapeSet, SkipMode, Structure, assemble, assemble_featured, assemble_with,
+    fits_templates,
 };
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 
@@ -50,7 +51,9 @@ fn sources() -> Vec<(&'static str, String)> {
     let shadowed = Options { shadowed: true, ..Options::default() };
     let shade = assemble("shade.wgsl", &all[0], shadowed).unwrap_or_else(|error| panic!("{error}"));
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
-    plain.chain([("shade.wgsl", textured()), ("shade.wgsl", shade)]).collect()
+    let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
+    let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
+    plain.chain([("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)]).collect()
 }
 
 /// The pass `shade` for scenes with textures.

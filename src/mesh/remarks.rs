@@ -74,7 +74,10 @@ impl Remarks {
         let older = specular_glossiness.as_ref();
         let specular = specular.as_ref();
         let coat = clearcoat.as_ref();
+        let is_bright = |color: &[f64; 3]| color.iter().any(|channel| *channel > 1.0);
+        let bright = specular.and_then(|s| s.specular_color_factor.as_ref()).is_some_and(is_bright);
         let things = [
+            (bright, "specular colors above 1 of KHR_materials_specular"),
             (older.is_some_and(|o| o.specular_glossiness_texture.is_some()), "specular-glossiness textures"),
             (specular.is_some_and(|s| s.specular_texture.is_some()), "textures of KHR_materials_specular"),
             (specular.is_some_and(|s| s.specular_color_texture.is_some()), "textures of KHR_materials_specular"),

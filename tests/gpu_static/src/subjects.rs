@@ -139,20 +139,30 @@ const FIELD_PASSES: [[&str; 2]; 3] = [["cone", "cone"], ["trace", "trace"], ["su
 /// Bindings of these passes with dynamic offsets: the component, its rows, the dispatch.
 const FIELD_OFFSETS: [[u32; 2]; 3] = [[1, 2], [1, 4], [3, 0]];
 
+/// The entry points of pass `shadow`, which evaluates the fields of all components by the interpreter or by tapes.
+const SHADOW_PASSES: [[&str; 2]; 2] = [["shadow", "shadow"], ["shadow", "shadow_occlusion"]];
+/// Its bindings with dynamic offsets.
+const SHADOW_OFFSETS: [[u32; 2]; 3] = [[1, 2], [1, 4], [2, 7]];
+
 /// All pipelines to compile.
 pub fn subjects() -> Result<Subjects, Error> {
-    let mut sources: Vec<(String, &str)> = Vec::new();
-    let mut known: HashMap<String, usize> = HashMap::new();
+    let mut sources: Vec<(String, &str, &[[u32; 2]])> = Vec::new();
+    let mut known: HashMap<(String, &str), usize> = HashMap::new();
     let mut purposes: Vec<(Purpose, Vec<usize>)> = Vec::new();
     for (scene, evaluator) in evaluators()? {
-        for [pass, entry_point] in FIELD_PASSES {
+        let is_straight = EvaluatorKind::of(&evaluator) == EvaluatorKind::Straight;
+        let of_shadows = SHADOW_PASSES.into_iter().filter(|_| !is_straight).map(|pass| (pass, &SHADOW_OFFSETS));
+        for ([pass, entry_point], offsets) in
+            FIELD_PASSES.map(|pass| (pass, &FIELD_OFFSETS)).into_iter().chain(of_shadows)
+        {
             let failed = |error| Error::Refused { what: format!("{scene}, {pass}"), reason: format!("{error}") };
             let text = assemble(&format!("{pass}.wgsl"), &evaluator, OPTIONS).map_err(failed)?;
-            let index = *known.entry(text).or_insert_with_key(|text| {
-                sources.push((text.clone(), entry_point));
+            let index = *known.entry((text, entry_point)).or_insert_with_key(|(text, _)| {
+                sources.push((text.clone(), entry_point, offsets.as_slice()));
                 sources.len() - 1
             });
-            let purpose = Purpose { scene: scene.clone(), way: EvaluatorKind::of(&evaluator), pass: pass.to_owned() };
+            let purpose =
+                Purpose { scene: scene.clone(), way: EvaluatorKind::of(&evaluator), pass: named(pass, entry_point) };
             match purposes.iter_mut().find(|(other, _)| *other == purpose) {
                 Some((_, all)) if all.contains(&index) => {}
                 Some((_, all)) => all.push(index),
@@ -160,7 +170,7 @@ pub fn subjects() -> Result<Subjects, Error> {
             }
         }
     }
-    let made = sources.par_iter().map(|(text, entry_point)| compute(entry_point, text, entry_point, &FIELD_OFFSETS));
+    let made = sources.par_iter().map(|(text, entry_point, offsets)| compute(entry_point, text, entry_point, offsets));
     let mut all = Subjects { pipelines: made.collect::<Result<_, _>>()?, purposes };
     for (pass, pipeline) in passes_without_fields()? {
         let purpose = Purpose { scene: NO_FIELD.to_owned(), way: EvaluatorKind::None, pass };
@@ -168,6 +178,11 @@ pub fn subjects() -> Result<Subjects, Error> {
         all.pipelines.push(pipeline);
     }
     Ok(all)
+}
+
+/// The name of a pass with this entry point.
+fn named(pass: &str, entry_point: &str) -> String {
+    if pass == "shadow" { entry_point.replace('_', " ") } else { pass.to_owned() }
 }
 
 /// Every evaluator of every scene, for each strategy that the window may choose.
