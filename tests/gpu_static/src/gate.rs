@@ -2,7 +2,7 @@
 
 use crate::StageMetrics;
 use crate::cards::{Card, Report};
-use crate::subjects::{EvaluatorKind, Purpose, Subjects};
+use crate::subjects::{EvaluatorKind, NO_FIELD, Purpose, Subjects};
 
 /// The compiler's figures for all pipelines of one purpose on a card: the worst of each.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,7 +88,18 @@ pub const EXCEPTIONS: &[Exception] = &[
     shadow("shadow occlusion", "fractals", 136, 6),
     shadow("shadow", "modifiers", 136, 4),
     shadow("shadow", "chessboard", 136, 4),
+    shade("shade", 26),
+    shade("shade agx", 26),
+    shade("shade neutral", 26),
+    shade("shade sample", 30),
 ];
+
+/// Why lighting may take more.
+const WHOLE_LIGHT: &str = "textures, layers, area lights and an image around the scene at once; few scenes need all";
+
+const fn shade(pass: &'static str, spilled: u64) -> Exception {
+    Exception { scene: NO_FIELD, way: EvaluatorKind::None, pass, vgprs: 160, spilled, reason: WHOLE_LIGHT }
+}
 
 /// Why shadows by the interpreter may take more.
 const MARCHED: &str = "a cone keeps its state beside that of the interpreter; only scenes without tapes come here";

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use isolith::field::flatten;
 use isolith::gallery;
 use isolith::render::{EvalStrategy, EvaluatorUse, evaluators_of};
-use isolith::wgsl::{Evaluator, FILES, Options, SkipMode, assemble, assemble_plain};
+use isolith::wgsl::{Evaluator, FILES, OpSet, Options, SkipMode, assemble, assemble_with};
 use naga::ShaderStage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -224,7 +224,10 @@ fn passes_without_fields() -> Result<Vec<(String, Pipeline)>, Error> {
     let passes = FILES.iter().filter_map(|(file, _)| file.strip_suffix(".wgsl").filter(|name| !name.contains('/')));
     for pass in passes.filter(|pass| !evaluates_fields(pass)) {
         let failed = |error| Error::Refused { what: pass.to_owned(), reason: format!("{error}") };
-        let text = assemble_plain(&format!("{pass}.wgsl")).map_err(failed)?;
+        // With all that a scene may need of the pass `shade`.
+        let options = Options { shadowed: true, ..OPTIONS };
+        let nothing = Evaluator::Interpreter(OpSet::none());
+        let text = assemble_with(&format!("{pass}.wgsl"), &nothing, options, &["TEXTURES"]).map_err(failed)?;
         let shader = Shader::new(pass, &text)?;
         for entry_point in shader.entry_points(ShaderStage::Compute) {
             all.push((pass.to_owned(), compute(pass, &text, &entry_point, &FIELD_OFFSETS)?));
