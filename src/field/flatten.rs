@@ -268,7 +268,7 @@ fn add_non_field(
             camera: place_camera(camera, world_from_local),
             lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance },
         }),
-        NodeKind::Group(_) | NodeKind::Object(_) => {}
+        NodeKind::Group(_) | NodeKind::Object(_) | NodeKind::Instancer(_) => {}
     }
 }
 
