@@ -7,6 +7,7 @@ mod broken_files;
 mod cases;
 mod cli;
 mod contract;
+mod copies;
 mod counts;
 mod debug_view;
 mod documents;
