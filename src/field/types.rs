@@ -11,6 +11,7 @@ use super::error::FlattenError;
 use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
+use isolith_geometry::Aabb;
 use isolith_scene::{Instancer, Lattice, MAX_TYPES, Node, NodeKind, Operator, Scene};
 
 /// See [`MAX_PLACES`].
@@ -78,6 +79,24 @@ pub(super) fn add_instancer<'a>(
         warn(flat, node, reason);
         return Ok(budget);
     }
+    let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
+    add_types(flat, node, instancer, (world_from_local, time), &types, palette, add)?;
+    Ok(budget)
+}
+
+/// A type: its weight, its bounds and its fold, in the space of a copy.
+type TypeFold<'a> = (f64, Aabb, Vec<Operand<'a>>);
+
+/// Adds the instancer with a component for each type.
+fn add_types<'a>(
+    flat: &mut FlatScene,
+    node: &Node,
+    instancer: &Instancer,
+    (world_from_local, time): (DAffine3, f64),
+    types: &[TypeFold<'a>],
+    palette: Vec<u32>,
+    add: &mut AddComponent<'a, '_>,
+) -> Result<(), FlattenError> {
     let places = places(flat, node, instancer)?;
     let sizes: Vec<CopyType> = types
         .iter()
@@ -87,7 +106,6 @@ pub(super) fn add_instancer<'a>(
             radius: bounds.half().length(),
         })
         .collect();
-    let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
     let made = flat_instancer(node, instancer, world_from_local, time, &sizes, places, palette);
     let (at, bounds) = (flat.instancers.len() as u32, made.world_bounds());
     flat.instancers.push(made);
@@ -96,7 +114,7 @@ pub(super) fn add_instancer<'a>(
             flat.components[component].instanced = Some(InstanceType { instancer: at, kind: kind as u32, bounds });
         }
     }
-    Ok(budget)
+    Ok(())
 }
 
 /// The places of an instancer whose copies stand in a list.

@@ -76,6 +76,13 @@ impl FlatDynamic {
             place: [Coordinate::default(); 3],
             rows: [DVec3::ZERO; 3],
         };
+        flat.set(dynamic, time);
+        flat
+    }
+
+    /// Sets the parameters.
+    fn set(&mut self, dynamic: &Dynamic, time: f64) {
+        let flat = self;
         let periods = |frequency: f64, phase: f64| Coordinate::new(frequency * time).moved(phase / 360.0);
         let unit = |axis: [f64; 3], or: DVec3| DVec3::from_array(axis).try_normalize().unwrap_or(or);
         let with = |v: DVec3, w: f64| [v.x, v.y, v.z, w];
@@ -137,7 +144,6 @@ impl FlatDynamic {
                 flat.rows = DVec3::AXES.map(|axis| axis / size);
             }
         }
-        flat
     }
 
     /// How far it takes a copy at any time.

@@ -6,6 +6,7 @@
 pub(crate) mod build;
 mod dynamics;
 mod eval;
+mod gpu;
 mod hash;
 pub(crate) mod instancer;
 mod noise;
@@ -16,6 +17,7 @@ mod walk;
 pub use build::{copy_extent, polar_places};
 pub use dynamics::{Envelope, Motion, copy_basis, copy_envelope, copy_motion};
 pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gradient, world_surface};
+pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
 pub use hash::{Channel, copy_hash, copy_random, copy_randoms};
 pub use instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, MAX_PLACES, Place, PlaceList, Placement};
 pub use noise::{Coordinate, copy_curl, copy_noise_1, copy_noise_2};

@@ -138,13 +138,17 @@ fn slab_interval(
     slab: i32,
 ) -> [f64; 2] {
     let middle = f64::from(slab) * lattice.spacing[axis] + lattice.shift[axis] - cone.axis.origin[axis];
-    let reach = reach(instancer, lattice, axis) + cone.spread * cone.limits.far;
-    let speed = cone.axis.direction[axis];
-    if speed.abs() < 1e-12 {
-        return [cone.limits.near, cone.limits.far];
+    let reach = reach(instancer, lattice, axis);
+    let RayLimits { near, far } = cone.limits;
+    let speed = cone.axis.direction[axis].abs();
+    if speed + cone.spread < 1e-12 {
+        return [near, far];
     }
-    let [a, b] = [(middle - reach) / speed, (middle + reach) / speed];
-    [a.min(b).max(cone.limits.near), a.max(b).min(cone.limits.far)]
+    let ahead = if cone.axis.direction[axis] < 0.0 { -middle } else { middle };
+    let entry = (ahead - reach) / (speed + cone.spread);
+    // A cone that is wider than steep never leaves the slab.
+    let exit = if speed > cone.spread { (ahead + reach) / (speed - cone.spread) } else { far };
+    [entry.max(near), exit.min(far)]
 }
 
 fn along_list(
