@@ -1,12 +1,18 @@
 //! Copies of instancers: fields and rays against the same copies placed one by one.
 
+use bytemuck::Zeroable;
 use glam::{DQuat, DVec3};
 
-use isolith::field::copies::{FlatInstancer, Placement, copy_of_cell, copy_of_place, nearest_copy, world_from_copy};
+use crate::gpu::shared;
+use isolith::field::copies::{
+    CopyCone, FlatInstancer, Placement, copies_along, copy_material, copy_of_cell, copy_of_place, nearest_copy,
+    world_from_copy,
+};
 use isolith::field::reference::trace::trace;
 use isolith::field::scene_eval::SceneEvaluator;
-use isolith::field::{FlatScene, flatten};
+use isolith::field::{FlatScene, RayLimits, flatten};
 use isolith::geometry::Ray;
+use isolith::render::copy_probe::{CopyQuery, placed, walked};
 use isolith::scene::{DynamicKind, Instancer, Lattice, Mask, Node, NodeId, NodeKind, Object, Scene, Shape, Variation};
 
 /// A scene of one instancer with two types: a box off its origin and a ball.
@@ -164,4 +170,120 @@ fn the_own_cell_alone_is_wrong() {
         wrong += usize::from(own != nearest.copy);
     }
     assert!(wrong > 20, "{wrong} points inside copies of other cells");
+}
+
+/// Limited scenes, and lattices without end that are seen from far away.
+fn probed() -> Vec<(String, Scene, DVec3)> {
+    let near = DVec3::new(2.0, 3.0, 9.0);
+    let mut all: Vec<_> = limited().into_iter().map(|(name, scene)| (name.to_owned(), scene, near)).collect();
+    for far in [1e3, 1e6] {
+        let lattice = Lattice::Hexagonal { counts: [0, 1, 0], spacing: 1.5, height: 1.0 };
+        let masks = vec![Mask::Noise { size: 9.0, threshold: 0.5, softness: 0.3, seed: 2 }.into()];
+        let endless = Instancer { lattice, masks, variation: varied(), seed: 4, ..Instancer::default() };
+        let dynamics = [DynamicKind::Wind, DynamicKind::CurlNoise, DynamicKind::Bob];
+        all.push((format!("endless at {far}"), scene_of(endless, &dynamics), DVec3::new(far, 3.0, -far)));
+    }
+    all
+}
+
+#[test]
+fn the_gpu_places_copies_where_the_cpu_does() {
+    for (name, scene, eye) in probed() {
+        let flat = flatten(&scene, 4_321.7).unwrap();
+        let instancer = &flat.instancers[0];
+        let (anchor, place) = match &instancer.placement {
+            Placement::List(_) => ([0; 3], DVec3::ZERO),
+            Placement::Lattice(lattice) => {
+                let anchor = lattice.nearest(instancer.world_from_local.inverse().transform_point3(eye));
+                (anchor, lattice.place(anchor))
+            }
+        };
+        let of = |i: i32| match &instancer.placement {
+            Placement::List(list) => [i % list.places.len() as i32, 0, 0],
+            Placement::Lattice(lattice) => {
+                let relative = [i % 61 - 30, if lattice.is_long(1) { i % 5 - 2 } else { 0 }, i / 61 % 61 - 30];
+                [0, 1, 2].map(|axis| {
+                    let cell = i64::from(relative[axis]) + i64::from(anchor[axis]);
+                    let cell = cell.clamp(lattice.low[axis].into(), lattice.high[axis].into());
+                    (cell - i64::from(anchor[axis])) as i32
+                })
+            }
+        };
+        let queries: Vec<CopyQuery> =
+            (0..4_000).map(|i| CopyQuery { cell: of(i), kind: i as u32 % 2, ..Zeroable::zeroed() }).collect();
+        let answers = placed(&shared().gpu, instancer, eye, &queries).unwrap();
+        let mut found = 0;
+        for (query, answer) in queries.iter().zip(&answers) {
+            let copy = match &instancer.placement {
+                Placement::List(_) => copy_of_place(instancer, query.cell[0] as usize),
+                Placement::Lattice(_) => copy_of_cell(instancer, [0, 1, 2].map(|i| query.cell[i] + anchor[i])),
+            };
+            let copy = copy.filter(|copy| copy.kind == query.kind);
+            assert_eq!(copy.is_some(), answer.kind != u32::MAX, "{name}: {query:?}");
+            let Some(copy) = copy else { continue };
+            found += 1;
+            let off = DVec3::from(answer.position.map(f64::from)) - (copy.position - place);
+            assert!(off.length() < 2e-5, "{name}: {off} for {query:?}");
+            let turned =
+                copy.rotation.to_array().iter().zip(answer.rotation).map(|(a, b)| a * f64::from(b)).sum::<f64>();
+            assert!(turned.abs() > 1.0 - 1e-6, "{name}: {turned} for {query:?}");
+            let scaled = DVec3::from(answer.scale.map(f64::from)) - copy.scale;
+            assert!(scaled.length() < 1e-5, "{name}: {scaled}");
+            let look = copy_material(instancer, &copy);
+            let mine = [look.hue, look.saturation, look.value, look.roughness, look.emission];
+            let [a, b, c, d] = answer.color;
+            for (mine, theirs) in mine.iter().zip([a, b, c, d, answer.glow]) {
+                assert!((mine - f64::from(theirs)).abs() < 1e-5, "{name}: {mine}, {theirs}");
+            }
+        }
+        assert!(found > 30, "{name}: {found} copies");
+    }
+}
+
+#[test]
+fn the_gpu_walks_past_the_copies_that_the_cpu_walks_past() {
+    for (name, scene, eye) in probed() {
+        let flat = flatten(&scene, 1.7).unwrap();
+        let instancer = &flat.instancers[0];
+        let from_world = instancer.world_from_local.inverse();
+        let mut queries = Vec::new();
+        for i in 0..600 {
+            let [a, b, c] = [0.618_034, 0.414_214, 0.732_051].map(|by| (spread(i, by) - 0.5) as f32);
+            let direction = DVec3::new(2.0 * f64::from(a), f64::from(b) - 0.2, -1.0 + f64::from(c)).normalize();
+            let wide = if i % 3 == 0 { 0.05 } else { 0.0 };
+            queries.push(CopyQuery {
+                origin: [3.0 * c, a, b],
+                direction: direction.to_array().map(|v| v as f32),
+                kind: i % 2,
+                far: 25.0,
+                spread: wide,
+                ..Zeroable::zeroed()
+            });
+        }
+        let answers = walked(&shared().gpu, instancer, eye, &queries).unwrap();
+        let (mut visits, mut off) = (0, 0);
+        for (query, answer) in queries.iter().zip(&answers) {
+            let [origin, direction] = [query.origin, query.direction].map(|v| DVec3::from(v.map(f64::from)));
+            let axis = Ray {
+                origin: from_world.transform_point3(eye + origin),
+                direction: from_world.transform_vector3(direction),
+            };
+            let limits = RayLimits { near: 0.0, far: query.far.into() };
+            let (mut count, mut entries) = (0, 0.0);
+            let cone = CopyCone { axis, limits, spread: query.spread.into() };
+            copies_along(instancer, cone, &mut |visit, _| {
+                if visit.copy.kind == query.kind {
+                    (count, entries) = (count + 1, entries + visit.entry);
+                }
+                std::ops::ControlFlow::Continue(())
+            });
+            assert_ne!(answer.visits, u32::MAX, "{name}: a walk was not at its end");
+            visits += count;
+            let is_same =
+                count == answer.visits && (entries - f64::from(answer.entries)).abs() < 2e-3 * f64::from(count);
+            off += u32::from(!is_same && count > 0 || count == 0 && answer.visits > 0);
+        }
+        // Rays that only touch a sphere.
+        assert!(visits > 60 && off <= 6, "{name}: {off} of 600 differ; {visits} visits");
+    }
 }

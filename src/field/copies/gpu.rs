@@ -1,5 +1,4 @@
-//! Instancers as the GPU reads them. The counterparts are in `shaders/copies/instancer.wgsl`; a test compares the
-//! layouts.
+//! Instancers as the GPU reads them. The counterparts are in `shaders/copy/instancer.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;

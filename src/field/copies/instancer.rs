@@ -90,7 +90,7 @@ pub struct Place {
     pub rotation: DQuat,
 }
 
-/// A mask. The GPU reads the parameters as they are, see `shaders/copies/mask.wgsl`.
+/// A mask. The GPU reads the parameters as they are, see `shaders/copy/mask.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatMask {
     /// Its kind.
@@ -104,7 +104,7 @@ pub struct FlatMask {
     pub params: [f64; 4],
 }
 
-/// A motion. The GPU reads the parameters as they are, see `shaders/copies/dynamics.wgsl`.
+/// A motion. The GPU reads the parameters as they are, see `shaders/copy/dynamics.wgsl`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatDynamic {
     /// Its kind.

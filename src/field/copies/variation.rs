@@ -1,4 +1,4 @@
-//! What sets a copy apart: existence, type, place, material. Counterpart of `shaders/copies/variation.wgsl`.
+//! What sets a copy apart: existence, type, place, material. Counterpart of `shaders/copy/variation.wgsl`.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 

@@ -1,7 +1,7 @@
 // The walk along a ray or a cone through the copies of an instancer. Counterpart of
 // `src/field/copies/walk.rs`.
 
-#include "copies/space.wgsl"
+#include "copy/space.wgsl"
 
 struct CopyWalk {
     // In the instancer's space, relative to the anchor's place. The parameter is the distance in

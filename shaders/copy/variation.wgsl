@@ -1,6 +1,6 @@
 // What sets a copy apart. Counterpart of `src/field/copies/variation.rs`.
 
-#include "copies/dynamics.wgsl"
+#include "copy/dynamics.wgsl"
 
 struct Copy {
     // Absolute cell, or the id of the place.
