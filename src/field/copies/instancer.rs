@@ -189,7 +189,10 @@ impl FlatInstancer {
     /// Bounds of all copies, in the world.
     pub fn world_bounds(&self) -> Aabb {
         let bounds = self.bounds();
-        if bounds.is_finite() || bounds.is_empty() {
+        if bounds.is_empty() {
+            return bounds;
+        }
+        if bounds.is_finite() {
             return bounds.transformed(&self.world_from_local);
         }
         // Axes without end: exact where the world's axes are those of the instancer, else without end everywhere.
