@@ -88,6 +88,8 @@ pub struct Place {
     pub position: DVec3,
     /// How it is turned there.
     pub rotation: DQuat,
+    /// Cosine of the slope of the ground there: 1 on level ground, and where there is none.
+    pub up: f64,
 }
 
 /// A mask. The GPU reads the parameters as they are, see `shaders/copy/mask.wgsl`.

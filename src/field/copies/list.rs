@@ -49,7 +49,7 @@ pub fn places(
     let snapped = |place: &Place| {
         let point = snap(instancer, ground, place.position, f64::INFINITY)?;
         let turned = aligned(point.normal, instancer.align) * place.rotation;
-        Some(Place { position: point.position, rotation: turned, ..*place })
+        Some(Place { position: point.position, rotation: turned, up: point.normal.y, ..*place })
     };
     Ok(places.iter().filter_map(snapped).collect())
 }
@@ -102,7 +102,7 @@ pub fn polar_places(
         for at in 0..around as u32 {
             let rotation = DQuat::from_rotation_y(-std::f64::consts::TAU * f64::from(at) / around);
             let position = rotation * (DVec3::X * far);
-            places.push(Place { cell: [at as i32, 0, ring as i32], position, rotation });
+            places.push(Place { cell: [at as i32, 0, ring as i32], position, rotation, up: 1.0 });
         }
     }
     Ok(places)
@@ -129,7 +129,7 @@ fn curve_places(curve: &Curve, spacing: f64, most: usize) -> Result<Vec<Place>, 
         let along = arc.direction(lambda).try_normalize().unwrap_or(DVec3::X);
         let side = along.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::Z);
         let rotation = DQuat::from_mat3(&DMat3::from_cols(along, side.cross(along), side));
-        places.push(Place { cell: [at as i32, 1, 0], position: arc.at(lambda), rotation });
+        places.push(Place { cell: [at as i32, 1, 0], position: arc.at(lambda), rotation, up: 1.0 });
     }
     Ok(places)
 }
@@ -179,7 +179,7 @@ fn lattice_places(instancer: &Instancer, ground: &Ground<'_>, most: usize) -> Re
             for x in lattice.low[0]..=lattice.high[0] {
                 let cell = [x, y, z];
                 let position = lattice.place(cell) + jitter(instancer, cell, size);
-                places.push(Place { cell, position, rotation: DQuat::IDENTITY });
+                places.push(Place { cell, position, rotation: DQuat::IDENTITY, up: 1.0 });
             }
         }
     }
@@ -231,7 +231,7 @@ fn on_ground(instancer: &Instancer, ground: &Ground<'_>, cell: [i32; 3], middle:
     let most = if instancer.snap == Snap::Down { f64::INFINITY } else { 0.5 * side };
     let point = snap(instancer, ground, from, most)?;
     let rotation = aligned(point.normal, instancer.align);
-    Some(Place { cell, position: point.position, rotation })
+    Some(Place { cell, position: point.position, rotation, up: point.normal.y })
 }
 
 /// The places of which no nearer one than `distance` has a greater random number: local, and the same in any order.
