@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::structure;
+use super::{keying, structure};
 use isolith_scene::{
-    Changed, DisplaySettings, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue,
-    Scene, SceneError, check,
+    Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, ParamPath,
+    ParamValue, Scene, SceneError, Timeline, Track, check,
 };
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
@@ -72,6 +72,15 @@ pub enum Edit {
         /// Its new value.
         value: ParamValue,
     },
+    /// Replaces the timeline.
+    SetTimeline(Timeline),
+    /// Sets keys of parameters, each in the place of the one at its moment. A parameter without keys becomes animated.
+    SetKeys(Vec<(ParamPath, Keyframe)>),
+    /// Removes the keys of parameters at moments. A parameter that loses its last key keeps the value of that key.
+    RemoveKeys(Vec<(ParamPath, f64)>),
+    /// Replaces all keys of parameters: moves and copies of keys. A track without keys ends the animation of its
+    /// parameter.
+    SetTracks(Vec<Track>),
 }
 
 /// The effect of an edit.
@@ -83,8 +92,8 @@ pub(super) struct Change {
 }
 
 impl Change {
-    const NONE: Self = Self { changed: false, added: Vec::new() };
-    const VALUE: Self = Self { changed: true, added: Vec::new() };
+    pub(super) const NONE: Self = Self { changed: false, added: Vec::new() };
+    pub(super) const VALUE: Self = Self { changed: true, added: Vec::new() };
 }
 
 impl Edit {
@@ -156,6 +165,25 @@ impl Edit {
                 Ok(Change::VALUE)
             }
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
+            Self::SetTimeline(timeline) => {
+                if scene.animation.timeline == timeline {
+                    return Ok(Change::NONE);
+                }
+                timeline.check().map_err(|f| f.into_error("timeline"))?;
+                Arc::make_mut(scene).animation.timeline = timeline;
+                Ok(Change::VALUE)
+            }
+            Self::SetKeys(keys) => keying::set_keys(scene, keys),
+            Self::RemoveKeys(keys) => keying::remove_keys(scene, &keys),
+            Self::SetTracks(tracks) => keying::set_tracks(scene, tracks),
+        }
+    }
+
+    /// The edit of the owner, for the edit of a parameter; others as they are.
+    pub(super) fn resolved(self, scene: &Scene) -> Result<Self, SceneError> {
+        match self {
+            Self::SetParam { path, value } => Self::of_param(scene, &path, value),
+            other => Ok(other),
         }
     }
 
@@ -188,8 +216,16 @@ impl Edit {
                 Ok(edit) => edit.label(scene),
                 Err(_) => format!("Change {path}"),
             },
+            Self::SetTimeline(_) => "Change timeline".into(),
+            Self::SetKeys(keys) => format!("Insert {}", counted(keys.len(), "key")),
+            Self::RemoveKeys(keys) => format!("Delete {}", counted(keys.len(), "key")),
+            Self::SetTracks(_) => "Move keys".into(),
         }
     }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { what.to_owned() } else { format!("{count} {what}s") }
 }
 
 fn replace_label(old: &Node, new: &Node) -> String {

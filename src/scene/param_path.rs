@@ -273,12 +273,15 @@ impl ParamPath {
         }
     }
 
-    fn value_in(&self, params: &dyn Params) -> Option<ParamValue> {
+    /// Its value among the parameters of an owner, whatever the owner is; `None` if they hold no such parameter.
+    pub fn value_in(&self, params: &dyn Params) -> Option<ParamValue> {
         let value = params.get(&self.name)?;
         self.element.map_or_else(|| Some(value.clone()), |index| value.element(index))
     }
 
-    fn set_value(&self, params: &mut dyn Params, value: ParamValue) -> bool {
+    /// Sets it among the parameters of an owner. Returns false and changes nothing if they hold no such parameter or the
+    /// value is of another type. Does not check limits.
+    pub fn set_value(&self, params: &mut dyn Params, value: ParamValue) -> bool {
         let new = match self.element {
             None => Some(value),
             Some(index) => params.get(&self.name).and_then(|whole| whole.with_element(index, &value)),

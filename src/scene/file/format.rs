@@ -12,11 +12,12 @@ use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use super::animation::TrackFile;
 use super::watch;
-use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
+use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId,
-    MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, whole,
+    MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -49,6 +50,12 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// All nodes: each group is followed by its children, in the artist's order.
     #[serde(deserialize_with = "at_most::<_, _, MAX_NODES>")]
     pub nodes: Vec<NodeFile<L>>,
+    /// The part of time that is played.
+    #[serde(default, skip_serializing_if = "is_usual_timeline")]
+    pub timeline: Timeline,
+    /// Parameters that change with time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_TRACKS>")]
+    pub tracks: Vec<TrackFile>,
 }
 
 /// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` gives its kind.
@@ -221,7 +228,7 @@ pub fn schema() -> serde_json::Value {
 }
 
 /// Reads a list. Fails as soon as it has more than `MOST` entries, before it grows further.
-fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
+pub(super) fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
 where
     D: Deserializer<'de>,
     T: Deserialize<'de>,
@@ -257,6 +264,10 @@ fn yes() -> bool {
 
 fn is_true(value: &bool) -> bool {
     *value
+}
+
+fn is_usual_timeline(value: &Timeline) -> bool {
+    *value == Timeline::default()
 }
 
 fn is_inherited(value: &BlendOverride) -> bool {
