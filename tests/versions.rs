@@ -33,6 +33,7 @@ fn meaning(scene: &Scene) -> Meaning {
             NodeKind::Mesh(_) => 2,
             NodeKind::Light(_) => 3,
             NodeKind::Camera(_) => 4,
+            NodeKind::Instancer(_) => unreachable!("no file of these versions has one"),
         }] += 1;
     }
     let flat = flatten(scene, 0.0).unwrap();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::edit::{Change, Edit};
 use isolith_scene::{
-    Keyframe, Node, NodeId, ParamOwner, ParamPath, ParamValue, Params, Part, Scene, SceneError, Track, modifier_places,
+    Keyframe, MovedParts, Node, NodeId, ParamOwner, ParamPath, ParamValue, Params, Part, Scene, SceneError, Track,
 };
 
 /// New values of animated parameters, by their paths after the edit.
@@ -14,10 +14,10 @@ type NewValues = Vec<(ParamPath, ParamValue)>;
 /// Performs an edit that was made on `shown`, the scene at `time` seconds. On failure the scene may be half changed.
 pub(super) fn perform(edit: Edit, scene: &mut Arc<Scene>, shown: &Scene, time: f64) -> Result<Change, SceneError> {
     let mut values = Vec::new();
-    let mut places = None;
+    let mut parts = None;
     let edit = match edit.resolved(shown)? {
         Edit::Replace(mut node) => {
-            places = hold_node(&mut node, scene, shown, &mut values).map(|places| (node.id, places));
+            parts = hold_node(&mut node, scene, shown, &mut values).map(|parts| (node.id, parts));
             Edit::Replace(node)
         }
         Edit::ReplaceMaterial(mut material) => {
@@ -38,8 +38,8 @@ pub(super) fn perform(edit: Edit, scene: &mut Arc<Scene>, shown: &Scene, time: f
         other => other,
     };
     let mut change = edit.perform(scene)?;
-    if let Some((id, places)) = places {
-        Arc::make_mut(scene).move_modifier_tracks(id, &places);
+    if let Some((id, parts)) = parts {
+        Arc::make_mut(scene).move_tracks(id, &parts);
     }
     if change.changed {
         Arc::make_mut(scene).drop_lost_tracks();
@@ -64,13 +64,7 @@ fn set_values(scene: &mut Arc<Scene>, values: NewValues, time: f64) -> Result<()
 
 /// Puts the resting values of animated parameters back into `new`, and adds what was changed to `values`. `was` are the
 /// parameters as the editor saw them, `rest` those at rest.
-fn hold(
-    owner: ParamOwner,
-    scene: &Scene,
-    [was, rest]: [&dyn Params; 2],
-    new: &mut dyn Params,
-    values: &mut NewValues,
-) {
+fn hold(owner: ParamOwner, scene: &Scene, [was, rest]: [&dyn Params; 2], new: &mut dyn Params, values: &mut NewValues) {
     for track in scene.animation.tracks().iter().filter(|track| track.path.owner == owner) {
         hold_value(&track.path, track.path.clone(), [was, rest], new, values);
     }
@@ -91,27 +85,22 @@ fn hold_value(
     }
 }
 
-/// The same for all parts of a node. Returns the new places of its modifiers if they have changed.
-fn hold_node(new: &mut Node, scene: &Scene, shown: &Scene, values: &mut NewValues) -> Option<Vec<Option<usize>>> {
+/// The same for all parts of a node. Returns where the entries of its lists stand now.
+fn hold_node(new: &mut Node, scene: &Scene, shown: &Scene, values: &mut NewValues) -> Option<MovedParts> {
     let (was, rest) = (shown.node(new.id)?, scene.node(new.id)?);
-    let places = modifier_places(&was.modifiers, &new.modifiers);
+    let parts = MovedParts::between(was, new);
     for track in scene.animation.tracks() {
         let ParamOwner::Node(id, part) = track.path.owner else { continue };
         if id != new.id {
             continue;
         }
-        let new_part = match part {
-            Part::Modifier(place) => places.get(place).copied().flatten().map(Part::Modifier),
-            other => Some(other),
-        };
-        let Some(new_part) = new_part else { continue };
+        let Some(new_part) = parts.of(part) else { continue };
         let new_path = ParamPath { owner: ParamOwner::Node(id, new_part), ..track.path.clone() };
         if let (Some(was), Some(rest), Some(new)) = (part.params(was), part.params(rest), new_part.params_mut(new)) {
             hold_value(&track.path, new_path, [was, rest], new, values);
         }
     }
-    let same = places.iter().enumerate().all(|(at, place)| *place == Some(at));
-    (!same).then_some(places)
+    Some(parts)
 }
 
 /// Moves nodes so that they keep the place in the world that they are seen at. Those that move with time keep their

@@ -74,7 +74,7 @@ fn of_node(meshes: &MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aab
 pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     let token = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(TOKEN));
     match &node.kind {
-        NodeKind::Group(_) => None,
+        NodeKind::Group(_) | NodeKind::Instancer(_) => None,
         NodeKind::Object(object) => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
         NodeKind::Mesh(mesh) => {
             Some(meshes.nearest(&model_pose(mesh, 0.0)).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))

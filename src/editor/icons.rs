@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL,
+    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
     ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM,
     ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
@@ -18,6 +18,7 @@ pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
     match &node.kind {
         NodeKind::Object(object) => paint_shape(painter, rect, object.shape.kind(), color),
         NodeKind::Group(group) => paint_icon(painter, rect, operator_icon(group.operator), color),
+        NodeKind::Instancer(_) => paint_icon(painter, rect, ICON_GRID_ON, color),
         NodeKind::Mesh(_) => paint_icon(painter, rect, ICON_VIEW_IN_AR, color),
         NodeKind::Light(light) => paint_icon(painter, rect, light_icon(&light.light), color),
         NodeKind::Camera(_) => paint_icon(painter, rect, ICON_VIDEOCAM, color),
@@ -29,7 +30,7 @@ pub fn node_color(node: &Node) -> Color32 {
     match node.kind {
         _ if node.negative => theme::NEGATIVE,
         NodeKind::Object(_) => theme::OBJECT,
-        NodeKind::Group(_) => theme::GROUP,
+        NodeKind::Group(_) | NodeKind::Instancer(_) => theme::GROUP,
         NodeKind::Mesh(_) => theme::MESH,
         NodeKind::Light(_) => theme::LIGHT,
         NodeKind::Camera(_) => theme::CAMERA,

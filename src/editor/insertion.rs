@@ -48,7 +48,7 @@ pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> 
 fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
     match selection.last().and_then(|id| scene.node(*id)) {
         None => (None, scene.children(None).count()),
-        Some(n) if matches!(n.kind, NodeKind::Group(_)) => (Some(n.id), scene.children(Some(n.id)).count()),
+        Some(n) if n.has_children() => (Some(n.id), scene.children(Some(n.id)).count()),
         Some(n) => (n.parent, selection::place(scene, n.id) + 1),
     }
 }

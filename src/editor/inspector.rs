@@ -109,6 +109,7 @@ impl Inspector {
                 inspector_kinds::mesh(ui, &mut edit, mesh);
                 inspector_material::show(ui, &mut edit, library);
             }
+            NodeKind::Instancer(_) => {}
             NodeKind::Light(_) => inspector_kinds::light(ui, &mut edit),
             NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut edit),
         }
@@ -127,6 +128,7 @@ pub fn kind_label(node: &Node) -> &'static str {
     match &node.kind {
         NodeKind::Group(_) => "Group",
         NodeKind::Object(object) => object.shape.kind().label(),
+        NodeKind::Instancer(_) => "Instancer",
         NodeKind::Mesh(_) => "Mesh",
         NodeKind::Light(_) => "Light",
         NodeKind::Camera(_) => "Camera",

@@ -360,7 +360,7 @@ impl Rows<'_> {
             }
             rows += 1;
             let open = self.row(builder, node, inherited, rename);
-            if matches!(node.kind, NodeKind::Group(_)) {
+            if node.has_children() {
                 open_groups += 1;
                 if !open {
                     index = self.scene.subtree(index).end;
@@ -383,7 +383,7 @@ impl Rows<'_> {
         rename: &mut Option<Rename>,
     ) -> bool {
         let row = match node.kind {
-            NodeKind::Group(_) => NodeBuilder::dir(Some(node.id)),
+            NodeKind::Group(_) | NodeKind::Instancer(_) => NodeBuilder::dir(Some(node.id)),
             _ => NodeBuilder::leaf(Some(node.id)),
         };
         let dim = hidden_above || !node.visible;

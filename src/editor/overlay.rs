@@ -15,7 +15,7 @@ const MOST_BOXES: usize = 64;
 /// Whether the renderer's outline is not enough: for the bounds of groups, and for subtracted or hidden nodes.
 fn needs_box(node: &Node) -> bool {
     match node.kind {
-        NodeKind::Group(_) => true,
+        NodeKind::Group(_) | NodeKind::Instancer(_) => true,
         NodeKind::Object(_) | NodeKind::Mesh(_) => node.negative || !node.visible,
         NodeKind::Light(_) | NodeKind::Camera(_) => false,
     }

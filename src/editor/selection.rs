@@ -99,12 +99,8 @@ pub fn join(session: &mut EditSession, operator: Operator, new: bool) {
 /// Moves the children out of the selected groups and removes the groups.
 pub fn ungroup(session: &mut EditSession) {
     let scene = session.document.snapshot();
-    let groups: Vec<_> = roots(session)
-        .into_iter()
-        .filter_map(|id| scene.node(id))
-        .filter(|n| matches!(n.kind, NodeKind::Group(_)))
-        .cloned()
-        .collect();
+    let groups: Vec<_> =
+        roots(session).into_iter().filter_map(|id| scene.node(id)).filter(|n| n.has_children()).cloned().collect();
     let children = groups.iter().flat_map(|group| scene.children(Some(group.id)).map(|child| child.id));
     let touched: Vec<NodeId> = groups.iter().map(|group| group.id).chain(children).collect();
     if groups.is_empty() || refuse_locked(session, &touched, "taken out of its group") {

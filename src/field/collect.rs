@@ -209,7 +209,7 @@ impl<'a, 'b> Collector<'a, 'b> {
                 let is_open = self.budget.take_steps(node, fold.len());
                 is_open.then(|| Operand { node, outermost, ..group_of(fold) }).filter(|group| self.is_nested(group))
             }
-            NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => None,
+            NodeKind::Instancer(_) | NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => None,
         }
     }
 

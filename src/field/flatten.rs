@@ -26,8 +26,8 @@ use super::operand::Operand;
 use super::survey::Survey;
 use super::usage::usage;
 use crate::light::environment_map::PlacedMap;
-use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::check::Fault;
+use isolith_scene::limits::MAX_TEXTURE_BYTES;
 use isolith_scene::{MaterialId, Node, NodeId, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].

@@ -13,13 +13,7 @@ pub(super) fn mesh_material_of(node: &Node) -> Option<MaterialId> {
 }
 
 /// Adds a node without a field; `material` is the index of [`mesh_material_of`].
-pub(super) fn add(
-    flat: &mut FlatScene,
-    node: &Node,
-    world_from_local: &DAffine3,
-    material: Option<u32>,
-    time: f64,
-) {
+pub(super) fn add(flat: &mut FlatScene, node: &Node, world_from_local: &DAffine3, material: Option<u32>, time: f64) {
     match &node.kind {
         NodeKind::Light(light) => flat.lights.push(place_light(node.id, light, world_from_local)),
         NodeKind::Mesh(mesh) => flat.meshes.push(place_mesh(node.id, mesh, world_from_local, material, time)),
@@ -76,13 +70,7 @@ fn place_light(id: NodeId, light: &Light, world_from_local: &DAffine3) -> FlatLi
     }
 }
 
-fn place_mesh(
-    id: NodeId,
-    mesh: &MeshNode,
-    world_from_local: &DAffine3,
-    material: Option<u32>,
-    time: f64,
-) -> FlatMesh {
+fn place_mesh(id: NodeId, mesh: &MeshNode, world_from_local: &DAffine3, material: Option<u32>, time: f64) -> FlatMesh {
     FlatMesh { id, model: model_pose(mesh, time), world_from_local: *world_from_local, material }
 }
 

@@ -98,6 +98,11 @@ impl Flattener {
 impl Last {
     /// Updates the arrays; false if they have to be rebuilt.
     fn update(&mut self, scene: &Scene, time: f64) -> bool {
+        // Motions of nodes and copies depend on the time itself.
+        let has_motion = |node: &Arc<Node>| !node.dynamics.is_empty() || matches!(node.kind, NodeKind::Instancer(_));
+        if self.time != time && scene.nodes().iter().any(has_motion) {
+            return false;
+        }
         // A cut affects other components.
         if self.has_cuts || self.nodes.len() != scene.nodes().len() {
             return false;

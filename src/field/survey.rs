@@ -171,7 +171,7 @@ impl Survey {
                 counts.entries = usize::from(!is_nothing(object, counts.is_thickened));
             }
             NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => counts.has_non_field = true,
-            NodeKind::Group(_) => {
+            NodeKind::Group(_) | NodeKind::Instancer(_) => {
                 for child in self.children(index) {
                     let child = self.at(child);
                     counts.has_object |= child.has_object;
@@ -186,7 +186,10 @@ impl Survey {
         if !node.visible {
             counts.entries = 0;
         }
-        if counts.entries == 0 {
+        if matches!(node.kind, NodeKind::Instancer(_)) {
+            // No operand; its types are flattened on their own, as deep as they are.
+            (counts.has_object, counts.has_non_field, counts.entries) = (false, true, 0);
+        } else if counts.entries == 0 {
             // Flattening passes it by.
             (counts.steps, counts.levels, counts.deformed) = (1, 1, 0);
         } else {

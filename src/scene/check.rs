@@ -7,8 +7,8 @@ use super::drawn::text_fault;
 use super::limits::{Limits, MAX_APART, MAX_NAME, MAX_PATH, Rule};
 use super::params::{Param, Params};
 use super::{
-    CameraNode, DisplaySettings, Environment, Falloff, Light, LightKind, List, MAX_MODIFIERS, Material, Node, NodeKind,
-    ParamValue, Part, SceneError, Shape,
+    CameraNode, DisplaySettings, Environment, Falloff, Instancer, Light, LightKind, List, MAX_DYNAMICS, MAX_MASKS,
+    MAX_MODIFIERS, MAX_PALETTE, Material, Node, NodeKind, ParamValue, Part, SceneError, Shape,
 };
 
 /// A value that fails a check.
@@ -46,6 +46,12 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     if node.modifiers.len() > MAX_MODIFIERS {
         return Err(Fault::new("modifiers", format!("must be at most {MAX_MODIFIERS} of them")));
     }
+    if !node.dynamics.is_empty() && !node.can_move() {
+        return Err(Fault::new("dynamics", "only objects, groups and instancers can have dynamics"));
+    }
+    if node.dynamics.len() > MAX_DYNAMICS {
+        return Err(Fault::new("dynamics", format!("must be at most {MAX_DYNAMICS} of them")));
+    }
     for part in Part::of(node) {
         if let Some(params) = part.params(node) {
             values(params).map_err(|fault| Fault { field: part.field(&fault.field), ..fault })?;
@@ -54,6 +60,7 @@ pub fn node(node: &Node) -> Result<(), Fault> {
     let (part, together) = match &node.kind {
         NodeKind::Group(_) => return Ok(()),
         NodeKind::Object(o) => (Part::Shape, shape(&o.shape)),
+        NodeKind::Instancer(i) => (Part::Instancer, instancer(i)),
         NodeKind::Mesh(m) => (Part::Mesh, mesh_path(&m.path).map_err(|reason| Fault::new("path", reason))),
         NodeKind::Light(l) => (Part::Light, light(l)),
         NodeKind::Camera(c) => (Part::Camera, camera(c)),
@@ -239,6 +246,27 @@ pub(super) fn cone([inner, outer]: [f64; 2]) -> Result<(), Fault> {
 pub(super) fn attenuation(field: &str, terms: [f64; 3]) -> Result<(), Fault> {
     if terms.iter().sum::<f64>() == 0.0 {
         return Err(Fault::new(field, "must not be 0 when linear and quadratic are 0"));
+    }
+    Ok(())
+}
+
+/// Checks the lists of an instancer, and its values against each other.
+fn instancer(instancer: &Instancer) -> Result<(), Fault> {
+    let lists = [("masks", instancer.masks.len(), MAX_MASKS), ("palette", instancer.palette.len(), MAX_PALETTE)];
+    if let Some((name, count, most)) = lists.into_iter().find(|(_, count, most)| count > most) {
+        return Err(Fault::new(name, format!("must be at most {most} of them, not {count}")));
+    }
+    let variation = &instancer.variation;
+    let ranges = [
+        ("variation.offset_max", variation.offset_min, variation.offset_max),
+        ("variation.rotation_max", variation.rotation_min, variation.rotation_max),
+        ("variation.scale_max", variation.scale_min, variation.scale_max),
+    ];
+    for (name, least, most) in ranges {
+        if let Some(axis) = (0..3).find(|axis| least[*axis] > most[*axis]) {
+            let reason = format!("must be at least the minimum of {}, not {}", least[axis], most[axis]);
+            return Err(Fault::new(format!("{name}[{axis}]"), reason));
+        }
     }
     Ok(())
 }

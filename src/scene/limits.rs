@@ -236,3 +236,9 @@ pub const PATTERN_SHARE: Limits = Limits::new([0.1, 2.0], [0.01, 100.0], "");
 pub const TURBULENCE: Limits = Limits::new([0.0, 2.0], [0.0, 100.0], "");
 /// Most bytes of all images of textures on the device: beyond it, the largest are shown at half their size.
 pub const MAX_TEXTURE_BYTES: usize = 127 << 20;
+/// Periods per second; negative runs backward.
+pub const FREQUENCY: Limits = Limits::new([0.0, 4.0], [-1e3, 1e3], "/s");
+/// Speeds.
+pub const SPEED: Limits = Limits::new([0.0, 20.0], [0.0, 1e4], "m/s");
+/// How often a type is chosen, in relation to its siblings.
+pub const WEIGHT: Limits = Limits::new([0.0, 4.0], [0.0, 1e6], "");

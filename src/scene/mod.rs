@@ -26,6 +26,7 @@ pub mod check;
 mod decode_budget;
 mod display;
 mod drawn;
+mod dynamics;
 mod empty_set;
 mod environment;
 mod environment_image;
@@ -34,6 +35,7 @@ pub mod file;
 mod heights;
 mod image_budget;
 mod image_file;
+mod instancer;
 mod light;
 pub mod limits;
 mod material;
@@ -51,17 +53,22 @@ mod texture_image;
 mod texture_source;
 mod whole;
 
-pub use animation::{Animation, KeyInterpolation, Keyframe, SAME_TIME, Timeline, Track, modifier_places};
+pub use animation::{Animation, KeyInterpolation, Keyframe, MovedParts, SAME_TIME, Timeline, Track};
 pub use attached::Attached;
 pub use attachment::{Attachment, Content};
 pub use axis::Axis;
 pub use display::{DisplaySettings, ViewTransform};
 pub use drawn::{Corners, Points, profile_curve, text_profile, tube_curve};
+pub use dynamics::{Dynamic, DynamicKind, DynamicSlot, MAX_DYNAMICS};
 pub use empty_set::EmptyOperandResult;
 pub use environment::{Environment, EnvironmentKind};
 pub use environment_image::EnvironmentImage;
 pub use error::SceneError;
 pub use heights::Heights;
+pub use instancer::{
+    Instancer, Lattice, LatticeKind, MAX_MASKS, MAX_PALETTE, MAX_TYPES, Mask, MaskKind, MaskSlot, MaterialVariation,
+    Snap, Variation,
+};
 pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};

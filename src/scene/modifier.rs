@@ -13,7 +13,7 @@ use super::limits::{
     AMPLITUDE, ANGLE, BLEND_RADIUS, COPIES, CURVATURE, DISPLACEMENT, NO_LIMITS, POSITION, SIZE, SPACING, TAPER,
     THICKNESS, TILE,
 };
-use super::params::{Param, ParamField, ParamValue, Params, Visit, param_kinds, param_rows};
+use super::params::{param_kinds, slot_params};
 use super::{Axis, Limits};
 
 /// Most modifiers of one node.
@@ -175,37 +175,7 @@ pub struct ModifierSlot {
     pub modifier: Modifier,
 }
 
-/// The parameters of the modifier, and whether it is enabled.
-impl Params for ModifierSlot {
-    fn params(&self) -> &'static [Param] {
-        self.modifier.params()
-    }
-
-    fn visit(&self, prefix: &str, visit: &mut Visit<'_>) {
-        visit(prefix, enabled(), ParamValue::Flag(self.enabled));
-        self.modifier.visit(prefix, visit);
-    }
-
-    fn find(&self, name: &str) -> Option<&'static Param> {
-        if name == enabled().name { Some(enabled()) } else { self.modifier.find(name) }
-    }
-
-    fn get(&self, name: &str) -> Option<ParamValue> {
-        if name == enabled().name { self.enabled.to_value() } else { self.modifier.get(name) }
-    }
-
-    fn set(&mut self, name: &str, value: ParamValue) -> bool {
-        if name == enabled().name { self.enabled.set_field("", value) } else { self.modifier.set(name, value) }
-    }
-}
-
-fn enabled() -> &'static Param {
-    let table = param_rows! {
-        /// Whether it does anything.
-        ["enabled"] bool = true, NO_LIMITS.fixed();
-    };
-    &table[0]
-}
+slot_params!(ModifierSlot, modifier, enabled: true, "Whether it does anything.");
 
 impl From<Modifier> for ModifierSlot {
     fn from(modifier: Modifier) -> Self {
@@ -224,7 +194,7 @@ fn is_true(value: &bool) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Attached;
+    use crate::{Attached, ParamValue};
 
     #[test]
     fn every_parameter_can_be_read_and_written() {

@@ -6,10 +6,13 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::limits::{
     APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS,
-    UNIT,
+    UNIT, WEIGHT,
 };
 use super::params::{param_struct, param_table};
-use super::{Blend, BlendOverride, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape, whole};
+use super::{
+    Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape,
+    whole,
+};
 use isolith_geometry::Transform;
 
 /// Stable identity of a node; never reused within a document.
@@ -52,6 +55,11 @@ pub struct Node {
     pub apart: Vec<NodeId>,
     /// Parent from local.
     pub transform: Transform,
+    /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.
+    pub weight: f64,
+    /// Motions of the node, or of each copy of an instancer, in order of application; objects, groups and instancers
+    /// only.
+    pub dynamics: Vec<DynamicSlot>,
     /// The modifiers of the node and its subtree, in its own space, in order of application; objects and groups only.
     pub modifiers: Vec<ModifierSlot>,
     /// The kind of the node, with its data.
@@ -71,6 +79,8 @@ impl Node {
             blend_override: BlendOverride::Inherit,
             apart: Vec::new(),
             transform: Transform::IDENTITY,
+            weight: 1.0,
+            dynamics: Vec::new(),
             modifiers: Vec::new(),
             kind,
         }
@@ -106,9 +116,42 @@ impl Node {
         self
     }
 
-    /// Whether it can be an operand: only objects and groups have a field.
+    /// The same node with one more motion, behind the others.
+    pub fn moving(mut self, dynamic: Dynamic) -> Self {
+        self.dynamics.push(dynamic.into());
+        self
+    }
+
+    /// The same node, taken this often as a type.
+    pub fn weighted(mut self, weight: f64) -> Self {
+        self.weight = weight;
+        self
+    }
+
+    /// Whether it can be an operand: only objects and groups have a field of their own.
     pub fn has_field(&self) -> bool {
         matches!(self.kind, NodeKind::Group(_) | NodeKind::Object(_))
+    }
+
+    /// Whether it can have dynamics.
+    pub fn can_move(&self) -> bool {
+        self.has_field() || matches!(self.kind, NodeKind::Instancer(_))
+    }
+
+    /// The materials that it names.
+    pub fn materials(&self) -> impl Iterator<Item = MaterialId> {
+        let (one, palette) = match &self.kind {
+            NodeKind::Object(object) => (Some(object.material), &[][..]),
+            NodeKind::Mesh(mesh) => (mesh.material, &[][..]),
+            NodeKind::Instancer(instancer) => (None, &instancer.palette[..]),
+            NodeKind::Group(_) | NodeKind::Light(_) | NodeKind::Camera(_) => (None, &[][..]),
+        };
+        one.into_iter().chain(palette.iter().copied())
+    }
+
+    /// Whether other nodes can be its children.
+    pub fn has_children(&self) -> bool {
+        matches!(self.kind, NodeKind::Group(_) | NodeKind::Instancer(_))
     }
 }
 
@@ -119,6 +162,8 @@ pub enum NodeKind {
     Group(Group),
     /// A shape with a material.
     Object(Object),
+    /// Copies of its children.
+    Instancer(Box<Instancer>),
     /// Triangles from a glTF file, rasterized.
     Mesh(MeshNode),
     /// A light.
@@ -267,6 +312,8 @@ param_table! { Node {
     negative: bool = false, NO_LIMITS.fixed();
     /// How this node blends with its siblings; objects and groups only.
     blend_override as "joining": BlendOverride = BlendOverride::Inherit, NO_LIMITS.labeled("Blend");
+    /// How often an instancer takes it as the type of a copy, in relation to its siblings; children of instancers only.
+    weight: f64 = 1.0, WEIGHT;
 } }
 
 param_table! { Transform {

@@ -44,6 +44,12 @@ pub enum Part {
     Transform,
     /// The modifier at this index of its list.
     Modifier(usize),
+    /// The motion at this index of its list.
+    Dynamic(usize),
+    /// An instancer.
+    Instancer,
+    /// The mask at this index of an instancer's list.
+    Mask(usize),
     /// The shape of an object.
     Shape,
     /// The operator of a group.
@@ -62,12 +68,16 @@ impl Part {
         let kind = match &node.kind {
             NodeKind::Group(_) => Self::Operator,
             NodeKind::Object(_) => Self::Shape,
+            NodeKind::Instancer(_) => Self::Instancer,
             NodeKind::Mesh(_) => Self::Mesh,
             NodeKind::Light(_) => Self::Light,
             NodeKind::Camera(_) => Self::Camera,
         };
+        let masks = if let NodeKind::Instancer(instancer) = &node.kind { instancer.masks.len() } else { 0 };
+        let dynamics = (0..node.dynamics.len()).map(Self::Dynamic);
         let modifiers = (0..node.modifiers.len()).map(Self::Modifier);
-        [Self::Node, Self::Transform].into_iter().chain(modifiers).chain([kind])
+        let lists = dynamics.chain(modifiers).chain([kind]).chain((0..masks).map(Self::Mask));
+        [Self::Node, Self::Transform].into_iter().chain(lists)
     }
 
     /// The parameters of this part of the node, if it exists.
@@ -76,6 +86,9 @@ impl Part {
             (Self::Node, _) => node,
             (Self::Transform, _) => &node.transform,
             (Self::Modifier(place), _) => node.modifiers.get(place)?,
+            (Self::Dynamic(place), _) => node.dynamics.get(place)?,
+            (Self::Instancer, NodeKind::Instancer(instancer)) => &**instancer,
+            (Self::Mask(place), NodeKind::Instancer(instancer)) => instancer.masks.get(place)?,
             (Self::Shape, NodeKind::Object(object)) => &object.shape,
             (Self::Operator, NodeKind::Group(group)) => group,
             (Self::Mesh, NodeKind::Mesh(mesh)) => mesh,
@@ -93,6 +106,9 @@ impl Part {
         Some(match (self, &mut node.kind) {
             (Self::Transform, _) => &mut node.transform,
             (Self::Modifier(place), _) => node.modifiers.get_mut(place)?,
+            (Self::Dynamic(place), _) => node.dynamics.get_mut(place)?,
+            (Self::Instancer, NodeKind::Instancer(instancer)) => &mut **instancer,
+            (Self::Mask(place), NodeKind::Instancer(instancer)) => instancer.masks.get_mut(place)?,
             (Self::Shape, NodeKind::Object(object)) => &mut object.shape,
             (Self::Operator, NodeKind::Group(group)) => group,
             (Self::Mesh, NodeKind::Mesh(mesh)) => mesh,
@@ -104,44 +120,68 @@ impl Part {
 
     /// The path of the parameter's field in files, below the node.
     pub fn field(self, name: &str) -> String {
-        match self {
-            Self::Node => name.to_owned(),
-            Self::Transform => format!("transform.{name}"),
-            Self::Modifier(place) if name == ENABLED => format!("modifiers[{place}].{name}"),
-            Self::Modifier(place) => format!("modifiers[{place}].modifier.{name}"),
-            Self::Shape => format!("object.shape.{name}"),
-            Self::Operator => format!("group.{name}"),
-            Self::Mesh => format!("mesh.{name}"),
-            Self::Light => format!("light.{name}"),
-            Self::Camera => format!("camera.{name}"),
-        }
+        let (part, inner, place) = match self {
+            Self::Node => return name.to_owned(),
+            Self::Transform => return format!("transform.{name}"),
+            Self::Shape => return format!("object.shape.{name}"),
+            Self::Operator => return format!("group.{name}"),
+            Self::Instancer => return format!("instancer.{name}"),
+            Self::Mesh => return format!("mesh.{name}"),
+            Self::Light => return format!("light.{name}"),
+            Self::Camera => return format!("camera.{name}"),
+            Self::Modifier(place) => ("modifiers", "modifier", place),
+            Self::Dynamic(place) => ("dynamics", "dynamic", place),
+            Self::Mask(place) => ("instancer.masks", "mask", place),
+        };
+        let is_of_slot = SLOTS.iter().any(|slot| slot.prefix == part && slot.flag == name);
+        if is_of_slot { format!("{part}[{place}].{name}") } else { format!("{part}[{place}].{inner}.{name}") }
     }
 
     /// The part and the parameter's name for a field in files; the inverse of [`Part::field`].
     fn of_field(field: &str) -> Option<(Self, &str)> {
-        const PARTS: [(&str, Part); 6] = [
+        const PARTS: [(&str, Part); 7] = [
             ("transform.", Part::Transform),
             ("object.shape.", Part::Shape),
             ("group.", Part::Operator),
+            ("instancer.", Part::Instancer),
             ("mesh.", Part::Mesh),
             ("light.", Part::Light),
             ("camera.", Part::Camera),
         ];
+        for slot in &SLOTS {
+            let Some(rest) = field.strip_prefix(slot.prefix).and_then(|rest| rest.strip_prefix('[')) else { continue };
+            let (place, rest) = rest.split_once("].")?;
+            let below = |rest: &'_ str| rest.strip_prefix(slot.inner)?.strip_prefix('.').map(str::len);
+            let name = match below(rest) {
+                Some(length) => &rest[rest.len() - length..],
+                None if rest == slot.flag => rest,
+                None => return None,
+            };
+            let is_misplaced = name == slot.flag && below(rest).is_some();
+            return (!is_misplaced).then_some(((slot.part)(whole(place)?), name));
+        }
         for (prefix, part) in PARTS {
             if let Some(name) = field.strip_prefix(prefix) {
                 return Some((part, name));
             }
         }
-        let Some(rest) = field.strip_prefix("modifiers[") else { return Some((Self::Node, field)) };
-        let (place, rest) = rest.split_once("].")?;
-        let name =
-            if rest == ENABLED { rest } else { rest.strip_prefix("modifier.").filter(|name| *name != ENABLED)? };
-        Some((Self::Modifier(whole(place)?), name))
+        Some((Self::Node, field))
     }
 }
 
-/// The only parameter that belongs to a modifier's slot in the list, not to the modifier.
-const ENABLED: &str = "enabled";
+/// A list of parts: its field, the field of the part in an entry, and the parameter that belongs to the entry itself.
+struct SlotList {
+    prefix: &'static str,
+    inner: &'static str,
+    flag: &'static str,
+    part: fn(usize) -> Part,
+}
+
+const SLOTS: [SlotList; 3] = [
+    SlotList { prefix: "modifiers", inner: "modifier", flag: "enabled", part: Part::Modifier },
+    SlotList { prefix: "dynamics", inner: "dynamic", flag: "enabled", part: Part::Dynamic },
+    SlotList { prefix: "instancer.masks", inner: "mask", flag: "inverted", part: Part::Mask },
+];
 
 /// A number in the form that paths use: without a sign or leading zeros.
 fn whole<T: FromStr + fmt::Display>(text: &str) -> Option<T> {

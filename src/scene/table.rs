@@ -95,7 +95,7 @@ impl Scene {
         let depths = nest(nodes.iter().map(|n| &**n), None, 0)?;
         let materials: HashSet<MaterialId> = self.materials.iter().map(|m| m.id).collect();
         for node in &nodes {
-            if let Some(id) = material_of(node).filter(|id| !materials.contains(id)) {
+            if let Some(id) = node.materials().find(|id| !materials.contains(id)) {
                 return Err(SceneError::NoMaterial(id));
             }
             self.next_id = self.next_id.max(node.id.0 + 1);
@@ -266,7 +266,7 @@ impl Scene {
         let index = self.index_of(node.id).ok_or(SceneError::NoNode(node.id))?;
         self.check_material(&node)?;
         let has_children = self.subtree(index).len() > 1;
-        if has_children && !matches!(node.kind, NodeKind::Group(_)) {
+        if has_children && !node.has_children() {
             return Err(SceneError::NotAGroup(node.id));
         }
         let old = Some(&*self.nodes[index]);
@@ -321,7 +321,7 @@ impl Scene {
     /// Removes a material that no node uses.
     pub fn remove_material(&mut self, id: MaterialId) -> Result<(), SceneError> {
         let at = self.materials.iter().position(|m| m.id == id).ok_or(SceneError::NoMaterial(id))?;
-        if let Some(node) = self.nodes.iter().find(|n| material_of(n) == Some(id)) {
+        if let Some(node) = self.nodes.iter().find(|n| n.materials().any(|used| used == id)) {
             return Err(SceneError::MaterialInUse(id, node.id));
         }
         self.materials.remove(at);
@@ -343,16 +343,16 @@ impl Scene {
     }
 
     fn check_material(&self, node: &Node) -> Result<(), SceneError> {
-        match material_of(node) {
-            Some(id) if self.material(id).is_none() => Err(SceneError::NoMaterial(id)),
-            _ => Ok(()),
+        match node.materials().find(|id| self.material(*id).is_none()) {
+            Some(id) => Err(SceneError::NoMaterial(id)),
+            None => Ok(()),
         }
     }
 
     fn group_index(&self, id: NodeId) -> Result<usize, SceneError> {
         let index = self.index_of(id).ok_or(SceneError::NoNode(id))?;
         match self.nodes[index].kind {
-            NodeKind::Group(_) => Ok(index),
+            NodeKind::Group(_) | NodeKind::Instancer(_) => Ok(index),
             _ => Err(SceneError::NotAGroup(id)),
         }
     }
@@ -412,7 +412,7 @@ fn nest<'a>(
         }
         match (open.last(), node.parent) {
             (None, p) if p == parent => {}
-            (Some(last), _) if matches!(last.kind, NodeKind::Group(_)) => {}
+            (Some(last), _) if last.has_children() => {}
             (Some(last), _) => return Err(SceneError::NotAGroup(last.id)),
             (None, Some(p)) if !seen.contains(&p) => return Err(SceneError::NoNode(p)),
             (None, _) => return Err(SceneError::OutOfOrder(node.id)),
@@ -429,15 +429,6 @@ fn nest<'a>(
         open.push(node);
     }
     Ok(depths)
-}
-
-/// The material that a node refers to.
-fn material_of(node: &Node) -> Option<MaterialId> {
-    match &node.kind {
-        NodeKind::Object(object) => Some(object.material),
-        NodeKind::Mesh(mesh) => mesh.material,
-        _ => None,
-    }
 }
 
 fn check_limit(what: &'static str, value: usize, limit: usize) -> Result<(), SceneError> {

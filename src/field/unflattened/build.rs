@@ -126,7 +126,7 @@ impl Builder<'_> {
                 Ok(Some(if is_blank { Part::Nothing } else { Part::Leaf(leaf) }))
             }
             NodeKind::Group(group) => self.fold(Some(node.id), group, outer),
-            NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => Ok(None),
+            NodeKind::Instancer(_) | NodeKind::Mesh(_) | NodeKind::Light(_) | NodeKind::Camera(_) => Ok(None),
         }
     }
 

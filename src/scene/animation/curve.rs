@@ -109,8 +109,7 @@ impl Segment<'_> {
             return self.share;
         }
         let slopes = [self.at, self.at + 1].map(|at| {
-            let rate =
-                |first: usize| turn(first).length() / (self.keys[first + 1].time - self.keys[first].time);
+            let rate = |first: usize| turn(first).length() / (self.keys[first + 1].time - self.keys[first].time);
             let slope = self.slope_at(at, rate);
             if slope == 0.0 {
                 return 0.0;

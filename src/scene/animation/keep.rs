@@ -1,10 +1,10 @@
 //! Tracks follow what an edit does to their parameters: they go with a node that is removed, come along with a copy,
-//! and stay with their modifier when its place in the list changes.
+//! and stay with their modifier or motion when its place in the list changes.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::{ModifierSlot, NodeId, ParamOwner, ParamPath, Part, Scene, SceneError, Track};
+use crate::{Node, NodeId, NodeKind, ParamOwner, ParamPath, Part, Scene, SceneError, Track};
 
 impl Scene {
     /// Removes the tracks of parameters that no longer exist or can no longer have the values of the keys. Undo brings
@@ -31,47 +31,79 @@ impl Scene {
         if copies.is_empty() { Ok(()) } else { self.set_tracks(copies) }
     }
 
-    /// Moves the tracks of a node's modifiers to their new places in the list; `places` has one for each old place,
-    /// `None` for a modifier that is gone.
-    pub fn move_modifier_tracks(&mut self, id: NodeId, places: &[Option<usize>]) {
+    /// Moves the tracks of the entries of a node's lists to their new places.
+    pub fn move_tracks(&mut self, id: NodeId, parts: &MovedParts) {
         let is_moved = |track: &Arc<Track>| match track.path.owner {
-            ParamOwner::Node(owner, Part::Modifier(place)) => owner == id && places.get(place) != Some(&Some(place)),
+            ParamOwner::Node(owner, part) => owner == id && parts.of(part) != Some(part),
             _ => false,
         };
         let (moved, kept): (Vec<_>, Vec<_>) = self.animation.tracks.drain(..).partition(is_moved);
         self.animation.tracks = kept;
         for track in moved {
-            let ParamOwner::Node(_, Part::Modifier(old)) = track.path.owner else { continue };
-            if let Some(new) = places.get(old).copied().flatten() {
-                let path = ParamPath { owner: ParamOwner::Node(id, Part::Modifier(new)), ..track.path.clone() };
+            let ParamOwner::Node(_, part) = track.path.owner else { continue };
+            if let Some(part) = parts.of(part) {
+                let path = ParamPath { owner: ParamOwner::Node(id, part), ..track.path.clone() };
                 self.animation.put(Track { path, keys: track.keys.clone() });
             }
         }
     }
 }
 
-/// Where each modifier of the old list stands in the new one. Modifiers have no identity, so those that are equal are
-/// the same, and one that is left over is the same as the one of its kind in its place.
-pub fn modifier_places(old: &[ModifierSlot], new: &[ModifierSlot]) -> Vec<Option<usize>> {
+/// Where the entries of a node's lists stand after a change of the node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MovedParts {
+    modifiers: Vec<Option<usize>>,
+    dynamics: Vec<Option<usize>>,
+    masks: Vec<Option<usize>>,
+}
+
+impl MovedParts {
+    /// Compares the lists of a node before and after a change.
+    pub fn between(old: &Node, new: &Node) -> Self {
+        let masks = |node: &Node| match &node.kind {
+            NodeKind::Instancer(instancer) => instancer.masks.clone(),
+            _ => Vec::new(),
+        };
+        Self {
+            modifiers: places(&old.modifiers, &new.modifiers, |a, b| a.modifier.kind() == b.modifier.kind()),
+            dynamics: places(&old.dynamics, &new.dynamics, |a, b| a.dynamic.kind() == b.dynamic.kind()),
+            masks: places(&masks(old), &masks(new), |a, b| a.mask.kind() == b.mask.kind()),
+        }
+    }
+
+    /// The part after the change; `None` if it is gone.
+    pub fn of(&self, part: Part) -> Option<Part> {
+        let place = |list: &[Option<usize>], at: usize| list.get(at).copied().flatten();
+        match part {
+            Part::Modifier(at) => place(&self.modifiers, at).map(Part::Modifier),
+            Part::Dynamic(at) => place(&self.dynamics, at).map(Part::Dynamic),
+            Part::Mask(at) => place(&self.masks, at).map(Part::Mask),
+            other => Some(other),
+        }
+    }
+}
+
+/// Where each entry of the old list stands in the new one. Entries have no identity, so those that are equal are the
+/// same, and one that is left over is the same as the one of its kind in its place.
+fn places<T: PartialEq>(old: &[T], new: &[T], is_same_kind: impl Fn(&T, &T) -> bool) -> Vec<Option<usize>> {
     let mut places = vec![None; old.len()];
     let mut taken = vec![false; new.len()];
-    let mut claim = |old_at: usize, new_at: usize, places: &mut Vec<Option<usize>>| {
+    let mut claim = |old_at: usize, new_at: usize| {
         if places[old_at].is_none() && !taken[new_at] {
             (places[old_at], taken[new_at]) = (Some(new_at), true);
         }
     };
-    for at in (0..old.len().min(new.len())).filter(|at| old[*at] == new[*at]) {
-        claim(at, at, &mut places);
+    let both = old.len().min(new.len());
+    for at in (0..both).filter(|at| old[*at] == new[*at]) {
+        claim(at, at);
     }
-    for (at, slot) in old.iter().enumerate() {
-        for (new_at, _) in new.iter().enumerate().filter(|(_, other)| *other == slot) {
-            claim(at, new_at, &mut places);
+    for (at, entry) in old.iter().enumerate() {
+        for (new_at, _) in new.iter().enumerate().filter(|(_, other)| *other == entry) {
+            claim(at, new_at);
         }
     }
-    for at in 0..old.len().min(new.len()) {
-        if old[at].modifier.kind() == new[at].modifier.kind() {
-            claim(at, at, &mut places);
-        }
+    for at in (0..both).filter(|at| is_same_kind(&old[*at], &new[*at])) {
+        claim(at, at);
     }
     places
 }

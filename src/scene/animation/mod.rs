@@ -20,7 +20,7 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use keep::modifier_places;
+pub use keep::MovedParts;
 
 use super::check::{self, Fault};
 use super::limits::{FRAMES_PER_SECOND, KEY_TIME, MAX_KEYS, MAX_TRACK_KEYS, MAX_TRACKS, NO_LIMITS};

@@ -117,7 +117,8 @@ pub(super) fn check(scene: &Scene, file: &Path) -> Result<(), FileError> {
 
 /// Adds the tracks of a file to the scene of the file.
 pub(super) fn add_tracks(scene: &mut Scene, tracks: Vec<TrackFile>, file: &Path) -> Result<(), FileError> {
-    let mut animation = Animation { timeline: scene.animation.timeline, ..Animation::default() };
+    let mut animation = Animation::default();
+    animation.timeline = scene.animation.timeline;
     let mut keys = 0;
     for (i, read) in tracks.into_iter().enumerate() {
         let path: Option<ParamPath> = read.path.parse().ok();

@@ -16,8 +16,8 @@ use super::animation::TrackFile;
 use super::watch;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
-    BlendOverride, CameraNode, DisplaySettings, Environment, Group, Light, MAX_MODIFIERS, Material, MaterialId,
-    MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Timeline, whole,
+    BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
+    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -58,7 +58,7 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     pub tracks: Vec<TrackFile>,
 }
 
-/// A node: exactly one of `group`, `object`, `mesh`, `light`, `camera` gives its kind.
+/// A node: exactly one of `group`, `object`, `instancer`, `mesh`, `light`, `camera` gives its kind.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a node in braces")]
 #[serde(bound(deserialize = "L: Deserialize<'de>"))]
@@ -89,6 +89,12 @@ pub(super) struct NodeFile<L = Light> {
     /// Its place in its group.
     #[serde(default, skip_serializing_if = "TransformFile::is_identity")]
     pub transform: TransformFile,
+    /// How often an instancer takes it as a type, in relation to its siblings.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub weight: f64,
+    /// Motions of the node, or of each copy of an instancer, in order of application.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_DYNAMICS>")]
+    pub dynamics: Vec<DynamicSlot>,
     /// Modifiers of the node and its subtree, in order of application.
     #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_MODIFIERS>")]
     pub modifiers: Vec<ModifierSlot>,
@@ -98,6 +104,9 @@ pub(super) struct NodeFile<L = Light> {
     /// A shape with a material.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub object: Option<Object>,
+    /// Places copies of its children.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub instancer: Option<Box<Instancer>>,
     /// Triangles from a glTF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mesh: Option<MeshNode>,
@@ -164,9 +173,12 @@ impl From<&Node> for NodeFile {
             joining: node.blend_override,
             apart: node.apart.clone(),
             transform: node.transform.into(),
+            weight: node.weight,
+            dynamics: node.dynamics.clone(),
             modifiers: node.modifiers.clone(),
             group: None,
             object: None,
+            instancer: None,
             mesh: None,
             light: None,
             camera: None,
@@ -174,6 +186,7 @@ impl From<&Node> for NodeFile {
         match &node.kind {
             NodeKind::Group(v) => out.group = Some(*v),
             NodeKind::Object(v) => out.object = Some(v.clone()),
+            NodeKind::Instancer(v) => out.instancer = Some(v.clone()),
             NodeKind::Mesh(v) => out.mesh = Some(v.clone()),
             NodeKind::Light(v) => out.light = Some(*v),
             NodeKind::Camera(v) => out.camera = Some(*v),
@@ -188,6 +201,7 @@ impl NodeFile {
         let kinds = [
             self.group.map(NodeKind::Group),
             self.object.map(NodeKind::Object),
+            self.instancer.map(NodeKind::Instancer),
             self.mesh.map(NodeKind::Mesh),
             self.light.map(NodeKind::Light),
             self.camera.map(NodeKind::Camera),
@@ -204,15 +218,19 @@ impl NodeFile {
             blend_override: self.joining,
             apart: self.apart,
             transform: self.transform.into(),
+            weight: self.weight,
+            dynamics: self.dynamics,
             modifiers: self.modifiers,
             kind,
         })
     }
 
-    /// The referenced material, with the place of the reference.
-    pub fn material(&self) -> Option<(MaterialId, &'static str)> {
+    /// The referenced materials, with the places of the references.
+    pub fn materials(&self) -> impl Iterator<Item = (MaterialId, &'static str)> {
+        let of_object = self.object.as_ref().map(|o| (o.material, "object.material"));
         let of_mesh = self.mesh.as_ref().and_then(|m| m.material).map(|id| (id, "mesh.material"));
-        self.object.as_ref().map(|o| (o.material, "object.material")).or(of_mesh)
+        let palette = self.instancer.iter().flat_map(|instancer| &instancer.palette);
+        of_object.into_iter().chain(of_mesh).chain(palette.map(|id| (*id, "instancer.palette")))
     }
 }
 
@@ -222,7 +240,7 @@ pub fn schema() -> serde_json::Value {
     let mut schema = schemars::schema_for!(SceneFile).to_value();
     schema["title"] = "Isolith scene".into();
     schema["properties"]["isolith"]["const"] = VERSION.into();
-    let kinds = ["group", "object", "mesh", "light", "camera"];
+    let kinds = ["group", "object", "instancer", "mesh", "light", "camera"];
     schema["$defs"]["NodeFile"]["oneOf"] = kinds.iter().map(|kind| json!({ "required": [kind] })).collect();
     schema
 }
@@ -268,6 +286,14 @@ fn is_true(value: &bool) -> bool {
 
 fn is_usual_timeline(value: &Timeline) -> bool {
     *value == Timeline::default()
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+fn is_one(value: &f64) -> bool {
+    *value == one()
 }
 
 fn is_inherited(value: &BlendOverride) -> bool {

@@ -251,9 +251,12 @@ impl NodeFile<LightV1> {
             joining: self.joining,
             apart: self.apart,
             transform: self.transform,
+            weight: self.weight,
+            dynamics: self.dynamics,
             modifiers: self.modifiers,
             group: self.group,
             object: self.object,
+            instancer: self.instancer,
             mesh: self.mesh,
             camera: self.camera,
         }

@@ -176,7 +176,7 @@ fn check_references(scene: &SceneFile, file: &Path) -> Result<(), FileError> {
         if node.id.0 > MAX_ID {
             return fail(i, "id", format!("must be at most {MAX_ID}"));
         }
-        if holds.insert(node.id, node.group.is_some()).is_some() {
+        if holds.insert(node.id, node.group.is_some() || node.instancer.is_some()).is_some() {
             return fail(i, "id", format!("another node has the id {}", node.id));
         }
     }
@@ -184,11 +184,17 @@ fn check_references(scene: &SceneFile, file: &Path) -> Result<(), FileError> {
         if let Some(parent) = node.parent {
             match holds.get(&parent) {
                 Some(true) => {}
-                Some(false) => return fail(i, "parent", format!("node {parent} is not a group and holds no others")),
+                Some(false) => {
+                    return fail(
+                        i,
+                        "parent",
+                        format!("node {parent} is neither a group nor an instancer and holds no others"),
+                    );
+                }
                 None => return fail(i, "parent", format!("there is no node {parent}")),
             }
         }
-        if let Some((material, field)) = node.material().filter(|(id, _)| !materials.contains(id)) {
+        if let Some((material, field)) = node.materials().find(|(id, _)| !materials.contains(id)) {
             return fail(i, field, format!("there is no material {material}"));
         }
     }

@@ -401,3 +401,50 @@ macro_rules! choices {
     };
 }
 pub(crate) use choices;
+
+/// Implements the parameters of an entry of a list: those of `$inner`, and a flag of the entry itself before them.
+macro_rules! slot_params {
+    ($name:ident, $inner:ident, $flag:ident: $default:literal, $help:literal) => {
+        impl $name {
+            fn flag() -> &'static $crate::params::Param {
+                let table = $crate::params::param_rows! {
+                    #[doc = $help]
+                    [stringify!($flag)] bool = $default, $crate::limits::NO_LIMITS.fixed();
+                };
+                &table[0]
+            }
+        }
+
+        impl $crate::params::Params for $name {
+            fn params(&self) -> &'static [$crate::params::Param] {
+                self.$inner.params()
+            }
+
+            fn visit(&self, prefix: &str, visit: &mut $crate::params::Visit<'_>) {
+                visit(prefix, Self::flag(), $crate::params::ParamValue::Flag(self.$flag));
+                self.$inner.visit(prefix, visit);
+            }
+
+            fn find(&self, name: &str) -> Option<&'static $crate::params::Param> {
+                if name == Self::flag().name { Some(Self::flag()) } else { self.$inner.find(name) }
+            }
+
+            fn get(&self, name: &str) -> Option<$crate::params::ParamValue> {
+                if name == Self::flag().name {
+                    $crate::params::ParamField::to_value(&self.$flag)
+                } else {
+                    self.$inner.get(name)
+                }
+            }
+
+            fn set(&mut self, name: &str, value: $crate::params::ParamValue) -> bool {
+                if name == Self::flag().name {
+                    $crate::params::ParamField::set_field(&mut self.$flag, "", value)
+                } else {
+                    self.$inner.set(name, value)
+                }
+            }
+        }
+    };
+}
+pub(crate) use slot_params;

@@ -18,7 +18,7 @@ mod value;
 
 pub(crate) use define::{
     choices, missing_param, nested_params, nested_variants, param_kinds, param_name, param_rows, param_struct,
-    param_table, param_variants,
+    param_table, param_variants, slot_params,
 };
 pub use value::{LIST_COLUMNS, List, ParamValue};
 
