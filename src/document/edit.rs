@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use super::{keying, structure};
+use super::change::Change;
+use super::{keys, structure};
 use isolith_scene::{
     Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, ParamPath,
     ParamValue, Scene, SceneError, Timeline, Track, check,
@@ -83,19 +84,6 @@ pub enum Edit {
     SetTracks(Vec<Track>),
 }
 
-/// The effect of an edit.
-pub(super) struct Change {
-    /// Whether the scene differs from before.
-    pub changed: bool,
-    /// The new nodes.
-    pub added: Vec<NodeId>,
-}
-
-impl Change {
-    pub(super) const NONE: Self = Self { changed: false, added: Vec::new() };
-    pub(super) const VALUE: Self = Self { changed: true, added: Vec::new() };
-}
-
 impl Edit {
     /// Performs the edit. On failure the scene is unchanged.
     pub(super) fn perform(self, scene: &mut Arc<Scene>) -> Result<Change, SceneError> {
@@ -130,14 +118,7 @@ impl Edit {
                 let id = structure::group(scene, &ids, node)?;
                 Ok(Change { changed: true, added: vec![id] })
             }
-            Self::ReplaceMaterial(material) => {
-                if scene.material(material.id).is_some_and(|old| **old == material) {
-                    return Ok(Change::NONE);
-                }
-                check_material(&material)?;
-                Arc::make_mut(scene).replace_material(material)?;
-                Ok(Change::VALUE)
-            }
+            Self::ReplaceMaterial(material) => replace_material(scene, material),
             Self::InsertMaterial(material) => {
                 check_material(&material)?;
                 Arc::make_mut(scene).insert_material(material)?;
@@ -148,34 +129,13 @@ impl Edit {
                 Arc::make_mut(scene).remove_material(id)?;
                 Ok(Change::VALUE)
             }
-            Self::SetEnvironment(environment) => {
-                if scene.environment == environment {
-                    return Ok(Change::NONE);
-                }
-                check::environment(&environment).map_err(|f| f.into_error("environment"))?;
-                Arc::make_mut(scene).set_environment(environment)?;
-                Ok(Change::VALUE)
-            }
-            Self::SetDisplay(display) => {
-                if scene.display == display {
-                    return Ok(Change::NONE);
-                }
-                check::display(&display).map_err(|f| f.into_error("display"))?;
-                Arc::make_mut(scene).display = display;
-                Ok(Change::VALUE)
-            }
+            Self::SetEnvironment(environment) => set_environment(scene, environment),
+            Self::SetDisplay(display) => set_display(scene, display),
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
-            Self::SetTimeline(timeline) => {
-                if scene.animation.timeline == timeline {
-                    return Ok(Change::NONE);
-                }
-                timeline.check().map_err(|f| f.into_error("timeline"))?;
-                Arc::make_mut(scene).animation.timeline = timeline;
-                Ok(Change::VALUE)
-            }
-            Self::SetKeys(keys) => keying::set_keys(scene, keys),
-            Self::RemoveKeys(keys) => keying::remove_keys(scene, &keys),
-            Self::SetTracks(tracks) => keying::set_tracks(scene, tracks),
+            Self::SetTimeline(timeline) => set_timeline(scene, timeline),
+            Self::SetKeys(keys) => keys::set_keys(scene, keys),
+            Self::RemoveKeys(keys) => keys::remove_keys(scene, &keys),
+            Self::SetTracks(tracks) => keys::set_tracks(scene, tracks),
         }
     }
 
@@ -241,6 +201,42 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else {
         format!("Change {name}")
     }
+}
+
+fn replace_material(scene: &mut Arc<Scene>, material: Material) -> Result<Change, SceneError> {
+    if scene.material(material.id).is_some_and(|old| **old == material) {
+        return Ok(Change::NONE);
+    }
+    check_material(&material)?;
+    Arc::make_mut(scene).replace_material(material)?;
+    Ok(Change::VALUE)
+}
+
+fn set_environment(scene: &mut Arc<Scene>, environment: Environment) -> Result<Change, SceneError> {
+    if scene.environment == environment {
+        return Ok(Change::NONE);
+    }
+    check::environment(&environment).map_err(|f| f.into_error("environment"))?;
+    Arc::make_mut(scene).set_environment(environment)?;
+    Ok(Change::VALUE)
+}
+
+fn set_display(scene: &mut Arc<Scene>, display: DisplaySettings) -> Result<Change, SceneError> {
+    if scene.display == display {
+        return Ok(Change::NONE);
+    }
+    check::display(&display).map_err(|f| f.into_error("display"))?;
+    Arc::make_mut(scene).display = display;
+    Ok(Change::VALUE)
+}
+
+fn set_timeline(scene: &mut Arc<Scene>, timeline: Timeline) -> Result<Change, SceneError> {
+    if scene.animation.timeline == timeline {
+        return Ok(Change::NONE);
+    }
+    timeline.check().map_err(|f| f.into_error("timeline"))?;
+    Arc::make_mut(scene).animation.timeline = timeline;
+    Ok(Change::VALUE)
 }
 
 fn move_material(scene: &mut Arc<Scene>, id: MaterialId, position: usize) -> Result<Change, SceneError> {

@@ -20,9 +20,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod change;
 mod edit;
 mod history;
 mod keying;
+mod keys;
 mod placement;
 mod recent;
 pub mod recovery;
@@ -33,7 +35,7 @@ mod structure;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use edit::Change;
+use change::Change;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};

@@ -8,11 +8,18 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{KeyInterpolation, Keyframe};
-use crate::ParamValue;
+use super::track::{KeyInterpolation, Keyframe, Track};
+use crate::params::ParamValue;
+
+impl Track {
+    /// The value at `time` seconds; `None` without keys.
+    pub fn value_at(&self, time: f64) -> Option<ParamValue> {
+        (!self.keys.is_empty()).then(|| value(&self.keys, time))
+    }
+}
 
 /// The value at `time`. There is at least one key.
-pub(super) fn value(keys: &[Keyframe], time: f64) -> ParamValue {
+fn value(keys: &[Keyframe], time: f64) -> ParamValue {
     let after = keys.partition_point(|key| key.time <= time);
     let Some(at) = after.checked_sub(1) else { return keys[0].value.clone() };
     let key = &keys[at];

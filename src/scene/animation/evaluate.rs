@@ -3,11 +3,11 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::is_same_owner;
+use super::track::Track;
 use crate::check::{self, Fault};
 use crate::limits::{Limits, Rule};
 use crate::params::Params;
-use crate::{Material, Node, NodeId, Param, ParamOwner, ParamPath, ParamValue, Scene, Track};
+use crate::{Material, Node, NodeId, Param, ParamOwner, ParamPath, ParamValue, Scene};
 
 impl Scene {
     /// The scene as it is at `time` seconds. It shares all nodes and materials whose values differ in nothing from
@@ -98,5 +98,13 @@ fn within(value: f64, limits: &Limits) -> f64 {
     match limits.rule {
         Rule::Magnitude => value.abs().clamp(least, most).copysign(value),
         Rule::Any | Rule::Whole => value.clamp(least, most),
+    }
+}
+
+/// Whether two parameters belong to the same node, material, environment or display.
+fn is_same_owner(a: &ParamPath, b: &ParamPath) -> bool {
+    match (a.owner, b.owner) {
+        (ParamOwner::Node(a, _), ParamOwner::Node(b, _)) => a == b,
+        (a, b) => a == b,
     }
 }

@@ -4,7 +4,8 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use crate::{Node, NodeId, NodeKind, ParamOwner, ParamPath, Part, Scene, SceneError, Track};
+use super::track::Track;
+use crate::{Node, NodeId, NodeKind, ParamOwner, ParamPath, Part, Scene, SceneError};
 
 impl Scene {
     /// Removes the tracks of parameters that no longer exist or can no longer have the values of the keys. Undo brings

@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::error::FileError;
+use super::list::at_most;
 use crate::animation::doubled;
 use crate::check::Fault;
 use crate::limits::{MAX_KEYS, MAX_TRACK_KEYS};
@@ -19,7 +20,7 @@ pub(super) struct TrackFile {
     /// `material.3.base_color[0]`.
     pub path: String,
     /// Its keys, each later than the one before.
-    #[serde(deserialize_with = "super::format::at_most::<_, _, MAX_TRACK_KEYS>")]
+    #[serde(deserialize_with = "at_most::<_, _, MAX_TRACK_KEYS>")]
     pub keys: Vec<KeyFile>,
 }
 

@@ -3,17 +3,13 @@
 //!
 //! Values that most nodes share are left out, so that a file shows what is special.
 
-use std::fmt;
-use std::marker::PhantomData;
-
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::animation::TrackFile;
-use super::watch;
+use super::list::at_most;
 use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
@@ -243,37 +239,6 @@ pub fn schema() -> serde_json::Value {
     let kinds = ["group", "object", "instancer", "mesh", "light", "camera"];
     schema["$defs"]["NodeFile"]["oneOf"] = kinds.iter().map(|kind| json!({ "required": [kind] })).collect();
     schema
-}
-
-/// Reads a list. Fails as soon as it has more than `MOST` entries, before it grows further.
-pub(super) fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    struct List<T, const MOST: usize>(PhantomData<T>);
-
-    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
-        type Value = Vec<T>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            write!(f, "a list of at most {MOST} entries")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<T>, A::Error> {
-            let mut list = Vec::new();
-            while let Some(entry) = seq.next_element()? {
-                if list.len() == MOST {
-                    return Err(A::Error::custom(format!("holds more than {MOST} entries")));
-                }
-                list.push(entry);
-                watch::entry(MOST == MAX_NODES)?;
-            }
-            Ok(list)
-        }
-    }
-
-    deserializer.deserialize_seq(List::<T, MOST>(PhantomData))
 }
 
 fn yes() -> bool {

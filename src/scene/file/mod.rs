@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `animation` | the keys of parameters, as types for serde |
 //! | `format` | the types of the present version, for serde and the schema |
+//! | `list` | lists, bounded while they grow |
 //! | `old_version` | what older versions have different, and its conversion |
 //! | `read` | bytes → checked scene; every message names file, node and field |
 //! | `watch` | progress and cancellation of reading |
@@ -19,6 +20,7 @@ mod animation;
 mod atomic;
 mod error;
 mod format;
+mod list;
 mod old_version;
 mod place;
 mod read;
