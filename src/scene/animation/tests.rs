@@ -242,7 +242,7 @@ fn animation_survives_a_file() {
     let error = broken("\"value\": 0.25", "\"value\": \"soon\"");
     assert!(error.reason.contains("must be a number, true or false, three of them, or a quaternion"), "{error}");
     assert_eq!(broken("\"end\": 2.5", "\"end\": -2.5").field.as_deref(), Some("timeline.end"));
-    let error = broken("material.1.base_color[2]", "node.1.transform.rotation");
+    let error = broken("material.1.base_color[2]", "node.1.object.shape.radius");
     assert!(error.reason.contains("another track has the path"), "{error}");
 }
 
