@@ -11,6 +11,7 @@ mod order;
 mod picture;
 mod popups;
 mod saving;
+mod timeline;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
@@ -37,7 +38,7 @@ fn scene() -> (Scene, [NodeId; 4]) {
 }
 
 fn open(scene: Scene) -> Harness<'static, Editor> {
-    open_sized(scene, 800.0)
+    open_sized(scene, 864.0)
 }
 
 /// Opens the editor in a window so tall that the inspector does not scroll.

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod agreement;
+mod animation;
 mod branching;
 mod broken_files;
 mod cases;

@@ -63,12 +63,12 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
     let mut names = FreeNames::new(scene);
     let mut next_id = scene.next_id();
     let (mut nodes, mut added, mut done) = (Vec::with_capacity(scene.nodes().len()), Vec::new(), 0);
+    let mut new_id: HashMap<NodeId, NodeId> = HashMap::new();
     for range in tops {
         nodes.extend_from_slice(&scene.nodes()[done..range.end]);
         done = range.end;
         let originals = &scene.nodes()[range];
         added.push(NodeId(next_id));
-        let mut new_id: HashMap<NodeId, NodeId> = HashMap::new();
         for (i, original) in originals.iter().enumerate() {
             let mut copy = Node::clone(original);
             copy.id = NodeId(next_id);
@@ -82,7 +82,9 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
         }
     }
     nodes.extend_from_slice(&scene.nodes()[done..]);
-    Arc::make_mut(scene).set_nodes(nodes)?;
+    let scene = Arc::make_mut(scene);
+    scene.set_nodes(nodes)?;
+    scene.copy_tracks(&new_id)?;
     Ok(added)
 }
 

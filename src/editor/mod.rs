@@ -15,6 +15,8 @@
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
+//! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
@@ -34,6 +36,7 @@ mod dialog_views;
 mod dialogs;
 mod document_jobs;
 mod documents;
+mod dope_sheet;
 mod edit_session;
 mod expression;
 mod file_jobs;
@@ -53,6 +56,7 @@ mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
 mod intent;
+mod keying;
 mod legend;
 mod material_edits;
 mod material_library;
@@ -66,6 +70,7 @@ mod overlay;
 mod panel;
 mod panels;
 mod picking;
+mod playback;
 mod portal;
 mod preset_picker;
 mod projection;
@@ -81,6 +86,8 @@ mod state;
 mod status;
 mod theme;
 mod thumbnails;
+mod time_scale;
+mod timeline;
 mod toolbar;
 mod view_state;
 mod viewport;

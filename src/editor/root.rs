@@ -13,6 +13,7 @@ use super::dialogs::Dialogs;
 use super::document_jobs::{Opening, Saving};
 use super::intent::Intent;
 use super::messages::Message;
+use super::playback::Playback;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
@@ -113,6 +114,10 @@ impl Editor {
             self.state.session.cancel();
         }
         self.run_shortcuts(&ctx);
+        let now = ctx.input(|i| i.time);
+        if let Some(later) = self.state.playback.advance(&mut self.state.session, now) {
+            ctx.request_repaint_after(later);
+        }
         for index in 0..self.shell.len() {
             self.shell.show(index, &mut self.state, ui);
             self.answer_requests(&ctx);
@@ -261,6 +266,7 @@ impl Editor {
 
     fn leave_document(&mut self) {
         self.state.session.finish();
+        self.state.playback = Playback::default();
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.materials.forget();

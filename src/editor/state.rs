@@ -9,6 +9,7 @@ use super::file_jobs::FileJobs;
 use super::intent::Intent;
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
+use super::playback::Playback;
 use super::view_state::{Picture, ViewSettings, ViewState};
 use isolith_document::Document;
 use isolith_field::FlatScene;
@@ -53,6 +54,8 @@ pub struct EditorState {
     pub session: EditSession,
     /// The view of the document.
     pub view: ViewState,
+    /// The clock of the timeline.
+    pub playback: Playback,
     /// Data derived from the document, and the jobs that take longer than a frame.
     pub derived: SceneSession,
     /// Its materials: use counts, thumbnails, the one in the foreground.
@@ -78,6 +81,7 @@ impl Default for EditorState {
         Self {
             session: EditSession::new(Document::new(Scene::new())),
             view: ViewState::default(),
+            playback: Playback::default(),
             derived: SceneSession::default(),
             materials: MaterialLibrary::default(),
             files: FileJobs::default(),
@@ -100,7 +104,7 @@ impl EditorState {
         ViewSettings {
             camera: navigation.camera(),
             size_px: *size_px,
-            navigating: *is_navigating || self.session.is_changing(),
+            navigating: *is_navigating || self.session.is_changing() || self.playback.is_moving(),
             show_grid: *show_grid,
             show_outline: *show_outline,
             shading: *shading,

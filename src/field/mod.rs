@@ -88,6 +88,7 @@ mod modifier_reach;
 mod modifier_table;
 mod modify;
 mod moved;
+mod non_field;
 mod operand;
 pub mod pick;
 mod prepare;

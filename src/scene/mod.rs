@@ -1,6 +1,6 @@
 //! The scene as plain data: a flat table of nodes, a table of materials, an environment.
 //!
-//! Nothing here evaluates, draws or changes over time; see `field`, `render` and `document` for that.
+//! Nothing here evaluates fields, draws or edits; see `field`, `render` and `document` for that.
 //!
 //! # Example
 //!
@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod animation;
 mod attached;
 mod attachment;
 mod axis;
@@ -53,6 +54,7 @@ mod texture_image;
 mod texture_source;
 mod whole;
 
+pub use animation::{Animation, KeyInterpolation, Keyframe, MovedParts, SAME_TIME, Timeline, Track};
 pub use attached::Attached;
 pub use attachment::{Attachment, Content};
 pub use axis::Axis;

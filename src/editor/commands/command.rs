@@ -76,6 +76,10 @@ pub enum Command {
     AddAreaLight,
     /// Add a camera with the current view.
     AddCamera,
+    /// Set keys of position, rotation and scale.
+    KeyTransform,
+    /// Play the timeline, or pause.
+    Play,
     /// Frame the selection.
     FrameSelected,
     /// Frame the whole scene.

@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{insertion, material_edits, selection};
+use crate::{dope_sheet, insertion, keying, material_edits, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -36,7 +36,10 @@ impl Editor {
             Command::Redo => redo(session),
             Command::Rename => state.renaming = session.document.selection().last().copied(),
             Command::Duplicate => selection::duplicate(session),
+            Command::Delete if state.playback.deletes_keys() => dope_sheet::delete(session, &mut state.playback),
             Command::Delete => selection::delete(session),
+            Command::KeyTransform => keying::key_transforms(session),
+            Command::Play => state.playback.toggle(&mut session.document),
             Command::Group => selection::join(session, Operator::Union, true),
             Command::Ungroup => selection::ungroup(session),
             Command::MoveUp => selection::shift(session, -1),
