@@ -55,6 +55,11 @@ impl Arrows {
         Some(Self { center, tips })
     }
 
+    /// The position of the pivot, in points.
+    pub fn center(&self) -> Pos2 {
+        self.center
+    }
+
     /// The handle under the pointer.
     pub fn handle_at(&self, pointer: Pos2) -> Option<Handle> {
         if pointer.distance(self.center) < GRAB {
@@ -176,11 +181,6 @@ fn nearest_on_line(origin: DVec3, axis: DVec3, ray: &Ray) -> Option<DVec3> {
     Some(origin + axis * along)
 }
 
-/// A round snapping step: about a fiftieth of the visible extent.
-pub fn snap_step(distance: f64) -> f64 {
-    10.0_f64.powf((distance * 0.05).log10().round()).max(1e-6)
-}
-
 #[cfg(test)]
 mod tests {
     use glam::DVec2;
@@ -216,11 +216,5 @@ mod tests {
     fn a_line_toward_the_eye_cannot_be_dragged() {
         let ray = Ray { origin: DVec3::Z * 5.0, direction: DVec3::NEG_Z };
         assert_eq!(nearest_on_line(DVec3::ZERO, DVec3::Z, &ray), None);
-    }
-
-    #[test]
-    fn snapping_steps_are_powers_of_ten() {
-        assert!((snap_step(2.0) - 0.1).abs() < 1e-12);
-        assert!((snap_step(200.0) - 10.0).abs() < 1e-12);
     }
 }

@@ -15,6 +15,8 @@
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
+//! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
@@ -40,6 +42,7 @@ mod file_jobs;
 mod file_watch;
 mod framing;
 mod gizmo;
+mod handles;
 mod icons;
 mod input_order;
 mod insertion;
@@ -79,6 +82,7 @@ mod shape_icons;
 mod shell;
 mod state;
 mod status;
+mod steps;
 mod theme;
 mod thumbnails;
 mod toolbar;

@@ -116,6 +116,11 @@ fn hint_of(state: &EditorState) -> String {
             let [x, y, z] = offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
             format!("Moving by {x}, {y}, {z} m · Ctrl: snap · Shift: precise · Esc: cancel")
         }
+        PointerActivity::OverHandle(true) => {
+            "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
+        }
+        PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
         PointerActivity::Hovering => {
             "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame".into()

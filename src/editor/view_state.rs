@@ -67,6 +67,10 @@ pub enum PointerActivity {
     Zooming,
     /// Moves the selection; the offset so far.
     Moving(DVec3),
+    /// Over a handle of a shape; whether it is that of a point.
+    OverHandle(bool),
+    /// Drags a handle of a shape.
+    Shaping,
 }
 
 /// The view of the document.

@@ -4,13 +4,18 @@ use egui::{Color32, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
 use super::gizmo::{self, Arrows, Drag};
+use super::handles::grip::Grip;
+use super::handles::handle_paint;
+use super::handles::value_drag::{self, Pace, ValueDrag};
+use super::handles::value_handle::{HandleKey, HandleSet, HandleTarget};
 use super::overlay::{self, Compass, Marker};
 use super::panel::{Panel, PanelPlace};
 use super::picking::pick_node;
 use super::projection::Projection;
 use super::state::EditorState;
 use super::view_state::PointerActivity;
-use super::{legend, material_edits, materials, selection, shading_bar, theme};
+use super::{legend, material_edits, materials, selection, shading_bar, steps, theme};
+use isolith_document::Edit;
 use isolith_field::debug_view::ViewMode;
 
 /// The current drag.
@@ -19,6 +24,7 @@ enum Dragging {
     Pan,
     Zoom,
     Move(Drag),
+    Shape(Box<ValueDrag>),
 }
 
 /// The panel of the viewport.
@@ -60,13 +66,23 @@ impl Panel for Viewport {
 }
 
 impl Viewport {
-    fn activity(&self, response: &Response) -> PointerActivity {
+    fn activity(&self, state: &EditorState, ui: &Ui, response: &Response) -> PointerActivity {
+        let over_handle = || {
+            let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+            let set = HandleSet::new(state, &projection)?;
+            let key = handle_at(state, &set, &projection, response.hover_pos()?)?;
+            Some(PointerActivity::OverHandle(matches!(
+                set.get(key)?.target,
+                HandleTarget::Row(_) | HandleTarget::NewRow(_)
+            )))
+        };
         match &self.dragging {
             Some(Dragging::Orbit) => PointerActivity::Orbiting,
             Some(Dragging::Pan) => PointerActivity::Panning,
             Some(Dragging::Zoom) => PointerActivity::Zooming,
             Some(Dragging::Move(drag)) => PointerActivity::Moving(drag.offset),
-            None if response.hovered() => PointerActivity::Hovering,
+            Some(Dragging::Shape(_)) => PointerActivity::Shaping,
+            None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
     }
@@ -89,7 +105,7 @@ impl Viewport {
         take_dropped_material(state, ui, response);
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || now < self.zooming_until;
-        state.view.pointer = self.activity(response);
+        state.view.pointer = self.activity(state, ui, response);
     }
 
     fn follow_drag(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -105,22 +121,40 @@ impl Viewport {
             Some(Dragging::Orbit) => view.orbit(delta, height),
             Some(Dragging::Pan) => view.pan(delta, height),
             Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
+            Some(Dragging::Move(_) | Dragging::Shape(_)) => self.follow_change(state, ui, response, &projection),
+        }
+    }
+
+    /// Follows a drag that changes the scene.
+    fn follow_change(&mut self, state: &mut EditorState, ui: &Ui, response: &Response, projection: &Projection) {
+        let (modifiers, canceled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
+        if canceled {
+            state.session.cancel();
+            self.dragging = None;
+            return;
+        }
+        let Some(pointer) = response.interact_pointer_pos() else { return };
+        let view = &state.view.navigation;
+        let forward = view.rotation * DVec3::NEG_Z;
+        let snap = if modifiers.command { steps::snap_step(view.distance) } else { 0.0 };
+        let ray = projection.ray(pointer);
+        match &mut self.dragging {
             Some(Dragging::Move(drag)) => {
-                let (modifiers, canceled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
-                if canceled {
-                    drag.offset = DVec3::ZERO;
-                    drag.apply(&mut state.session, response.id);
-                    state.session.finish();
-                    self.dragging = None;
-                    return;
-                }
-                let snap = if modifiers.command { gizmo::snap_step(view.distance) } else { 0.0 };
-                if let Some(pointer) = response.interact_pointer_pos() {
-                    let forward = view.rotation * DVec3::NEG_Z;
-                    drag.follow(&projection.ray(pointer), forward, modifiers.shift, snap);
-                    drag.apply(&mut state.session, response.id);
-                }
+                drag.follow(&ray, forward, modifiers.shift, snap);
+                drag.apply(&mut state.session, response.id);
             }
+            Some(Dragging::Shape(drag)) => {
+                let pace = Pace {
+                    precise: modifiers.shift,
+                    snap,
+                    angle_snap: if modifiers.command { steps::ANGLE_STEP } else { 0.0 },
+                    both: modifiers.alt,
+                    finest: steps::finest_step(projection.meters_per_point(view.target)),
+                };
+                drag.follow(&ray, forward, pace);
+                drag.apply(&mut state.session, response.id);
+            }
+            _ => {}
         }
     }
 
@@ -136,6 +170,23 @@ impl Viewport {
         const STILL_AFTER: f64 = 0.2;
         self.zooming_until = now + STILL_AFTER;
         ui.ctx().request_repaint_after_secs(STILL_AFTER as f32);
+    }
+
+    /// Paints the handles of the selected shape, with the value of the one in use.
+    fn paint_handles(&self, state: &EditorState, ui: &Ui, projection: &Projection, pointer: Option<Pos2>) {
+        let Some(set) = HandleSet::new(state, projection) else { return };
+        let painter = ui.painter_at(state.view.rect);
+        let dragged = match &self.dragging {
+            Some(Dragging::Shape(drag)) => Some((drag.key(), Some(drag.text.clone()))),
+            None => pointer.and_then(|p| handle_at(state, &set, projection, p)).map(|key| (key, None)),
+            _ => None,
+        };
+        handle_paint::paint(&painter, &set, dragged.as_ref().map(|(key, _)| *key));
+        if let Some((handle, text)) = dragged.and_then(|(key, text)| Some((set.get(key)?, text))) {
+            let text = text.filter(|text| !text.is_empty()).unwrap_or_else(|| handle_paint::text_of(handle));
+            handle_paint::tag(&painter, handle.at, text);
+        }
+        handle_paint::announce(ui, &set);
     }
 
     fn paint(&self, state: &EditorState, ui: &Ui, response: &Response) {
@@ -163,6 +214,7 @@ impl Viewport {
             let hovered = pointer.and_then(|p| arrows.handle_at(p)).filter(|_| self.dragging.is_none());
             arrows.paint(&painter, dragged.or(hovered));
         }
+        self.paint_handles(state, ui, &projection, pointer);
         if state.view.view_mode != ViewMode::Shaded {
             let depth_range = state.depth_range();
             legend::paint(&painter, rect, state.view.view_mode, &depth_range);
@@ -178,6 +230,39 @@ impl Viewport {
             overlay::empty_hint(&painter, rect);
         }
     }
+}
+
+/// The handle of a shape under the pointer. The middle of the arrows lies over the handles.
+fn handle_at(state: &EditorState, set: &HandleSet, projection: &Projection, pointer: Pos2) -> Option<HandleKey> {
+    let found = set.at(pointer)?;
+    let middle = arrows(state, projection).map_or(f32::INFINITY, |arrows| arrows.center().distance(pointer));
+    (found.at.distance(pointer) <= middle).then_some(found.key)
+}
+
+fn start_shaping(state: &EditorState, projection: &Projection, origin: Pos2) -> Option<Dragging> {
+    let set = HandleSet::new(state, projection)?;
+    let handle = set.get(handle_at(state, &set, projection, origin)?)?;
+    let forward = state.view.navigation.rotation * DVec3::NEG_Z;
+    let drag = ValueDrag::begin(&state.session, &set, handle, (&projection.ray(origin), forward))?;
+    Some(Dragging::Shape(Box::new(drag)))
+}
+
+/// A click on a handle: adds a point, or deletes one with Ctrl. Returns whether there is a handle.
+fn click_handle(state: &mut EditorState, ui: &Ui, projection: &Projection, pointer: Pos2) -> bool {
+    let Some(set) = HandleSet::new(state, projection) else { return false };
+    let Some(handle) = handle_at(state, &set, projection, pointer).and_then(|key| set.get(key)) else { return false };
+    let scene = state.session.document.scene();
+    let (Some(node), deleting) = (scene.node(set.node), ui.input(|i| i.modifiers.command)) else { return true };
+    let changed = match (handle.target, handle.grip) {
+        (HandleTarget::NewRow(before), Grip::Place { at, .. }) => value_drag::with_new_point(node, handle, before, at),
+        (HandleTarget::Row(index), _) if deleting => value_drag::without_point(node, handle, index),
+        _ => None,
+    };
+    if let Some(changed) = changed {
+        state.session.finish();
+        state.session.apply(Edit::Replace(changed));
+    }
+    true
 }
 
 fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection: &Projection) -> Option<Dragging> {
@@ -197,6 +282,9 @@ fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection: &Pr
         });
     }
     let origin = ui.input(|i| i.pointer.press_origin())?;
+    if let Some(shaping) = start_shaping(state, projection, origin).filter(|_| !modifiers.alt) {
+        return Some(shaping);
+    }
     let handle = arrows(state, projection).and_then(|a| a.handle_at(origin)).filter(|_| !modifiers.alt);
     let forward = state.view.navigation.rotation * DVec3::NEG_Z;
     let moving = handle.and_then(|h| Drag::begin(&state.session, h, &projection.ray(origin), forward));
@@ -212,6 +300,9 @@ fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: &Pro
     let compass = Compass::new(state.view.rect, state.view.navigation.rotation);
     if let Some(side) = compass.side_at(pointer) {
         state.view.navigation.look_from(side);
+        return;
+    }
+    if click_handle(state, ui, projection, pointer) {
         return;
     }
     let markers = overlay::markers(state, projection);
