@@ -12,6 +12,7 @@ mod order;
 mod picture;
 mod popups;
 mod saving;
+mod transforms;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};

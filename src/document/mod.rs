@@ -23,6 +23,7 @@
 mod edit;
 mod history;
 mod placement;
+mod preferences;
 mod recent;
 pub mod recovery;
 mod save;
@@ -35,6 +36,7 @@ use std::sync::Arc;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
+pub use preferences::{MAX_FAVORITES, PreferenceValues, Preferences};
 pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
 pub use state_folder::{data_folder, state_folder};

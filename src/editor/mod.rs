@@ -16,6 +16,9 @@
 //! | `inspector_params` | a row for any parameter, generated from its table |
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
+//! | `keymap` | which keys run the commands |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -56,6 +59,7 @@ mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
 mod intent;
+mod keymap;
 mod legend;
 mod material_edits;
 mod material_library;
@@ -86,8 +90,12 @@ mod steps;
 mod theme;
 mod thumbnails;
 mod toolbar;
+mod transforms;
 mod view_state;
 mod viewport;
+mod viewport_click;
+mod viewport_drag;
+mod viewport_modal;
 mod widgets;
 
 pub use commands::command::Command;

@@ -18,7 +18,7 @@ use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
 use super::view_state::{Picture, ViewSettings};
 use super::{input_order, numbers, panels, theme, widgets};
-use isolith_document::{Document, RecentFiles};
+use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
 use isolith_mesh::MeshLibrary;
@@ -87,6 +87,11 @@ impl Editor {
         self.state.files.set_recent(recent);
     }
 
+    /// Sets the preferences, which persist between runs.
+    pub fn set_preferences(&mut self, preferences: Preferences) {
+        self.state.preferences = preferences;
+    }
+
     /// Sets the examples of the File menu.
     pub fn set_examples(&mut self, examples: Vec<Example>) {
         self.state.examples = examples;
@@ -102,6 +107,7 @@ impl Editor {
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
+        self.state.keymap().install(&ctx);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
         self.poll_documents(&ctx);
@@ -261,6 +267,7 @@ impl Editor {
 
     fn leave_document(&mut self) {
         self.state.session.finish();
+        self.state.view.transforming = None;
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.materials.forget();

@@ -85,6 +85,10 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
+        for (name, menu) in [("Transform", Menu::Tool), ("Orientation", Menu::Orientation), ("Keymap", Menu::Keymap)] {
+            let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
+            *chosen = inner.flatten().or(*chosen);
+        }
         ui.separator();
     }
     if let Some(command) = menu_entries(ui, state, menu) {

@@ -21,6 +21,7 @@ impl Editor {
             return;
         }
         self.state.session.finish();
+        self.state.view.transforming = None;
         let state = &mut self.state;
         let session = &mut state.session;
         match command {
@@ -66,6 +67,10 @@ impl Editor {
             Command::ToggleOutline => state.view.show_outline ^= true,
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
+            Command::Transform(kind) => state.view.transforming = Some(kind),
+            Command::UseTool(tool) => state.view.tool = tool,
+            Command::UseOrientation(orientation) => state.view.orientation = orientation,
+            Command::UseKeymap(keymap) => state.use_keymap(keymap),
             Command::ShowShading(shading) => state.view.show_shading(shading),
             Command::CycleShading => state.view.cycle_shading(),
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
