@@ -1,5 +1,6 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
+mod adding;
 mod attachments;
 mod fields;
 mod handles;

@@ -19,6 +19,7 @@
 //! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
+//! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -29,6 +30,7 @@
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
+mod add_palette;
 mod bounds;
 mod choosing;
 mod color_picker;
@@ -73,6 +75,7 @@ mod overlay;
 mod panel;
 mod panels;
 mod picking;
+mod placement;
 mod portal;
 mod preset_picker;
 mod projection;

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
 
+use super::add_palette::AddPalette;
 use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
@@ -35,6 +36,7 @@ pub struct Editor {
     pub(super) state: EditorState,
     shell: Shell,
     pub(super) command_palette: CommandPalette,
+    pub(super) add_palette: AddPalette,
     pub(super) dialogs: Dialogs,
     /// The document being opened.
     pub(super) opening: Option<Opening>,
@@ -59,6 +61,7 @@ impl Editor {
             state: EditorState::default(),
             shell: Shell::new(panels::all()),
             command_palette: CommandPalette::default(),
+            add_palette: AddPalette::default(),
             dialogs: Dialogs::default(),
             opening: None,
             saving: None,
@@ -151,6 +154,10 @@ impl Editor {
         self.show_recovery(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
+        }
+        if let Some(command) = self.add_palette.show(&mut self.state, ctx) {
+            self.run(command, ctx);
+            self.state.view.add_at = None;
         }
         let corner = self.state.view.rect;
         let messages = &mut self.state.session.messages;
@@ -247,7 +254,11 @@ impl Editor {
 
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.command_palette.is_open() || self.conflict.is_open() || self.is_offering()
+        self.dialogs.is_open()
+            || self.command_palette.is_open()
+            || self.add_palette.is_open()
+            || self.conflict.is_open()
+            || self.is_offering()
     }
 
     /// Replaces the current document.

@@ -95,6 +95,8 @@ pub struct ViewState {
     pub orientation: Orientation,
     /// The transform that follows the pointer and takes all keys.
     pub transforming: Option<TransformKind>,
+    /// Where in the picture the next node is added; `None` for the view's target.
+    pub add_at: Option<Pos2>,
     /// The keys and texts of this frame that belong to it.
     pub modal_events: Vec<Event>,
     /// The picture's rectangle, in points.
@@ -121,6 +123,7 @@ impl Default for ViewState {
             tool: Tool::Transform(TransformKind::Move),
             orientation: Orientation::World,
             transforming: None,
+            add_at: None,
             modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
             size_px: [640, 480],

@@ -75,7 +75,7 @@ fn a_side_of_a_box_follows_the_pointer_and_the_other_side_stays() {
     assert!((moved.x - 0.5 * (size[0] - 1.0)).abs() < 1e-9, "{moved}");
     assert!(handle(&harness, "Size X").distance(end) < 1.0, "it stays under the pointer");
     assert!(handle(&harness, "Size X, other side").distance(left) < 1.0, "the other side stays");
-    assert_eq!(size[0].to_string().len(), 5, "no more digits than the picture shows: {}", size[0]);
+    assert!(size[0].to_string().len() <= 5, "no more digits than the picture shows: {}", size[0]);
     assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
     assert_eq!(*harness.state().document().scene(), scene);
 }

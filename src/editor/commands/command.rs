@@ -62,6 +62,8 @@ pub enum Command {
     MakeMaterialUnique,
     /// Remove unused materials.
     RemoveUnusedMaterials,
+    /// Open the palette of what can be added, at the pointer.
+    AddAtPointer,
     /// Add an object of this shape.
     AddShape(ShapeKind),
     /// Add an empty group.

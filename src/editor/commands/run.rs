@@ -51,6 +51,11 @@ impl Editor {
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
+            Command::AddAtPointer => {
+                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
+                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
+                self.add_palette.open(pointer);
+            }
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
             Command::AddMesh => self.choose_mesh(ctx),

@@ -4,6 +4,7 @@ use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Popup};
 
 use super::command::Command;
 use super::info::Menu;
+use crate::add_palette::AddPalette;
 use crate::command_palette::CommandPalette;
 use crate::keymap::Keymap;
 use crate::root::Editor;
@@ -22,6 +23,7 @@ impl Editor {
             ctx.memory_mut(|memory| memory.stop_text_input());
             Popup::close_all(ctx);
             self.command_palette = CommandPalette::default();
+            self.add_palette = AddPalette::default();
             self.pending = Some(command);
             return;
         }
