@@ -17,6 +17,12 @@
 //! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
+//! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
+//! | `keymap` | which keys run the commands |
+//! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
@@ -26,6 +32,7 @@
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
+mod add_palette;
 mod bounds;
 mod choosing;
 mod color_picker;
@@ -43,6 +50,7 @@ mod file_jobs;
 mod file_watch;
 mod framing;
 mod gizmo;
+mod handles;
 mod icons;
 mod input_order;
 mod insertion;
@@ -57,6 +65,7 @@ mod inspector_scene;
 mod inspector_transform;
 mod intent;
 mod keying;
+mod keymap;
 mod legend;
 mod material_edits;
 mod material_library;
@@ -70,6 +79,7 @@ mod overlay;
 mod panel;
 mod panels;
 mod picking;
+mod placement;
 mod playback;
 mod portal;
 mod preset_picker;
@@ -84,13 +94,18 @@ mod shape_icons;
 mod shell;
 mod state;
 mod status;
+mod steps;
 mod theme;
 mod thumbnails;
 mod time_scale;
 mod timeline;
 mod toolbar;
+mod transforms;
 mod view_state;
 mod viewport;
+mod viewport_click;
+mod viewport_drag;
+mod viewport_modal;
 mod widgets;
 
 pub use commands::command::Command;

@@ -21,6 +21,7 @@ impl Editor {
             return;
         }
         self.state.session.finish();
+        self.state.view.transforming = None;
         let state = &mut self.state;
         let session = &mut state.session;
         match command {
@@ -53,6 +54,11 @@ impl Editor {
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
+            Command::AddAtPointer => {
+                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
+                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
+                self.add_palette.open(pointer);
+            }
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
             Command::AddMesh => self.choose_mesh(ctx),
@@ -69,6 +75,10 @@ impl Editor {
             Command::ToggleOutline => state.view.show_outline ^= true,
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
+            Command::Transform(kind) => state.view.transforming = Some(kind),
+            Command::UseTool(tool) => state.view.tool = tool,
+            Command::UseOrientation(orientation) => state.view.orientation = orientation,
+            Command::UseKeymap(keymap) => state.use_keymap(keymap),
             Command::ShowShading(shading) => state.view.show_shading(shading),
             Command::CycleShading => state.view.cycle_shading(),
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
