@@ -2,6 +2,7 @@
 
 mod attachments;
 mod fields;
+mod instancers;
 mod jobs;
 mod locks;
 mod materials;

@@ -10,7 +10,7 @@ use super::picking::pick_node;
 use super::projection::Projection;
 use super::state::EditorState;
 use super::view_state::PointerActivity;
-use super::{legend, material_edits, materials, selection, shading_bar, theme};
+use super::{lattice_overlay, legend, material_edits, materials, selection, shading_bar, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The current drag.
@@ -151,6 +151,7 @@ impl Viewport {
         let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
+            lattice_overlay::paint(state, &painter, &projection);
         }
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
