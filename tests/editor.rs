@@ -4,6 +4,7 @@ mod adding;
 mod attachments;
 mod fields;
 mod handles;
+mod instancers;
 mod jobs;
 mod locks;
 mod materials;

@@ -43,6 +43,8 @@ pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
     let node = scene.node(id)?;
     let of = match (part, &node.kind) {
         (Part::Modifier(place), _) => node.modifiers.get(place)?.modifier.kind().label(),
+        (Part::Dynamic(place), _) => node.dynamics.get(place)?.dynamic.kind().label(),
+        (Part::Mask(place), NodeKind::Instancer(instancer)) => instancer.masks.get(place)?.mask.kind().label(),
         (Part::Shape, NodeKind::Object(object)) => object.shape.kind().label(),
         _ => return Some(format!("{} {id}: {}", node.name, path.name)),
     };

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::material_edits::{self, NEW, next_color, users};
 use super::state::EditorState;
-use super::{placement, selection};
+use super::{instancing, placement, selection};
 use isolith_document::Edit;
 use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
 
@@ -38,7 +38,7 @@ pub fn node_above(state: &mut EditorState, node: Node, up: f64) -> Option<NodeId
 /// Adds a node with a transform in world space, and selects it.
 pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> {
     let scene = state.session.document.scene();
-    let (parent, position) = place(scene, state.session.document.selection());
+    let (parent, position) = place(scene, state.session.document.selection(), &node);
     if let Some(parent) = parent {
         let local = scene.world_from_local(parent).inverse().transform_point3(node.transform.translation);
         node.transform.translation = if local.is_finite() { local } else { DVec3::ZERO };
@@ -49,17 +49,20 @@ pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> 
     Some(added)
 }
 
-/// The end of the active group, or the place after the active node, or the end of the scene.
-fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
+/// The end of the active group, or the place after the active node, or the end of the scene. An instancer takes only
+/// what has a field.
+fn place(scene: &Scene, selection: &[NodeId], new: &Node) -> (Option<NodeId>, usize) {
     match selection.last().and_then(|id| scene.node(*id)) {
         None => (None, scene.children(None).count()),
-        Some(n) if n.has_children() => (Some(n.id), scene.children(Some(n.id)).count()),
+        Some(n) if n.has_children() && (new.has_field() || instancing::instancer(n).is_none()) => {
+            (Some(n.id), scene.children(Some(n.id)).count())
+        }
         Some(n) => (n.parent, selection::place(scene, n.id) + 1),
     }
 }
 
 /// The name itself, or the name with the first free number.
-fn free_name(scene: &Scene, base: &str) -> String {
+pub fn free_name(scene: &Scene, base: &str) -> String {
     let taken: HashSet<&str> = scene.nodes().iter().map(|n| n.name.as_str()).collect();
     let mut names = std::iter::once(base.to_owned()).chain((2..).map(|n| format!("{base} {n}")));
     names.find(|name| !taken.contains(name.as_str())).unwrap_or_default()

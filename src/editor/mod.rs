@@ -13,8 +13,9 @@
 //! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
 //! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
-//! | `inspector_params` | a row for any parameter, generated from its table |
-//! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
+//! | `instancing`, `instancer_edits`, `seeds` | instancers: shares, counts and problems; commands |
+//! | `navigation`, `projection`, `gizmo`, `*overlay` | the camera, the handles and the marks over the picture |
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
 //! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
@@ -56,16 +57,22 @@ mod input_order;
 mod insertion;
 mod inspector;
 mod inspector_blends;
+mod inspector_instancer;
 mod inspector_kinds;
+mod inspector_lists;
 mod inspector_material;
-mod inspector_modifiers;
+mod inspector_palette;
 mod inspector_params;
 mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
+mod inspector_types;
+mod instancer_edits;
+mod instancing;
 mod intent;
 mod keying;
 mod keymap;
+mod lattice_overlay;
 mod legend;
 mod material_edits;
 mod material_library;
@@ -73,6 +80,7 @@ mod materials;
 mod messages;
 mod multi_edit;
 mod navigation;
+mod node_picker;
 mod numbers;
 mod outliner;
 mod overlay;
@@ -87,11 +95,13 @@ mod projection;
 mod recovery;
 mod root;
 mod safekeeping;
+mod seeds;
 mod selection;
 mod shading_bar;
 mod shape_change;
 mod shape_icons;
 mod shell;
+mod slot_list;
 mod state;
 mod status;
 mod steps;

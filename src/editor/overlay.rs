@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::navigation::Side;
 use super::projection::Projection;
 use super::state::EditorState;
-use super::{bounds, icons, shading_bar, theme};
+use super::{bounds, icons, lattice_overlay, shading_bar, theme};
 use isolith_scene::{Node, NodeId, NodeKind};
 
 /// Maximum number of selection boxes.
@@ -27,7 +27,7 @@ pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Proj
     let active = selection.last().copied();
     for id in selection.into_iter().rev().take(MOST_BOXES) {
         let scene = state.session.document.scene();
-        if !scene.node(id).is_some_and(|n| needs_box(n)) {
+        if !scene.node(id).is_some_and(|n| needs_box(n)) || lattice_overlay::has_lines(state, id) {
             continue;
         }
         let Some((world_from_local, bounds)) = bounds::oriented(scene, state.derived.library(), id) else { continue };

@@ -6,8 +6,8 @@ use super::commands::entries::hovered_help;
 use super::messages::Severity;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
-use super::theme;
 use super::view_state::{Picture, PointerActivity};
+use super::{instancing, theme};
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
 
@@ -74,6 +74,11 @@ fn counts(state: &EditorState, ui: &mut Ui) {
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
+    let active = state.session.selected().pop();
+    if let Some(text) = active.as_deref().and_then(instancing::instancer).and_then(instancing::count_text) {
+        ui.label(RichText::new("·").color(theme::RESTING));
+        ui.label(RichText::new(text).color(theme::WEAK));
+    }
 }
 
 /// The running job, a problem of the scene, or a hint on the mouse.
@@ -159,7 +164,9 @@ fn warning(state: &EditorState) -> Option<(NodeId, String)> {
         return Some(problem.clone());
     }
     let warnings = &state.flat().warnings;
-    let first = warnings.first()?;
+    let Some(first) = warnings.first() else {
+        return instancing::first_problem(state.session.document.scene());
+    };
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
     Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
 }

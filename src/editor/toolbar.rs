@@ -93,6 +93,11 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     if let Some(command) = menu_entries(ui, state, menu) {
         *chosen = Some(command);
     }
+    if menu == Menu::Edit {
+        ui.separator();
+        let presets = ui.menu_button("Instancer presets", |ui| menu_entries(ui, state, Menu::Presets));
+        *chosen = presets.inner.flatten().or(*chosen);
+    }
     if menu == Menu::View {
         ui.separator();
         *chosen = shading_entries(ui, state).or(*chosen);

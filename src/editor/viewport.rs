@@ -16,7 +16,7 @@ use super::view_state::PointerActivity;
 use super::viewport_click::{click, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
-use super::{legend, materials, shading_bar, steps, theme};
+use super::{lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -226,6 +226,7 @@ impl Viewport {
         let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
+            lattice_overlay::paint(state, &painter, &projection);
         }
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);

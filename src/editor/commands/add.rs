@@ -2,8 +2,8 @@
 
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ADD, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FOLDER, ICON_LIGHTBULB, ICON_VIDEOCAM, ICON_VIEW_IN_AR,
-    ICON_WB_SUNNY,
+    ICON_ADD, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FOLDER, ICON_GRID_ON, ICON_LIGHTBULB, ICON_VIDEOCAM,
+    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
 use super::command::Command;
@@ -25,6 +25,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     all.extend(ShapeKind::ALL.iter().map(|kind| shape(*kind)));
     all.extend([
         row(Command::AddGroup, ICON_FOLDER, "Empty group", "A group without children; drag nodes into it").group(),
+        row(Command::AddInstancer, ICON_GRID_ON, "Instancer", "Places copies of what is dragged into it"),
         row(Command::AddMesh, ICON_VIEW_IN_AR, "Mesh…", "Triangles from a .gltf or .glb file"),
         row(Command::AddSun, ICON_WB_SUNNY, "Sun", "Parallel light").group(),
         row(Command::AddPointLight, ICON_LIGHTBULB, "Point light", "Light from a point into every direction"),

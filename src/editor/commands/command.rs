@@ -5,7 +5,7 @@ use crate::navigation::Side;
 use crate::transforms::kinds::{Orientation, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
-use isolith_scene::{Operator, ShapeKind};
+use isolith_scene::{InstancerPreset, Operator, ShapeKind};
 
 /// A command of the artist. The table holds its label, menu and condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,6 +46,12 @@ pub enum Command {
     MoveDown,
     /// Combine the selection by an operator.
     Join(Operator),
+    /// Make the selection the types of an instancer.
+    InstanceSelection,
+    /// Give the selected instancers other seeds.
+    RerollSeeds,
+    /// Give the selected instancers, or a new one of the selection, ready-made settings.
+    ApplyPreset(InstancerPreset),
     /// Switch the selection between subtracted and joined.
     ToggleNegative,
     /// Select every node.
@@ -68,6 +74,8 @@ pub enum Command {
     AddShape(ShapeKind),
     /// Add an empty group.
     AddGroup,
+    /// Add an instancer without types.
+    AddInstancer,
     /// Ask for a model and add it.
     AddMesh,
     /// Add a sun.

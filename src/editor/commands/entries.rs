@@ -45,12 +45,12 @@ pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
 /// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{
-        Delete, Duplicate, FrameSelected, Group, MoveDown, MoveUp, Rename, ToggleLock, ToggleNegative, ToggleVisible,
-        Ungroup,
+        Delete, Duplicate, FrameSelected, Group, InstanceSelection, MoveDown, MoveUp, Rename, ToggleLock,
+        ToggleNegative, ToggleVisible, Ungroup,
     };
     const GROUPS: [&[Command]; 4] = [
         &[Rename, Duplicate, Delete],
-        &[Group, Ungroup, ToggleNegative],
+        &[Group, Ungroup, InstanceSelection, ToggleNegative],
         &[MoveUp, MoveDown],
         &[ToggleVisible, ToggleLock, FrameSelected],
     ];

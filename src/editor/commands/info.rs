@@ -19,6 +19,8 @@ pub enum Menu {
     File,
     /// Changes of the selection.
     Edit,
+    /// Ready-made settings of instancers; a submenu of Edit.
+    Presets,
     /// New nodes.
     Add,
     /// The camera and the picture.

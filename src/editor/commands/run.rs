@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{dope_sheet, insertion, keying, material_edits, selection};
+use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -43,6 +43,9 @@ impl Editor {
             Command::Play => state.playback.toggle(&mut session.document),
             Command::Group => selection::join(session, Operator::Union, true),
             Command::Ungroup => selection::ungroup(session),
+            Command::InstanceSelection => instance(session),
+            Command::RerollSeeds => reroll(session),
+            Command::ApplyPreset(preset) => instancer_edits::apply_preset(state, preset),
             Command::MoveUp => selection::shift(session, -1),
             Command::MoveDown => selection::shift(session, 1),
             Command::Join(operator) => selection::join(session, operator, false),
@@ -61,6 +64,7 @@ impl Editor {
             }
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
+            Command::AddInstancer => instancer_edits::add(state),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::AddSun => add_sun(state),
             Command::AddPointLight => add_point_light(state),
@@ -118,6 +122,15 @@ fn remove_unused_materials(session: &mut EditSession) {
             session.apply(Edit::RemoveMaterial(id));
         }
     });
+}
+
+fn instance(session: &mut EditSession) {
+    instancer_edits::from_selection(session);
+}
+
+fn reroll(session: &mut EditSession) {
+    let selection = session.document.selection().to_vec();
+    seeds::reroll(session, &selection);
 }
 
 fn add(state: &mut EditorState, node: Node) {

@@ -24,7 +24,7 @@ pub fn lines(m: &Measures<'_>) -> Vec<Vec<DVec3>> {
             let radius = (m.number("blend.radius") * m.blend_unit).abs() + SEAM_GAP * m.reach;
             vec![circle(m.seam, m.right, m.up, radius)]
         }
-        NodeKind::Group(_) | NodeKind::Mesh(_) => Vec::new(),
+        NodeKind::Group(_) | NodeKind::Instancer(_) | NodeKind::Mesh(_) => Vec::new(),
     }
 }
 

@@ -70,6 +70,7 @@ pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
             },
         ),
         NodeKind::Camera(camera) => (Part::Camera, if camera.aperture > 0.0 { LENS } else { CAMERA }),
+        NodeKind::Instancer(_) => (Part::Instancer, &[]),
         NodeKind::Mesh(_) => (Part::Mesh, &[]),
     }
 }
