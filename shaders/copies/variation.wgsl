@@ -14,6 +14,8 @@ struct Copy {
     // Size along its own axes.
     scale: vec3f,
     emission: f32,
+    // Cell relative to the anchor, or the index of the place: see `copy_at`.
+    place: vec3i,
 }
 
 // Kind of a copy that does not exist.
@@ -75,7 +77,7 @@ fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
 }
 
 // A copy that exists, moved and turned from its base.
-fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
+fn copy_placed(at: vec3i, cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
     let seed = instancer.seed;
     let loose = (copy_randoms(seed, cell, CHANNEL_PLACE) - 0.5) * jitter;
     let offset = mix(instancer.offset_min, instancer.offset_max, copy_randoms(seed, cell, CHANNEL_OFFSET));
@@ -100,6 +102,7 @@ fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f
         quaternion_product(motion.rotation, quaternion_product(turned, own)),
         scale,
         motion.emission,
+        at,
     );
 }
 
@@ -107,7 +110,7 @@ const QUATERNION_NONE: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
 // A copy that does not exist.
 fn copy_none() -> Copy {
-    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0);
+    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0, vec3i(0));
 }
 
 // Place of a cell, both relative to the anchor.
@@ -119,26 +122,32 @@ fn copy_cell_place(relative: vec3i) -> vec3f {
     return place;
 }
 
-// The copy of a cell, relative to the anchor, if it is of this type; else one of kind NO_COPY.
-fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {
-    let cell = relative + instancer.anchor;
-    let base = copy_cell_place(relative);
-    if copy_kind(cell, base, 1.0) != kind {
+// The copy of a cell relative to the anchor, or at a place of the list, if it is of this type; else
+// one of kind NO_COPY.
+fn copy_at(at: vec3i, kind: u32) -> Copy {
+    var cell = at + instancer.anchor;
+    var base = copy_cell_place(at);
+    var turned = QUATERNION_NONE;
+    var jitter = instancer.jitter;
+    if instancer.tree_count > 0u {
+        let row = instancer.first_place + 3u * u32(at.x);
+        cell = bitcast<vec3i>(places[row + 2u].xyz);
+        base = places[row].xyz;
+        turned = places[row + 1u];
+        jitter = vec3f(0.0);
+    }
+    if copy_kind(cell, base, quaternion_rotated(turned, vec3f(0.0, 1.0, 0.0)).y) != kind {
         return copy_none();
     }
-    return copy_placed(cell, kind, base, QUATERNION_NONE, instancer.jitter);
+    return copy_placed(at, cell, kind, base, turned, jitter);
 }
 
-// The copy at a place of the list, if it is of this type; else one of kind NO_COPY.
+fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {
+    return copy_at(relative, kind);
+}
+
 fn copy_of_place(place: u32, kind: u32) -> Copy {
-    let row = instancer.first_place + 3u * place;
-    let cell = bitcast<vec3i>(places[row + 2u].xyz);
-    let rotation = places[row + 1u];
-    let base = places[row].xyz;
-    if copy_kind(cell, base, quaternion_rotated(rotation, vec3f(0.0, 1.0, 0.0)).y) != kind {
-        return copy_none();
-    }
-    return copy_placed(cell, kind, base, rotation, vec3f(0.0));
+    return copy_at(vec3i(i32(place), 0, 0), kind);
 }
 
 // Bounding sphere of a copy: center, relative to the anchor's place, and radius.

@@ -24,8 +24,10 @@ struct CopyWalk {
     low: vec3i,
     entry: f32,
     high: vec3i,
-    // Open nodes of the tree; NO_OPEN ends a walk through a list.
+    // Open nodes of the tree of a list.
     open: u32,
+    // The cell or place to look at, see `copy_at`.
+    at: vec3i,
 }
 
 // A copy whose bounding sphere the cone meets, and where.
@@ -109,6 +111,19 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     return walk;
 }
 
+// Moves a walk that has begun on to the slab of a cell. A walk through a list stays at its beginning.
+fn copy_walk_skip(walk: ptr<function, CopyWalk>, cell: vec3i) {
+    let slab = cell[(*walk).axis];
+    (*walk).left = select((*walk).left - abs(slab - (*walk).slab), 0, (*walk).left <= 0);
+    (*walk).slab = slab;
+}
+
+// The cell that `copy_walk_skip` needs for an exhausted walk to go on.
+fn copy_walk_slab(walk: ptr<function, CopyWalk>) -> vec3i {
+    let is_between = any((*walk).cell > (*walk).high);
+    return select((*walk).low, vec3i((*walk).slab), is_between);
+}
+
 // The next copy of this kind whose bounding sphere the cone meets before `far`; false if there is
 // none.
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
@@ -122,17 +137,21 @@ fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr
             return false;
         }
         (*walk).budget -= 1u;
-        var copy = copy_none();
+        var looks = false;
         if is_list {
-            copy = walk_step_list(walk, kind, far);
+            looks = walk_step_list(walk, far);
         } else if any((*walk).cell > (*walk).high) {
             if walk_next_slab(walk, far) {
                 return false;
             }
             continue;
         } else {
-            copy = walk_step_cell(walk, kind);
+            looks = walk_step_cell(walk);
         }
+        if !looks {
+            continue;
+        }
+        let copy = copy_at((*walk).at, kind);
         if copy.kind != NO_COPY && walk_meets(walk, copy, far, found) {
             return true;
         }
@@ -161,8 +180,8 @@ fn walk_next_slab(walk: ptr<function, CopyWalk>, far: f32) -> bool {
     return false;
 }
 
-// The copy of the next cell of the slab, if it is of this kind and its reach meets the cone.
-fn walk_step_cell(walk: ptr<function, CopyWalk>, kind: u32) -> Copy {
+// Moves on to the next cell of the slab; true if its reach meets the cone.
+fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let cell = (*walk).cell;
     let low = (*walk).low;
     let high = (*walk).high;
@@ -177,14 +196,12 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>, kind: u32) -> Copy {
     let nearest = dot(away, direction) / dot(direction, direction);
     let miss = away - direction * nearest;
     let reach = instancer.reach + (*walk).spread * max(nearest + instancer.reach * inverseSqrt(dot(direction, direction)), 0.0);
-    if dot(miss, miss) > reach * reach {
-        return copy_none();
-    }
-    return copy_of_cell(cell, kind);
+    (*walk).at = cell;
+    return dot(miss, miss) <= reach * reach;
 }
 
-// The copy of the next node of the tree, if that is a leaf that the cone meets.
-fn walk_step_list(walk: ptr<function, CopyWalk>, kind: u32, far: f32) -> Copy {
+// Moves on to the next node of the tree; true if that is a leaf that the cone meets.
+fn walk_step_list(walk: ptr<function, CopyWalk>, far: f32) -> bool {
     (*walk).open -= 1u;
     let index = walk_stack[(*walk).open];
     let row = instancer.first_row + 2u * index;
@@ -202,18 +219,19 @@ fn walk_step_list(walk: ptr<function, CopyWalk>, kind: u32, far: f32) -> Copy {
     let entry = max((*walk).near, max(first.x, max(first.y, first.z)));
     let exit = min(far, min(last.x, min(last.y, last.z)));
     if entry > exit {
-        return copy_none();
+        return false;
     }
     let link = bitcast<u32>(low.w);
     let axis = bitcast<u32>(high.w);
     if axis == 3u {
-        return copy_of_place(link, kind);
+        (*walk).at = vec3i(i32(link), 0, 0);
+        return true;
     }
     let is_backward = direction[axis] < 0.0;
     walk_stack[(*walk).open] = select(link, index + 1u, is_backward);
     walk_stack[(*walk).open + 1u] = select(index + 1u, link, is_backward);
     (*walk).open += 2u;
-    return copy_none();
+    return false;
 }
 
 // Whether the cone meets the bounding sphere of a copy before `far`.
