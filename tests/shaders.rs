@@ -54,7 +54,7 @@ fn sources() -> Vec<(&'static str, String)> {
     let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
     let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
     let with_copies = Options { copies: true, ..Options::default() };
-    let of_copies = ["copies/cone.wgsl", "trace.wgsl", "surface.wgsl"].into_iter().flat_map(|pass| {
+    let of_copies = ["copy/cone.wgsl", "trace.wgsl", "surface.wgsl"].into_iter().flat_map(|pass| {
         let text = |evaluator| assemble(pass, evaluator, with_copies).unwrap_or_else(|error| panic!("{error}"));
         all.each_ref().map(|evaluator| (pass, text(evaluator)))
     });

@@ -1,4 +1,4 @@
-//! Motions of copies and nodes. Counterpart of `shaders/copies/dynamics.wgsl`.
+//! Motions of copies and nodes. Counterpart of `shaders/copy/dynamics.wgsl`.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 

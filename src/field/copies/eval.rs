@@ -1,4 +1,4 @@
-//! The field of all copies of one type. Counterpart of `shaders/copies/value.wgsl`.
+//! The field of all copies of one type. Counterpart of `shaders/copy/value.wgsl`.
 //!
 //! The value at a point is the least of max(field, distance to the bounding sphere) over the copies nearby, and never
 //! more than the distance from which on copies are not looked at. It is continuous, since it depends on no cell border:

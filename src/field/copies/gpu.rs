@@ -1,5 +1,4 @@
-//! Instancers as the GPU reads them. The counterparts are in `shaders/copies/instancer.wgsl`; a test compares the
-//! layouts.
+//! Instancers as the GPU reads them. The counterparts are in `shaders/copy/instancer.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
@@ -178,7 +177,7 @@ pub fn gpu_places(instancer: &FlatInstancer) -> Vec<[f32; 4]> {
     }
     for place in &list.places {
         let [x, y, z] = vector(place.position);
-        rows.push([x, y, z, 0.0]);
+        rows.push([x, y, z, place.up as f32]);
         rows.push(floats(place.rotation.to_array()));
         let [a, b, c] = place.cell.map(|i| f32::from_bits(i as u32));
         rows.push([a, b, c, 0.0]);

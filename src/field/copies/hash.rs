@@ -1,5 +1,5 @@
 //! Random numbers of copies: a hash of seed, cell and channel, with the same bits on the GPU. Counterpart of
-//! `shaders/copies/hash.wgsl`.
+//! `shaders/copy/hash.wgsl`.
 
 /// What a random number is for. Each has numbers of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Smooth noise for masks and dynamics. Counterpart of `shaders/copies/noise.wgsl`.
+//! Smooth noise for masks and dynamics. Counterpart of `shaders/copy/noise.wgsl`.
 //!
 //! Coordinates are a whole number and a fraction from 0 to 1, so that they are as exact far away as near, and after
 //! days as at the start.

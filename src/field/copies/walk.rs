@@ -1,4 +1,4 @@
-//! The walk along a ray through the copies of an instancer. Counterpart of `shaders/copies/walk.wgsl`.
+//! The walk along a ray through the copies of an instancer. Counterpart of `shaders/copy/walk.wgsl`.
 //!
 //! A lattice is walked slab by slab along the axis that the ray crosses fastest, each cell once: the ray visits the
 //! cells whose copies may reach it, however far copies leave their cells. Slabs come in the order in which the ray

@@ -116,7 +116,7 @@ impl FieldPipelines {
 
 /// The shader of a pass. The cone pass over copies evaluates nothing and has a file of its own.
 pub fn field_file(stage: Pass, options: Options) -> &'static str {
-    if options.copies && stage == Pass::Cone { "copies/cone.wgsl" } else { stage.file() }
+    if options.copies && stage == Pass::Cone { "copy/cone.wgsl" } else { stage.file() }
 }
 
 /// Layouts of the targets of the three passes.

@@ -12,7 +12,7 @@
 //! | color | Rgba8Unorm | shade, debug_view, overlay | the picture, sRGB encoded |
 //! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; the value of visibility where no field is |
 //!
-//! With instancers a buffer holds which copy each pixel shows: see `shaders/copies/copied.wgsl`.
+//! With instancers a buffer holds which copy each pixel shows: see `shaders/copy/copied.wgsl`.
 //!
 //! `shaders/common/depth.wgsl` implements the same conventions.
 

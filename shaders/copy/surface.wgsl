@@ -1,9 +1,9 @@
 // The surface of a copy that a pixel shows. Included by `surface.wgsl` instead of
 // `common/surface_seen.wgsl`.
 
-#include "copies/space.wgsl"
-#include "copies/material.wgsl"
-#include "copies/copied.wgsl"
+#include "copy/space.wgsl"
+#include "copy/material.wgsl"
+#include "copy/copied.wgsl"
 
 @group(2) @binding(7) var<storage, read_write> copied: array<vec4i>;
 

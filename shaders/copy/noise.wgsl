@@ -1,6 +1,6 @@
 // Smooth noise for masks and dynamics. Counterpart of `src/field/copies/noise.rs`.
 
-#include "copies/hash.wgsl"
+#include "copy/hash.wgsl"
 
 // A coordinate as a whole number and a fraction from 0 to below 1.
 struct NoiseCoordinate {

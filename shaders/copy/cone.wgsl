@@ -4,7 +4,7 @@
 #include "common/view.wgsl"
 #include "common/scene.wgsl"
 #include "common/cone_list.wgsl"
-#include "copies/walk.wgsl"
+#include "copy/walk.wgsl"
 
 @compute @workgroup_size(64)
 fn cone(@builtin(global_invocation_id) id: vec3u) {
@@ -22,12 +22,11 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let far = min(view.far, 1.01 * length(min(corner, vec3f(1e15))) / length(direction) + 1.0);
     let walk = copy_walk_begin(origin, direction, view.near, far, spread, 0u);
     let is_met = id.x < columns * rows && (walk.left > 0 || walk.open > 0u);
-    var start = array<f32, 4>();
+    // Slightly early, for the rays beside the axis.
+    let entry = max(walk.near * 0.99, view.near);
+    let hiz = vec4f(cone_hiz(place, 0u), cone_hiz(place, 1u), cone_hiz(place, 2u), cone_hiz(place, 3u));
+    let starts = select(vec4f(CONE_PASSED), vec4f(entry), vec4<bool>(is_met) & (vec4f(entry) <= hiz));
+    var start = array<f32, 4>(starts.x, starts.y, starts.z, starts.w);
     var descents = array<f32, 4>();
-    for (var quarter = 0u; quarter < 4u; quarter += 1u) {
-        // Slightly early, for the rays beside the axis.
-        let entry = max(walk.near * 0.99, view.near);
-        start[quarter] = select(CONE_PASSED, entry, is_met && entry <= cone_hiz(place, quarter));
-    }
     cone_list(place, &start, &descents);
 }

@@ -4,8 +4,8 @@
 // Each copy is marched in its own space, along a ray of unit length there: t grows by the same
 // factor as the footprint of the pixel, so the march is that of any other component.
 
-#include "copies/walk.wgsl"
-#include "copies/copied.wgsl"
+#include "copy/walk.wgsl"
+#include "copy/copied.wgsl"
 
 @group(2) @binding(9) var<storage, read_write> copied: array<vec4i>;
 

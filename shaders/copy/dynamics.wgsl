@@ -1,7 +1,8 @@
 // Motions of copies. Counterpart of `src/field/copies/dynamics.rs`.
 
-#include "copies/instancer.wgsl"
-#include "copies/noise.wgsl"
+#include "copy/instancer.wgsl"
+#include "copy/noise.wgsl"
+#include "copy/quaternion.wgsl"
 
 struct CopyMotion {
     translation: vec3f,
@@ -27,19 +28,6 @@ const DYNAMIC_CURL: u32 = 10u;
 
 const DYNAMIC_CURL_SCALE: f32 = 0.4;
 const DYNAMIC_TURN: f32 = 6.2831853;
-
-fn quaternion_product(a: vec4f, b: vec4f) -> vec4f {
-    return vec4f(a.w * b.xyz + b.w * a.xyz + cross(a.xyz, b.xyz), a.w * b.w - dot(a.xyz, b.xyz));
-}
-
-fn quaternion_rotated(q: vec4f, v: vec3f) -> vec3f {
-    let t = 2.0 * cross(q.xyz, v);
-    return v + q.w * t + cross(q.xyz, t);
-}
-
-fn quaternion_about(axis: vec3f, angle: f32) -> vec4f {
-    return vec4f(axis * sin(0.5 * angle), cos(0.5 * angle));
-}
 
 // The sine of a number of turns.
 fn dynamic_sine(turns: f32) -> f32 {

@@ -1,6 +1,6 @@
 // What sets a copy apart. Counterpart of `src/field/copies/variation.rs`.
 
-#include "copies/dynamics.wgsl"
+#include "copy/dynamics.wgsl"
 
 struct Copy {
     // Absolute cell, or the id of the place.
@@ -129,14 +129,17 @@ fn copy_at(at: vec3i, kind: u32) -> Copy {
     var base = copy_cell_place(at);
     var turned = QUATERNION_NONE;
     var jitter = instancer.jitter;
+    // Height of the unit normal of the ground.
+    var up = 1.0;
     if instancer.tree_count > 0u {
         let row = instancer.first_place + 3u * u32(at.x);
         cell = bitcast<vec3i>(places[row + 2u].xyz);
         base = places[row].xyz;
+        up = places[row].w;
         turned = places[row + 1u];
         jitter = vec3f(0.0);
     }
-    if copy_kind(cell, base, quaternion_rotated(turned, vec3f(0.0, 1.0, 0.0)).y) != kind {
+    if copy_kind(cell, base, up) != kind {
         return copy_none();
     }
     return copy_placed(at, cell, kind, base, turned, jitter);

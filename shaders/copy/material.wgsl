@@ -1,7 +1,7 @@
 // How the material of a copy differs from that of its type. Counterpart of `copy_material` in
 // `src/field/copies/variation.rs`.
 
-#include "copies/variation.wgsl"
+#include "copy/variation.wgsl"
 
 struct CopyMaterial {
     // Index of the material instead of that of the type; NO_COPY for none.

@@ -89,5 +89,16 @@ struct Instancer {
 
 @group(1) @binding(5) var<uniform> instancer: Instancer;
 // Lists of places. Per instancer: a tree of boxes, two rows per node, lower and upper corner, with
-// the link and the axis as bits in w; then three rows per place: position, rotation, id.
+// the link and the axis as bits in w; then three rows per place: position with the
+// cosine of the slope of the ground, rotation, id.
 @group(1) @binding(6) var<storage, read> places: array<vec4f>;
+
+// A point of the instancer's space, relative to the anchor's place, from one relative to the eye.
+fn instancer_local_point(p: vec3f) -> vec3f {
+    let q = vec4f(p, 1.0);
+    return vec3f(dot(instancer.local_x, q), dot(instancer.local_y, q), dot(instancer.local_z, q));
+}
+
+fn instancer_local_direction(d: vec3f) -> vec3f {
+    return vec3f(dot(instancer.local_x.xyz, d), dot(instancer.local_y.xyz, d), dot(instancer.local_z.xyz, d));
+}
