@@ -14,7 +14,8 @@ fn surface_seen(component: Component, pixel: vec2u, t: f32, seen: bool) -> SeenS
     let direction = instancer_local_direction(view_direction(pixel));
     let along = copy_local_direction(copy, direction);
     let stretch = length(along);
-    let ray = Ray(copy_local_point(copy, origin + direction * t), t * stretch, along / stretch);
+    let local = copy_local_point(copy, origin + direction * t) + component.eye;
+    let ray = Ray(local, t * stretch, along / stretch);
     let surface = surface_entered(ray, t * stretch, seen);
     if seen {
         copied[place + 1u] = bitcast<vec4i>(copied_material(copy_material(copy)));

@@ -39,7 +39,7 @@ fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, 
         let along = copy_local_direction(visit.copy, direction);
         let stretch = length(along);
         // Positions count from where the ray enters: so they are no larger than the copy.
-        let local = copy_local_point(visit.copy, origin + direction * visit.entry);
+        let local = copy_local_point(visit.copy, origin + direction * visit.entry) + component.eye;
         let ray = Ray(local, visit.entry * stretch, along / stretch);
         let interval = bounds_interval(component, ray, 0.0);
         let entry = select(max(interval.x, ray.skipped), resume * stretch, seeks);

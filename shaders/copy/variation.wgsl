@@ -63,14 +63,16 @@ fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
 fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
     let randoms = copy_randoms(instancer.seed, cell, CHANNEL_CHOICE);
     var share = instancer.probability;
-    for (var i = 0u; i < instancer.mask_count; i += 1u) {
+    let masks = instancer_count(instancer.mask_count, base.x);
+    for (var i = 0u; i < masks; i += 1u) {
         share *= copy_mask(instancer.masks[i], base, up);
     }
     if randoms.x >= share {
         return NO_COPY;
     }
     var kind = 0u;
-    while kind + 1u < instancer.type_count && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
+    let types = instancer_count(instancer.type_count, base.x);
+    while kind + 1u < types && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
         kind += 1u;
     }
     return kind;
@@ -131,7 +133,7 @@ fn copy_at(at: vec3i, kind: u32) -> Copy {
     var jitter = instancer.jitter;
     // Height of the unit normal of the ground.
     var up = 1.0;
-    if instancer.tree_count > 0u {
+    if instancer_count(instancer.tree_count, base.x) > 0u {
         let row = instancer.first_place + 3u * u32(at.x);
         cell = bitcast<vec3i>(places[row + 2u].xyz);
         base = places[row].xyz;

@@ -67,7 +67,7 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     if any(outside) || walk.near > end {
         return walk;
     }
-    if instancer.tree_count > 0u {
+    if instancer_count(instancer.tree_count, direction.x) > 0u {
         walk.open = 1u;
         walk_stack[0] = 0u;
         return walk;
@@ -98,7 +98,7 @@ fn copy_walk_slab(walk: ptr<function, CopyWalk>) -> vec3i {
 // The next copy of this kind whose bounding sphere the cone meets before `far`; false if there is
 // none.
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
-    let is_list = instancer.tree_count > 0u;
+    let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
     loop {
         if select((*walk).left <= 0 && any((*walk).cell > (*walk).high), (*walk).open == 0u, is_list) {
             return false;
