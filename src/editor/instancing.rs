@@ -3,7 +3,10 @@
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
 use super::numbers::number_text;
+use isolith_geometry::Aabb;
 use isolith_scene::{Instancer, Lattice, Node, NodeId, NodeKind, Scene, Shape, Snap};
 
 /// The instancer of a node.
@@ -106,14 +109,43 @@ pub fn first_problem(scene: &Scene) -> Option<(NodeId, String)> {
     visible.filter_map(|node| Some((node.id, format!("{} {}", node.name, problem(scene, node)?)))).next()
 }
 
+/// Cells shown to each side along an axis without end.
+pub const SHOWN_CELLS: f64 = 8.0;
+
+/// Number and size of the cells of a lattice along each axis; `None` for one that is a list of places.
+pub fn cells(lattice: &Lattice) -> Option<([u32; 3], [f64; 3])> {
+    match *lattice {
+        Lattice::Grid { counts, spacing } => Some((counts, spacing)),
+        Lattice::Hexagonal { counts, spacing, height } => Some((counts, [spacing, height, spacing * 0.75_f64.sqrt()])),
+        Lattice::Polar { .. } | Lattice::Scatter { .. } | Lattice::Curve { .. } => None,
+    }
+}
+
+/// The box around the places of copies in the instancer's own space; of axes without end the part that is shown.
+/// Empty where the places follow from a surface or a curve.
+pub fn extent(lattice: &Lattice) -> Aabb {
+    let half = match (cells(lattice), *lattice) {
+        (Some((counts, spacing)), _) => DVec3::from_array([0, 1, 2].map(|axis| {
+            let cells = if counts[axis] == 0 { SHOWN_CELLS } else { 0.5 * f64::from(counts[axis] - 1) };
+            cells * spacing[axis]
+        })),
+        (None, Lattice::Polar { rings, radius, spacing, .. }) => {
+            let far = radius + f64::from(rings.saturating_sub(1)) * spacing;
+            DVec3::new(far, 0.0, far)
+        }
+        (None, _) => return Aabb::EMPTY,
+    };
+    Aabb::from_center_half(DVec3::ZERO, half)
+}
+
 /// How many copies it makes; `None` where that follows from a surface or a curve.
 pub fn count_text(instancer: &Instancer) -> Option<String> {
-    let (counts, places) = match instancer.lattice {
-        Lattice::Grid { counts, .. } | Lattice::Hexagonal { counts, .. } => {
-            (counts, counts.iter().map(|count| f64::from(*count)).product())
+    let (counts, places) = match (cells(&instancer.lattice), instancer.lattice) {
+        (Some((counts, _)), _) => (counts, counts.iter().map(|count| f64::from(*count)).product()),
+        (None, Lattice::Polar { count, rings, radius, spacing }) => {
+            ([1; 3], places_of_rings(count, rings, radius, spacing))
         }
-        Lattice::Polar { count, rings, radius, spacing } => ([1; 3], places_of_rings(count, rings, radius, spacing)),
-        Lattice::Scatter { .. } | Lattice::Curve { .. } => return None,
+        (None, _) => return None,
     };
     let endless: Vec<_> = (0..3).filter(|axis| counts[*axis] == 0).map(|axis| ["X", "Y", "Z"][axis]).collect();
     if !endless.is_empty() {
