@@ -1,5 +1,6 @@
 //! The program from outside: every command and exit code, its files and its messages.
 
+mod frames;
 mod light;
 mod shading;
 

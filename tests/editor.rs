@@ -1,7 +1,9 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
+mod adding;
 mod attachments;
 mod fields;
+mod handles;
 mod instancers;
 mod jobs;
 mod locks;
@@ -12,6 +14,8 @@ mod order;
 mod picture;
 mod popups;
 mod saving;
+mod timeline;
+mod transforms;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
@@ -38,7 +42,7 @@ fn scene() -> (Scene, [NodeId; 4]) {
 }
 
 fn open(scene: Scene) -> Harness<'static, Editor> {
-    open_sized(scene, 800.0)
+    open_sized(scene, 864.0)
 }
 
 /// Opens the editor in a window so tall that the inspector does not scroll.

@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod agreement;
+mod animation;
 mod branching;
 mod broken_files;
 mod cases;
 mod cli;
 mod contract;
+mod copies;
 mod counts;
 mod debug_view;
 mod documents;

@@ -25,6 +25,7 @@ mod exr_ids;
 mod exr_light;
 mod failure;
 mod film;
+mod frames;
 mod input;
 mod log;
 mod outputs;

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 use super::adapters::AdapterArguments;
 use super::failure::Failure;
 use super::film::{FilmArguments, clear_background, with_lens};
+use super::frames::{FrameRange, numbered, parse_fps};
 use super::input::{folder, is_standard, read_scene, shown};
 use super::outputs::{self, Quantity};
 use super::progress::{Interrupts, Progress, cancel_by_interrupts};
@@ -22,7 +23,7 @@ use crate::geometry::{Camera, Lens};
 use crate::jobs::{JobEnd, Jobs, Task};
 use crate::render::driver::loop_iterations;
 use crate::render::{EvalStrategy, Film, Gpu, Renderer};
-use crate::scene::Scene;
+use crate::scene::{ParamPath, Scene, Track};
 use crate::session::PreparedScene;
 
 /// Longest side of a picture, in pixels.
@@ -45,6 +46,13 @@ pub struct RenderArguments {
     /// Moment to render, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.0, allow_negative_numbers = true, value_parser = parse_time)]
     time: f64,
+    /// Frames to render, from the first to the last; a run of # in the names of outputs becomes the number, as in
+    /// frame.####.png
+    #[arg(long, value_name = "A..B", allow_hyphen_values = true, value_parser = FrameRange::from_str, conflicts_with = "time")]
+    frames: Option<FrameRange>,
+    /// Frames per second, instead of those of the scene: frame N is at N divided by it
+    #[arg(long, value_name = "N", requires = "frames", value_parser = parse_fps)]
+    fps: Option<f64>,
     /// Camera of the scene by name, instead of its first one; a scene without cameras is seen whole
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
@@ -73,8 +81,8 @@ pub struct RenderArguments {
     /// Make warnings errors, such as a model that is missing; then nothing is written
     #[arg(long)]
     strict: bool,
-    /// Print one JSON object: {ok, file, outputs, width, height, samples, components, seconds, warnings}, or {ok, file, node,
-    /// field, reason} where there is no picture
+    /// Print one JSON object: {ok, file, outputs, width, height, samples, components, seconds, warnings}, for each frame of
+    /// several with {frame, time} on a line of its own, or {ok, file, node, field, reason} where there is no picture
     #[arg(long)]
     json: bool,
     /// Print nothing but errors
@@ -92,6 +100,8 @@ impl RenderArguments {
             output: output.to_path_buf(),
             size: [1280, 720],
             time: 0.0,
+            frames: None,
+            fps: None,
             camera: None,
             depth: None,
             normal: None,
@@ -156,77 +166,144 @@ impl RenderArguments {
     }
 }
 
-/// Renders and writes every output. Writes nothing until the whole picture is complete. With `--json`, prints a failure
+/// Renders and writes every output. Writes nothing until a whole picture is complete. With `--json`, prints a failure
 /// as one object on standard output, too.
 pub fn render(arguments: &RenderArguments) -> Result<(), Failure> {
     let done = make(arguments);
-    if arguments.json {
-        let object = done.as_ref().map_or_else(|failure| failure.to_json(&shown(&arguments.scene)), Value::clone);
-        say(&object.to_string())?;
+    if let (true, Err(failure)) = (arguments.json, &done) {
+        say(&failure.to_json(&shown(&arguments.scene)).to_string())?;
     }
-    done.map(|_| ())
+    done
 }
 
-/// The result as one JSON object.
-fn make(arguments: &RenderArguments) -> Result<Value, Failure> {
+/// Renders the picture, or the frames.
+fn make(arguments: &RenderArguments) -> Result<(), Failure> {
     let started = Instant::now();
     if arguments.json && is_standard(&arguments.output) {
         return Err(Failure::Usage("standard output can hold the picture or the JSON object, not both".into()));
     }
-    let paths: Vec<_> = arguments.outputs().into_iter().map(|(_, path)| path).collect();
+    let first = arguments.frames.map(|frames| frames.iter().next().unwrap_or(0));
+    let paths = outputs_of(arguments, first)?;
+    let paths: Vec<_> = paths.iter().map(|(_, path)| path.as_path()).collect();
     outputs::check_writable(&paths, &[&arguments.scene])?;
     let film = arguments.film()?;
     let mut scene = read_scene(&arguments.scene)?;
+    let display = scene.display;
     arguments.film.apply(&mut scene.display);
-    let cancel = cancel_by_interrupts();
-    let task = Task::canceled_by("rendering", &cancel);
-    let PreparedScene { flat, mut library, .. } =
-        PreparedScene::of(&scene, arguments.time, folder(&arguments.scene), &task)
-            .map_err(|e| Failure::beyond_limit(&shown(&arguments.scene), &e))?
-            .ok_or(Failure::Canceled)?;
-    let (meshes, missing) = flat.load_meshes(&mut library);
-    let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
-    arguments.warn(&warnings)?;
-    if cancel.is_canceled() {
-        return Err(Failure::Canceled);
+    if scene.display != display {
+        // What is asked for holds at every moment.
+        let still = Track { path: ParamPath::of_display("exposure"), keys: Vec::new() };
+        scene.set_tracks([still]).map_err(|error| Failure::Other(error.to_string()))?;
     }
-    let (camera, lens) = choose_camera(&flat, &meshes, arguments)?;
-    let film = with_lens(film, lens, &camera, arguments.size[1])?;
-    let flat = flat.shaded(arguments.shading);
-    let buffers = if arguments.reference {
-        reference_picture(arguments, film, scene, &flat, &meshes, &camera)?
-    } else {
-        let (buffers, unfinished) = gpu_picture(arguments, film, &flat, &meshes, &camera)?;
-        arguments.warn(&unfinished)?;
-        warnings.extend(unfinished);
-        buffers
+    let frames_per_second = arguments.fps.unwrap_or(scene.animation.timeline.frames_per_second);
+    let mut pictures = Pictures { arguments, scene, film, prepared: None, renderer: None, told: Vec::new() };
+    let Some(frames) = arguments.frames else {
+        let object = pictures.make(arguments.time, None, started)?;
+        return if arguments.json { say(&object.to_string()) } else { Ok(()) };
     };
-    let mut written = Vec::new();
-    for (quantity, path) in arguments.outputs() {
-        let mut note = outputs::write(quantity, path, &buffers, &flat, film.samples)?;
-        if quantity == Quantity::Color {
-            note += &arguments.view.note(&DepthRange::of(&flat.content(&meshes), camera.position));
-        }
-        arguments.tell(&format!("wrote {}{note}", path.display()))?;
-        let file = path.display().to_string();
-        written.push(json!({ "quantity": quantity.name(), "file": file, "note": note.trim() }));
+    for frame in frames.iter() {
+        frames.time_of(frame, frames_per_second)?;
     }
-    let [width, height] = arguments.size;
-    let (components, seconds) = (flat.components.len(), started.elapsed().as_secs_f64());
-    let samples = if film.samples > 1 { format!("{} samples, ", film.samples) } else { String::new() };
-    arguments.tell(&format!("{width}x{height} pixels, {samples}{components} components, {seconds:.1} s"))?;
-    let told = warnings.iter().map(|w| json!({ "node": format!("{} {}", w.name, w.node), "reason": w.reason }));
-    Ok(json!({
-        "ok": true,
-        "file": shown(&arguments.scene).display().to_string(),
-        "outputs": written,
-        "width": width,
-        "height": height,
-        "samples": film.samples,
-        "components": components,
-        "seconds": seconds,
-        "warnings": told.collect::<Vec<_>>(),
-    }))
+    for frame in frames.iter() {
+        let (time, started) = (frames.time_of(frame, frames_per_second)?, Instant::now());
+        let mut object = pictures.make(time, Some(frame), started)?;
+        (object["frame"], object["time"]) = (frame.into(), time.into());
+        if arguments.json {
+            say(&object.to_string())?;
+        }
+    }
+    let count = frames.iter().len();
+    arguments.tell(&format!("{count} frames, {:.1} s", started.elapsed().as_secs_f64()))
+}
+
+/// Every output with its quantity, in the file of this frame.
+fn outputs_of(arguments: &RenderArguments, frame: Option<i64>) -> Result<Vec<(Quantity, PathBuf)>, Failure> {
+    let path = |path: &Path| frame.map_or_else(|| Ok(path.to_path_buf()), |frame| numbered(path, frame));
+    arguments.outputs().into_iter().map(|(quantity, pattern)| Ok((quantity, path(pattern)?))).collect()
+}
+
+/// Makes pictures of a scene, one after the other. What one has prepared and compiled serves the next.
+struct Pictures<'a> {
+    arguments: &'a RenderArguments,
+    scene: Scene,
+    film: Film,
+    prepared: Option<PreparedScene>,
+    renderer: Option<Renderer>,
+    /// Warnings that were printed.
+    told: Vec<Warning>,
+}
+
+impl Pictures<'_> {
+    /// Renders the scene at `time` seconds and writes every output. Returns the result as one JSON object.
+    fn make(&mut self, time: f64, frame: Option<i64>, started: Instant) -> Result<Value, Failure> {
+        let arguments = self.arguments;
+        let cancel = cancel_by_interrupts();
+        let prepared = self.prepared_at(time, &Task::canceled_by("rendering", &cancel))?;
+        let (meshes, missing) = prepared.flat.load_meshes(&mut prepared.library);
+        let flat = Arc::clone(&prepared.flat);
+        let mut warnings: Vec<Warning> = flat.warnings.iter().cloned().chain(missing).collect();
+        self.warn(&warnings)?;
+        if cancel.is_canceled() {
+            return Err(Failure::Canceled);
+        }
+        let (camera, lens) = choose_camera(&flat, &meshes, arguments)?;
+        let film = with_lens(self.film, lens, &camera, arguments.size[1])?;
+        let flat = flat.shaded(arguments.shading);
+        let buffers = if arguments.reference {
+            reference_picture(arguments, film, self.scene.clone(), &flat, &meshes, &camera)?
+        } else {
+            let renderer = self.renderer.take();
+            let (renderer, buffers, unfinished) = gpu_picture(arguments, renderer, film, &flat, &meshes, &camera)?;
+            self.renderer = Some(renderer);
+            self.warn(&unfinished)?;
+            warnings.extend(unfinished);
+            buffers
+        };
+        let mut written = Vec::new();
+        for (quantity, path) in outputs_of(arguments, frame)? {
+            let mut note = outputs::write(quantity, &path, &buffers, &flat, film.samples)?;
+            if quantity == Quantity::Color {
+                note += &arguments.view.note(&DepthRange::of(&flat.content(&meshes), camera.position));
+            }
+            arguments.tell(&format!("wrote {}{note}", path.display()))?;
+            let file = path.display().to_string();
+            written.push(json!({ "quantity": quantity.name(), "file": file, "note": note.trim() }));
+        }
+        let [width, height] = arguments.size;
+        let (components, seconds) = (flat.components.len(), started.elapsed().as_secs_f64());
+        let samples = if film.samples > 1 { format!("{} samples, ", film.samples) } else { String::new() };
+        arguments.tell(&format!("{width}x{height} pixels, {samples}{components} components, {seconds:.1} s"))?;
+        let told = warnings.iter().map(|w| json!({ "node": format!("{} {}", w.name, w.node), "reason": w.reason }));
+        Ok(json!({
+            "ok": true,
+            "file": shown(&arguments.scene).display().to_string(),
+            "outputs": written,
+            "width": width,
+            "height": height,
+            "samples": film.samples,
+            "components": components,
+            "seconds": seconds,
+            "warnings": told.collect::<Vec<_>>(),
+        }))
+    }
+
+    /// The scene prepared at this moment.
+    fn prepared_at(&mut self, time: f64, task: &Task) -> Result<&mut PreparedScene, Failure> {
+        let beyond = |error| Failure::beyond_limit(&shown(&self.arguments.scene), &error);
+        let prepared = match self.prepared.take() {
+            Some(mut prepared) => prepared.advance(&self.scene, time, task).map_err(beyond)?.then_some(prepared),
+            None => PreparedScene::of(&self.scene, time, folder(&self.arguments.scene), task).map_err(beyond)?,
+        };
+        Ok(self.prepared.insert(prepared.ok_or(Failure::Canceled)?))
+    }
+
+    /// Prints the warnings that are new.
+    fn warn(&mut self, warnings: &[Warning]) -> Result<(), Failure> {
+        let new: Vec<Warning> = warnings.iter().filter(|warning| !self.told.contains(warning)).cloned().collect();
+        let result = self.arguments.warn(&new);
+        self.told.extend(new);
+        result
+    }
 }
 
 /// The camera chosen by name, or the default view of the scene.
@@ -270,20 +347,27 @@ fn by_job<T: Send + 'static>(
     }
 }
 
+/// The picture by a renderer, or by a new one. Returns the renderer for the next picture.
 fn gpu_picture(
     arguments: &RenderArguments,
+    renderer: Option<Renderer>,
     film: Film,
     flat: &Arc<FlatScene>,
     meshes: &Meshes,
     camera: &Camera,
-) -> Result<(GBuffer, Vec<Warning>), Failure> {
+) -> Result<(Renderer, GBuffer, Vec<Warning>), Failure> {
     let (choice, view_mode, size) = (arguments.adapter.choice(), arguments.view, arguments.size);
     let accumulates = film.samples > 1 || film.is_transparent || arguments.is_linear();
     let (flat, meshes, camera) = (Arc::clone(flat), meshes.to_vec(), *camera);
     by_job("rendering", arguments, Interrupts::StopTheTask, move |task| {
-        let gpu = Gpu::open(&choice)?;
-        loop_iterations(&gpu)?;
-        let mut renderer = if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? };
+        let mut renderer = match renderer {
+            Some(renderer) => renderer,
+            None => {
+                let gpu = Gpu::open(&choice)?;
+                loop_iterations(&gpu)?;
+                if view_mode.counts() { Renderer::counting(&gpu)? } else { Renderer::new(&gpu)? }
+            }
+        };
         if !view_mode.counts() {
             // One picture is done before straight-line pipelines could be compiled: 4 s against 40 s at 577 nodes on
             // lavapipe. Tapes take a fraction of a second to build, and draw a large blend up to a hundred times as
@@ -295,10 +379,11 @@ fn gpu_picture(
             task.set_progress(share);
             !task.is_canceled()
         };
-        Ok(match accumulates {
+        let (buffers, unfinished) = match accumulates {
             true => renderer.render_samples(film, &flat, &meshes, &camera, size, &mut update)?,
             false => renderer.render_as(view_mode, &flat, &meshes, &camera, size, &mut update)?,
-        })
+        };
+        Ok((renderer, buffers, unfinished))
     })
 }
 

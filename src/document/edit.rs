@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
-use super::structure;
+use super::change::Change;
+use super::{keys, structure};
 use isolith_scene::{
-    Changed, DisplaySettings, Environment, Group, Material, MaterialId, Node, NodeId, NodeKind, ParamPath, ParamValue,
-    Scene, SceneError, check,
+    Changed, DisplaySettings, Environment, Group, Keyframe, Material, MaterialId, Node, NodeId, NodeKind, ParamPath,
+    ParamValue, Scene, SceneError, Timeline, Track, check,
 };
 
 /// A change to a scene. Values are checked against [`isolith_scene::limits`].
@@ -80,19 +81,15 @@ pub enum Edit {
         /// Its new value.
         value: ParamValue,
     },
-}
-
-/// The effect of an edit.
-pub(super) struct Change {
-    /// Whether the scene differs from before.
-    pub changed: bool,
-    /// The new nodes.
-    pub added: Vec<NodeId>,
-}
-
-impl Change {
-    const NONE: Self = Self { changed: false, added: Vec::new() };
-    const VALUE: Self = Self { changed: true, added: Vec::new() };
+    /// Replaces the timeline.
+    SetTimeline(Timeline),
+    /// Sets keys of parameters, each in the place of the one at its moment. A parameter without keys becomes animated.
+    SetKeys(Vec<(ParamPath, Keyframe)>),
+    /// Removes the keys of parameters at moments. A parameter that loses its last key keeps the value of that key.
+    RemoveKeys(Vec<(ParamPath, f64)>),
+    /// Replaces all keys of parameters: moves and copies of keys. A track without keys ends the animation of its
+    /// parameter.
+    SetTracks(Vec<Track>),
 }
 
 impl Edit {
@@ -125,14 +122,7 @@ impl Edit {
             }
             Self::Group { ids, group } => enclose(scene, &ids, Node::new("Group", NodeKind::Group(group))),
             Self::Instance { ids, node } => enclose(scene, &ids, node),
-            Self::ReplaceMaterial(material) => {
-                if scene.material(material.id).is_some_and(|old| **old == material) {
-                    return Ok(Change::NONE);
-                }
-                check_material(&material)?;
-                Arc::make_mut(scene).replace_material(material)?;
-                Ok(Change::VALUE)
-            }
+            Self::ReplaceMaterial(material) => replace_material(scene, material),
             Self::InsertMaterial(material) => {
                 check_material(&material)?;
                 Arc::make_mut(scene).insert_material(material)?;
@@ -143,23 +133,21 @@ impl Edit {
                 Arc::make_mut(scene).remove_material(id)?;
                 Ok(Change::VALUE)
             }
-            Self::SetEnvironment(environment) => {
-                if scene.environment == environment {
-                    return Ok(Change::NONE);
-                }
-                check::environment(&environment).map_err(|f| f.into_error("environment"))?;
-                Arc::make_mut(scene).set_environment(environment)?;
-                Ok(Change::VALUE)
-            }
-            Self::SetDisplay(display) => {
-                if scene.display == display {
-                    return Ok(Change::NONE);
-                }
-                check::display(&display).map_err(|f| f.into_error("display"))?;
-                Arc::make_mut(scene).display = display;
-                Ok(Change::VALUE)
-            }
+            Self::SetEnvironment(environment) => set_environment(scene, environment),
+            Self::SetDisplay(display) => set_display(scene, display),
             Self::SetParam { path, value } => Self::of_param(scene, &path, value)?.perform(scene),
+            Self::SetTimeline(timeline) => set_timeline(scene, timeline),
+            Self::SetKeys(keys) => keys::set_keys(scene, keys),
+            Self::RemoveKeys(keys) => keys::remove_keys(scene, &keys),
+            Self::SetTracks(tracks) => keys::set_tracks(scene, tracks),
+        }
+    }
+
+    /// The edit of the owner, for the edit of a parameter; others as they are.
+    pub(super) fn resolved(self, scene: &Scene) -> Result<Self, SceneError> {
+        match self {
+            Self::SetParam { path, value } => Self::of_param(scene, &path, value),
+            other => Ok(other),
         }
     }
 
@@ -193,6 +181,10 @@ impl Edit {
                 Ok(edit) => edit.label(scene),
                 Err(_) => format!("Change {path}"),
             },
+            Self::SetTimeline(_) => "Change timeline".into(),
+            Self::SetKeys(keys) => format!("Insert {}", counted(keys.len(), "key")),
+            Self::RemoveKeys(keys) => format!("Delete {}", counted(keys.len(), "key")),
+            Self::SetTracks(_) => "Move keys".into(),
         }
     }
 }
@@ -201,6 +193,10 @@ fn enclose(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Result<Change,
     check_node(&node)?;
     let id = structure::group(scene, ids, node)?;
     Ok(Change { changed: true, added: vec![id] })
+}
+
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { what.to_owned() } else { format!("{count} {what}s") }
 }
 
 fn replace_label(old: &Node, new: &Node) -> String {
@@ -216,6 +212,42 @@ fn replace_label(old: &Node, new: &Node) -> String {
     } else {
         format!("Change {name}")
     }
+}
+
+fn replace_material(scene: &mut Arc<Scene>, material: Material) -> Result<Change, SceneError> {
+    if scene.material(material.id).is_some_and(|old| **old == material) {
+        return Ok(Change::NONE);
+    }
+    check_material(&material)?;
+    Arc::make_mut(scene).replace_material(material)?;
+    Ok(Change::VALUE)
+}
+
+fn set_environment(scene: &mut Arc<Scene>, environment: Environment) -> Result<Change, SceneError> {
+    if scene.environment == environment {
+        return Ok(Change::NONE);
+    }
+    check::environment(&environment).map_err(|f| f.into_error("environment"))?;
+    Arc::make_mut(scene).set_environment(environment)?;
+    Ok(Change::VALUE)
+}
+
+fn set_display(scene: &mut Arc<Scene>, display: DisplaySettings) -> Result<Change, SceneError> {
+    if scene.display == display {
+        return Ok(Change::NONE);
+    }
+    check::display(&display).map_err(|f| f.into_error("display"))?;
+    Arc::make_mut(scene).display = display;
+    Ok(Change::VALUE)
+}
+
+fn set_timeline(scene: &mut Arc<Scene>, timeline: Timeline) -> Result<Change, SceneError> {
+    if scene.animation.timeline == timeline {
+        return Ok(Change::NONE);
+    }
+    timeline.check().map_err(|f| f.into_error("timeline"))?;
+    Arc::make_mut(scene).animation.timeline = timeline;
+    Ok(Change::VALUE)
 }
 
 fn move_material(scene: &mut Arc<Scene>, id: MaterialId, position: usize) -> Result<Change, SceneError> {

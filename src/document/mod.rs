@@ -20,9 +20,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod change;
 mod edit;
 mod history;
+mod keying;
+mod keys;
 mod placement;
+mod preferences;
 mod recent;
 pub mod recovery;
 mod save;
@@ -32,9 +36,11 @@ mod structure;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use change::Change;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
+pub use preferences::{MAX_FAVORITES, PreferenceValues, Preferences};
 pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
 pub use state_folder::{data_folder, state_folder};
@@ -55,6 +61,10 @@ pub struct Document {
     saved: Option<u64>,
     /// The stamp of the file when it was read or saved.
     stamp: Option<Stamp>,
+    /// The moment that is shown, in seconds.
+    time: f64,
+    /// The scene at that moment; `None` if nothing is animated.
+    shown: Option<Arc<Scene>>,
 }
 
 /// The file that saving a document to a path would overwrite.
@@ -80,7 +90,19 @@ impl Document {
     /// A document without a file. It counts as unchanged until the first edit.
     pub fn new(scene: Scene) -> Self {
         let state = State { scene: Arc::new(scene), selection: Vec::new(), mark: 0 };
-        Self { state, revision: 0, history: History::default(), gesture: None, path: None, saved: Some(0), stamp: None }
+        let mut new = Self {
+            state,
+            revision: 0,
+            history: History::default(),
+            gesture: None,
+            path: None,
+            saved: Some(0),
+            stamp: None,
+            time: 0.0,
+            shown: None,
+        };
+        new.show();
+        new
     }
 
     /// Reads a file, and removes the temporaries of this user's killed processes.
@@ -101,14 +123,38 @@ impl Document {
         Self { path, stamp, saved: None, ..Self::new(scene) }
     }
 
-    /// The current scene.
+    /// The current scene at the moment that is shown. Edits refer to its values, see [`Document::apply`].
     pub fn scene(&self) -> &Scene {
+        self.shown.as_ref().unwrap_or(&self.state.scene)
+    }
+
+    /// A snapshot of that scene for work on another thread. Later edits do not affect it.
+    pub fn snapshot(&self) -> Arc<Scene> {
+        Arc::clone(self.shown.as_ref().unwrap_or(&self.state.scene))
+    }
+
+    /// The current scene with its resting values, as files hold it. Without animation it is [`Document::scene`].
+    pub fn resting(&self) -> &Arc<Scene> {
         &self.state.scene
     }
 
-    /// A snapshot of the current scene for work on another thread. Later edits do not affect it.
-    pub fn snapshot(&self) -> Arc<Scene> {
-        Arc::clone(&self.state.scene)
+    /// The moment that is shown, in seconds.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Shows another moment. It is not a step of undo, and no change of the document.
+    pub fn set_time(&mut self, time: f64) {
+        if time.is_finite() && time != self.time {
+            self.time = time;
+            self.show();
+        }
+    }
+
+    /// Evaluates the scene at the moment that is shown.
+    fn show(&mut self) {
+        let scene = &self.state.scene;
+        self.shown = (!scene.animation.is_empty()).then(|| Arc::new(scene.at(self.time).into_owned()));
     }
 
     /// A number that grows with every change of the scene, including undo and redo.
@@ -133,13 +179,15 @@ impl Document {
     ///
     /// Makes one step of undo, unless a gesture is open: a gesture makes one step of all its edits. An edit that
     /// changes nothing makes no step. Removed nodes leave the selection, which otherwise stays.
+    ///
+    /// A changed value of an animated parameter sets a key at the moment that is shown.
     pub fn apply(&mut self, edit: Edit) -> Result<Vec<NodeId>, SceneError> {
         let alone = self.gesture.is_none();
         if alone {
             self.begin_gesture();
         }
-        let label = edit.label(&self.state.scene);
-        let result = edit.perform(&mut self.state.scene);
+        let label = edit.label(self.scene());
+        let result = self.perform(edit);
         if result.as_ref().is_ok_and(|change| change.changed) {
             self.revision += 1;
             self.state.mark = self.revision;
@@ -152,6 +200,27 @@ impl Document {
             self.end_gesture();
         }
         result.map(|change| change.added)
+    }
+
+    fn perform(&mut self, edit: Edit) -> Result<Change, SceneError> {
+        let change = match &self.shown {
+            None => edit.perform(&mut self.state.scene)?,
+            Some(shown) => {
+                let mut next = Arc::clone(&self.state.scene);
+                let change = keying::perform(edit, &mut next, shown, self.time)?;
+                self.state.scene = next;
+                change
+            }
+        };
+        if change.changed {
+            self.show();
+        }
+        Ok(change)
+    }
+
+    /// Whether a gesture is in progress.
+    pub fn is_in_gesture(&self) -> bool {
+        self.gesture.is_some()
     }
 
     /// Starts a gesture, such as a drag: all edits until the matching [`Document::end_gesture`] form one step. Gestures
@@ -187,6 +256,7 @@ impl Document {
             let selection = std::mem::take(&mut self.state.selection);
             self.state = State { selection, ..gesture.start };
             self.state.drop_unknown();
+            self.show();
         }
     }
 
@@ -196,6 +266,7 @@ impl Document {
         self.close_gesture();
         let gone = self.history.undo(&mut self.state);
         self.revision += u64::from(gone);
+        self.show();
         gone
     }
 
@@ -204,6 +275,7 @@ impl Document {
         self.close_gesture();
         let gone = self.history.redo(&mut self.state);
         self.revision += u64::from(gone);
+        self.show();
         gone
     }
 

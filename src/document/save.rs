@@ -61,7 +61,7 @@ impl Document {
     /// An order to save the document in its current state to a path.
     pub fn save_order(&self, path: &Path) -> SaveOrder {
         let own = self.path.clone().map(|own| (own, self.stamp));
-        SaveOrder { scene: self.snapshot(), mark: self.state.mark, path: path.to_path_buf(), own }
+        SaveOrder { scene: Arc::clone(self.resting()), mark: self.state.mark, path: path.to_path_buf(), own }
     }
 
     /// Makes the written file the document's file; edits made since the order stay unsaved changes.

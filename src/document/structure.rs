@@ -87,7 +87,9 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
     for copy in nodes.iter_mut().filter(|node| node.id.0 >= first_copy) {
         Arc::make_mut(copy).rename_references(|id| new_id.get(&id).copied());
     }
-    Arc::make_mut(scene).set_nodes(nodes)?;
+    let scene = Arc::make_mut(scene);
+    scene.set_nodes(nodes)?;
+    scene.copy_tracks(&new_id)?;
     Ok(added)
 }
 

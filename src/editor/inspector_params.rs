@@ -9,8 +9,8 @@ use super::edit_session::{EditSession, WantedFile};
 use super::inspector_points::{self, PointEdit};
 use super::multi_edit::MultiEdit;
 use super::numbers::{self, FieldResponse, NumberField};
-use super::theme;
 use super::widgets::{self, MIXED};
+use super::{keying, theme};
 use isolith_scene::{Attached, Limits, Param, ParamOwner, ParamPath, ParamValue, Part};
 
 /// The artist's change of a parameter.
@@ -114,7 +114,8 @@ pub fn edit(
     let mut field =
         NumberField { label: &param.label, help: param.help, limits: param.limits, default: default(&param.default) };
     adapt(&mut field);
-    match value.clone() {
+    let top = ui.cursor().min;
+    let change = match value.clone() {
         ParamValue::Vector(v) if param.is_color => {
             let color = |ui: &mut Ui| widgets::color(ui, field.label, v.to_array(), mixed);
             let (widget, picked) = widgets::row(ui, field.label, field.help, color);
@@ -134,7 +135,9 @@ pub fn edit(
         ParamValue::File(file) => attachment(ui, session, &field, paths, (&file, mixed)),
         // `inspector_transform` shows rotations as angles.
         ParamValue::Rotation(_) => None,
-    }
+    };
+    keying::mark(ui, session, field.label, paths, top);
+    change
 }
 
 /// The reset value. A vector has one only if its default is the same along every axis.

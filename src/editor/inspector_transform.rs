@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3, EulerRot};
 
 use super::multi_edit::MultiEdit;
 use super::numbers::{self, FieldResponse, NumberField};
-use super::{inspector_params, widgets};
+use super::{inspector_params, keying, widgets};
 use isolith_scene::{Limits, NodeKind, Part};
 
 const ROTATION_FIELD: NumberField<'_> = NumberField {
@@ -38,9 +38,11 @@ impl EulerMemory {
     fn rotation_row(&mut self, ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         let shown = self.degrees(edit.active().transform.rotation);
         let mixed = [0, 1, 2].map(|axis| edit.common(|n| self.degrees(n.transform.rotation)[axis]).is_none());
+        let (top, paths) = (ui.cursor().min, edit.paths(Part::Transform, "rotation"));
         let changed = widgets::row(ui, ROTATION_FIELD.label, ROTATION_FIELD.help, |ui| {
             numbers::vector(ui, &ROTATION_FIELD, shown.to_array(), mixed)
         });
+        keying::mark(ui, edit.session(), ROTATION_FIELD.label, &paths, top);
         let Some((axis, FieldResponse { widget, value: Some(value) })) = changed else { return };
         self.turn(edit, widget, axis, value);
     }

@@ -16,6 +16,14 @@
 //! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
 //! | `instancing`, `instancer_edits`, `seeds` | instancers: shares, counts and problems; commands |
 //! | `navigation`, `projection`, `gizmo`, `*overlay` | the camera, the handles and the marks over the picture |
+//! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
+//! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
+//! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
+//! | `keymap` | which keys run the commands |
+//! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
@@ -25,6 +33,7 @@
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
+mod add_palette;
 mod bounds;
 mod choosing;
 mod color_picker;
@@ -35,12 +44,14 @@ mod dialog_views;
 mod dialogs;
 mod document_jobs;
 mod documents;
+mod dope_sheet;
 mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
 mod framing;
 mod gizmo;
+mod handles;
 mod icons;
 mod input_order;
 mod insertion;
@@ -59,6 +70,8 @@ mod inspector_types;
 mod instancer_edits;
 mod instancing;
 mod intent;
+mod keying;
+mod keymap;
 mod lattice_overlay;
 mod legend;
 mod material_edits;
@@ -74,6 +87,8 @@ mod overlay;
 mod panel;
 mod panels;
 mod picking;
+mod placement;
+mod playback;
 mod portal;
 mod preset_picker;
 mod projection;
@@ -89,11 +104,18 @@ mod shell;
 mod slot_list;
 mod state;
 mod status;
+mod steps;
 mod theme;
 mod thumbnails;
+mod time_scale;
+mod timeline;
 mod toolbar;
+mod transforms;
 mod view_state;
 mod viewport;
+mod viewport_click;
+mod viewport_drag;
+mod viewport_modal;
 mod widgets;
 
 pub use commands::command::Command;

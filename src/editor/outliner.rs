@@ -272,7 +272,8 @@ fn empty(ui: &mut Ui) {
     ui.vertical_centered(|ui| {
         ui.label(RichText::new("Nothing here yet").color(theme::TEXT));
         ui.label(
-            RichText::new("Add a shape with the buttons above,\nor open a scene: File, Examples.").color(theme::WEAK),
+            RichText::new("Add a shape with the buttons above\nor with Shift A, or open a scene:\nFile, Examples.")
+                .color(theme::WEAK),
         );
     });
 }

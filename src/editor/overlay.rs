@@ -154,6 +154,6 @@ impl Compass {
 pub fn empty_hint(painter: &Painter, rect: Rect) {
     let at = rect.center() + vec2(0.0, -10.0);
     painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::TEXT);
-    let text = "Add a shape with the buttons above, or open File, Examples";
+    let text = "Shift A adds a shape where the pointer is; File, Examples opens a scene";
     painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::WEAK);
 }

@@ -11,6 +11,8 @@ pub enum PanelPlace {
     Top,
     /// A bar at the bottom.
     Bottom,
+    /// Above the bar at the bottom, over the whole width, with default height in points.
+    Lower(f32),
     /// At the left, with default and minimum width in points.
     Left(f32, f32),
     /// At the left, below the panel there, with default height in points.
@@ -31,6 +33,12 @@ pub trait Panel {
 
     /// Its default place.
     fn place(&self) -> PanelPlace;
+
+    /// The height to which it shrinks while it has little to show, in points; `None` while it has more. Only for
+    /// [`PanelPlace::Lower`].
+    fn slim_height(&self, _: &EditorState) -> Option<f32> {
+        None
+    }
 
     /// Shows the panel.
     fn ui(&mut self, state: &mut EditorState, ui: &mut Ui);

@@ -5,6 +5,7 @@ use super::materials::Materials;
 use super::outliner::Outliner;
 use super::panel::Panel;
 use super::status::StatusBar;
+use super::timeline::TimelinePanel;
 use super::toolbar::Toolbar;
 use super::viewport::Viewport;
 
@@ -13,6 +14,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
     vec![
         Box::new(Toolbar),
         Box::new(StatusBar),
+        Box::<TimelinePanel>::default(),
         Box::<Outliner>::default(),
         Box::<Materials>::default(),
         Box::<Inspector>::default(),

@@ -35,7 +35,10 @@ struct Placed {
 impl Placed {
     /// Bars always stay; side panels can be hidden.
     fn can_close(&self) -> bool {
-        matches!(self.place, PanelPlace::Left(..) | PanelPlace::BelowLeft(_) | PanelPlace::Right(..))
+        matches!(
+            self.place,
+            PanelPlace::Lower(_) | PanelPlace::Left(..) | PanelPlace::BelowLeft(_) | PanelPlace::Right(..)
+        )
     }
 }
 
@@ -48,10 +51,11 @@ impl Shell {
         panels.sort_by_key(|placed| match placed.place {
             PanelPlace::Top => 0,
             PanelPlace::Bottom => 1,
-            PanelPlace::Left(..) => 2,
-            PanelPlace::BelowLeft(_) => 3,
-            PanelPlace::Right(..) => 4,
-            PanelPlace::Center => 5,
+            PanelPlace::Lower(_) => 2,
+            PanelPlace::Left(..) => 3,
+            PanelPlace::BelowLeft(_) => 4,
+            PanelPlace::Right(..) => 5,
+            PanelPlace::Center => 6,
         });
         Self { panels, lower_height: None, below_left: None }
     }
@@ -69,6 +73,7 @@ impl Shell {
         let frame = |fill, margin| Frame::new().fill(fill).inner_margin(margin);
         let side = frame(theme::PANEL, Margin::same(8));
         let id = panel.id();
+        let slim = panel.slim_height(state);
         let mut add = |ui: &mut Ui| panel.ui(state, ui);
         match *place {
             PanelPlace::Top => {
@@ -76,6 +81,19 @@ impl Shell {
             }
             PanelPlace::Bottom => {
                 egui::Panel::bottom(id).frame(frame(theme::BAR, Margin::symmetric(10, 3))).show(ui, add);
+            }
+            PanelPlace::Lower(height) => {
+                let frame = frame(theme::PANEL, Margin::symmetric(8, 5));
+                match slim {
+                    Some(height) => {
+                        egui::Panel::bottom(Id::unique(id).with("slim")).resizable(false).exact_size(height + 10.0)
+                    }
+                    None => {
+                        egui::Panel::bottom(id).resizable(true).default_size(height).size_range(LEAST_BELOW..=WIDEST)
+                    }
+                }
+                .frame(frame)
+                .show(ui, add);
             }
             PanelPlace::Left(width, least) => {
                 let panel = egui::Panel::left(id).frame(side).default_size(width).size_range(least..=WIDEST);

@@ -7,10 +7,12 @@ use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
 use super::intent::Intent;
+use super::keymap::Keymap;
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
+use super::playback::Playback;
 use super::view_state::{Picture, ViewSettings, ViewState};
-use isolith_document::Document;
+use isolith_document::{Document, Preferences};
 use isolith_field::FlatScene;
 use isolith_scene::{NodeId, Scene};
 use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
@@ -53,6 +55,8 @@ pub struct EditorState {
     pub session: EditSession,
     /// The view of the document.
     pub view: ViewState,
+    /// The clock of the timeline.
+    pub playback: Playback,
     /// Data derived from the document, and the jobs that take longer than a frame.
     pub derived: SceneSession,
     /// Its materials: use counts, thumbnails, the one in the foreground.
@@ -67,6 +71,8 @@ pub struct EditorState {
     pub can_recover: bool,
     /// The node to rename in place.
     pub renaming: Option<NodeId>,
+    /// What the user prefers.
+    pub preferences: Preferences,
     /// The panels that can be hidden.
     pub panels: Vec<PanelEntry>,
     /// Pending requests of panels, oldest first.
@@ -78,6 +84,7 @@ impl Default for EditorState {
         Self {
             session: EditSession::new(Document::new(Scene::new())),
             view: ViewState::default(),
+            playback: Playback::default(),
             derived: SceneSession::default(),
             materials: MaterialLibrary::default(),
             files: FileJobs::default(),
@@ -85,6 +92,7 @@ impl Default for EditorState {
             examples: Vec::new(),
             can_recover: false,
             renaming: None,
+            preferences: Preferences::default(),
             panels: Vec::new(),
             requests: Vec::new(),
         }
@@ -100,13 +108,23 @@ impl EditorState {
         ViewSettings {
             camera: navigation.camera(),
             size_px: *size_px,
-            navigating: *is_navigating || self.session.is_changing(),
+            navigating: *is_navigating || self.session.is_changing() || self.playback.is_moving(),
             show_grid: *show_grid,
             show_outline: *show_outline,
             shading: *shading,
             view_mode: *view_mode,
             samples: *samples,
         }
+    }
+
+    /// The keymap in use.
+    pub fn keymap(&self) -> Keymap {
+        Keymap::named(&self.preferences.values().keymap)
+    }
+
+    /// Switches to a keymap, and keeps it for the next start.
+    pub fn use_keymap(&mut self, keymap: Keymap) {
+        self.preferences.change(|values| values.keymap = keymap.label().to_owned());
     }
 
     /// The flat scene; the last valid one if the document exceeds a limit.

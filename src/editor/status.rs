@@ -4,7 +4,6 @@ use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::entries::hovered_help;
 use super::messages::Severity;
-use super::numbers::number_text;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::view_state::{Picture, PointerActivity};
@@ -117,10 +116,17 @@ fn hint_of(state: &EditorState) -> String {
         PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
         PointerActivity::Panning => "Panning".into(),
         PointerActivity::Zooming => "Zooming · up is nearer".into(),
-        PointerActivity::Moving(offset) => {
-            let [x, y, z] = offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
-            format!("Moving by {x}, {y}, {z} m · Ctrl: snap · Shift: precise · Esc: cancel")
+        PointerActivity::Moving => "Ctrl: snap · Shift: precise · Esc: cancel".into(),
+        PointerActivity::Transforming => {
+            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · Shift: precise · \
+             Click or Enter: done · Esc: cancel"
+                .into()
         }
+        PointerActivity::OverHandle(true) => {
+            "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
+        }
+        PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
         PointerActivity::Hovering => {
             "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame".into()

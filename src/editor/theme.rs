@@ -25,6 +25,10 @@ pub const WEAK: Color32 = Color32::from_rgb(146, 152, 164);
 pub const FAINT: Color32 = Color32::from_rgb(86, 92, 103);
 /// Switches of rows without the pointer.
 pub const RESTING: Color32 = Color32::from_rgb(64, 68, 78);
+/// Parameters that change with time.
+pub const ANIMATED: Color32 = Color32::from_rgb(126, 200, 136);
+/// Keys at the moment that is shown, and selected keys.
+pub const KEYED: Color32 = Color32::from_rgb(244, 200, 96);
 /// Errors.
 pub const ERROR: Color32 = Color32::from_rgb(240, 112, 104);
 /// Warnings.
@@ -35,6 +39,8 @@ pub const SUCCESS: Color32 = Color32::from_rgb(126, 200, 136);
 pub const GROUP: Color32 = Color32::from_rgb(226, 184, 110);
 /// Objects.
 pub const OBJECT: Color32 = Color32::from_rgb(126, 182, 224);
+/// Handles on a shape.
+pub const HANDLE: Color32 = Color32::from_rgb(255, 190, 92);
 /// Subtracted nodes.
 pub const NEGATIVE: Color32 = Color32::from_rgb(232, 128, 118);
 /// Lights.

@@ -9,26 +9,28 @@
 
 use std::collections::HashMap;
 
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 
 use super::arrays::*;
 use super::batch::{batched, united};
 use super::budget::{BYTES, Budget, Cancel, FlattenLimits, LEVELS, ROWS, STACK, Usage};
 use super::collect::{Components, collect};
 use super::composition::size_of_fold;
+use super::copies::moved_scene::{scene_at, unseen_dynamics};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::TexturedMaterials;
 use super::lower_bound::fold_bounds;
-use super::meshes::model_pose;
+use super::non_field;
 use super::operand::Operand;
 use super::survey::Survey;
+use super::types::{Flattening, add_instancer};
 use super::usage::usage;
 use crate::light::environment_map::PlacedMap;
-use isolith_geometry::{Camera, Lens};
+use isolith_scene::check::Fault;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
-use isolith_scene::{CameraNode, MaterialId, Node, NodeKind, Scene};
+use isolith_scene::{MaterialId, Node, NodeId, NodeKind, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].
 const TOGETHER: &str = "the number of shapes that are blended or cut together";
@@ -45,9 +47,8 @@ const COPIES: &str = "the number of copies of copies that are evaluated for one 
 /// The arrays of `scene` at `time` seconds. Takes about 0.1 µs per node, and four times as long if thousands of
 /// separate shapes are batched. The costs are counted in advance, see [`MAX_FLAT_NODES`] and the limits beside it.
 pub fn flatten(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
-    let made = flatten_with_cuts(scene, time, &Cancel::default())?;
-    let (flat, _) = made.expect("nobody else holds the flag, so nobody cancels");
-    Ok(flat)
+    let made = flatten_within(scene, time, FlattenLimits::default(), &Cancel::default())?;
+    Ok(made.expect("nobody else holds the flag, so nobody cancels").flat)
 }
 
 /// The same with the usage of each limit; `None` if canceled.
@@ -65,6 +66,8 @@ pub fn flatten_until(
 
 /// The arrays with all components joined into one, as for a renderer without components: the baseline of the benches.
 pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
+    let (shown, _) = scene_at(scene, time);
+    let scene = &*shown;
     let mut flat = flatten(scene, time)?;
     flat.nodes.clear();
     flat.params.clear();
@@ -85,13 +88,15 @@ pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError
     })
 }
 
-/// The same, and whether negative nodes at the top cut components; `None` if canceled.
+/// The arrays of a scene whose tracks are evaluated, and whether negative nodes at the top cut components; `None` if
+/// canceled.
 pub(super) fn flatten_with_cuts(
-    scene: &Scene,
+    shown: &Scene,
+    faults: &[(NodeId, Fault)],
     time: f64,
     cancel: &Cancel,
 ) -> Result<Option<(FlatScene, bool)>, FlattenError> {
-    let made = flatten_within(scene, time, FlattenLimits::default(), cancel)?;
+    let made = flatten_shown(shown, faults, time, FlattenLimits::default(), cancel)?;
     Ok(made.map(|Made { flat, has_cuts, .. }| (flat, has_cuts)))
 }
 
@@ -108,10 +113,30 @@ fn flatten_within(
     limits: FlattenLimits,
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
+    let (shown, faults) = scene_at(scene, time);
+    flatten_shown(&shown, &faults, time, limits, cancel)
+}
+
+fn flatten_shown(
+    scene: &Scene,
+    faults: &[(NodeId, Fault)],
+    time: f64,
+    limits: FlattenLimits,
+    cancel: &Cancel,
+) -> Result<Option<Made>, FlattenError> {
     debug_assert!(time.is_finite(), "time is checked at the border");
     let _span = tracing::debug_span!("flatten", nodes = scene.nodes().len()).entered();
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
-    on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, time, limits, cancel))
+    let mut made = on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, time, limits, cancel))?;
+    if let Some(made) = &mut made {
+        made.flat.warnings.extend(scene.nodes().iter().filter_map(|node| {
+            let kind = unseen_dynamics(node)?;
+            let reason = format!("has {kind:?}, which changes materials: only copies of an instancer show it");
+            Some(Warning { node: node.id, name: node.name.clone(), reason })
+        }));
+        made.flat.warnings.extend(faults.iter().filter_map(|(id, fault)| at_rest(scene, *id, fault)));
+    }
+    Ok(made)
 }
 
 /// Runs `work` on a stack that is deep enough for it.
@@ -133,6 +158,13 @@ fn on_a_stack<T: Send>(
     })
 }
 
+/// The warning about a node that its tracks cannot move.
+fn at_rest(scene: &Scene, id: NodeId, Fault { field, reason }: &Fault) -> Option<Warning> {
+    let name = scene.node(id)?.name.clone();
+    let reason = format!("is shown at rest, because its animation contradicts itself at this moment: {field} {reason}");
+    Some(Warning { node: id, name, reason })
+}
+
 fn flatten_surveyed(
     scene: &Scene,
     survey: &Survey,
@@ -151,13 +183,18 @@ fn flatten_surveyed(
     };
     let textured = TexturedMaterials::new(scene.materials());
     let mut materials = Materials { scene, textured, index: HashMap::new() };
+    let mut instancers = Vec::new();
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
-        add_non_field(&mut flat, &mut materials, node, world_from_local, time);
+        if matches!(node.kind, NodeKind::Instancer(_)) {
+            instancers.extend(scene.index_of(node.id).map(|index| (index, *world_from_local)));
+            return;
+        }
+        let material = non_field::mesh_material_of(node).map(|id| materials.of_mesh(&mut flat, node, id));
+        non_field::add(&mut flat, node, world_from_local, material, time);
     });
-    let Components { operands, warnings, has_cuts, budget } = components;
+    let Components { operands, warnings, has_cuts, mut budget } = components;
     flat.warnings.extend(warnings);
-    let steps = budget.steps();
-    if let Some(problem) = budget.problem {
+    if let Some(problem) = budget.problem.take() {
         return Err(problem);
     }
     if cancel.is_canceled() {
@@ -173,6 +210,24 @@ fn flatten_surveyed(
             return Ok(None);
         }
     }
+    let of = Flattening { scene, survey, time, flatten };
+    for placed in instancers {
+        let materials = std::cell::RefCell::new(&mut materials);
+        let mut palette = |flat: &mut FlatScene, id| {
+            materials.borrow_mut().resolve(flat, MaterialUse { id, object_from_world: None, repeated: None })
+        };
+        let mut add = |flat: &mut FlatScene, operands: &[Operand<'_>]| {
+            let before = flat.components.len();
+            add_component(flat, &mut materials.borrow_mut(), operands, limits.rows)?;
+            Ok((flat.components.len() > before).then_some(before))
+        };
+        budget = add_instancer(&mut flat, of, placed, budget, &mut palette, &mut add)?;
+    }
+    if flat.components.len() > MAX_COMPONENTS {
+        let node = &scene.nodes()[0];
+        return Err(FlattenError::new(node, APART, flat.components.len(), MAX_COMPONENTS));
+    }
+    let steps = budget.steps();
     warn_of_small_images(&mut flat, scene);
     Ok(Some(Made { flat, has_cuts, steps }))
 }
@@ -236,57 +291,6 @@ impl Materials<'_> {
     }
 }
 
-fn add_non_field(
-    flat: &mut FlatScene,
-    materials: &mut Materials<'_>,
-    node: &Node,
-    world_from_local: &DAffine3,
-    time: f64,
-) {
-    let forward = (world_from_local.matrix3 * DVec3::NEG_Z).try_normalize().unwrap_or(DVec3::NEG_Z);
-    match &node.kind {
-        NodeKind::Light(light) => flat.lights.push(FlatLight {
-            id: node.id,
-            position: world_from_local.translation,
-            direction: forward,
-            axes: [world_from_local.matrix3.x_axis, world_from_local.matrix3.y_axis],
-            scale: world_from_local.matrix3.determinant().abs().cbrt(),
-            light: *light,
-        }),
-        NodeKind::Mesh(mesh) => {
-            let material = mesh.material.map(|id| materials.of_mesh(flat, node, id));
-            flat.meshes.push(FlatMesh {
-                id: node.id,
-                model: model_pose(mesh, time),
-                world_from_local: *world_from_local,
-                material,
-            });
-        }
-        NodeKind::Camera(camera) => flat.cameras.push(FlatCamera {
-            id: node.id,
-            name: node.name.clone(),
-            camera: place_camera(camera, world_from_local),
-            lens: Lens { aperture: camera.aperture, focus_distance: camera.focus_distance },
-        }),
-        NodeKind::Group(_) | NodeKind::Object(_) | NodeKind::Instancer(_) => {}
-    }
-}
-
-/// A camera ignores scale: it inherits only its position and its orientation.
-fn place_camera(camera: &CameraNode, world_from_local: &DAffine3) -> Camera {
-    let back = (world_from_local.matrix3 * DVec3::Z).try_normalize().unwrap_or(DVec3::Z);
-    let up = world_from_local.matrix3 * DVec3::Y;
-    let right = up.cross(back).try_normalize().unwrap_or(back.any_orthonormal_vector());
-    let rotation = glam::DQuat::from_mat3(&glam::DMat3::from_cols(right, back.cross(right), back));
-    Camera {
-        position: world_from_local.translation,
-        rotation,
-        fov_y: camera.fov_y.to_radians(),
-        near: camera.near,
-        far: camera.far,
-    }
-}
-
 fn add_component(
     flat: &mut FlatScene,
     materials: &mut Materials<'_>,
@@ -328,7 +332,7 @@ fn add_component(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{Attachment, Axis, Modifier, NodeId, Object, ShapeKind};
+    use isolith_scene::{Attachment, Axis, Modifier, NodeKind, Object, ShapeKind};
 
     fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
         flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())

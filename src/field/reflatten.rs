@@ -1,4 +1,5 @@
-//! Flattening after a small change: rebuilds only the component that contains the change.
+//! Flattening after a small change, such as a drag or a step in time: rebuilds only the components that contain a
+//! change, and puts lights, cameras, meshes, materials and the environment into their places.
 
 use std::sync::Arc;
 
@@ -6,11 +7,16 @@ use super::arrays::{Component, FlatScene};
 use super::batch::{may_be_joined, united};
 use super::budget::Cancel;
 use super::collect::{component_of, is_opened};
+use super::copies::instancer::{FlatInstancer, Placement};
+use super::copies::moved_scene::{node_dynamics, scene_at};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
+use super::flat_material::FlatMaterial;
 use super::flatten::flatten_with_cuts;
 use super::lower_bound::fold_bounds;
+use super::non_field;
 use super::operand::Operand;
+use crate::light::environment_map::PlacedMap;
 use isolith_scene::{Material, Node, NodeKind, Scene};
 
 /// Keeps the arrays of the last scene, and patches them if little has changed. The result is that of
@@ -26,6 +32,8 @@ struct Last {
     materials: Vec<Arc<Material>>,
     time: f64,
     has_cuts: bool,
+    /// Whether a node stays at rest because its tracks contradict each other: a warning tells of it.
+    has_faults: bool,
     flat: Arc<FlatScene>,
 }
 
@@ -44,8 +52,13 @@ impl Flattener {
 
     /// The arrays if little has changed since the last call, and so without a wait.
     pub fn update(&mut self, scene: &Scene, time: f64) -> Option<Arc<FlatScene>> {
+        let (shown, faults) = scene_at(scene, time);
+        if faults.is_empty() { self.update_shown(&shown, time) } else { None }
+    }
+
+    fn update_shown(&mut self, shown: &Scene, time: f64) -> Option<Arc<FlatScene>> {
         let mut last = self.last.take()?;
-        if !last.update(scene, time) {
+        if last.has_faults || !last.update(shown, time) {
             return None;
         }
         let flat = last.flat.clone();
@@ -63,16 +76,21 @@ impl Flattener {
         time: f64,
         cancel: &Cancel,
     ) -> Result<Option<Arc<FlatScene>>, FlattenError> {
-        if let Some(flat) = self.update(scene, time) {
+        let (shown, faults) = scene_at(scene, time);
+        let scene = &*shown;
+        if faults.is_empty()
+            && let Some(flat) = self.update_shown(scene, time)
+        {
             return Ok(Some(flat));
         }
-        let Some((flat, has_cuts)) = flatten_with_cuts(scene, time, cancel)? else { return Ok(None) };
+        let Some((flat, has_cuts)) = flatten_with_cuts(scene, &faults, time, cancel)? else { return Ok(None) };
         let flat = Arc::new(flat);
         self.last = Some(Last {
             nodes: scene.nodes().to_vec(),
             materials: scene.materials().to_vec(),
             time,
             has_cuts,
+            has_faults: !faults.is_empty(),
             flat: flat.clone(),
         });
         Ok(Some(flat))
@@ -83,32 +101,86 @@ impl Last {
     /// Updates the arrays; false if they have to be rebuilt.
     fn update(&mut self, scene: &Scene, time: f64) -> bool {
         // A cut affects other components.
-        if self.has_cuts || self.time != time || self.flat.environment != scene.environment {
-            return false;
-        }
-        let same = |a: &[Arc<Material>], b: &[Arc<Material>]| {
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Arc::ptr_eq(a, b))
-        };
-        if !same(&self.materials, scene.materials()) || self.nodes.len() != scene.nodes().len() {
+        if self.has_cuts || self.nodes.len() != scene.nodes().len() {
             return false;
         }
         let pairs = self.nodes.iter().zip(scene.nodes()).enumerate();
-        let changed: Vec<usize> =
-            pairs.filter(|(_, (a, b))| !Arc::ptr_eq(a, b)).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
+        // The evaluation of tracks makes new nodes, but not always new values.
+        let differ = |(_, (a, b)): &(usize, (&Arc<Node>, &Arc<Node>))| !Arc::ptr_eq(a, b) && a != b;
+        let changed: Vec<usize> = pairs.filter(differ).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
         if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(scene, &self.nodes[*i], &scene.nodes()[*i]))
         {
             return false;
         }
+        // What copies stand on, and what they are copies of.
+        let stands = |instancer: &FlatInstancer| matches!(instancer.placement, Placement::List(_));
+        let is_group = |at: &usize| matches!(scene.nodes()[*at].kind, NodeKind::Group(_));
+        let has_copies = !self.flat.instancers.is_empty();
+        if !changed.is_empty() && self.flat.instancers.iter().any(stands) || has_copies && changed.iter().any(is_group)
+        {
+            return false;
+        }
+        if !self.update_materials(scene) {
+            return false;
+        }
+        let mut moves_others = self.time != time;
         for index in changed {
-            if !self.patch(scene, index) {
+            let node = &scene.nodes()[index];
+            moves_others |= !matches!(node.kind, NodeKind::Object(_));
+            if node.has_field() && !self.patch(scene, index) {
                 return false;
             }
-            self.nodes[index] = scene.nodes()[index].clone();
+            self.nodes[index] = node.clone();
+        }
+        self.update_rest(scene, moves_others, time);
+        true
+    }
+
+    /// Puts changed materials into their places; false if the arrays have to be rebuilt.
+    fn update_materials(&mut self, scene: &Scene) -> bool {
+        if self.materials.len() != scene.materials().len() {
+            return false;
+        }
+        for (old, new) in self.materials.iter_mut().zip(scene.materials()) {
+            if Arc::ptr_eq(old, new) {
+                continue;
+            }
+            // Images, and tiles that the parameters of textures count, have their places in other arrays.
+            if old.id != new.id || old.textures != new.textures {
+                return false;
+            }
+            let flat = Arc::make_mut(&mut self.flat);
+            let places = flat.materials.iter_mut().zip(&flat.material_ids).filter(|(_, id)| **id == new.id);
+            for (place, _) in places {
+                *place = FlatMaterial::new(new);
+            }
+            *old = Arc::clone(new);
+        }
+        true
+    }
+
+    /// Puts everything but fields and materials into its place.
+    fn update_rest(&mut self, scene: &Scene, moves_others: bool, time: f64) {
+        if self.time != time && !self.flat.instancers.is_empty() {
+            // The motion of copies depends on the time itself.
+            for instancer in &mut Arc::make_mut(&mut self.flat).instancers {
+                if let Some(node) = scene.node(instancer.id) {
+                    instancer.dynamics = node_dynamics(node, time, instancer.seed);
+                }
+            }
+        }
+        if moves_others {
+            non_field::update(Arc::make_mut(&mut self.flat), scene, time);
+        }
+        self.time = time;
+        if self.flat.environment != scene.environment {
+            let flat = Arc::make_mut(&mut self.flat);
+            flat.environment = scene.environment.clone();
+            flat.environment_map = PlacedMap::of(&scene.environment);
         }
         if self.flat.display != scene.display {
             Arc::make_mut(&mut self.flat).display = scene.display;
         }
-        true
     }
 
     /// Rebuilds the component of the node at `index` in its place.
@@ -117,6 +189,9 @@ impl Last {
         let Some(entry) = self.flat.ids.iter().position(|i| *i == id) else { return false };
         let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
         let old = self.flat.components[at].clone();
+        if old.instanced.is_some() {
+            return false;
+        }
         let Some(operands) = self.operands(scene, &old) else { return false };
         let had_warnings = old.is_modified() && !self.flat.warnings.is_empty();
         if fold_bounds(&operands).bounds.is_empty() || had_warnings {
@@ -192,8 +267,8 @@ impl Last {
     }
 }
 
-/// Whether only the values of an object, or of a group within a component, differ, so that the arrays keep their
-/// structure.
+/// Whether only values differ, so that the arrays keep their structure: those of an object, of a group within a
+/// component, of a light, a camera or a mesh.
 fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
     let form = |n: &Node| (n.id, n.parent, n.visible, n.negative, n.blend_override, n.apart.clone());
     let modifiers = |n: &Node| n.modifiers.iter().map(|m| (m.enabled, m.modifier.kind())).collect::<Vec<_>>();
@@ -201,6 +276,8 @@ fn is_small(scene: &Scene, old: &Node, new: &Node) -> bool {
         (NodeKind::Object(a), NodeKind::Object(b)) => a.material == b.material,
         // An opened group holds several components.
         (NodeKind::Group(_), NodeKind::Group(_)) => !is_opened(scene, old) && !is_opened(scene, new),
+        (NodeKind::Light(_), NodeKind::Light(_)) | (NodeKind::Camera(_), NodeKind::Camera(_)) => true,
+        (NodeKind::Mesh(a), NodeKind::Mesh(b)) => a.material == b.material,
         _ => false,
     };
     kinds && form(old) == form(new) && modifiers(old) == modifiers(new)

@@ -102,7 +102,7 @@ pub(super) fn values(params: &dyn Params) -> Result<(), Fault> {
 }
 
 /// Checks the value of a parameter against its limits.
-fn value(param: &Param, value: &ParamValue) -> Result<(), Fault> {
+pub(super) fn value(param: &Param, value: &ParamValue) -> Result<(), Fault> {
     let (field, limits) = (param.name, &param.limits);
     match value {
         ParamValue::Scalar(v) => number(field, *v, limits),

@@ -113,6 +113,17 @@ pub const CLIP_TIME: Limits = Limits::new([0.0, 10.0], [-1e6, 1e6], "s");
 /// Speeds of animation clips.
 pub const CLIP_SPEED: Limits = Limits::new([0.0, 2.0], [-1e3, 1e3], "");
 
+/// Most animated parameters of a scene.
+pub const MAX_TRACKS: usize = 10_000;
+/// Most keys of one parameter.
+pub const MAX_TRACK_KEYS: usize = 4_096;
+/// Most keys of a scene.
+pub const MAX_KEYS: usize = 1 << 18;
+/// The moment of a key, and the ends of the timeline.
+pub const KEY_TIME: Limits = Limits::new([0.0, 60.0], [-1e7, 1e7], "s");
+/// Frames per second of a timeline.
+pub const FRAMES_PER_SECOND: Limits = Limits::new([1.0, 120.0], [0.01, 1e4], "");
+
 /// Radii, heights, edge lengths.
 pub const SIZE: Limits = Limits::new([0.0, 5.0], [0.0, 1e6], "m");
 /// Thicknesses and roundings.

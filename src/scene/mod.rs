@@ -1,6 +1,6 @@
 //! The scene as plain data: a flat table of nodes, a table of materials, an environment.
 //!
-//! Nothing here evaluates, draws or changes over time; see `field`, `render` and `document` for that.
+//! Nothing here evaluates fields, draws or edits; see `field`, `render` and `document` for that.
 //!
 //! # Example
 //!
@@ -18,6 +18,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod animation;
 mod attached;
 mod attachment;
 mod axis;
@@ -41,6 +42,7 @@ pub mod limits;
 mod material;
 mod modifier;
 mod node;
+mod node_id;
 mod operator;
 mod param_path;
 mod params;
@@ -53,6 +55,7 @@ mod texture_image;
 mod texture_source;
 mod whole;
 
+pub use animation::{Animation, KeyInterpolation, Keyframe, MovedParts, SAME_TIME, Timeline, Track};
 pub use attached::Attached;
 pub use attachment::{Attachment, Content};
 pub use axis::Axis;
@@ -73,7 +76,8 @@ pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
-pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
+pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
+pub use node_id::NodeId;
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{

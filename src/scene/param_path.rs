@@ -4,12 +4,14 @@
 //! `node.12.modifiers[0].modifier.angle`, `node.12.transform.translation[1]`, `material.3.base_color`,
 //! `environment.background.sky`, `display.exposure`.
 
+mod of_scene;
+
 use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 
 use super::params::{Param, ParamValue, Params};
-use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, Scene, SceneError};
+use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
 /// Names a parameter of a scene, or one element of a parameter with three.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -225,30 +227,6 @@ impl ParamPath {
         all
     }
 
-    /// All parameters of a scene: those of the environment, the display, the materials and the nodes.
-    pub fn all(scene: &Scene) -> Vec<(Self, &'static Param, ParamValue)> {
-        let mut all = Vec::new();
-        collect(ParamOwner::Environment, &scene.environment, &mut all);
-        collect(ParamOwner::Display, &scene.display, &mut all);
-        for material in scene.materials() {
-            collect(ParamOwner::Material(material.id), &**material, &mut all);
-        }
-        all.extend(scene.nodes().iter().flat_map(|node| Self::all_of_node(node)));
-        all
-    }
-
-    /// The description of the parameter.
-    pub fn param(&self, scene: &Scene) -> Result<&'static Param, SceneError> {
-        let params = self.params(scene)?;
-        params.find(&self.name).ok_or_else(|| self.unknown(params))
-    }
-
-    /// Its value; that of one element is a value of its own.
-    pub fn get(&self, scene: &Scene) -> Result<ParamValue, SceneError> {
-        let params = self.params(scene)?;
-        self.value_in(params).ok_or_else(|| self.unknown(params))
-    }
-
     /// Its value in a node, whatever the node's id; `None` if the node has no such parameter.
     pub fn get_in(&self, node: &Node) -> Option<ParamValue> {
         let ParamOwner::Node(_, part) = self.owner else { return None };
@@ -262,63 +240,15 @@ impl ParamPath {
         part.params_mut(node).is_some_and(|params| self.set_value(params, value))
     }
 
-    /// A copy of the owner with another value for the parameter; the scene stays unchanged. Does not check limits.
-    pub fn changed(&self, scene: &Scene, value: ParamValue) -> Result<Changed, SceneError> {
-        let refusal = |params: &dyn Params| match self.value_in(params) {
-            None => self.unknown(params),
-            Some(now) => self.refused(format!("must be a value like {now}, not {value}")),
-        };
-        match self.owner {
-            ParamOwner::Node(id, part) => {
-                let mut node = Node::clone(scene.node(id).ok_or(SceneError::NoNode(id))?);
-                let params = part.params_mut(&mut node).ok_or_else(|| self.no_part())?;
-                if !self.set_value(params, value.clone()) {
-                    return Err(refusal(params));
-                }
-                Ok(Changed::Node(Box::new(node)))
-            }
-            ParamOwner::Material(id) => {
-                let mut material = Material::clone(scene.material(id).ok_or(SceneError::NoMaterial(id))?);
-                if !self.set_value(&mut material, value.clone()) {
-                    return Err(refusal(&material));
-                }
-                Ok(Changed::Material(Box::new(material)))
-            }
-            ParamOwner::Environment => {
-                let mut environment = scene.environment.clone();
-                if !self.set_value(&mut environment, value.clone()) {
-                    return Err(refusal(&environment));
-                }
-                Ok(Changed::Environment(environment))
-            }
-            ParamOwner::Display => {
-                let mut display = scene.display;
-                if !self.set_value(&mut display, value.clone()) {
-                    return Err(refusal(&display));
-                }
-                Ok(Changed::Display(display))
-            }
-        }
-    }
-
-    fn params<'s>(&self, scene: &'s Scene) -> Result<&'s dyn Params, SceneError> {
-        match self.owner {
-            ParamOwner::Node(id, part) => {
-                let node = scene.node(id).ok_or(SceneError::NoNode(id))?;
-                part.params(node).ok_or_else(|| self.no_part())
-            }
-            ParamOwner::Material(id) => Ok(&**scene.material(id).ok_or(SceneError::NoMaterial(id))?),
-            ParamOwner::Environment => Ok(&scene.environment),
-            ParamOwner::Display => Ok(&scene.display),
-        }
-    }
-
-    fn value_in(&self, params: &dyn Params) -> Option<ParamValue> {
+    /// Its value among the parameters of an owner, whatever the owner is; `None` if they hold no such parameter.
+    pub fn value_in(&self, params: &dyn Params) -> Option<ParamValue> {
         let value = params.get(&self.name)?;
         self.element.map_or_else(|| Some(value.clone()), |index| value.element(index))
     }
 
-    fn set_value(&self, params: &mut dyn Params, value: ParamValue) -> bool {
+    /// Sets it among the parameters of an owner. Returns false and changes nothing if they hold no such parameter or the
+    /// value is of another type. Does not check limits.
+    pub fn set_value(&self, params: &mut dyn Params, value: ParamValue) -> bool {
         let new = match self.element {
             None => Some(value),
             Some(index) => params.get(&self.name).and_then(|whole| whole.with_element(index, &value)),

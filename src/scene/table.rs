@@ -8,7 +8,7 @@ use glam::DAffine3;
 
 use super::image_budget::{self, ImageHolders};
 use super::limits::{MAX_DEPTH, MAX_ID, MAX_MATERIALS, MAX_NODES};
-use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
+use super::{Animation, DisplaySettings, Environment, Material, MaterialId, Node, NodeId, NodeKind, SceneError};
 
 /// A scene.
 ///
@@ -18,15 +18,17 @@ use super::{DisplaySettings, Environment, Material, MaterialId, Node, NodeId, No
 /// and changing a value leaves the others shared.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    nodes: Vec<Arc<Node>>,
+    pub(super) nodes: Vec<Arc<Node>>,
     depths: Arc<Vec<u32>>,
     index: Arc<HashMap<NodeId, u32>>,
-    materials: Vec<Arc<Material>>,
+    pub(super) materials: Vec<Arc<Material>>,
     next_id: u64,
     /// The environment.
     pub environment: Environment,
     /// How its light becomes the colors of a screen.
     pub display: DisplaySettings,
+    /// Its parameters that change with time. Their tracks follow from [`Scene::set_tracks`].
+    pub animation: Animation,
 }
 
 impl PartialEq for Scene {
@@ -38,6 +40,7 @@ impl PartialEq for Scene {
         self.next_id == other.next_id
             && self.environment == other.environment
             && self.display == other.display
+            && self.animation == other.animation
             && same(&self.materials, &other.materials)
             && same(&self.nodes, &other.nodes)
     }
@@ -60,6 +63,7 @@ impl Scene {
             next_id: 1,
             environment: Environment::default(),
             display: DisplaySettings::default(),
+            animation: Animation::default(),
         }
     }
 
@@ -432,60 +436,4 @@ fn check_limit(what: &'static str, value: usize, limit: usize) -> Result<(), Sce
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Group, Object, Shape};
-
-    fn node(id: u64, parent: Option<u64>, is_group: bool) -> Node {
-        let object = Object { shape: Shape::Sphere { radius: 1.0 }, material: MaterialId(1) };
-        let kind = if is_group { NodeKind::Group(Group::UNION) } else { NodeKind::Object(object) };
-        Node { id: NodeId(id), parent: parent.map(NodeId), ..Node::new("n", kind) }
-    }
-
-    fn table(nodes: &[(u64, Option<u64>, bool)]) -> Result<Scene, SceneError> {
-        let nodes = nodes.iter().map(|(id, parent, is_group)| node(*id, *parent, *is_group)).collect();
-        Scene::from_tables(nodes, vec![Material::new(MaterialId(1), "Clay", [0.5; 3])], Environment::default(), 1)
-    }
-
-    #[test]
-    fn tables_that_break_a_rule_are_refused() {
-        let id = NodeId;
-        let (g, o) = (true, false);
-        assert_eq!(table(&[(1, Some(2), g)]), Err(SceneError::NoNode(id(2))));
-        assert_eq!(table(&[(1, Some(1), g)]), Err(SceneError::NoNode(id(1))));
-        assert_eq!(table(&[(1, None, o), (2, Some(1), o)]), Err(SceneError::NotAGroup(id(1))));
-        assert_eq!(table(&[(1, None, g), (1, None, g)]), Err(SceneError::DuplicateNode(id(1))));
-        assert_eq!(table(&[(1, None, g), (2, None, g), (3, Some(1), o)]), Err(SceneError::OutOfOrder(id(3))));
-        assert!(matches!(table(&[(MAX_ID + 1, None, g)]), Err(SceneError::Limit { .. })));
-        let scene = table(&[(7, None, g), (2, Some(7), g), (3, Some(2), o), (5, Some(7), o)]).unwrap();
-        scene.assert_invariants();
-        assert_eq!((scene.depths(), scene.next_id()), (&[0, 1, 2, 1][..], 8));
-    }
-
-    #[test]
-    fn subtrees_are_held_to_the_same_rules() {
-        let mut scene = table(&[(1, None, true), (2, Some(1), false)]).unwrap();
-        let before = scene.clone();
-        let mut refuse = |parent: u64, nodes: Vec<Node>, error: SceneError| {
-            assert_eq!(scene.insert_subtree(Some(NodeId(parent)), 0, nodes), Err(error));
-            assert_eq!(scene, before);
-        };
-        refuse(2, vec![node(8, None, true)], SceneError::NotAGroup(NodeId(2)));
-        refuse(1, vec![node(8, None, false), node(9, Some(8), false)], SceneError::NotAGroup(NodeId(8)));
-        refuse(1, vec![node(8, None, true), node(9, Some(4), false)], SceneError::NoNode(NodeId(4)));
-        refuse(1, vec![node(8, None, true), node(2, Some(8), false)], SceneError::DuplicateNode(NodeId(2)));
-        scene.insert_subtree(Some(NodeId(1)), 0, vec![node(8, None, true), node(9, Some(8), false)]).unwrap();
-        scene.assert_invariants();
-        assert_eq!(scene.nodes().iter().map(|n| n.id.0).collect::<Vec<_>>(), [1, 8, 9, 2]);
-    }
-
-    #[test]
-    fn copies_of_a_scene_share_what_an_edit_leaves_alone() {
-        let scene = table(&[(1, None, true), (2, Some(1), false)]).unwrap();
-        let mut edited = scene.clone();
-        edited.replace(node(2, None, false).negative()).unwrap();
-        assert!(Arc::ptr_eq(&scene.nodes[0], &edited.nodes[0]) && !Arc::ptr_eq(&scene.nodes[1], &edited.nodes[1]));
-        assert!(Arc::ptr_eq(&scene.index, &edited.index) && Arc::ptr_eq(&scene.depths, &edited.depths));
-        assert_ne!(scene, edited);
-    }
-}
+mod tests;

@@ -14,8 +14,8 @@ pub(super) struct Arrays {
     flattener: Flattener,
     /// The last successful one.
     scene: Arc<FlatScene>,
-    /// The revision handled last.
-    revision: Option<u64>,
+    /// The revision and the moment handled last.
+    handled: Option<(u64, f64)>,
     problem: Option<String>,
     job: Option<Job<FlattenReply>>,
     is_canceled: bool,
@@ -27,14 +27,14 @@ type FlattenReply = (Flattener, Result<Option<Arc<FlatScene>>, String>);
 const CANCELED: &str = "preparing it was canceled";
 
 impl Arrays {
-    /// Arrays of this revision that were made elsewhere.
-    pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, revision: u64) -> Self {
-        Self { flattener, scene, revision: Some(revision), ..Self::default() }
+    /// Arrays of this document as it is that were made elsewhere.
+    pub fn prepared(flattener: Flattener, scene: Arc<FlatScene>, document: &Document) -> Self {
+        Self { flattener, scene, handled: Some(state_of(document)), ..Self::default() }
     }
 
-    /// No arrays for this revision, for this reason.
-    pub fn refused(problem: String, revision: u64) -> Self {
-        Self { problem: Some(problem), revision: Some(revision), ..Self::default() }
+    /// No arrays of this document as it is, for this reason.
+    pub fn refused(problem: String, document: &Document) -> Self {
+        Self { problem: Some(problem), handled: Some(state_of(document)), ..Self::default() }
     }
 
     pub fn scene(&self) -> &Arc<FlatScene> {
@@ -57,31 +57,34 @@ impl Arrays {
 
     /// Flattens the same revision again.
     pub fn prepare_again(&mut self) {
-        self.revision = None;
+        self.handled = None;
     }
 
     /// Updates the arrays, or starts a job for it, and takes over the result of a job. Returns whether anything is new.
     pub fn follow(&mut self, jobs: &Jobs, document: &Document) -> bool {
-        let revision = document.revision();
-        let is_new = self.revision != Some(revision);
-        if is_new {
+        let state = state_of(document);
+        let is_new = self.handled != Some(state);
+        // A step in time waits for the step before it, which would otherwise never be shown.
+        let is_step = self.handled.is_some_and(|(revision, _)| revision == state.0);
+        let waits = is_step && self.job.is_some();
+        if is_new && !waits {
             self.start(jobs, document);
-            self.revision = Some(revision);
+            self.handled = Some(state);
         }
-        self.poll() || is_new
+        self.poll() || (is_new && !waits)
     }
 
     fn start(&mut self, jobs: &Jobs, document: &Document) {
         (self.job, self.is_canceled) = (None, false);
-        let scene = document.scene();
-        if let Some(flat) = self.flattener.update(scene, 0.0) {
+        let (scene, time) = (document.resting(), document.time());
+        if let Some(flat) = self.flattener.update(scene, time) {
             self.take(Ok(flat));
         } else if is_quick(scene) {
-            let result = self.flattener.flatten(scene, 0.0).map_err(|error| error.to_string());
+            let result = self.flattener.flatten(scene, time).map_err(|error| error.to_string());
             self.take(result);
         } else {
             let flattener = std::mem::take(&mut self.flattener);
-            self.job = Some(flatten_by_job(jobs, document.snapshot(), flattener));
+            self.job = Some(flatten_by_job(jobs, Arc::clone(scene), time, flattener));
         }
     }
 
@@ -111,9 +114,14 @@ impl Arrays {
     }
 }
 
-fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, mut flattener: Flattener) -> Job<FlattenReply> {
+/// What the arrays of a document depend on.
+fn state_of(document: &Document) -> (u64, f64) {
+    (document.revision(), document.time())
+}
+
+fn flatten_by_job(jobs: &Jobs, scene: Arc<Scene>, time: f64, mut flattener: Flattener) -> Job<FlattenReply> {
     jobs.start(Task::new("Preparing the scene"), move |task| {
-        let made = flattener.flatten_until(&scene, 0.0, task.flag()).map_err(|error| error.to_string());
+        let made = flattener.flatten_until(&scene, time, task.flag()).map_err(|error| error.to_string());
         (flattener, made)
     })
 }

@@ -57,9 +57,9 @@ impl SceneSession {
         match prepared {
             Ok(PreparedScene { flattener, flat, library }) => {
                 self.models.take_new(library);
-                self.arrays = Arrays::prepared(flattener, flat, document.revision());
+                self.arrays = Arrays::prepared(flattener, flat, &document);
             }
-            Err(problem) => self.arrays = Arrays::refused(problem, document.revision()),
+            Err(problem) => self.arrays = Arrays::refused(problem, &document),
         }
         document
     }

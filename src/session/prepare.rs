@@ -39,6 +39,20 @@ impl PreparedScene {
     }
 }
 
+impl PreparedScene {
+    /// Prepares the same scene at another moment, which costs what has changed; false if the task was canceled.
+    ///
+    /// # Errors
+    /// The scene is beyond a limit.
+    pub fn advance(&mut self, scene: &Scene, time: f64, task: &Task) -> Result<bool, FlattenError> {
+        let Some(flat) = self.flattener.flatten_until(scene, time, task.flag())? else { return Ok(false) };
+        self.flat = flat;
+        let poses: Vec<_> = self.flat.meshes.iter().map(|mesh| mesh.model.clone()).collect();
+        self.library.keep_poses(poses.iter());
+        Ok(read_models(&poses, &mut self.library, task, 0.0))
+    }
+}
+
 /// Reads the models that the library lacks; false if the task was canceled. `start` is the progress of the task so far.
 pub(super) fn read_models(poses: &[ModelPose], library: &mut MeshLibrary, task: &Task, start: f32) -> bool {
     task.set_stage("models");

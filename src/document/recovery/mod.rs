@@ -94,7 +94,7 @@ impl Recovery {
         }
         (self.kept, self.last) = (Some(revision), Instant::now());
         let about = About::of(document);
-        self.shared.offer(Snapshot { document: self.document, revision, scene: document.snapshot(), about });
+        self.shared.offer(Snapshot { document: self.document, revision, scene: Arc::clone(document.resting()), about });
         None
     }
 

@@ -1,6 +1,8 @@
 //! The names of the commands, without their conditions and effects.
 
+use crate::keymap::Keymap;
 use crate::navigation::Side;
+use crate::transforms::kinds::{Orientation, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{InstancerPreset, Operator, ShapeKind};
@@ -66,6 +68,8 @@ pub enum Command {
     MakeMaterialUnique,
     /// Remove unused materials.
     RemoveUnusedMaterials,
+    /// Open the palette of what can be added, at the pointer.
+    AddAtPointer,
     /// Add an object of this shape.
     AddShape(ShapeKind),
     /// Add an empty group.
@@ -84,6 +88,10 @@ pub enum Command {
     AddAreaLight,
     /// Add a camera with the current view.
     AddCamera,
+    /// Set keys of position, rotation and scale.
+    KeyTransform,
+    /// Play the timeline, or pause.
+    Play,
     /// Frame the selection.
     FrameSelected,
     /// Frame the whole scene.
@@ -100,6 +108,14 @@ pub enum Command {
     FindCommand,
     /// Toggle the log.
     ShowMessages,
+    /// Move, rotate or scale the selection with the pointer, until a click or Enter.
+    Transform(TransformKind),
+    /// Switch to this tool.
+    UseTool(Tool),
+    /// Switch to these axes.
+    UseOrientation(Orientation),
+    /// Switch to this keymap.
+    UseKeymap(Keymap),
     /// Switch to this shading.
     ShowShading(Shading),
     /// Switch to the next shading.

@@ -5,8 +5,9 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CONTENT_COPY,
     ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
-    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL,
-    ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
+    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE,
+    ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY,
+    ICON_VISIBILITY_OFF,
 };
 
 use super::command::Command;
@@ -26,6 +27,8 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     all.extend(instancers());
     all.extend(roles());
     all.extend(extended_operators());
+    let keys = "Sets keys of position, rotation and scale of the selection at the moment that is shown";
+    all.push(on_selection(Command::KeyTransform, ICON_KEY, "Insert key", keys).key(NONE, Key::K).group());
     all.extend(showing());
     all
 }
@@ -68,9 +71,15 @@ fn structure() -> Vec<CommandInfo> {
         on_selection(Command::Duplicate, ICON_CONTENT_COPY, "Duplicate", "A copy of the selection, right behind it")
             .key(Modifiers::SHIFT, Key::D)
             .key(CTRL, Key::D),
-        on_selection(Command::Delete, ICON_DELETE, "Delete", "Removes the selection")
-            .key(NONE, Key::X)
-            .key(NONE, Key::Delete),
+        on_selection(
+            Command::Delete,
+            ICON_DELETE,
+            "Delete",
+            "Removes the selection; over the timeline, its selected keys",
+        )
+        .key(NONE, Key::X)
+        .key(NONE, Key::Delete)
+        .when(|state| any(state) || state.playback.deletes_keys()),
         on_selection(Command::Group, ICON_FOLDER, "Group", "Puts the selection into a group").key(CTRL, Key::G).group(),
         on_selection(Command::Ungroup, ICON_FOLDER_OFF, "Ungroup", "Takes the children out of the selected groups")
             .key(SHIFT_CTRL, Key::G),

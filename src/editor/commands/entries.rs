@@ -4,6 +4,7 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
+use crate::keymap::Keymap;
 use crate::state::EditorState;
 use crate::theme;
 
@@ -71,7 +72,7 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
-    if let Some(key) = info.keys.first() {
+    if let Some(key) = info.keys(Keymap::of(ui.ctx())).first() {
         button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
     }
     let response = ui.add_enabled(enabled, button);

@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{insertion, instancer_edits, material_edits, seeds, selection};
+use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -21,6 +21,7 @@ impl Editor {
             return;
         }
         self.state.session.finish();
+        self.state.view.transforming = None;
         let state = &mut self.state;
         let session = &mut state.session;
         match command {
@@ -36,7 +37,10 @@ impl Editor {
             Command::Redo => redo(session),
             Command::Rename => state.renaming = session.document.selection().last().copied(),
             Command::Duplicate => selection::duplicate(session),
+            Command::Delete if state.playback.deletes_keys() => dope_sheet::delete(session, &mut state.playback),
             Command::Delete => selection::delete(session),
+            Command::KeyTransform => keying::key_transforms(session),
+            Command::Play => state.playback.toggle(&mut session.document),
             Command::Group => selection::join(session, Operator::Union, true),
             Command::Ungroup => selection::ungroup(session),
             Command::InstanceSelection => instance(session),
@@ -53,6 +57,11 @@ impl Editor {
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
+            Command::AddAtPointer => {
+                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
+                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
+                self.add_palette.open(pointer);
+            }
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
             Command::AddInstancer => instancer_edits::add(state),
@@ -70,6 +79,10 @@ impl Editor {
             Command::ToggleOutline => state.view.show_outline ^= true,
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
+            Command::Transform(kind) => state.view.transforming = Some(kind),
+            Command::UseTool(tool) => state.view.tool = tool,
+            Command::UseOrientation(orientation) => state.view.orientation = orientation,
+            Command::UseKeymap(keymap) => state.use_keymap(keymap),
             Command::ShowShading(shading) => state.view.show_shading(shading),
             Command::CycleShading => state.view.cycle_shading(),
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA, ICON_SEARCH,
-    ICON_SELECT,
+    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA,
+    ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
 };
 
 use super::command::Command;
@@ -51,6 +51,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .group(),
         row(Command::ToggleOutline, ICON_SELECT, "Selection outline", "Shows or hides what marks the selection")
             .switch(|state, _| state.view.show_outline),
+        row(Command::Play, ICON_PLAY_ARROW, "Play", "Plays the timeline, or pauses").key(NONE, Key::Space).group(),
         row(Command::FindCommand, ICON_SEARCH, "Find command…", "Every command by its name")
             .key(NONE, Key::F3)
             .key(Modifiers::COMMAND, Key::P)

@@ -3,20 +3,17 @@
 //!
 //! Values that most nodes share are left out, so that a file shows what is special.
 
-use std::fmt;
-use std::marker::PhantomData;
-
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::de::{Deserializer, Error as _, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::watch;
-use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES};
+use super::animation::TrackFile;
+use super::list::at_most;
+use crate::limits::{MAX_APART, MAX_MATERIALS, MAX_NODES, MAX_TRACKS};
 use crate::{
     BlendOverride, CameraNode, DisplaySettings, DynamicSlot, Environment, Group, Instancer, Light, MAX_DYNAMICS,
-    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, whole,
+    MAX_MODIFIERS, Material, MaterialId, MeshNode, ModifierSlot, Node, NodeId, NodeKind, Object, Timeline, whole,
 };
 use isolith_geometry::Transform;
 
@@ -49,6 +46,12 @@ pub(super) struct SceneFile<M = Material, E: Default = Environment, L = Light> {
     /// All nodes: each group is followed by its children, in the artist's order.
     #[serde(deserialize_with = "at_most::<_, _, MAX_NODES>")]
     pub nodes: Vec<NodeFile<L>>,
+    /// The part of time that is played.
+    #[serde(default, skip_serializing_if = "is_usual_timeline")]
+    pub timeline: Timeline,
+    /// Parameters that change with time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty", deserialize_with = "at_most::<_, _, MAX_TRACKS>")]
+    pub tracks: Vec<TrackFile>,
 }
 
 /// A node: exactly one of `group`, `object`, `instancer`, `mesh`, `light`, `camera` gives its kind.
@@ -238,43 +241,16 @@ pub fn schema() -> serde_json::Value {
     schema
 }
 
-/// Reads a list. Fails as soon as it has more than `MOST` entries, before it grows further.
-fn at_most<'de, D, T, const MOST: usize>(deserializer: D) -> Result<Vec<T>, D::Error>
-where
-    D: Deserializer<'de>,
-    T: Deserialize<'de>,
-{
-    struct List<T, const MOST: usize>(PhantomData<T>);
-
-    impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for List<T, MOST> {
-        type Value = Vec<T>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            write!(f, "a list of at most {MOST} entries")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Vec<T>, A::Error> {
-            let mut list = Vec::new();
-            while let Some(entry) = seq.next_element()? {
-                if list.len() == MOST {
-                    return Err(A::Error::custom(format!("holds more than {MOST} entries")));
-                }
-                list.push(entry);
-                watch::entry(MOST == MAX_NODES)?;
-            }
-            Ok(list)
-        }
-    }
-
-    deserializer.deserialize_seq(List::<T, MOST>(PhantomData))
-}
-
 fn yes() -> bool {
     true
 }
 
 fn is_true(value: &bool) -> bool {
     *value
+}
+
+fn is_usual_timeline(value: &Timeline) -> bool {
+    *value == Timeline::default()
 }
 
 fn one() -> f64 {

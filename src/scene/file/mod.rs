@@ -2,7 +2,9 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `animation` | the keys of parameters, as types for serde |
 //! | `format` | the types of the present version, for serde and the schema |
+//! | `list` | lists, bounded while they grow |
 //! | `old_version` | what older versions have different, and its conversion |
 //! | `read` | bytes → checked scene; every message names file, node and field |
 //! | `watch` | progress and cancellation of reading |
@@ -14,9 +16,11 @@
 //! The reader parses the version first and alone. What a later version changes becomes a type in `old_version` with a
 //! conversion; readers are never removed.
 
+mod animation;
 mod atomic;
 mod error;
 mod format;
+mod list;
 mod old_version;
 mod place;
 mod read;

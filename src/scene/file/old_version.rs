@@ -274,6 +274,8 @@ impl SceneV1 {
             materials: self.materials.into_iter().map(MaterialV1::converted).collect(),
             next_id: self.next_id,
             nodes: self.nodes.into_iter().map(NodeFile::converted).collect(),
+            timeline: self.timeline,
+            tracks: self.tracks,
         }
     }
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::animation;
 use super::error::{FileError, clipped};
 use super::format::{NodeFile, SceneFile, VERSION};
 use super::old_version::{FileMaterial, LightV1, SceneV1};
@@ -103,6 +104,7 @@ fn located<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, serde_path_to_err
 fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     check::environment(&scene.environment).map_err(|f| FileError::from_fault(file, "environment", f))?;
     check::display(&scene.display).map_err(|f| FileError::from_fault(file, "display", f))?;
+    scene.timeline.check().map_err(|f| FileError::from_fault(file, "timeline", f))?;
     if scene.next_id > MAX_ID + 1 {
         return Err(FileError::new(file, format!("must be at most {}", MAX_ID + 1)).at("next_id"));
     }
@@ -116,6 +118,8 @@ fn checked_scene(scene: SceneFile, file: &Path) -> Result<Scene, FileError> {
     let tables = Scene::from_tables(nodes, scene.materials, scene.environment, scene.next_id);
     let mut tables = tables.map_err(|e| FileError::new(file, e.to_string()))?;
     tables.display = scene.display;
+    tables.animation.timeline = scene.timeline;
+    animation::add_tracks(&mut tables, scene.tracks, file)?;
     Ok(tables)
 }
 

@@ -17,7 +17,8 @@ pub(super) struct TooMuch {
     pub id: Option<u64>,
 }
 
-/// Searches for an entry with more than [`MAX_ENTRY_VALUES`] values: a node, a material, or any other entry at the top.
+/// Searches for an entry with more than [`MAX_ENTRY_VALUES`] values: a node, a material, a track,
+/// or any other entry at the top.
 /// Returns the number of nodes.
 pub(super) fn weigh(text: &str) -> Result<usize, TooMuch> {
     let bytes = text.as_bytes();
@@ -28,7 +29,7 @@ pub(super) fn weigh(text: &str) -> Result<usize, TooMuch> {
     let (mut values, mut nodes) = (0, 0);
     let mut i = 0;
     while i < bytes.len() {
-        let in_list = depth > 1 && matches!(key, "nodes" | "materials");
+        let in_list = depth > 1 && matches!(key, "nodes" | "materials" | "tracks");
         match bytes[i] {
             b'"' => {
                 let end = string_end(bytes, i + 1);

@@ -8,6 +8,7 @@ use serde_json::ser::Formatter;
 use serde_json::{Map, Value};
 
 use super::FileError;
+use super::animation;
 use super::format::{NodeFile, SceneFile, VERSION};
 use crate::{Material, Scene, check};
 
@@ -26,6 +27,7 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         check::node(node)
             .map_err(|f| FileError::from_fault(file, &format!("nodes[{i}]"), f).of_node(&node.name, node.id))?;
     }
+    animation::check(scene, file)?;
     let failed = |e: serde_json::Error| FileError::new(file, e.to_string());
     let table = SceneFile {
         schema: None,
@@ -35,6 +37,8 @@ pub fn to_json(scene: &Scene) -> Result<String, FileError> {
         materials: scene.materials().iter().map(|m| short(m)).collect::<Result<_, _>>().map_err(failed)?,
         next_id: scene.next_id(),
         nodes: scene.nodes().iter().map(|n| NodeFile::from(&check::settled((**n).clone()))).collect(),
+        timeline: scene.animation.timeline,
+        tracks: animation::written(&scene.animation),
     };
     let mut out = Vec::new();
     let written = table.serialize(&mut serde_json::Serializer::with_formatter(&mut out, OneValuePerLine::default()));
