@@ -120,17 +120,8 @@ impl Edit {
             Self::Duplicate(ids) => {
                 structure::duplicate(scene, &ids).map(|added| Change { changed: !added.is_empty(), added })
             }
-            Self::Group { ids, group } => {
-                let node = Node::new("Group", NodeKind::Group(group));
-                check_node(&node)?;
-                let id = structure::group(scene, &ids, node)?;
-                Ok(Change { changed: true, added: vec![id] })
-            }
-            Self::Instance { ids, node } => {
-                check_node(&node)?;
-                let id = structure::group(scene, &ids, node)?;
-                Ok(Change { changed: true, added: vec![id] })
-            }
+            Self::Group { ids, group } => enclose(scene, &ids, Node::new("Group", NodeKind::Group(group))),
+            Self::Instance { ids, node } => enclose(scene, &ids, node),
             Self::ReplaceMaterial(material) => replace_material(scene, material),
             Self::InsertMaterial(material) => {
                 check_material(&material)?;
@@ -196,6 +187,12 @@ impl Edit {
             Self::SetTracks(_) => "Move keys".into(),
         }
     }
+}
+
+fn enclose(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Result<Change, SceneError> {
+    check_node(&node)?;
+    let id = structure::group(scene, ids, node)?;
+    Ok(Change { changed: true, added: vec![id] })
 }
 
 fn counted(count: usize, what: &str) -> String {

@@ -62,7 +62,9 @@ impl Category {
 
     /// The category of a command that adds something.
     fn of(command: Command) -> Self {
-        use Command::{AddAreaLight, AddCamera, AddGroup, AddMesh, AddPointLight, AddShape, AddSpotLight, AddSun};
+        use Command::{
+            AddAreaLight, AddCamera, AddGroup, AddInstancer, AddMesh, AddPointLight, AddShape, AddSpotLight, AddSun,
+        };
         match command {
             AddShape(ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution) => Self::Curves,
             AddShape(ShapeKind::Text) => Self::Text,
@@ -74,7 +76,7 @@ impl Category {
             AddSun | AddPointLight | AddSpotLight | AddAreaLight => Self::Lights,
             AddCamera => Self::Cameras,
             AddMesh => Self::Meshes,
-            AddGroup => Self::Groups,
+            AddGroup | AddInstancer => Self::Groups,
             _ => Self::More,
         }
     }

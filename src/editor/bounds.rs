@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DVec3};
 
+use super::instancing::extent;
 use isolith_field::model_pose;
 use isolith_geometry::Aabb;
 use isolith_mesh::MeshLibrary;
@@ -62,6 +63,7 @@ fn has_size(node: &Node) -> bool {
     match &node.kind {
         NodeKind::Object(object) => !node.negative && object.shape.bounds().is_finite(),
         NodeKind::Mesh(_) => true,
+        NodeKind::Instancer(instancer) => !extent(&instancer.lattice).is_empty(),
         _ => false,
     }
 }
@@ -70,11 +72,13 @@ fn of_node(meshes: &MeshLibrary, node: &Node, world_from_node: &DAffine3) -> Aab
     local(meshes, node).map_or(Aabb::EMPTY, |bounds| bounds.transformed(world_from_node))
 }
 
-/// The bounds of a node's own surface in its local space; `None` for a group.
+/// The bounds of a node's own surface in its local space, or of the places of an instancer's copies; `None` for a
+/// group.
 pub fn local(meshes: &MeshLibrary, node: &Node) -> Option<Aabb> {
     let token = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(TOKEN));
     match &node.kind {
-        NodeKind::Group(_) | NodeKind::Instancer(_) => None,
+        NodeKind::Group(_) => None,
+        NodeKind::Instancer(instancer) => Some(extent(&instancer.lattice)).filter(|extent| !extent.is_empty()),
         NodeKind::Object(object) => Some(object.shape.bounds()).filter(Aabb::is_finite).or(Some(token)),
         NodeKind::Mesh(mesh) => {
             Some(meshes.nearest(&model_pose(mesh, 0.0)).and_then(|m| m.as_ref().ok()).map_or(token, |m| m.bounds))
@@ -99,7 +103,7 @@ pub fn oriented(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> Option<(DAff
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{Group, Light, Object, ShapeKind};
+    use isolith_scene::{Group, Instancer, Light, Object, ShapeKind};
 
     fn object(scene: &Scene, kind: ShapeKind) -> Node {
         let material = scene.materials()[0].id;
@@ -125,5 +129,9 @@ mod tests {
         assert_eq!(of_nodes(&scene, &meshes, &[ball]), Some(around));
         assert_eq!(of_nodes(&scene, &meshes, &[group]), Some(around));
         assert_eq!(oriented(&scene, &meshes, group).unwrap().1.center(), DVec3::Y);
+        let grid = Box::new(Instancer::grid([5, 1, 0], [2.0, 1.0, 1.0]));
+        let grid = scene.insert(None, 0, Node::new("Grid", NodeKind::Instancer(grid))).unwrap();
+        let half = of_nodes(&scene, &meshes, &[grid]).unwrap().half();
+        assert_eq!(half, DVec3::new(4.0, 0.0, 8.0), "the places of copies, as far as they are shown");
     }
 }

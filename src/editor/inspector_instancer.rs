@@ -49,14 +49,14 @@ fn distribution(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         }
         rows_below(ui, edit, "lattice.");
         let now = active(edit);
-        let is_regular = !matches!(now.lattice, Lattice::Scatter { .. } | Lattice::Curve { .. });
-        if is_regular {
+        let can_snap = !matches!(now.lattice, Lattice::Curve { .. });
+        if can_snap {
             inspector_params::row(ui, edit, Part::Instancer, "snap");
         }
         if let Some(need) = instancing::need_of_target(&now) {
             target(ui, edit, need);
         }
-        if matches!(now.lattice, Lattice::Scatter { .. }) || (is_regular && now.snap != Snap::Off) {
+        if matches!(now.lattice, Lattice::Scatter { .. }) || (can_snap && now.snap != Snap::Off) {
             inspector_params::row(ui, edit, Part::Instancer, "align");
         }
         let common = edit.common(|node| instancing::instancer(node).and_then(instancing::count_text));

@@ -1,7 +1,7 @@
 //! Commands that make instancers and give them ready-made settings; each is one undo step.
 
 use super::edit_session::EditSession;
-use super::instancing::{can_be_type, instancer};
+use super::instancing::instancer;
 use super::messages::Message;
 use super::state::EditorState;
 use super::{bounds, insertion, selection};
@@ -71,7 +71,7 @@ pub fn apply_preset(state: &mut EditorState, preset: InstancerPreset) {
 
 /// The mean width of the types of an instancer in its own space; a meter where there are none.
 fn width_of_types(scene: &Scene, meshes: &MeshLibrary, id: NodeId) -> f64 {
-    let types = scene.children(Some(id)).filter(|node| can_be_type(node));
+    let types = scene.children(Some(id)).filter(|node| node.has_field());
     let widths: Vec<f64> = types
         .filter_map(|node| {
             let (_, bounds) = bounds::oriented(scene, meshes, node.id)?;

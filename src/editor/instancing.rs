@@ -3,7 +3,12 @@
 
 use std::collections::HashMap;
 
+use glam::DVec3;
+
 use super::numbers::number_text;
+use isolith_field::FlatScene;
+use isolith_field::copies::Placement;
+use isolith_geometry::Aabb;
 use isolith_scene::{Instancer, Lattice, Node, NodeId, NodeKind, Scene, Shape, Snap};
 
 /// The instancer of a node.
@@ -16,14 +21,9 @@ pub fn instancer_mut(node: &mut Node) -> Option<&mut Instancer> {
     if let NodeKind::Instancer(instancer) = &mut node.kind { Some(instancer) } else { None }
 }
 
-/// Whether the node can be a type: something to see, not a light or a camera.
-pub fn can_be_type(node: &Node) -> bool {
-    !matches!(node.kind, NodeKind::Light(_) | NodeKind::Camera(_))
-}
-
 /// The share of copies of each type of an instancer, from 0 to 1, in order; all 0 if their weights are.
 pub fn shares(scene: &Scene, id: NodeId) -> Vec<(NodeId, f64)> {
-    let is_chosen = |node: &Node| node.visible && can_be_type(node);
+    let is_chosen = |node: &Node| node.visible && node.has_field();
     let weight = |node: &Node| if is_chosen(node) { node.weight } else { 0.0 };
     let weights: Vec<_> = scene.children(Some(id)).map(|node| (node.id, weight(node))).collect();
     let sum: f64 = weights.iter().map(|(_, weight)| weight).sum();
@@ -100,28 +100,61 @@ pub fn problem(scene: &Scene, node: &Node) -> Option<String> {
     (!fits).then(|| format!("needs {what}, which {} is not", target.name))
 }
 
-/// The first problem of an instancer in the scene, with its node.
-pub fn first_problem(scene: &Scene) -> Option<(NodeId, String)> {
-    let visible = scene.nodes().iter().filter(|node| node.visible);
-    visible.filter_map(|node| Some((node.id, format!("{} {}", node.name, problem(scene, node)?)))).next()
+/// Cells shown to each side along an axis without end.
+pub const SHOWN_CELLS: f64 = 8.0;
+
+/// Number and size of the cells of a lattice along each axis; `None` for one that is a list of places.
+pub fn cells(lattice: &Lattice) -> Option<([u32; 3], [f64; 3])> {
+    match *lattice {
+        Lattice::Grid { counts, spacing } => Some((counts, spacing)),
+        Lattice::Hexagonal { counts, spacing, height } => Some((counts, [spacing, height, spacing * 0.75_f64.sqrt()])),
+        Lattice::Polar { .. } | Lattice::Scatter { .. } | Lattice::Curve { .. } => None,
+    }
+}
+
+/// The box around the places of copies in the instancer's own space; of axes without end the part that is shown.
+/// Empty where the places follow from a surface or a curve.
+pub fn extent(lattice: &Lattice) -> Aabb {
+    let half = match (cells(lattice), *lattice) {
+        (Some((counts, spacing)), _) => DVec3::from_array([0, 1, 2].map(|axis| {
+            let cells = if counts[axis] == 0 { SHOWN_CELLS } else { 0.5 * f64::from(counts[axis] - 1) };
+            cells * spacing[axis]
+        })),
+        (None, Lattice::Polar { rings, radius, spacing, .. }) => {
+            let far = radius + f64::from(rings.saturating_sub(1)) * spacing;
+            DVec3::new(far, 0.0, far)
+        }
+        (None, _) => return Aabb::EMPTY,
+    };
+    Aabb::from_center_half(DVec3::ZERO, half)
+}
+
+/// How many copies an instancer makes whose places the flat scene lists; `None` for others.
+pub fn listed_text(flat: &FlatScene, id: NodeId) -> Option<String> {
+    let made = flat.instancers.iter().find(|made| made.id == id)?;
+    if let Placement::List(list) = &made.placement { Some(copies(list.places.len() as f64)) } else { None }
+}
+
+fn copies(count: f64) -> String {
+    format!("{} {}", number_text(count), if count == 1.0 { "copy" } else { "copies" })
 }
 
 /// How many copies it makes; `None` where that follows from a surface or a curve.
 pub fn count_text(instancer: &Instancer) -> Option<String> {
-    let (counts, places) = match instancer.lattice {
-        Lattice::Grid { counts, .. } | Lattice::Hexagonal { counts, .. } => {
-            (counts, counts.iter().map(|count| f64::from(*count)).product())
+    let (counts, places) = match (cells(&instancer.lattice), instancer.lattice) {
+        (Some((counts, _)), _) => (counts, counts.iter().map(|count| f64::from(*count)).product()),
+        (None, Lattice::Polar { count, rings, radius, spacing }) => {
+            ([1; 3], places_of_rings(count, rings, radius, spacing))
         }
-        Lattice::Polar { count, rings, radius, spacing } => ([1; 3], places_of_rings(count, rings, radius, spacing)),
-        Lattice::Scatter { .. } | Lattice::Curve { .. } => return None,
+        (None, _) => return None,
     };
     let endless: Vec<_> = (0..3).filter(|axis| counts[*axis] == 0).map(|axis| ["X", "Y", "Z"][axis]).collect();
+    let falls = instancer.snap != Snap::Off;
     if !endless.is_empty() {
-        return Some(format!("Copies without end along {}", endless.join(", ")));
+        return (!falls).then(|| format!("Copies without end along {}", endless.join(", ")));
     }
-    let most = if instancer.probability < 1.0 || !instancer.masks.is_empty() { "At most " } else { "" };
-    let copies = if places == 1.0 { "copy" } else { "copies" };
-    Some(format!("{most}{} {copies}", number_text(places)))
+    let is_thinned = falls || instancer.probability < 1.0 || !instancer.masks.is_empty();
+    Some(format!("{}{}", if is_thinned { "At most " } else { "" }, copies(places)))
 }
 
 /// Rings keep the distance of their copies along the ring, see [`Lattice::Polar`].
@@ -153,6 +186,9 @@ mod tests {
         let thin =
             Instancer { masks: vec![MaskKind::Noise.default_mask().into()], ..Instancer::grid([2; 3], [1.0; 3]) };
         assert_eq!(count_text(&thin).unwrap(), "At most 8 copies");
+        let fallen = |counts| Instancer { snap: Snap::Down, ..Instancer::grid(counts, [1.0; 3]) };
+        assert_eq!(count_text(&fallen([2; 3])).unwrap(), "At most 8 copies");
+        assert_eq!(count_text(&fallen([0, 1, 0])), None, "as far as the ground reaches");
     }
 
     #[test]
@@ -162,9 +198,9 @@ mod tests {
         node.id = scene.insert(None, 0, node.clone()).unwrap();
         let with = |scene: &mut Scene, node: &Node| {
             scene.replace(node.clone()).unwrap();
-            first_problem(scene).map(|(_, text)| text)
+            problem(scene, node)
         };
-        assert!(with(&mut scene, &node).unwrap().starts_with("Trees has no types"));
+        assert!(with(&mut scene, &node).unwrap().starts_with("has no types"));
         let child = object(&scene, ShapeKind::Sphere).weighted(0.0);
         let child = scene.insert(Some(node.id), 0, child).unwrap();
         assert!(with(&mut scene, &node).unwrap().contains("weights of all types are 0"));

@@ -4,14 +4,12 @@
 use egui::{Color32, Painter, Stroke};
 use glam::{DAffine3, DVec3};
 
-use super::instancing::instancer;
+use super::instancing::{SHOWN_CELLS, cells, instancer};
 use super::projection::Projection;
 use super::state::EditorState;
 use super::theme;
 use isolith_scene::{Lattice, NodeId};
 
-/// Cells drawn to each side along an axis without end.
-const SHOWN: f64 = 8.0;
 /// Most cells with dots along an axis.
 const MOST_DOTS: f64 = 64.0;
 /// Most rings drawn.
@@ -23,7 +21,7 @@ const SEGMENTS: u32 = 96;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CellAxis {
     spacing: f64,
-    /// Half the number of cells; [`SHOWN`] without end, 0 for a single one.
+    /// Half the number of cells; [`SHOWN_CELLS`] without end, 0 for a single one.
     half: f64,
     is_endless: bool,
 }
@@ -31,7 +29,7 @@ struct CellAxis {
 impl CellAxis {
     fn new(count: u32, spacing: f64) -> Self {
         let half = match count {
-            0 => SHOWN,
+            0 => SHOWN_CELLS,
             1 => 0.0,
             count => 0.5 * f64::from(count),
         };
@@ -58,19 +56,12 @@ struct LatticeLine {
     dotted: bool,
 }
 
-/// The axes of a lattice in cells; `None` for one that is a list of places.
-fn cell_axes(lattice: &Lattice) -> Option<[CellAxis; 3]> {
-    let (counts, spacing) = match *lattice {
-        Lattice::Grid { counts, spacing } => (counts, spacing),
-        Lattice::Hexagonal { counts, spacing, height } => (counts, [spacing, height, spacing * 0.75_f64.sqrt()]),
-        Lattice::Polar { .. } | Lattice::Scatter { .. } | Lattice::Curve { .. } => return None,
-    };
-    Some([0, 1, 2].map(|axis| CellAxis::new(counts[axis], spacing[axis])))
-}
-
 fn lines(lattice: &Lattice) -> Vec<LatticeLine> {
-    match (cell_axes(lattice), *lattice) {
-        (Some(axes), _) => (0..3).flat_map(|axis| along(&axes, axis)).collect(),
+    match (cells(lattice), *lattice) {
+        (Some((counts, spacing)), _) => {
+            let axes = [0, 1, 2].map(|axis| CellAxis::new(counts[axis], spacing[axis]));
+            (0..3).flat_map(|axis| along(&axes, axis)).collect()
+        }
         (None, Lattice::Polar { rings, radius, spacing, .. }) => ring_lines(rings, radius, spacing),
         (None, _) => Vec::new(),
     }

@@ -75,7 +75,9 @@ fn counts(state: &EditorState, ui: &mut Ui) {
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
     let active = state.session.selected().pop();
-    if let Some(text) = active.as_deref().and_then(instancing::instancer).and_then(instancing::count_text) {
+    let listed = active.as_ref().and_then(|node| instancing::listed_text(state.flat(), node.id));
+    let counted = || active.as_deref().and_then(instancing::instancer).and_then(instancing::count_text);
+    if let Some(text) = listed.or_else(counted) {
         ui.label(RichText::new("·").color(theme::RESTING));
         ui.label(RichText::new(text).color(theme::WEAK));
     }
@@ -164,9 +166,7 @@ fn warning(state: &EditorState) -> Option<(NodeId, String)> {
         return Some(problem.clone());
     }
     let warnings = &state.flat().warnings;
-    let Some(first) = warnings.first() else {
-        return instancing::first_problem(state.session.document.scene());
-    };
+    let first = warnings.first()?;
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
     Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
 }

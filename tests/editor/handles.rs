@@ -4,7 +4,9 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use isolith::editor::Editor;
-use isolith::scene::{Falloff, Group, Light, LightKind, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};
+use isolith::scene::{
+    Falloff, Group, Instancer, Lattice, Light, LightKind, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind,
+};
 
 use super::{open, press, shape, undo_all};
 
@@ -228,4 +230,22 @@ fn locked_hidden_and_several_nodes_have_no_handles() {
     harness.state_mut().document_mut().select(vec![ball, cube]);
     harness.run();
     assert!(names(&harness).is_empty(), "two of them");
+}
+
+#[test]
+fn the_spacing_of_a_lattice_follows_the_pointer() {
+    let grid = Instancer::grid([3, 1, 3], [1.0; 3]);
+    let (mut harness, scene, id) = with(NodeKind::Instancer(Box::new(grid)));
+    assert_eq!(names(&harness), ["Spacing X", "Spacing Z"], "none along an axis with a single layer");
+    press(&mut harness, Modifiers::NONE, Key::Num1);
+    let from = handle(&harness, "Spacing X");
+    let end = drag(&mut harness, from, vec2(60.0, 0.0), Modifiers::NONE);
+    let NodeKind::Instancer(instancer) = harness.state().document().scene().node(id).unwrap().kind.clone() else {
+        panic!()
+    };
+    let Lattice::Grid { spacing, .. } = instancer.lattice else { panic!() };
+    assert!(spacing[0] > 1.1 && spacing[1..] == [1.0; 2], "{spacing:?}");
+    assert!(handle(&harness, "Spacing X").distance(end) < 1.0, "it stays under the pointer");
+    assert_eq!(undo_all(&mut harness), 1, "one drag is one step");
+    assert_eq!(*harness.state().document().scene(), scene);
 }

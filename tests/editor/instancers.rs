@@ -102,7 +102,8 @@ fn an_empty_instancer_says_what_to_do_and_takes_the_next_shape_but_no_lights() {
     run(&mut harness, Command::AddInstancer);
     let [id] = *harness.state().document().selection() else { panic!("it is selected") };
     assert!(says(&harness, "No types yet"));
-    assert!(says(&harness, "Instancer has no types: drag what it shall copy"));
+    assert!(says(&harness, "Instancer has no types: drag what it shall copy"), "in the card");
+    assert!(says(&harness, "Instancer: has no children"), "in the status bar");
     run(&mut harness, Command::AddSun);
     let sun = harness.state().document().selection()[0];
     assert_eq!(node(&harness, sun).parent, None, "beside the instancer");

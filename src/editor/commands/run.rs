@@ -57,11 +57,7 @@ impl Editor {
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
-            Command::AddAtPointer => {
-                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
-                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
-                self.add_palette.open(pointer);
-            }
+            Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
             Command::AddInstancer => instancer_edits::add(state),
@@ -88,6 +84,13 @@ impl Editor {
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
             Command::Samples(samples) => state.view.samples = samples,
         }
+    }
+
+    fn add_at_pointer(&mut self, ctx: &Context) {
+        let view = &mut self.state.view;
+        let pointer = ctx.pointer_latest_pos().unwrap_or(view.rect.center());
+        view.add_at = Some(pointer).filter(|pointer| view.rect.contains(*pointer));
+        self.add_palette.open(pointer);
     }
 
     fn reload(&mut self, ctx: &Context) {

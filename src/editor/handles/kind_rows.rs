@@ -5,10 +5,14 @@ use glam::DVec3;
 use super::measures::Measures;
 use super::rows::{HandleRow, zero};
 use super::shape_rows;
-use isolith_scene::{LightKind, Node, NodeKind, Part};
+use isolith_scene::{Lattice, LightKind, Node, NodeKind, Part};
 
 fn forward(_: &Measures<'_>) -> DVec3 {
     DVec3::NEG_Z
+}
+
+fn back(_: &Measures<'_>) -> DVec3 {
+    DVec3::Z
 }
 
 fn up(_: &Measures<'_>) -> DVec3 {
@@ -54,6 +58,21 @@ const CAMERA: &[HandleRow] = &[HandleRow::angle("fov_y", forward, up, reach, 0.5
 const LENS: &[HandleRow] = &[CAMERA[0], HandleRow::along("focus_distance", zero, forward)];
 const GROUP: &[HandleRow] = &[HandleRow::part_along("blend.radius", beside_seam, outward, |m| m.blend_unit)];
 
+const SPACING: HandleRow = HandleRow::along("lattice.spacing", zero, right);
+const GRID: &[HandleRow] = &[
+    SPACING.element(0),
+    HandleRow::along("lattice.spacing", zero, back).element(2),
+    HandleRow::along("lattice.spacing", zero, up).element(1),
+];
+const FLAT_GRID: &[HandleRow] = &[GRID[0], GRID[1]];
+const HONEYCOMB: &[HandleRow] = &[SPACING, HandleRow::along("lattice.height", zero, up)];
+const FLAT_HONEYCOMB: &[HandleRow] = &[SPACING];
+const RINGS: &[HandleRow] = &[
+    HandleRow::along("lattice.radius", zero, right),
+    HandleRow::along("lattice.spacing", |m| DVec3::X * m.number("lattice.radius"), right),
+];
+const RING: &[HandleRow] = &[RINGS[0]];
+
 /// The rows of a node's kind, with the part of the node that has the parameters.
 pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
     match &node.kind {
@@ -70,15 +89,29 @@ pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
             },
         ),
         NodeKind::Camera(camera) => (Part::Camera, if camera.aperture > 0.0 { LENS } else { CAMERA }),
-        NodeKind::Instancer(_) => (Part::Instancer, &[]),
+        NodeKind::Instancer(instancer) => (Part::Instancer, lattice_rows(&instancer.lattice)),
         NodeKind::Mesh(_) => (Part::Mesh, &[]),
+    }
+}
+
+/// The spacing along each axis that has more than one cell; flat lattices are the usual ones.
+fn lattice_rows(lattice: &Lattice) -> &'static [HandleRow] {
+    match lattice {
+        Lattice::Grid { counts: [_, 1, _], .. } => FLAT_GRID,
+        Lattice::Grid { .. } => GRID,
+        Lattice::Hexagonal { counts: [_, 1, _], .. } => FLAT_HONEYCOMB,
+        Lattice::Hexagonal { .. } => HONEYCOMB,
+        Lattice::Polar { rings: 1, .. } => RING,
+        Lattice::Polar { .. } => RINGS,
+        // A surface or a curve says where copies stand.
+        Lattice::Scatter { .. } | Lattice::Curve { .. } => &[],
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{CameraNode, Falloff, Group, Light, Object, Params, ShapeKind};
+    use isolith_scene::{CameraNode, Falloff, Group, Instancer, Light, Object, Params, ShapeKind};
 
     fn of_every_kind() -> Vec<Node> {
         let material = isolith_scene::MaterialId(1);
@@ -90,6 +123,13 @@ mod tests {
         kinds.extend([point, spot, LightKind::RECTANGLE].map(|light| NodeKind::Light(Light::new(light))));
         kinds.push(NodeKind::Camera(CameraNode { aperture: 0.1, ..CameraNode::default() }));
         kinds.push(NodeKind::Group(Group::UNION));
+        for counts in [[2; 3], [2, 1, 2]] {
+            let hexagonal = Lattice::Hexagonal { counts, spacing: 1.0, height: 1.0 };
+            let polar = Lattice::Polar { count: 6, rings: counts[1], radius: 2.0, spacing: 1.0 };
+            for lattice in [Lattice::Grid { counts, spacing: [1.0; 3] }, hexagonal, polar] {
+                kinds.push(NodeKind::Instancer(Box::new(Instancer { lattice, ..Instancer::default() })));
+            }
+        }
         kinds.into_iter().map(|kind| Node::new("Node", kind)).collect()
     }
 
@@ -110,7 +150,8 @@ mod tests {
 
     #[test]
     fn every_length_and_angle_has_a_handle() {
-        for node in of_every_kind() {
+        // Ranges and jitter of an instancer have no place in space.
+        for node in of_every_kind().into_iter().filter(|node| !matches!(node.kind, NodeKind::Instancer(_))) {
             let (part, rows) = rows_of(&node);
             let params: &dyn Params = part.params(&node).unwrap();
             params.visit("", &mut |prefix, param, value| {
