@@ -8,6 +8,7 @@ mod broken_files;
 mod cases;
 mod cli;
 mod contract;
+mod copies;
 mod counts;
 mod debug_view;
 mod documents;

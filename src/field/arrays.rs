@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use bytemuck::{Pod, Zeroable};
 use glam::{DAffine3, DVec3};
 
+use super::copies::instancer::FlatInstancer;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
 use super::hierarchy::Hierarchy;
@@ -285,6 +286,19 @@ pub struct Component {
     /// Residue of rounding local-from-component of each entry to f32, zero for groups and runs; empty for a component
     /// that is not [`LARGE`].
     pub rest: Vec<[ParamRow; 3]>,
+    /// Set for a type of an instancer: the component then stands in the space of a copy, `origin` included.
+    pub instanced: Option<InstanceType>,
+}
+
+/// Which copies a component is the type of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InstanceType {
+    /// Index into [`FlatScene::instancers`].
+    pub instancer: u32,
+    /// Index among the types of the instancer.
+    pub kind: u32,
+    /// World bounds of all copies of the instancer.
+    pub bounds: Aabb,
 }
 
 impl Component {
@@ -309,6 +323,11 @@ impl Component {
     pub fn grown_bounds(&self) -> Aabb {
         let reach = [self.bounds.min, self.bounds.max].map(|v| v.abs().to_array()).concat();
         self.bounds.expanded(1e-6 * reach.into_iter().filter(|v| v.is_finite()).fold(0.0, f64::max))
+    }
+
+    /// Bounds in the world, slightly grown; for a type those of all copies.
+    pub fn world_bounds(&self) -> Aabb {
+        self.instanced.map_or_else(|| self.grown_bounds().translated(self.origin), |of| of.bounds)
     }
 
     /// Whether it has modifiers.
@@ -360,6 +379,8 @@ pub struct FlatScene {
     pub textures: FlatTextures,
     /// The components.
     pub components: Vec<Component>,
+    /// Instancers whose types are among the components.
+    pub instancers: Vec<FlatInstancer>,
     /// Visible lights.
     pub lights: Vec<FlatLight>,
     /// Visible meshes.
@@ -382,7 +403,7 @@ impl FlatScene {
     /// The hierarchy over the world bounds of the components, built on first use.
     pub fn hierarchy(&self) -> &Hierarchy {
         self.lazy_hierarchy.0.get_or_init(|| {
-            let boxes: Vec<Aabb> = self.components.iter().map(world_bounds).collect();
+            let boxes: Vec<Aabb> = self.components.iter().map(Component::world_bounds).collect();
             Hierarchy::build(&boxes)
         })
     }
@@ -394,18 +415,13 @@ impl FlatScene {
 
     /// Refits the hierarchy, if it has been built, to the changed component at `index`.
     pub(super) fn refit_hierarchy(&mut self, index: usize) {
-        let bounds = world_bounds(&self.components[index]);
+        let bounds = self.components[index].world_bounds();
         if let Some(hierarchy) = self.lazy_hierarchy.0.get_mut()
             && !hierarchy.refit(index as u32, bounds)
         {
             self.lazy_hierarchy = LazyHierarchy::default();
         }
     }
-}
-
-/// The grown world bounds of a component.
-fn world_bounds(component: &Component) -> Aabb {
-    component.grown_bounds().translated(component.origin)
 }
 
 /// The hierarchy of a scene, built on first use. It follows from the components, so comparisons ignore it.

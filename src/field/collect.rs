@@ -76,6 +76,32 @@ pub(super) fn collect<'a>(
     Components { operands, warnings, has_cuts, budget }
 }
 
+/// The node at `index` as a type of its instancer: its fold in the space of a copy, `None` if it is empty; with the
+/// warnings met on the way.
+pub(super) fn type_of<'a>(
+    scene: &'a Scene,
+    survey: &Survey,
+    index: usize,
+    budget: Budget,
+) -> (Option<Vec<Operand<'a>>>, Vec<Warning>, Budget) {
+    let mut ignored: Vec<&Node> = Vec::new();
+    let mut non_field = |node: &'a Node, _: &DAffine3| ignored.push(node);
+    let mut collector = Collector::new(scene, survey, budget, &mut non_field);
+    let node: &'a Node = &scene.nodes()[index];
+    let operand = match collector.operand(index, &DAffine3::IDENTITY, node) {
+        Found::Operand(operand) => Some(begin_with(operand)),
+        Found::LeftOut | Found::Nothing => None,
+    };
+    let Collector { mut warnings, budget, .. } = collector;
+    let reason = "is below a type of an instancer, where only objects and groups are copied";
+    warnings.extend(ignored.into_iter().map(|node| Warning {
+        node: node.id,
+        name: node.name.clone(),
+        reason: reason.into(),
+    }));
+    (operand, warnings, budget)
+}
+
 /// What a node contributes to its group.
 #[allow(clippy::large_enum_variant, reason = "none is kept, and nearly all are operands")]
 pub(super) enum Found<'a> {
@@ -257,6 +283,10 @@ impl<'a, 'b> Collector<'a, 'b> {
             (self.non_field)(node, world);
         }
         let survey = self.survey;
+        if matches!(node.kind, NodeKind::Instancer(_)) {
+            // Its children are types, not nodes of the scene.
+            return;
+        }
         for at in survey.children(index) {
             let child: &'a Node = &scene.nodes()[at];
             if child.visible {

@@ -74,6 +74,7 @@ pub(super) fn emit(
         modifier_domains,
         copies: operands.iter().map(copies).max().unwrap_or(1),
         rest,
+        instanced: None,
     }
 }
 

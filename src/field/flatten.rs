@@ -24,11 +24,12 @@ use super::lower_bound::fold_bounds;
 use super::non_field;
 use super::operand::Operand;
 use super::survey::Survey;
+use super::types::add_instancer;
 use super::usage::usage;
 use crate::light::environment_map::PlacedMap;
 use isolith_scene::check::Fault;
 use isolith_scene::limits::MAX_TEXTURE_BYTES;
-use isolith_scene::{MaterialId, Node, NodeId, Scene};
+use isolith_scene::{MaterialId, Node, NodeId, NodeKind, Scene};
 
 /// See [`MAX_COMPONENT_NODES`].
 const TOGETHER: &str = "the number of shapes that are blended or cut together";
@@ -175,14 +176,18 @@ fn flatten_surveyed(
     };
     let textured = TexturedMaterials::new(scene.materials());
     let mut materials = Materials { scene, textured, index: HashMap::new() };
+    let mut instancers = Vec::new();
     let components = collect(scene, survey, Budget::new(limits, cancel), &mut |node, world_from_local| {
+        if matches!(node.kind, NodeKind::Instancer(_)) {
+            instancers.extend(scene.index_of(node.id).map(|index| (index, *world_from_local)));
+            return;
+        }
         let material = non_field::mesh_material_of(node).map(|id| materials.of_mesh(&mut flat, node, id));
         non_field::add(&mut flat, node, world_from_local, material, time);
     });
-    let Components { operands, warnings, has_cuts, budget } = components;
+    let Components { operands, warnings, has_cuts, mut budget } = components;
     flat.warnings.extend(warnings);
-    let steps = budget.steps();
-    if let Some(problem) = budget.problem {
+    if let Some(problem) = budget.problem.take() {
         return Err(problem);
     }
     if cancel.is_canceled() {
@@ -198,6 +203,23 @@ fn flatten_surveyed(
             return Ok(None);
         }
     }
+    for placed in instancers {
+        let materials = std::cell::RefCell::new(&mut materials);
+        let mut palette = |flat: &mut FlatScene, id| {
+            materials.borrow_mut().resolve(flat, MaterialUse { id, object_from_world: None, repeated: None })
+        };
+        let mut add = |flat: &mut FlatScene, operands: &[Operand<'_>]| {
+            let before = flat.components.len();
+            add_component(flat, &mut materials.borrow_mut(), operands, limits.rows)?;
+            Ok((flat.components.len() > before).then_some(before))
+        };
+        budget = add_instancer(&mut flat, (scene, survey), placed, time, budget, &mut palette, &mut add)?;
+    }
+    if flat.components.len() > MAX_COMPONENTS {
+        let node = &scene.nodes()[0];
+        return Err(FlattenError::new(node, APART, flat.components.len(), MAX_COMPONENTS));
+    }
+    let steps = budget.steps();
     warn_of_small_images(&mut flat, scene);
     Ok(Some(Made { flat, has_cuts, steps }))
 }
@@ -302,7 +324,7 @@ fn add_component(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{Attachment, Axis, Modifier, NodeKind, Object, ShapeKind};
+    use isolith_scene::{Attachment, Axis, Modifier, Object, ShapeKind};
 
     fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
         flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())

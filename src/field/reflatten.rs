@@ -98,11 +98,6 @@ impl Flattener {
 impl Last {
     /// Updates the arrays; false if they have to be rebuilt.
     fn update(&mut self, scene: &Scene, time: f64) -> bool {
-        // Motions of nodes and copies depend on the time itself.
-        let has_motion = |node: &Arc<Node>| !node.dynamics.is_empty() || matches!(node.kind, NodeKind::Instancer(_));
-        if self.time != time && scene.nodes().iter().any(has_motion) {
-            return false;
-        }
         // A cut affects other components.
         if self.has_cuts || self.nodes.len() != scene.nodes().len() {
             return false;
@@ -113,6 +108,11 @@ impl Last {
         let changed: Vec<usize> = pairs.filter(differ).map(|(i, _)| i).take(MOST_CHANGED + 1).collect();
         if changed.len() > MOST_CHANGED || !changed.iter().all(|i| is_small(scene, &self.nodes[*i], &scene.nodes()[*i]))
         {
+            return false;
+        }
+        // Motions depend on the time itself, and the types of copies are components of their own.
+        let has_motion = |node: &Arc<Node>| !node.dynamics.is_empty() || matches!(node.kind, NodeKind::Instancer(_));
+        if (self.time != time || !changed.is_empty()) && scene.nodes().iter().any(has_motion) {
             return false;
         }
         if !self.update_materials(scene) {

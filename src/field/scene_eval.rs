@@ -10,8 +10,9 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
-use super::eval::field;
+use super::copies::world_field;
 use super::hierarchy::{Hierarchy, HierarchyNode};
+pub use super::ray_limits::RayLimits;
 use super::reference::trace::{Hit, TraceError, leaf_at, trace_component};
 use super::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
@@ -30,15 +31,6 @@ pub struct SceneDistance {
     pub value: f64,
     /// Its component: index into [`FlatScene::components`]; `None` for a scene without components.
     pub component: Option<u32>,
-}
-
-/// The range of hits on a ray, as distances from its origin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RayLimits {
-    /// Start of the range; a solid here is hit here.
-    pub near: f64,
-    /// End of the range.
-    pub far: f64,
 }
 
 /// A component that a cone may meet, with entry and exit of the cone through its bounds.
@@ -113,7 +105,7 @@ impl<'a> SceneEvaluator<'a> {
     fn consider(&mut self, index: u32, point: DVec3, bound: f64, within: f64, nearest: &mut SceneDistance) {
         let component = &self.flat.components[index as usize];
         let local = point - component.origin;
-        let bound = bound.max(half_space_bound(component, local));
+        let bound = if component.instanced.is_some() { bound } else { bound.max(half_space_bound(component, local)) };
         let is_outside = bound > 0.0;
         if is_outside && bound >= nearest.value {
             return;
@@ -122,7 +114,7 @@ impl<'a> SceneEvaluator<'a> {
             bound
         } else {
             self.counts.evaluations += 1;
-            let value = field(self.flat, component, local);
+            let value = world_field(self.flat, component, point);
             if is_outside { value.max(bound) } else { value }
         };
         if value < nearest.value {

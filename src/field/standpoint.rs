@@ -36,6 +36,10 @@ pub const NARROW: f64 = 64.0 * ROUNDING;
 impl Standpoint {
     /// The standpoint for what `camera` sees of the component in a picture of `size` pixels.
     pub fn new(flat: &FlatScene, component: &Component, camera: &Camera, size: [u32; 2]) -> Self {
+        if component.instanced.is_some() {
+            // Numbers of a copy are relative to the copy, wherever the eye is.
+            return Self::at_origin();
+        }
         let from = camera.position - component.origin;
         let footprint = camera.footprint(size[1].into());
         let ray_origin_depth = if component.bounds.is_finite() {

@@ -22,8 +22,12 @@ impl FlatScene {
     /// A world box around all bounded content; a box around the origin if there is none.
     pub fn content(&self, meshes: &Meshes) -> Aabb {
         let mut all = Aabb::EMPTY;
-        for component in self.components.iter().filter(|component| component.bounds.is_finite()) {
-            all = all.union(&component.bounds.translated(component.origin));
+        for component in &self.components {
+            let bounds = match component.instanced {
+                None => component.bounds.translated(component.origin),
+                Some(of) => of.bounds,
+            };
+            all = if bounds.is_finite() { all.union(&bounds) } else { all };
         }
         for (mesh, triangles) in self.meshes.iter().zip(meshes) {
             if let Some(triangles) = triangles {

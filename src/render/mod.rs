@@ -37,7 +37,7 @@ pub use frame::cost_model::coarse_size;
 pub use frame::plan;
 pub use gpu::{AdapterChoice, AdapterSummary, adapters};
 pub use gpu::{Gpu, GpuError, device_descriptor, instance_descriptor};
-pub use gpu::{brdf_probe, driver, mesh_ray_probe, probe, scene_probe};
+pub use gpu::{brdf_probe, copy_probe, driver, mesh_ray_probe, probe, scene_probe};
 pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::Overlay;

@@ -107,6 +107,7 @@ mod tests {
         "driver.wgsl",
         "probe.wgsl",
         "probe_brdf.wgsl",
+        "probe_copies.wgsl",
         "probe_lookahead.wgsl",
         "probe_mesh_rays.wgsl",
         "probe_scene.wgsl",

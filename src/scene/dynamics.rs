@@ -2,7 +2,7 @@
 //! on an instancer each copy for itself. The table below is the only list of them.
 //!
 //! To add one: an entry here, `dynamic_name` in `field/copies/dynamics.rs` with its envelope, and its counterpart in
-//! `shaders/copies/dynamics.wgsl`.
+//! `shaders/copy/dynamics.wgsl`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

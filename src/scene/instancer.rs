@@ -7,8 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::limits::{ANGLE, COPIES, NO_LIMITS, POSITION, SEED, SPACING, UNIT};
+use super::node_id::NodeId;
 use super::params::{Variants, choices, nested_params, nested_variants, param_kinds, param_struct, slot_params};
-use super::{Limits, MaterialId, NodeId};
+use super::{Limits, MaterialId};
 
 /// Most masks of one instancer.
 pub const MAX_MASKS: usize = 8;

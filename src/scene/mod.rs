@@ -41,6 +41,7 @@ pub mod limits;
 mod material;
 mod modifier;
 mod node;
+mod node_id;
 mod operator;
 mod param_path;
 mod params;
@@ -73,7 +74,8 @@ pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};
 pub use modifier::{MAX_MODIFIERS, Modifier, ModifierKind, ModifierSlot};
-pub use node::{CameraNode, Group, MeshNode, Node, NodeId, NodeKind, Object};
+pub use node::{CameraNode, Group, MeshNode, Node, NodeKind, Object};
+pub use node_id::NodeId;
 pub use operator::{Blend, BlendKernel, BlendOverride, Operator, RadiusUnit};
 pub use param_path::{Changed, ParamOwner, ParamPath, Part};
 pub use params::{

@@ -2,35 +2,18 @@
 
 use glam::{DQuat, DVec3};
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use super::limits::{
     APERTURE, CLIP, CLIP_NAME_LENGTH, CLIP_SPEED, CLIP_TIME, FOV, NO_LIMITS, PATH_LENGTH, POSITION, SCALE, THICKNESS,
     UNIT, WEIGHT,
 };
+use super::node_id::NodeId;
 use super::params::{param_struct, param_table};
 use super::{
     Blend, BlendOverride, Dynamic, DynamicSlot, Instancer, Light, MaterialId, Modifier, ModifierSlot, Operator, Shape,
-    whole,
 };
 use isolith_geometry::Transform;
-
-/// Stable identity of a node; never reused within a document.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, JsonSchema)]
-#[serde(transparent)]
-pub struct NodeId(pub u64);
-
-impl<'de> Deserialize<'de> for NodeId {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        whole::read(deserializer).map(Self)
-    }
-}
-
-impl std::fmt::Display for NodeId {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "#{}", self.0)
-    }
-}
 
 /// One entry of the scene's table.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,13 +7,16 @@
 //! convex one even less; and in a hollow the surface occludes itself as it should.
 
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 
 use super::shadow::cone_share;
+use crate::copies::{CopyRay, copy_ray, visit_copies};
 use crate::eval::field;
 use crate::reference::trace::TraceError;
-use crate::scene_eval::{RayLimits, SceneEvaluator};
+use crate::scene_eval::{RayLimits, SceneCounts, SceneEvaluator};
+use crate::{Component, FlatScene};
 use isolith_geometry::Ray;
 
 /// Number of cones.
@@ -85,20 +88,38 @@ fn least_ratio(evaluator: &mut SceneEvaluator<'_>, axis: &Ray, limits: RayLimits
     let mut ratio = 1.0_f64;
     for visit in evaluator.visits(axis, limits, OCCLUSION_TANGENT) {
         let component = &flat.components[visit.component as usize];
-        let mut t = limits.near;
-        while t <= limits.far && ratio > -1.0 {
-            let (p, size) = (axis.at(t) - component.origin, OCCLUSION_SINE * t);
-            let plane = component.half_space.map_or(0.0, |[x, y, z, d]| DVec3::new(x, y, z).dot(p) + d);
-            let mut f = component.bounds.distance(p).max(plane);
-            // Otherwise the bounds are outside of the sphere, and so is the component.
-            if f < size * 0.999 {
-                evaluator.counts.evaluations += 1;
-                f = field(flat, component, p);
-            }
-            ratio = ratio.min(f / size);
-            // At the same distances for all: steps by the field would show the bounds.
-            t *= OCCLUSION_GROWTH;
+        if component.instanced.is_some() {
+            let counts = &mut evaluator.counts;
+            visit_copies(flat, component, axis, limits, OCCLUSION_TANGENT, &mut |copy, _| {
+                let CopyRay { ray, stretch } = copy_ray(flat, component, copy, axis);
+                let near = limits.near * stretch;
+                let range = RayLimits { near, far: limits.far * stretch };
+                ratio = ratio.min(ratio_of(flat, component, &ray, range, counts));
+                ControlFlow::Continue(limits.far)
+            });
+            continue;
         }
+        ratio = ratio.min(ratio_of(flat, component, axis, limits, &mut evaluator.counts));
+    }
+    ratio
+}
+
+/// The same for one component, or one copy, in whose space the axis is.
+fn ratio_of(flat: &FlatScene, component: &Component, axis: &Ray, limits: RayLimits, counts: &mut SceneCounts) -> f64 {
+    let mut ratio = 1.0_f64;
+    let mut t = limits.near;
+    while t <= limits.far && ratio > -1.0 {
+        let (p, size) = (axis.at(t) - component.origin, OCCLUSION_SINE * t);
+        let plane = component.half_space.map_or(0.0, |[x, y, z, d]| DVec3::new(x, y, z).dot(p) + d);
+        let mut f = component.bounds.distance(p).max(plane);
+        // Otherwise the bounds are outside of the sphere, and so is the component.
+        if f < size * 0.999 {
+            counts.evaluations += 1;
+            f = field(flat, component, p);
+        }
+        ratio = ratio.min(f / size);
+        // At the same distances for all: steps by the field would show the bounds.
+        t *= OCCLUSION_GROWTH;
     }
     ratio
 }

@@ -6,13 +6,16 @@
 //! field vouches for hold the whole cone, or one of them, inside a solid, holds a whole cross section of it.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 
+use crate::copies::{CopyRay, copy_ray, visit_copies};
 use crate::eval::field;
 use crate::lights::GpuLight;
 use crate::reference::trace::TraceError;
-use crate::scene_eval::{RayLimits, SceneEvaluator, SceneVisit};
+use crate::scene_eval::{RayLimits, SceneCounts, SceneEvaluator, SceneVisit};
+use crate::{Component, FlatScene};
 use isolith_geometry::Ray;
 
 /// Least tangent of a cone, 0.06 degrees: a narrower one could not be marched by its radius.
@@ -73,6 +76,15 @@ pub struct ShadowShare {
     pub proof: ShadowProof,
 }
 
+impl ShadowShare {
+    /// What both leave: see [`WIDE_SPREAD`].
+    fn and(self, other: Self, spread: f64) -> Self {
+        let share = if spread < WIDE_SPREAD { self.share * other.share } else { self.share.min(other.share) };
+        let proof = if other.proof == ShadowProof::None { other.proof } else { self.proof };
+        Self { share, proof }
+    }
+}
+
 /// Tangent of the angular radius of a directional light, radius of others.
 pub fn light_extent(light: &GpuLight) -> f64 {
     let length = |v: [f32; 3]| DVec3::from(v.map(f64::from)).length();
@@ -129,10 +141,7 @@ pub fn shadow_share(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone) -> Sh
         if one.proof == ShadowProof::Dark {
             return one;
         }
-        if one.proof == ShadowProof::None {
-            all.proof = ShadowProof::None;
-        }
-        all.share = if cone.spread < WIDE_SPREAD { all.share * one.share } else { all.share.min(one.share) };
+        all = all.and(one, cone.spread);
     }
     all
 }
@@ -141,9 +150,34 @@ pub fn shadow_share(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone) -> Sh
 pub fn shadow_of(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone, visit: &SceneVisit) -> ShadowShare {
     let flat = evaluator.flat();
     let component = &flat.components[visit.component as usize];
+    let counts = &mut evaluator.counts;
+    if component.instanced.is_none() {
+        return shadow_along(flat, component, cone, [visit.entry, visit.exit], counts);
+    }
+    let mut all = ShadowShare { share: 1.0, proof: ShadowProof::Lit };
+    let limits = RayLimits { near: visit.entry, far: visit.exit };
+    visit_copies(flat, component, &cone.axis, limits, cone.spread, &mut |copy, range| {
+        // In the space of the copy, whose lengths differ by `stretch`; angles stay.
+        let CopyRay { ray, stretch } = copy_ray(flat, component, copy, &cone.axis);
+        let of_copy = ShadowCone { axis: ray, near: cone.near * stretch, far: cone.far * stretch, ..*cone };
+        let one = shadow_along(flat, component, &of_copy, [range.near * stretch, range.far * stretch], counts);
+        all = all.and(one, cone.spread);
+        if one.proof == ShadowProof::Dark { ControlFlow::Break(()) } else { ControlFlow::Continue(visit.exit) }
+    });
+    all
+}
+
+/// The share of the light that a component leaves, or one copy, in whose space the cone is; between two distances.
+fn shadow_along(
+    flat: &FlatScene,
+    component: &Component,
+    cone: &ShadowCone,
+    [entry, exit]: [f64; 2],
+    counts: &mut SceneCounts,
+) -> ShadowShare {
     let local = Ray { origin: cone.axis.origin - component.origin, ..cone.axis };
-    let mut march = ConeMarch::new(visit.entry);
-    if cone_passes_half_space(component.half_space, &local, cone.spread, visit.exit) {
+    let mut march = ConeMarch::new(entry);
+    if cone_passes_half_space(component.half_space, &local, cone.spread, exit) {
         return march.share();
     }
     while !march.ended {
@@ -153,10 +187,10 @@ pub fn shadow_of(evaluator: &mut SceneEvaluator<'_>, cone: &ShadowCone, visit: &
         let f = if bound > cone.spread * march.t {
             bound
         } else {
-            evaluator.counts.evaluations += 1;
+            counts.evaluations += 1;
             field(flat, component, p)
         };
-        march.step(f, cone, visit.exit);
+        march.step(f, cone, exit);
     }
     march.share()
 }

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
+use crate::copies::world_surface;
 use crate::coverage::PixelSample;
-use crate::eval::{SurfaceMaterial, surface};
+use crate::eval::SurfaceMaterial;
 use crate::light::arriving::{Arriving, SeenPoint};
 use crate::light::brdf::ShadingPoint;
 use crate::light::display::{display_color, display_decode};
@@ -188,7 +189,7 @@ impl View<'_> {
         let mut shading_normal = None;
         let (t, leaf, normal, material, occlusion) = if let Some(hit) = march.hit {
             let component = &self.flat.components[hit.component as usize];
-            let point = surface(self.flat, component, ray.at(hit.t) - component.origin);
+            let point = world_surface(self.flat, component, ray.at(hit.t));
             tied = point.tied;
             let normal = point.gradient.try_normalize().unwrap_or(-ray.direction);
             let mut material = point.material;

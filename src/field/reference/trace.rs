@@ -11,11 +11,14 @@
 //! shapes, anything thinner than the rounding is not a hit.
 
 use std::cell::Cell;
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::copies::{CopyRay, copy_ray, nearest_copy, visit_copies};
 use crate::eval::{field, gradient, surface};
+use crate::ray_limits::RayLimits;
 use crate::{Component, FlatScene};
 use isolith_geometry::{Aabb, Ray};
 use isolith_scene::NodeId;
@@ -85,15 +88,61 @@ pub fn trace_component(
     [near, far]: [f64; 2],
     evaluations: &mut u64,
 ) -> Result<Option<f64>, TraceError> {
-    let mut line = Line::new(flat, index, ray);
-    let hit = line.first_hit(near, far);
-    *evaluations += line.fields.get();
-    hit
+    let found = follow(flat, index, ray, [near, far]);
+    *evaluations += found.evaluations;
+    found.hit
+}
+
+/// The way of a ray through one component.
+struct Followed {
+    hit: Result<Option<f64>, TraceError>,
+    evaluations: u64,
+    margin: f64,
+}
+
+/// Follows the ray through a component, or through each copy that it may meet.
+fn follow(flat: &FlatScene, index: u32, ray: &Ray, [near, far]: [f64; 2]) -> Followed {
+    let component = &flat.components[index as usize];
+    if component.instanced.is_none() {
+        let mut line = Line::new(flat, index, ray);
+        let hit = line.first_hit(near, far);
+        return Followed { hit, evaluations: line.fields.get(), margin: line.margin };
+    }
+    let mut found = Followed { hit: Ok(None), evaluations: 0, margin: f64::INFINITY };
+    visit_copies(flat, component, ray, RayLimits { near, far }, CLEAR, &mut |copy, limits| {
+        let CopyRay { ray, stretch } = copy_ray(flat, component, copy, ray);
+        let mut line = Line::new(flat, index, &ray);
+        let hit = line.first_hit(limits.near * stretch, limits.far * stretch);
+        found.evaluations += line.fields.get();
+        found.margin = found.margin.min(line.margin);
+        match hit {
+            Err(error) => {
+                found.hit = Err(error);
+                return ControlFlow::Break(());
+            }
+            Ok(Some(t)) => found.hit = Ok(Some(t / stretch)),
+            Ok(None) => {}
+        }
+        ControlFlow::Continue(found.hit.ok().flatten().unwrap_or(far))
+    });
+    found
+}
+
+/// A line through the component at `t`, and `t` along it: for copies in the space of the copy there.
+fn line_at<'a>(flat: &'a FlatScene, index: u32, ray: &Ray, t: f64) -> (Line<'a>, f64) {
+    let component = &flat.components[index as usize];
+    match nearest_copy(flat, component, ray.at(t)).copy {
+        Some(copy) => {
+            let CopyRay { ray, stretch } = copy_ray(flat, component, &copy, ray);
+            (Line::new(flat, index, &ray), t * stretch)
+        }
+        None => (Line::new(flat, index, ray), t),
+    }
 }
 
 /// The leaf of a component that the ray meets at `t`: index into [`FlatScene::nodes`].
 pub fn leaf_at(flat: &FlatScene, component: u32, ray: &Ray, t: f64) -> u32 {
-    let line = Line::new(flat, component, ray);
+    let (line, t) = line_at(flat, component, ray, t);
     surface(flat, line.component, line.at(t)).leaf
 }
 
@@ -114,7 +163,7 @@ impl<'a> Tracer<'a> {
     pub fn new(flat: &'a FlatScene) -> Self {
         Self {
             flat,
-            bounds: flat.components.iter().map(Component::grown_bounds).collect(),
+            bounds: flat.components.iter().map(|c| c.world_bounds().translated(-c.origin)).collect(),
             order: Vec::new(),
             evaluations: 0,
         }
@@ -140,18 +189,17 @@ impl<'a> Tracer<'a> {
             if entry > limit {
                 break;
             }
-            let mut line = Line::new(self.flat, index, ray);
-            let hit = line.first_hit(entry, limit);
-            self.evaluations += line.fields.get();
-            if let Some(t) = hit? {
+            let found = follow(self.flat, index, ray, [entry, limit]);
+            self.evaluations += found.evaluations;
+            if let Some(t) = found.hit? {
                 nearest = Some((t, index));
             }
-            margin = margin.min(line.margin);
+            margin = margin.min(found.margin);
         }
         let Some((t, component)) = nearest else { return Ok(March { hit: None, margin }) };
-        let line = Line::new(self.flat, component, ray);
-        let leaf = surface(self.flat, line.component, line.at(t)).leaf;
-        let margin = margin.min(line.depth(t));
+        let (line, along) = line_at(self.flat, component, ray, t);
+        let leaf = surface(self.flat, line.component, line.at(along)).leaf;
+        let margin = margin.min(line.depth(along));
         self.evaluations += line.fields.get();
         Ok(March { hit: Some(Hit { t, component, leaf }), margin })
     }

@@ -217,8 +217,11 @@ struct Marching {
 impl Marching {
     fn of(component: &Component, evaluation: EvaluationCost, cost_model: &CostModel) -> Self {
         let EvaluationCost { straight, iterations, leaves } = evaluation;
-        let (max_steps, at_once) =
-            if component.bounds.is_finite() { (MAX_STEPS, MAX_STEPS) } else { (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED) };
+        let (max_steps, at_once) = if component.world_bounds().is_finite() {
+            (MAX_STEPS, MAX_STEPS)
+        } else {
+            (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED)
+        };
         let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
         let per_pixel = leaves * TRACE_EVALUATIONS;
         let most = cost_model.cost_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
@@ -315,7 +318,7 @@ impl FramePlan {
 fn front_to_back(flat: &FlatScene, camera: &Camera) -> Vec<usize> {
     let distance = |i: usize| {
         let c = &flat.components[i];
-        c.bounds.distance(camera.position - c.origin)
+        c.world_bounds().distance(camera.position)
     };
     let mut order: Vec<(f64, usize)> = (0..flat.components.len()).map(|i| (distance(i), i)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -369,13 +372,14 @@ impl Rect {
     /// The pixels that the component's bounds may cover; `None` if it is out of view.
     fn around(component: &Component, projection: &ScreenProjection, size: [u32; 2]) -> Option<Self> {
         let whole = Self { origin: [0, 0], end: size };
-        if !component.bounds.is_finite() {
+        let bounds = component.world_bounds();
+        if !bounds.is_finite() {
             return Some(whole);
         }
         let pixels = DVec2::new(f64::from(size[0]), f64::from(size[1]));
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let mut behind = 0;
-        for corner in component.bounds.translated(component.origin - projection.eye).corners() {
+        for corner in bounds.translated(-projection.eye).corners() {
             let depth = corner.dot(projection.forward);
             if depth < projection.near {
                 behind += 1;

@@ -2,6 +2,7 @@
 
 pub mod adapter;
 pub mod brdf_probe;
+pub mod copy_probe;
 mod device;
 pub mod driver;
 mod error;

@@ -1,0 +1,33 @@
+// How the material of a copy differs from that of its type. Counterpart of `copy_material` in
+// `src/field/copies/variation.rs`.
+
+#include "copy/variation.wgsl"
+
+struct CopyMaterial {
+    // Index of the material instead of that of the type; NO_COPY for none.
+    replaced: u32,
+    // Added to the hue, in rounds.
+    hue: f32,
+    // Factors.
+    saturation: f32,
+    value: f32,
+    // Added to the roughness.
+    roughness: f32,
+    // Factor.
+    emission: f32,
+}
+
+fn copy_material(copy: Copy) -> CopyMaterial {
+    let color = 2.0 * copy_randoms(instancer.seed, copy.cell, CHANNEL_COLOR) - 1.0;
+    let surface = copy_randoms(instancer.seed, copy.cell, CHANNEL_SURFACE);
+    let choice = copy_randoms(instancer.seed, copy.cell, CHANNEL_CHOICE).z;
+    let entry = u32(choice * f32(instancer.palette_count));
+    return CopyMaterial(
+        select(NO_COPY, instancer.palette[entry / 4u][entry % 4u], instancer.palette_count > 0u),
+        instancer.hue * color.x + copy.hue,
+        1.0 + instancer.saturation * color.y,
+        1.0 + instancer.value * color.z,
+        instancer.roughness * (2.0 * surface.x - 1.0),
+        (1.0 - instancer.emission * surface.y) * copy.emission,
+    );
+}

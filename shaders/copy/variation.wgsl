@@ -1,0 +1,149 @@
+// What sets a copy apart. Counterpart of `src/field/copies/variation.rs`.
+
+#include "copy/dynamics.wgsl"
+
+struct Copy {
+    // Absolute cell, or the id of the place.
+    cell: vec3i,
+    kind: u32,
+    // Where its origin is, in the instancer's space, relative to the anchor's place.
+    position: vec3f,
+    hue: f32,
+    // Quaternion.
+    rotation: vec4f,
+    // Size along its own axes.
+    scale: vec3f,
+    emission: f32,
+}
+
+// Kind of a copy that does not exist.
+const NO_COPY: u32 = 0xffffffffu;
+// A copy whose scale is less than this along an axis is not there.
+const COPY_LEAST_SCALE: f32 = 1e-6;
+
+// In the order of `Channel`.
+const CHANNEL_CHOICE: u32 = 0u;
+const CHANNEL_PLACE: u32 = 1u;
+const CHANNEL_OFFSET: u32 = 2u;
+const CHANNEL_ROTATION: u32 = 3u;
+const CHANNEL_SCALE: u32 = 4u;
+const CHANNEL_COLOR: u32 = 5u;
+const CHANNEL_SURFACE: u32 = 6u;
+
+// In the order of `MaskKind`.
+const MASK_NOISE: u32 = 0u;
+const MASK_HEIGHT: u32 = 1u;
+const MASK_SLOPE: u32 = 2u;
+
+// The share of a mask at a position, from 0 to 1. `up` is the height of the ground's unit normal.
+fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
+    var share = 0.0;
+    if mask.kind == MASK_NOISE {
+        let s = noise_moved(NoiseCoordinate(mask.whole.x, mask.fraction.x), position.x * mask.params.z);
+        let t = noise_moved(NoiseCoordinate(mask.whole.y, mask.fraction.y), position.z * mask.params.z);
+        share = (copy_noise_2(mask.key, s, t) - mask.params.x) / mask.params.y + 0.5;
+    } else {
+        let at = position + instancer.anchor_place;
+        if mask.kind == MASK_HEIGHT {
+            share = min((at.y - mask.params.x) / mask.params.z, 1.0);
+            share = max(share, 0.0) * clamp((mask.params.y - at.y) / mask.params.z, 0.0, 1.0);
+        } else if mask.kind == MASK_SLOPE {
+            share = (up - mask.params.y) / (mask.params.x - mask.params.y);
+        } else {
+            share = (mask.params.y - length(at.xz)) / (mask.params.y - mask.params.x);
+        }
+    }
+    share = clamp(share, 0.0, 1.0);
+    return select(share, 1.0 - share, mask.inverted == 1u);
+}
+
+// The type of the copy of an absolute cell that stands at `base`; NO_COPY if there is none.
+fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
+    let randoms = copy_randoms(instancer.seed, cell, CHANNEL_CHOICE);
+    var share = instancer.probability;
+    for (var i = 0u; i < instancer.mask_count; i += 1u) {
+        share *= copy_mask(instancer.masks[i], base, up);
+    }
+    if randoms.x >= share {
+        return NO_COPY;
+    }
+    var kind = 0u;
+    while kind + 1u < instancer.type_count && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
+        kind += 1u;
+    }
+    return kind;
+}
+
+// A copy that exists, moved and turned from its base.
+fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
+    let seed = instancer.seed;
+    let loose = (copy_randoms(seed, cell, CHANNEL_PLACE) - 0.5) * jitter;
+    let offset = mix(instancer.offset_min, instancer.offset_max, copy_randoms(seed, cell, CHANNEL_OFFSET));
+    let place = base + loose + quaternion_rotated(turned, offset);
+    let angles = mix(instancer.rotation_min, instancer.rotation_max, copy_randoms(seed, cell, CHANNEL_ROTATION));
+    let sines = sin(0.5 * angles);
+    let cosines = cos(0.5 * angles);
+    let about_y = vec4f(0.0, sines.y, 0.0, cosines.y);
+    let about_x = vec4f(sines.x, 0.0, 0.0, cosines.x);
+    let about_z = vec4f(0.0, 0.0, sines.z, cosines.z);
+    let own = quaternion_product(quaternion_product(about_y, about_x), about_z);
+    let random = copy_randoms(seed, cell, CHANNEL_SCALE);
+    let sizes = select(random, random.xxx, instancer.uniform_scale == 1u);
+    let motion = copy_motion(cell, place);
+    let scale = mix(instancer.scale_min, instancer.scale_max, sizes) * motion.scale;
+    let is_there = min(scale.x, min(scale.y, scale.z)) >= COPY_LEAST_SCALE;
+    return Copy(
+        cell,
+        select(NO_COPY, kind, is_there),
+        place + motion.translation,
+        motion.hue,
+        quaternion_product(motion.rotation, quaternion_product(turned, own)),
+        scale,
+        motion.emission,
+    );
+}
+
+const QUATERNION_NONE: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
+
+// A copy that does not exist.
+fn copy_none() -> Copy {
+    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0);
+}
+
+// Place of a cell, both relative to the anchor.
+fn copy_cell_place(relative: vec3i) -> vec3f {
+    var place = vec3f(relative) * instancer.spacing;
+    // The anchor's own shift is in its place.
+    let shifted = (relative.z & 1) * select(1, -1, (instancer.anchor.z & 1) == 1);
+    place.x += 2.0 * instancer.stagger * f32(shifted);
+    return place;
+}
+
+// The copy of a cell, relative to the anchor, if it is of this type; else one of kind NO_COPY.
+fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {
+    let cell = relative + instancer.anchor;
+    let base = copy_cell_place(relative);
+    if copy_kind(cell, base, 1.0) != kind {
+        return copy_none();
+    }
+    return copy_placed(cell, kind, base, QUATERNION_NONE, instancer.jitter);
+}
+
+// The copy at a place of the list, if it is of this type; else one of kind NO_COPY.
+fn copy_of_place(place: u32, kind: u32) -> Copy {
+    let row = instancer.first_place + 3u * place;
+    let cell = bitcast<vec3i>(places[row + 2u].xyz);
+    let rotation = places[row + 1u];
+    let base = places[row].xyz;
+    if copy_kind(cell, base, quaternion_rotated(rotation, vec3f(0.0, 1.0, 0.0)).y) != kind {
+        return copy_none();
+    }
+    return copy_placed(cell, kind, base, rotation, vec3f(0.0));
+}
+
+// Bounding sphere of a copy: center, relative to the anchor's place, and radius.
+fn copy_sphere(copy: Copy) -> vec4f {
+    let sphere = instancer.spheres[copy.kind];
+    let center = copy.position + quaternion_rotated(copy.rotation, copy.scale * sphere.xyz);
+    return vec4f(center, sphere.w * max(copy.scale.x, max(copy.scale.y, copy.scale.z)));
+}

@@ -1,0 +1,127 @@
+//! The field of all copies of one type. Counterpart of `shaders/copy/value.wgsl`.
+//!
+//! The value at a point is the least of max(field, distance to the bounding sphere) over the copies nearby, and never
+//! more than the distance from which on copies are not looked at. It is continuous, since it depends on no cell border:
+//! a copy that is left out could not be the least.
+
+use glam::{DAffine3, DVec3};
+
+use super::instancer::{FlatInstancer, FlatLattice, Placement};
+use super::variation::{Copy, copy_of_cell, copy_of_place};
+use super::walk::copy_sphere;
+use crate::eval::{SurfacePoint, field, gradient, surface};
+use crate::{Component, FlatScene};
+
+/// Shells of cells beyond the reach of copies that are looked at.
+const SHELLS: i32 = 1;
+
+/// The nearest copy to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestCopy {
+    /// The value of the field of all copies.
+    pub value: f64,
+    /// The copy that has it; `None` where none is near.
+    pub copy: Option<Copy>,
+}
+
+/// World from the space of a copy.
+pub fn world_from_copy(instancer: &FlatInstancer, copy: &Copy) -> DAffine3 {
+    instancer.world_from_local * copy.instancer_from_copy()
+}
+
+/// The copy of `component`'s type that is nearest to a point of the world.
+pub fn nearest_copy(flat: &FlatScene, component: &Component, point: DVec3) -> NearestCopy {
+    let Some(of) = component.instanced else { return NearestCopy { value: f64::INFINITY, copy: None } };
+    let instancer = &flat.instancers[of.instancer as usize];
+    let local = instancer.world_from_local.inverse().transform_point3(point);
+    let mut nearest = NearestCopy { value: f64::INFINITY, copy: None };
+    let mut consider = |copy: Copy| {
+        if copy.kind != of.kind {
+            return;
+        }
+        let (center, radius) = copy_sphere(instancer, &copy);
+        let sphere = local.distance(center) - radius;
+        if sphere >= nearest.value {
+            return;
+        }
+        let q = copy.instancer_from_copy().inverse().transform_point3(local);
+        let own = field(flat, component, q - component.origin) * copy.scale.min_element();
+        let value = if sphere > 0.0 { own.max(sphere) } else { own };
+        if value < nearest.value {
+            nearest = NearestCopy { value, copy: Some(copy) };
+        }
+    };
+    let beyond = match &instancer.placement {
+        Placement::Lattice(lattice) => each_near(instancer, lattice, local, &mut consider),
+        Placement::List(list) => {
+            for place in 0..list.places.len() {
+                copy_of_place(instancer, place).into_iter().for_each(&mut consider);
+            }
+            f64::INFINITY
+        }
+    };
+    let value = nearest.value.min(beyond) * instancer.least_scale();
+    NearestCopy { value, copy: nearest.copy.filter(|_| nearest.value <= beyond) }
+}
+
+/// Visits the copies of all cells near a point. Returns a lower bound of the distance to all others.
+fn each_near(instancer: &FlatInstancer, lattice: &FlatLattice, point: DVec3, visit: &mut dyn FnMut(Copy)) -> f64 {
+    let home = lattice.nearest(point);
+    let long = |axis: &usize| lattice.is_long(*axis);
+    let spacing = (0..3).filter(long).map(|axis| lattice.spacing[axis]).fold(f64::INFINITY, f64::min);
+    let reach = instancer.reach + lattice.stagger;
+    // Shells from which copies come near at all.
+    let shells = if spacing.is_finite() { (reach / spacing + 0.5).ceil() as i32 + SHELLS } else { 0 };
+    let range = |axis: usize| {
+        let low = home[axis].saturating_sub(shells).max(lattice.low[axis]);
+        let high = home[axis].saturating_add(shells).min(lattice.high[axis]);
+        low..=high
+    };
+    for z in range(2) {
+        for y in range(1) {
+            for x in range(0) {
+                copy_of_cell(instancer, [x, y, z]).into_iter().for_each(&mut *visit);
+            }
+        }
+    }
+    (f64::from(shells) + 0.5) * spacing - reach
+}
+
+/// The field of a component at a point of the world.
+pub fn world_field(flat: &FlatScene, component: &Component, point: DVec3) -> f64 {
+    match component.instanced {
+        None => field(flat, component, point - component.origin),
+        Some(_) => nearest_copy(flat, component, point).value,
+    }
+}
+
+/// The field of a component and its gradient, at a point of the world. Where no copy is near, the gradient is zero.
+pub fn world_gradient(flat: &FlatScene, component: &Component, point: DVec3) -> (f64, DVec3) {
+    let Some((copy, nearest, local)) = copy_near(flat, component, point) else {
+        return match component.instanced {
+            None => gradient(flat, component, point - component.origin),
+            Some(_) => (nearest_copy(flat, component, point).value, DVec3::ZERO),
+        };
+    };
+    let (_, of_copy) = gradient(flat, component, local.transform_point3(point) - component.origin);
+    (nearest, local.matrix3.transpose() * of_copy * copy)
+}
+
+/// The surface of a component near a point of the world.
+pub fn world_surface(flat: &FlatScene, component: &Component, point: DVec3) -> SurfacePoint {
+    let Some((factor, value, local)) = copy_near(flat, component, point) else {
+        return surface(flat, component, point - component.origin);
+    };
+    let found = surface(flat, component, local.transform_point3(point) - component.origin);
+    SurfacePoint { distance: value, gradient: local.matrix3.transpose() * found.gradient * factor, ..found }
+}
+
+/// The factor on the field of the nearest copy, the value, and copy from world.
+fn copy_near(flat: &FlatScene, component: &Component, point: DVec3) -> Option<(f64, f64, DAffine3)> {
+    let of = component.instanced?;
+    let instancer = &flat.instancers[of.instancer as usize];
+    let nearest = nearest_copy(flat, component, point);
+    let copy = nearest.copy?;
+    let factor = copy.scale.min_element() * instancer.least_scale();
+    Some((factor, nearest.value, world_from_copy(instancer, &copy).inverse()))
+}

@@ -1,0 +1,26 @@
+//! Copies of instancers: where they stand, how they differ, how they move, and the field of all of them.
+//!
+//! A copy is never stored: its place, its type and its motion follow from the seed, its cell and the time. A type is a
+//! component of the flat scene in the space of a copy, see [`crate::InstanceType`].
+
+pub(crate) mod build;
+mod dynamics;
+mod eval;
+mod gpu;
+mod hash;
+pub(crate) mod instancer;
+mod noise;
+mod trace;
+mod variation;
+mod walk;
+
+pub use build::{copy_extent, polar_places};
+pub use dynamics::{Envelope, Motion, copy_basis, copy_envelope, copy_motion};
+pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gradient, world_surface};
+pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
+pub use hash::{Channel, copy_hash, copy_random, copy_randoms};
+pub use instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, MAX_PLACES, Place, PlaceList, Placement};
+pub use noise::{Coordinate, copy_curl, copy_noise_1, copy_noise_2};
+pub use trace::{CopyRay, copy_ray, visit_copies};
+pub use variation::{Copy, CopyMaterial, copy_mask, copy_material, copy_of_cell, copy_of_place};
+pub use walk::{CopyCone, CopyVisit, MAX_SLABS, copies_along, copy_sphere, walk_axis};

@@ -1,0 +1,214 @@
+//! The walk along a ray through the copies of an instancer. Counterpart of `shaders/copy/walk.wgsl`.
+//!
+//! A lattice is walked slab by slab along the axis that the ray crosses fastest, each cell once: the ray visits the
+//! cells whose copies may reach it, however far copies leave their cells. Slabs come in the order in which the ray
+//! enters them, so the walk ends at the first hit that nothing later can precede.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::instancer::{FlatInstancer, FlatLattice, Placement};
+use super::variation::{Copy, copy_of_cell, copy_of_place};
+use crate::ray_limits::RayLimits;
+use isolith_geometry::{Aabb, Ray};
+
+/// Most slabs of one walk: beyond them nothing is found.
+pub const MAX_SLABS: u32 = 1 << 16;
+
+/// A copy whose bounding sphere a cone meets, with the stretch of the axis where it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CopyVisit {
+    /// The copy.
+    pub copy: Copy,
+    /// Where the cone enters the sphere.
+    pub entry: f64,
+    /// Where it leaves.
+    pub exit: f64,
+}
+
+/// A cone in the space of an instancer: its axis, whose direction need not have unit length, the range of its
+/// parameter, and its radius per parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CopyCone {
+    /// The axis.
+    pub axis: Ray,
+    /// The range.
+    pub limits: RayLimits,
+    /// Radius at parameter 1.
+    pub spread: f64,
+}
+
+/// Visits the copies that a cone may meet. `visit` may move `limits.far` nearer, or break off.
+pub fn copies_along(
+    instancer: &FlatInstancer,
+    mut cone: CopyCone,
+    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+) {
+    let wide = instancer.bounds().expanded(cone.spread * cone.limits.far);
+    let Some((entry, exit)) = wide.ray_interval(&cone.axis) else { return };
+    cone.limits = RayLimits { near: cone.limits.near.max(entry), far: cone.limits.far.min(exit) };
+    if cone.limits.near > cone.limits.far {
+        return;
+    }
+    match &instancer.placement {
+        Placement::Lattice(lattice) => {
+            let _ = along_lattice(instancer, lattice, &mut cone, visit);
+        }
+        Placement::List(_) => along_list(instancer, cone, visit),
+    }
+}
+
+fn along_lattice(
+    instancer: &FlatInstancer,
+    lattice: &FlatLattice,
+    cone: &mut CopyCone,
+    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let axis = walk_axis(lattice, cone.axis.direction);
+    let [first, last] = cells_between(instancer, lattice, cone, axis, [cone.limits.near, cone.limits.far]);
+    let backward = cone.axis.direction[axis] < 0.0;
+    let slabs = (i64::from(last) - i64::from(first) + 1).clamp(0, i64::from(MAX_SLABS)) as i32;
+    for step in 0..slabs {
+        let slab = if backward { last - step } else { first + step };
+        let [entry, exit] = slab_interval(instancer, lattice, cone, axis, slab);
+        if entry > cone.limits.far {
+            break;
+        }
+        if entry > exit {
+            continue;
+        }
+        let ranges = [0, 1, 2].map(|other| match other {
+            _ if other == axis => [slab, slab],
+            _ => cells_between(instancer, lattice, cone, other, [entry, exit]),
+        });
+        for z in ranges[2][0]..=ranges[2][1] {
+            for y in ranges[1][0]..=ranges[1][1] {
+                for x in ranges[0][0]..=ranges[0][1] {
+                    let Some(copy) = copy_of_cell(instancer, [x, y, z]) else { continue };
+                    meet(instancer, copy, cone, visit)?;
+                }
+            }
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// The axis of several cells along which the ray crosses most of them.
+pub fn walk_axis(lattice: &FlatLattice, direction: DVec3) -> usize {
+    let speed = |axis: usize| {
+        if lattice.is_long(axis) { direction[axis].abs() / lattice.spacing[axis] } else { -1.0 }
+    };
+    let mut best = 0;
+    for axis in 1..3 {
+        if speed(axis) > speed(best) {
+            best = axis;
+        }
+    }
+    best
+}
+
+/// How far a copy may be off the place of its cell along an axis, with the shift of rows.
+fn reach(instancer: &FlatInstancer, lattice: &FlatLattice, axis: usize) -> f64 {
+    instancer.reach + if axis == 0 { lattice.stagger } else { 0.0 }
+}
+
+/// The first and the last cell along an axis whose copies may meet the cone between two parameters.
+fn cells_between(
+    instancer: &FlatInstancer,
+    lattice: &FlatLattice,
+    cone: &CopyCone,
+    axis: usize,
+    range: [f64; 2],
+) -> [i32; 2] {
+    let [a, b] = range.map(|t| cone.axis.at(t)[axis] - lattice.shift[axis]);
+    let reach = reach(instancer, lattice, axis) + cone.spread * range[1];
+    let spacing = lattice.spacing[axis];
+    let first = ((a.min(b) - reach) / spacing).ceil() as i32;
+    let last = ((a.max(b) + reach) / spacing).floor() as i32;
+    [first.max(lattice.low[axis]), last.min(lattice.high[axis])]
+}
+
+/// Where the cone may meet copies of a slab.
+fn slab_interval(
+    instancer: &FlatInstancer,
+    lattice: &FlatLattice,
+    cone: &CopyCone,
+    axis: usize,
+    slab: i32,
+) -> [f64; 2] {
+    let middle = f64::from(slab) * lattice.spacing[axis] + lattice.shift[axis] - cone.axis.origin[axis];
+    let reach = reach(instancer, lattice, axis);
+    let RayLimits { near, far } = cone.limits;
+    let speed = cone.axis.direction[axis].abs();
+    if speed + cone.spread < 1e-12 {
+        return [near, far];
+    }
+    let ahead = if cone.axis.direction[axis] < 0.0 { -middle } else { middle };
+    let entry = (ahead - reach) / (speed + cone.spread);
+    // A cone that is wider than steep never leaves the slab.
+    let exit = if speed > cone.spread { (ahead + reach) / (speed - cone.spread) } else { far };
+    [entry.max(near), exit.min(far)]
+}
+
+fn along_list(
+    instancer: &FlatInstancer,
+    mut cone: CopyCone,
+    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+) {
+    let Placement::List(list) = &instancer.placement else { return };
+    let mut open: Vec<usize> = if list.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
+    while let Some(index) = open.pop() {
+        let node = &list.tree.nodes[index];
+        let bounds: Aabb = node.bounds.expanded(cone.spread * cone.limits.far);
+        let Some((entry, exit)) = bounds.ray_interval(&cone.axis) else { continue };
+        if entry.max(cone.limits.near) > exit.min(cone.limits.far) {
+            continue;
+        }
+        if !node.is_leaf() {
+            let [near, far] = if cone.axis.direction[node.axis as usize] < 0.0 {
+                [node.link as usize, index + 1]
+            } else {
+                [index + 1, node.link as usize]
+            };
+            open.extend([far, near]);
+        } else if let Some(copy) = copy_of_place(instancer, node.link as usize)
+            && meet(instancer, copy, &mut cone, visit).is_break()
+        {
+            return;
+        }
+    }
+}
+
+/// Visits a copy if the cone meets its bounding sphere.
+fn meet(
+    instancer: &FlatInstancer,
+    copy: Copy,
+    cone: &mut CopyCone,
+    visit: &mut dyn FnMut(&CopyVisit, &mut RayLimits) -> ControlFlow<()>,
+) -> ControlFlow<()> {
+    let (center, radius) = copy_sphere(instancer, &copy);
+    if radius <= 0.0 {
+        return ControlFlow::Continue(());
+    }
+    let away = center - cone.axis.origin;
+    let (speed, along) = (cone.axis.direction.length(), away.dot(cone.axis.direction));
+    let nearest = along / (speed * speed);
+    let radius = radius + cone.spread * (nearest + radius / speed).clamp(0.0, cone.limits.far);
+    let miss = (away - cone.axis.direction * nearest).length_squared();
+    if miss > radius * radius {
+        return ControlFlow::Continue(());
+    }
+    let half = (radius * radius - miss).sqrt() / speed;
+    let (entry, exit) = ((nearest - half).max(cone.limits.near), (nearest + half).min(cone.limits.far));
+    if entry > exit {
+        return ControlFlow::Continue(());
+    }
+    visit(&CopyVisit { copy, entry, exit }, &mut cone.limits)
+}
+
+/// Bounding sphere of a copy, in the space of the instancer: center and radius.
+pub fn copy_sphere(instancer: &FlatInstancer, copy: &Copy) -> (DVec3, f64) {
+    let (center, radius) = instancer.spheres[copy.kind as usize];
+    (copy.position + copy.rotation * (copy.scale * center), radius * copy.scale.max_element())
+}

@@ -1,0 +1,289 @@
+//! Copies of instancers: fields and rays against the same copies placed one by one.
+
+use bytemuck::Zeroable;
+use glam::{DQuat, DVec3};
+
+use crate::gpu::shared;
+use isolith::field::copies::{
+    CopyCone, FlatInstancer, Placement, copies_along, copy_material, copy_of_cell, copy_of_place, nearest_copy,
+    world_from_copy,
+};
+use isolith::field::reference::trace::trace;
+use isolith::field::scene_eval::SceneEvaluator;
+use isolith::field::{FlatScene, RayLimits, flatten};
+use isolith::geometry::Ray;
+use isolith::render::copy_probe::{CopyQuery, placed, walked};
+use isolith::scene::{DynamicKind, Instancer, Lattice, Mask, Node, NodeId, NodeKind, Object, Scene, Shape, Variation};
+
+/// A scene of one instancer with two types: a box off its origin and a ball.
+pub fn scene_of(instancer: Instancer, dynamics: &[DynamicKind]) -> Scene {
+    let mut scene = Scene::new();
+    let material = scene.materials()[0].id;
+    let mut node = Node::new("Copies", NodeKind::Instancer(Box::new(instancer)));
+    for kind in dynamics {
+        node = node.moving(kind.default_dynamic());
+    }
+    let top = scene.insert(None, 0, node.at(DVec3::new(0.3, -0.2, 0.1)).rotated(DQuat::from_rotation_y(0.4))).unwrap();
+    let shapes = [
+        (Shape::Box { size: DVec3::new(0.5, 1.0, 0.4).to_array().into(), rounding: 0.05 }, DVec3::Y * 0.5, 2.0),
+        (Shape::Sphere { radius: 0.35 }, DVec3::ZERO, 1.0),
+    ];
+    for (at, (shape, place, weight)) in shapes.into_iter().enumerate() {
+        let node = Node::new("Type", NodeKind::Object(Object { shape, material })).at(place).weighted(weight);
+        scene.insert(Some(top), at, node).unwrap();
+    }
+    scene
+}
+
+/// What varies in all tests.
+pub fn varied() -> Variation {
+    Variation {
+        looseness: 0.8,
+        offset_min: [-0.2, 0.0, -0.1],
+        offset_max: [0.2, 0.3, 0.1],
+        rotation_min: [-20.0, -180.0, -20.0],
+        rotation_max: [20.0, 180.0, 20.0],
+        scale_min: [0.6; 3],
+        scale_max: [1.4; 3],
+        uniform: true,
+    }
+}
+
+/// The same scene without an instancer: every copy is an object with a transform of its own.
+fn placed_one_by_one(flat: &FlatScene, source: &Scene) -> Scene {
+    let instancer = &flat.instancers[0];
+    let mut scene = Scene::new();
+    let children: Vec<NodeId> = source.children(Some(instancer.id)).map(|child| child.id).collect();
+    for copy in all_copies(instancer) {
+        let world = world_from_copy(instancer, &copy);
+        let (scale, rotation, translation) = world.to_scale_rotation_translation();
+        let mut group = Node::new("Copy", NodeKind::Group(isolith::scene::Group::UNION));
+        group.transform.translation = translation;
+        group.transform.rotation = rotation;
+        group.transform.scale = scale;
+        let group = scene.insert(None, 0, group).unwrap();
+        let child = source.node(children[copy.kind as usize]).unwrap();
+        let child = Node { id: NodeId(0), parent: None, ..Node::clone(child) };
+        scene.insert(Some(group), 0, child).unwrap();
+    }
+    scene
+}
+
+fn all_copies(instancer: &FlatInstancer) -> Vec<isolith::field::copies::Copy> {
+    match &instancer.placement {
+        Placement::List(list) => (0..list.places.len()).filter_map(|i| copy_of_place(instancer, i)).collect(),
+        Placement::Lattice(lattice) => {
+            let cells = |axis: usize| lattice.low[axis]..=lattice.high[axis];
+            let all = cells(2).flat_map(|z| cells(1).flat_map(move |y| cells(0).map(move |x| [x, y, z])));
+            all.filter_map(|cell| copy_of_cell(instancer, cell)).collect()
+        }
+    }
+}
+
+/// Scenes of limited lattices with everything that varies.
+pub fn limited() -> Vec<(&'static str, Scene)> {
+    let of = |lattice| Instancer { lattice, variation: varied(), probability: 0.8, seed: 3, ..Instancer::default() };
+    let grid = Lattice::Grid { counts: [5; 3], spacing: [1.5, 1.8, 1.4] };
+    let hexagonal = Lattice::Hexagonal { counts: [6, 1, 5], spacing: 1.3, height: 1.0 };
+    let polar = Lattice::Polar { count: 9, rings: 3, radius: 2.0, spacing: 1.4 };
+    let mut masked = of(Lattice::Grid { counts: [9, 1, 9], spacing: [1.0; 3] });
+    masked.masks = vec![
+        Mask::Noise { size: 3.0, threshold: 0.4, softness: 0.3, seed: 2 }.into(),
+        Mask::Radius { inner: 2.0, outer: 5.0 }.into(),
+    ];
+    let mut all = vec![
+        ("grid", scene_of(of(grid), &[])),
+        ("hexagonal", scene_of(of(hexagonal), &[])),
+        ("polar", scene_of(of(polar), &[])),
+        ("masked", scene_of(masked, &[])),
+    ];
+    all.extend(DynamicKind::ALL.iter().map(|kind| (kind.label(), scene_of(of(grid), &[*kind]))));
+    all
+}
+
+/// A sequence of numbers from 0 to 1 that fill their range evenly.
+fn spread(i: u32, by: f64) -> f64 {
+    (f64::from(i) * by).fract()
+}
+
+#[test]
+fn fields_are_those_of_copies_placed_one_by_one() {
+    for (name, scene) in limited() {
+        let flat = flatten(&scene, 1.7).unwrap();
+        assert!(flat.warnings.is_empty(), "{name}: {:?}", flat.warnings);
+        let single = flatten(&placed_one_by_one(&flat, &scene), 0.0).unwrap();
+        let (mut copies, mut singles) = (SceneEvaluator::new(&flat), SceneEvaluator::new(&single));
+        let mut near = 0;
+        for i in 0..1_500 {
+            let p = DVec3::new(spread(i, 0.618_034), spread(i, 0.414_214), spread(i, 0.732_051)) * 10.0 - 5.0;
+            let [a, b] = [copies.distance(p, f64::INFINITY).value, singles.distance(p, f64::INFINITY).value];
+            // Both are lower bounds of the distance; the sign and small values are exact.
+            assert_eq!(a < 0.0, b < 0.0, "{name} at {p}: {a}, {b}");
+            if b < 0.2 {
+                assert!((a - b).abs() < 2e-5, "{name} at {p}: {a}, {b}");
+                near += 1;
+            }
+        }
+        assert!(near > 15, "{name}: only {near} points near a surface");
+    }
+}
+
+#[test]
+fn rays_hit_what_they_hit_when_copies_are_placed_one_by_one() {
+    for (name, scene) in limited() {
+        let flat = flatten(&scene, 1.7).unwrap();
+        let single = flatten(&placed_one_by_one(&flat, &scene), 0.0).unwrap();
+        let (mut hits, mut wrong) = (0, 0);
+        for i in 0..400 {
+            let [a, b, c] = [0.618_034, 0.414_214, 0.732_051].map(|by| spread(i, by) - 0.5);
+            let origin = DVec3::new(12.0 * a, 8.0 * b + 1.0, 9.0);
+            let ray = Ray { origin, direction: DVec3::new(0.4 * b, 0.3 * c, -1.0).normalize() };
+            let [x, y] = [&flat, &single].map(|flat| trace(flat, &ray, 0.01, 100.0).unwrap().map(|hit| hit.t));
+            hits += usize::from(y.is_some());
+            wrong += usize::from(match (x, y) {
+                (Some(x), Some(y)) => (x - y).abs() > 1e-4,
+                (None, None) => false,
+                _ => true,
+            });
+        }
+        assert!(hits > 20, "{name}: {hits} hits");
+        // Rays that graze: arrays are rounded to f32 in other spaces.
+        assert!(wrong <= 1, "{name}: {wrong} of {hits}");
+    }
+}
+
+/// The paper's scheme: only the copy of the point's own cell counts. It has holes and jumps where copies cross cells.
+#[test]
+fn the_own_cell_alone_is_wrong() {
+    let (_, scene) = limited().swap_remove(0);
+    let flat = flatten(&scene, 1.7).unwrap();
+    let instancer = &flat.instancers[0];
+    let Placement::Lattice(lattice) = &instancer.placement else { panic!("a grid") };
+    let from_world = instancer.world_from_local.inverse();
+    let mut wrong = 0;
+    for i in 0..4_000 {
+        let p = DVec3::new(spread(i, 0.618_034), spread(i, 0.414_214), spread(i, 0.732_051)) * 6.0 - 3.0;
+        let nearest =
+            flat.components.iter().map(|c| nearest_copy(&flat, c, p)).min_by(|a, b| a.value.total_cmp(&b.value));
+        let Some(nearest) = nearest.filter(|nearest| nearest.value < 0.0) else { continue };
+        let own = copy_of_cell(instancer, lattice.nearest(from_world.transform_point3(p)));
+        wrong += usize::from(own != nearest.copy);
+    }
+    assert!(wrong > 20, "{wrong} points inside copies of other cells");
+}
+
+/// Limited scenes, and lattices without end that are seen from far away.
+fn probed() -> Vec<(String, Scene, DVec3)> {
+    let near = DVec3::new(2.0, 3.0, 9.0);
+    let mut all: Vec<_> = limited().into_iter().map(|(name, scene)| (name.to_owned(), scene, near)).collect();
+    for far in [1e3, 1e6] {
+        let lattice = Lattice::Hexagonal { counts: [0, 1, 0], spacing: 1.5, height: 1.0 };
+        let masks = vec![Mask::Noise { size: 9.0, threshold: 0.5, softness: 0.3, seed: 2 }.into()];
+        let endless = Instancer { lattice, masks, variation: varied(), seed: 4, ..Instancer::default() };
+        let dynamics = [DynamicKind::Wind, DynamicKind::CurlNoise, DynamicKind::Bob];
+        all.push((format!("endless at {far}"), scene_of(endless, &dynamics), DVec3::new(far, 3.0, -far)));
+    }
+    all
+}
+
+#[test]
+fn the_gpu_places_copies_where_the_cpu_does() {
+    for (name, scene, eye) in probed() {
+        let flat = flatten(&scene, 4_321.7).unwrap();
+        let instancer = &flat.instancers[0];
+        let (anchor, place) = match &instancer.placement {
+            Placement::List(_) => ([0; 3], DVec3::ZERO),
+            Placement::Lattice(lattice) => {
+                let anchor = lattice.nearest(instancer.world_from_local.inverse().transform_point3(eye));
+                (anchor, lattice.place(anchor))
+            }
+        };
+        let of = |i: i32| match &instancer.placement {
+            Placement::List(list) => [i % list.places.len() as i32, 0, 0],
+            Placement::Lattice(lattice) => {
+                let relative = [i % 61 - 30, if lattice.is_long(1) { i % 5 - 2 } else { 0 }, i / 61 % 61 - 30];
+                [0, 1, 2].map(|axis| {
+                    let cell = i64::from(relative[axis]) + i64::from(anchor[axis]);
+                    let cell = cell.clamp(lattice.low[axis].into(), lattice.high[axis].into());
+                    (cell - i64::from(anchor[axis])) as i32
+                })
+            }
+        };
+        let queries: Vec<CopyQuery> =
+            (0..4_000).map(|i| CopyQuery { cell: of(i), kind: i as u32 % 2, ..Zeroable::zeroed() }).collect();
+        let answers = placed(&shared().gpu, instancer, eye, &queries).unwrap();
+        let mut found = 0;
+        for (query, answer) in queries.iter().zip(&answers) {
+            let copy = match &instancer.placement {
+                Placement::List(_) => copy_of_place(instancer, query.cell[0] as usize),
+                Placement::Lattice(_) => copy_of_cell(instancer, [0, 1, 2].map(|i| query.cell[i] + anchor[i])),
+            };
+            let copy = copy.filter(|copy| copy.kind == query.kind);
+            assert_eq!(copy.is_some(), answer.kind != u32::MAX, "{name}: {query:?}");
+            let Some(copy) = copy else { continue };
+            found += 1;
+            let off = DVec3::from(answer.position.map(f64::from)) - (copy.position - place);
+            assert!(off.length() < 2e-5, "{name}: {off} for {query:?}");
+            let turned =
+                copy.rotation.to_array().iter().zip(answer.rotation).map(|(a, b)| a * f64::from(b)).sum::<f64>();
+            assert!(turned.abs() > 1.0 - 1e-6, "{name}: {turned} for {query:?}");
+            let scaled = DVec3::from(answer.scale.map(f64::from)) - copy.scale;
+            assert!(scaled.length() < 1e-5, "{name}: {scaled}");
+            let look = copy_material(instancer, &copy);
+            let mine = [look.hue, look.saturation, look.value, look.roughness, look.emission];
+            let [a, b, c, d] = answer.color;
+            for (mine, theirs) in mine.iter().zip([a, b, c, d, answer.glow]) {
+                assert!((mine - f64::from(theirs)).abs() < 1e-5, "{name}: {mine}, {theirs}");
+            }
+        }
+        assert!(found > 30, "{name}: {found} copies");
+    }
+}
+
+#[test]
+fn the_gpu_walks_past_the_copies_that_the_cpu_walks_past() {
+    for (name, scene, eye) in probed() {
+        let flat = flatten(&scene, 1.7).unwrap();
+        let instancer = &flat.instancers[0];
+        let from_world = instancer.world_from_local.inverse();
+        let mut queries = Vec::new();
+        for i in 0..600 {
+            let [a, b, c] = [0.618_034, 0.414_214, 0.732_051].map(|by| (spread(i, by) - 0.5) as f32);
+            let direction = DVec3::new(2.0 * f64::from(a), f64::from(b) - 0.2, -1.0 + f64::from(c)).normalize();
+            let wide = if i % 3 == 0 { 0.05 } else { 0.0 };
+            queries.push(CopyQuery {
+                origin: [3.0 * c, a, b],
+                direction: direction.to_array().map(|v| v as f32),
+                kind: i % 2,
+                far: 25.0,
+                spread: wide,
+                ..Zeroable::zeroed()
+            });
+        }
+        let answers = walked(&shared().gpu, instancer, eye, &queries).unwrap();
+        let (mut visits, mut off) = (0, 0);
+        for (query, answer) in queries.iter().zip(&answers) {
+            let [origin, direction] = [query.origin, query.direction].map(|v| DVec3::from(v.map(f64::from)));
+            let axis = Ray {
+                origin: from_world.transform_point3(eye + origin),
+                direction: from_world.transform_vector3(direction),
+            };
+            let limits = RayLimits { near: 0.0, far: query.far.into() };
+            let (mut count, mut entries) = (0, 0.0);
+            let cone = CopyCone { axis, limits, spread: query.spread.into() };
+            copies_along(instancer, cone, &mut |visit, _| {
+                if visit.copy.kind == query.kind {
+                    (count, entries) = (count + 1, entries + visit.entry);
+                }
+                std::ops::ControlFlow::Continue(())
+            });
+            assert_ne!(answer.visits, u32::MAX, "{name}: a walk was not at its end");
+            visits += count;
+            let is_same =
+                count == answer.visits && (entries - f64::from(answer.entries)).abs() < 2e-3 * f64::from(count);
+            off += u32::from(!is_same && count > 0 || count == 0 && answer.visits > 0);
+        }
+        // Rays that only touch a sphere.
+        assert!(visits > 60 && off <= 6, "{name}: {off} of 600 differ; {visits} visits");
+    }
+}
