@@ -89,7 +89,8 @@ struct Instancer {
 
 @group(1) @binding(5) var<uniform> instancer: Instancer;
 // Lists of places. Per instancer: a tree of boxes, two rows per node, lower and upper corner, with
-// the link and the axis as bits in w; then three rows per place: position, rotation, id.
+// the link and the axis as bits in w; then three rows per place: position with the
+// cosine of the slope of the ground, rotation, id.
 @group(1) @binding(6) var<storage, read> places: array<vec4f>;
 
 // A point of the instancer's space, relative to the anchor's place, from one relative to the eye.

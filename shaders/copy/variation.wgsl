@@ -134,11 +134,12 @@ fn copy_of_place(place: u32, kind: u32) -> Copy {
     let row = instancer.first_place + 3u * place;
     let cell = bitcast<vec3i>(places[row + 2u].xyz);
     let rotation = places[row + 1u];
-    let base = places[row].xyz;
-    if copy_kind(cell, base, quaternion_rotated(rotation, vec3f(0.0, 1.0, 0.0)).y) != kind {
+    // The cosine of the slope of the ground is in w.
+    let base = places[row];
+    if copy_kind(cell, base.xyz, base.w) != kind {
         return copy_none();
     }
-    return copy_placed(cell, kind, base, rotation, vec3f(0.0));
+    return copy_placed(cell, kind, base.xyz, rotation, vec3f(0.0));
 }
 
 // Bounding sphere of a copy: center, relative to the anchor's place, and radius.

@@ -24,7 +24,7 @@ use super::lower_bound::fold_bounds;
 use super::non_field;
 use super::operand::Operand;
 use super::survey::Survey;
-use super::types::add_instancer;
+use super::types::{Flattening, add_instancer};
 use super::usage::usage;
 use crate::light::environment_map::PlacedMap;
 use isolith_scene::check::Fault;
@@ -203,6 +203,7 @@ fn flatten_surveyed(
             return Ok(None);
         }
     }
+    let of = Flattening { scene, survey, time, flatten };
     for placed in instancers {
         let materials = std::cell::RefCell::new(&mut materials);
         let mut palette = |flat: &mut FlatScene, id| {
@@ -213,7 +214,7 @@ fn flatten_surveyed(
             add_component(flat, &mut materials.borrow_mut(), operands, limits.rows)?;
             Ok((flat.components.len() > before).then_some(before))
         };
-        budget = add_instancer(&mut flat, (scene, survey), placed, time, budget, &mut palette, &mut add)?;
+        budget = add_instancer(&mut flat, of, placed, budget, &mut palette, &mut add)?;
     }
     if flat.components.len() > MAX_COMPONENTS {
         let node = &scene.nodes()[0];

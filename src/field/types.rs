@@ -5,14 +5,16 @@ use glam::DAffine3;
 use super::arrays::{FlatScene, InstanceType, Warning};
 use super::budget::Budget;
 use super::collect::type_of;
-use super::copies::build::{CopyType, flat_instancer, is_listed, polar_places};
+use super::copies::build::{CopyType, flat_instancer, is_listed};
+use super::copies::ground::{Ground, ground_scene};
 use super::copies::instancer::{MAX_PLACES, Place};
+use super::copies::list::{self, PlaceRefusal, curve_of};
 use super::error::FlattenError;
 use super::lower_bound::fold_bounds;
 use super::operand::Operand;
 use super::survey::Survey;
 use isolith_geometry::Aabb;
-use isolith_scene::{Instancer, Lattice, MAX_TYPES, Node, NodeKind, Operator, Scene};
+use isolith_scene::{Instancer, Lattice, MAX_TYPES, MaterialId, Node, NodeId, NodeKind, Operator, Scene, Snap};
 
 /// See [`MAX_PLACES`].
 const PLACES: &str = "the number of copies that stand on a surface, along a curve or in rings";
@@ -24,30 +26,43 @@ const TYPES: &str = "the number of types";
 pub(super) type AddComponent<'a, 'f> =
     dyn FnMut(&mut FlatScene, &[Operand<'a>]) -> Result<Option<usize>, FlattenError> + 'f;
 
+/// Flattens a scene at a time.
+pub(super) type FlattenScene = fn(&Scene, f64) -> Result<FlatScene, FlattenError>;
+
+/// The scene that is flattened, and how.
+#[derive(Clone, Copy)]
+pub(super) struct Flattening<'a, 's> {
+    pub scene: &'a Scene,
+    pub survey: &'s Survey,
+    /// In seconds.
+    pub time: f64,
+    /// Flattens another scene.
+    pub flatten: FlattenScene,
+}
+
 /// Adds the instancer of the node at `index` and its types.
 ///
 /// # Errors
 /// A limit is hit.
 pub(super) fn add_instancer<'a>(
     flat: &mut FlatScene,
-    (scene, survey): (&'a Scene, &Survey),
+    of: Flattening<'a, '_>,
     (index, world_from_local): (usize, DAffine3),
-    time: f64,
     mut budget: Budget,
-    palette: &mut dyn FnMut(&mut FlatScene, isolith_scene::MaterialId) -> u32,
+    palette: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
     add: &mut AddComponent<'a, '_>,
 ) -> Result<Budget, FlattenError> {
+    let Flattening { scene, survey, .. } = of;
     let node: &'a Node = &scene.nodes()[index];
-    let NodeKind::Instancer(instancer) = &node.kind else { unreachable!("it is an instancer") };
     warn_of_blends(flat, scene, node);
     let mut types = Vec::new();
     for child in survey.children(index) {
-        let of: &'a Node = &scene.nodes()[child];
-        if !of.visible || of.weight == 0.0 {
+        let child_node: &'a Node = &scene.nodes()[child];
+        if !child_node.visible || child_node.weight == 0.0 {
             continue;
         }
-        if !of.has_field() {
-            warn(flat, of, "cannot be a type of an instancer: only objects and groups can");
+        if !child_node.has_field() {
+            warn(flat, child_node, "cannot be a type of an instancer: only objects and groups can");
             continue;
         }
         let (operands, warnings, left) = type_of(scene, survey, child, budget);
@@ -59,10 +74,10 @@ pub(super) fn add_instancer<'a>(
             continue;
         }
         if !bounds.is_finite() {
-            warn(flat, of, "has no end, so that no copies of it can be made");
+            warn(flat, child_node, "has no end, so that no copies of it can be made");
             continue;
         }
-        types.push((of.weight, bounds, operands));
+        types.push((child_node.weight, bounds, operands));
     }
     if let Some(problem) = budget.problem.take() {
         return Err(problem);
@@ -79,8 +94,7 @@ pub(super) fn add_instancer<'a>(
         warn(flat, node, reason);
         return Ok(budget);
     }
-    let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
-    add_types(flat, node, instancer, (world_from_local, time), &types, palette, add)?;
+    add_types(flat, of, (node, world_from_local), &types, palette, add)?;
     Ok(budget)
 }
 
@@ -90,14 +104,15 @@ type TypeFold<'a> = (f64, Aabb, Vec<Operand<'a>>);
 /// Adds the instancer with a component for each type.
 fn add_types<'a>(
     flat: &mut FlatScene,
-    node: &Node,
-    instancer: &Instancer,
-    (world_from_local, time): (DAffine3, f64),
+    of: Flattening<'a, '_>,
+    (node, world_from_local): (&Node, DAffine3),
     types: &[TypeFold<'a>],
-    palette: Vec<u32>,
+    palette: &mut dyn FnMut(&mut FlatScene, MaterialId) -> u32,
     add: &mut AddComponent<'a, '_>,
 ) -> Result<(), FlattenError> {
-    let places = places(flat, node, instancer)?;
+    let NodeKind::Instancer(instancer) = &node.kind else { unreachable!("it is an instancer") };
+    let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
+    let places = places(flat, of, (node, instancer), world_from_local)?;
     let sizes: Vec<CopyType> = types
         .iter()
         .map(|(weight, bounds, _)| CopyType {
@@ -106,7 +121,10 @@ fn add_types<'a>(
             radius: bounds.half().length(),
         })
         .collect();
-    let made = flat_instancer(node, instancer, world_from_local, time, &sizes, places, palette);
+    let made = flat_instancer(node, instancer, world_from_local, of.time, &sizes, places, palette);
+    if made.bounds().is_empty() {
+        return Ok(());
+    }
     let (at, bounds) = (flat.instancers.len() as u32, made.world_bounds());
     flat.instancers.push(made);
     for (kind, (_, _, operands)) in types.iter().enumerate() {
@@ -118,18 +136,48 @@ fn add_types<'a>(
 }
 
 /// The places of an instancer whose copies stand in a list.
-fn places(flat: &mut FlatScene, node: &Node, instancer: &Instancer) -> Result<Vec<Place>, FlattenError> {
+fn places(
+    flat: &mut FlatScene,
+    Flattening { scene, time, flatten, .. }: Flattening<'_, '_>,
+    (node, instancer): (&Node, &Instancer),
+    world_from_local: DAffine3,
+) -> Result<Vec<Place>, FlattenError> {
     if !is_listed(instancer) {
         return Ok(Vec::new());
     }
-    match instancer.lattice {
-        Lattice::Polar { count, rings, radius, spacing } => polar_places(count, rings, radius, spacing, MAX_PLACES)
-            .map_err(|count| FlattenError::new(node, PLACES, count, MAX_PLACES)),
-        _ => {
-            warn(flat, node, "stands on no surface");
+    let of_itself = |id: &NodeId| {
+        scene
+            .index_of(node.id)
+            .is_some_and(|own| scene.index_of(*id).is_some_and(|at| scene.subtree(own).contains(&at)))
+    };
+    let target = match instancer.target {
+        Some(id) if scene.node(id).is_none() => {
+            warn(flat, node, "stands on a node that does not exist any more");
+            None
+        }
+        Some(id) if of_itself(&id) => {
+            warn(flat, node, "cannot stand on itself or on its own types");
+            None
+        }
+        target => target,
+    };
+    let curve = target.and_then(|_| curve_of(scene, instancer, &world_from_local));
+    let alone = target.filter(|_| needs_ground(instancer)).and_then(|id| ground_scene(scene, id));
+    let alone = alone.map(|alone| flatten(&alone, time)).transpose()?;
+    let ground = alone.as_ref().map(|alone| Ground::new(alone, world_from_local)).filter(|ground| !ground.is_empty());
+    match list::places(instancer, ground.as_ref(), curve.as_ref(), MAX_PLACES) {
+        Ok(places) => Ok(places),
+        Err(PlaceRefusal::Cannot(reason)) => {
+            warn(flat, node, &reason);
             Ok(Vec::new())
         }
+        Err(PlaceRefusal::TooMany(count)) => Err(FlattenError::new(node, PLACES, count, MAX_PLACES)),
     }
+}
+
+/// Whether its copies stand on a surface.
+fn needs_ground(instancer: &Instancer) -> bool {
+    instancer.snap != Snap::Off || matches!(instancer.lattice, Lattice::Scatter { .. })
 }
 
 /// Copies join others by hard union only.

@@ -2,13 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::{DAffine3, DQuat, DVec3};
+use glam::{DAffine3, DVec3};
 
 use super::dynamics::copy_envelope;
 use super::hash::copy_hash;
 use super::instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
 use super::variation::copy_of_place;
-use super::walk::copy_sphere;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::Aabb;
 use isolith_scene::{Instancer, Lattice, Mask, MaskSlot, Node};
@@ -120,27 +119,6 @@ impl FlatLattice {
     }
 }
 
-/// The places of rings around the Y axis; each faces outward along X.
-pub fn polar_places(count: u32, rings: u32, radius: f64, spacing: f64, most: usize) -> Result<Vec<Place>, usize> {
-    let mut places = Vec::new();
-    let mut total = 0;
-    for ring in 0..rings {
-        let far = radius + f64::from(ring) * spacing;
-        // The same distance along each ring.
-        let around = (f64::from(count) * far / radius).round().max(1.0);
-        total += around as usize;
-        if total > most {
-            return Err(total);
-        }
-        for at in 0..around as u32 {
-            let rotation = DQuat::from_rotation_y(-std::f64::consts::TAU * f64::from(at) / around);
-            let position = rotation * (DVec3::X * far);
-            places.push(Place { cell: [at as i32, 0, ring as i32], position, rotation });
-        }
-    }
-    Ok(places)
-}
-
 impl FlatMask {
     /// A mask, ready for evaluation.
     pub fn new(slot: &MaskSlot) -> Self {
@@ -157,10 +135,4 @@ impl FlatMask {
         };
         Self { kind: slot.mask.kind(), inverted: slot.inverted, key, params }
     }
-}
-
-/// The greatest distance of a point of a copy from its base, for tests of bounds.
-pub fn copy_extent(instancer: &FlatInstancer, copy: &super::variation::Copy, base: DVec3) -> f64 {
-    let (center, radius) = copy_sphere(instancer, copy);
-    center.distance(base) + radius
 }

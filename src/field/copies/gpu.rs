@@ -177,7 +177,7 @@ pub fn gpu_places(instancer: &FlatInstancer) -> Vec<[f32; 4]> {
     }
     for place in &list.places {
         let [x, y, z] = vector(place.position);
-        rows.push([x, y, z, 0.0]);
+        rows.push([x, y, z, place.up as f32]);
         rows.push(floats(place.rotation.to_array()));
         let [a, b, c] = place.cell.map(|i| f32::from_bits(i as u32));
         rows.push([a, b, c, 0.0]);

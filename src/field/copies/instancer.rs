@@ -88,6 +88,8 @@ pub struct Place {
     pub position: DVec3,
     /// How it is turned there.
     pub rotation: DQuat,
+    /// Cosine of the slope of the ground there: 1 on level ground, and where there is none.
+    pub up: f64,
 }
 
 /// A mask. The GPU reads the parameters as they are, see `shaders/copy/mask.wgsl`.
@@ -189,7 +191,10 @@ impl FlatInstancer {
     /// Bounds of all copies, in the world.
     pub fn world_bounds(&self) -> Aabb {
         let bounds = self.bounds();
-        if bounds.is_finite() || bounds.is_empty() {
+        if bounds.is_empty() {
+            return bounds;
+        }
+        if bounds.is_finite() {
             return bounds.transformed(&self.world_from_local);
         }
         // Axes without end: exact where the world's axes are those of the instancer, else without end everywhere.

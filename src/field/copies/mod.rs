@@ -7,14 +7,15 @@ pub(crate) mod build;
 mod dynamics;
 mod eval;
 mod gpu;
+pub(crate) mod ground;
 mod hash;
 pub(crate) mod instancer;
+pub(crate) mod list;
 mod noise;
 mod trace;
 mod variation;
 mod walk;
 
-pub use build::{copy_extent, polar_places};
 pub use dynamics::{Envelope, Motion, copy_basis, copy_envelope, copy_motion};
 pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gradient, world_surface};
 pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};

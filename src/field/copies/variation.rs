@@ -42,7 +42,7 @@ impl Copy {
 pub fn copy_of_cell(instancer: &FlatInstancer, cell: [i32; 3]) -> Option<Copy> {
     let Placement::Lattice(lattice) = &instancer.placement else { return None };
     let base = lattice.place(cell);
-    let kind = copy_kind(instancer, cell, base, DVec3::Y)?;
+    let kind = copy_kind(instancer, cell, base, 1.0)?;
     // The looseness is a share of the cell, along the axes that have several.
     let cell_size = DVec3::from_array([0, 1, 2].map(|i| if lattice.is_long(i) { lattice.spacing[i] } else { 0.0 }));
     copy_placed(instancer, cell, kind, (base, DQuat::IDENTITY), cell_size)
@@ -52,14 +52,14 @@ pub fn copy_of_cell(instancer: &FlatInstancer, cell: [i32; 3]) -> Option<Copy> {
 pub fn copy_of_place(instancer: &FlatInstancer, place: usize) -> Option<Copy> {
     let Placement::List(list) = &instancer.placement else { return None };
     let place = list.places[place];
-    let kind = copy_kind(instancer, place.cell, place.position, place.rotation * DVec3::Y)?;
+    let kind = copy_kind(instancer, place.cell, place.position, place.up)?;
     copy_placed(instancer, place.cell, kind, (place.position, place.rotation), DVec3::ZERO)
 }
 
-/// The type of a copy at a place with this normal of the ground; `None` if there is no copy.
-fn copy_kind(instancer: &FlatInstancer, cell: [i32; 3], base: DVec3, normal: DVec3) -> Option<u32> {
+/// The type of a copy at a place with this cosine of the slope of the ground; `None` if there is no copy.
+fn copy_kind(instancer: &FlatInstancer, cell: [i32; 3], base: DVec3, up: f64) -> Option<u32> {
     let [exists, kind, _] = copy_randoms(instancer.seed, cell, Channel::Choice as u32);
-    let share = instancer.masks.iter().fold(instancer.probability, |share, mask| share * copy_mask(mask, base, normal));
+    let share = instancer.masks.iter().fold(instancer.probability, |share, mask| share * copy_mask(mask, base, up));
     if exists >= share {
         return None;
     }
@@ -67,7 +67,7 @@ fn copy_kind(instancer: &FlatInstancer, cell: [i32; 3], base: DVec3, normal: DVe
 }
 
 /// The share of a mask at a place, from 0 to 1.
-pub fn copy_mask(mask: &FlatMask, at: DVec3, normal: DVec3) -> f64 {
+pub fn copy_mask(mask: &FlatMask, at: DVec3, up: f64) -> f64 {
     let [a, b, c, _] = mask.params;
     let share = match mask.kind {
         MaskKind::Noise => {
@@ -76,7 +76,7 @@ pub fn copy_mask(mask: &FlatMask, at: DVec3, normal: DVec3) -> f64 {
         }
         MaskKind::Height => ((at.y - a) / c).clamp(0.0, 1.0) * ((b - at.y) / c).clamp(0.0, 1.0),
         // Cosines fall with the angle.
-        MaskKind::Slope => ((normal.y - b) / (a - b)).clamp(0.0, 1.0),
+        MaskKind::Slope => ((up - b) / (a - b)).clamp(0.0, 1.0),
         MaskKind::Radius => ((b - at.x.hypot(at.z)) / (b - a)).clamp(0.0, 1.0),
     };
     if mask.inverted { 1.0 - share } else { share }
