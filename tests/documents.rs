@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3};
 use isolith::document::{Document, Edit, MAX_STEPS, RecentFiles};
 use isolith::scene::{
-    Group, Material, MaterialId, Node, NodeId, NodeKind, Object, ParamValue, Scene, SceneError, Shape, file,
+    Group, Instancer, Material, MaterialId, Node, NodeId, NodeKind, Object, ParamValue, Scene, SceneError, Shape, file,
 };
 
 use crate::random_scene::{Random, random_scene};
@@ -100,6 +100,10 @@ fn some_edit(random: &mut Random, scene: &Scene) -> Edit {
         0 | 1 => Edit::Remove(some_ids(random, scene)),
         2..=4 => Edit::Move { ids: some_ids(random, scene), parent, position },
         5 => Edit::Duplicate(some_ids(random, scene)),
+        6 if random.once_in(2) => {
+            let node = Node::new("Copies", NodeKind::Instancer(Box::default()));
+            Edit::Instance { ids: some_ids(random, scene), node }
+        }
         6 => Edit::Group { ids: some_ids(random, scene), group: random.group() },
         7 => {
             let id = MaterialId(random.below(8) as u64);
@@ -352,6 +356,30 @@ fn copies_have_new_ids_numbered_names_and_stand_behind() {
     document.apply(Edit::Duplicate(vec![g])).expect("copied");
     assert_eq!(names(&document, None), ["Pawn", "Pawn 3", "Pawn 2", "Last 7", "Last 8"]);
     document.scene().assert_invariants();
+}
+
+#[test]
+fn what_is_copied_together_names_the_copies() {
+    let mut document = Document::new(Scene::new());
+    let ground = add(&mut document, None, ball("Ground"));
+    let instancer = |target| Instancer { target: Some(target), ..Instancer::default() };
+    let trees = Node::new("Trees", NodeKind::Instancer(Box::new(instancer(ground))));
+    let trees = add(&mut document, None, trees);
+    let pair = add(&mut document, None, group("Pair"));
+    let first = add(&mut document, Some(pair), ball("First"));
+    add(&mut document, Some(pair), Node { apart: vec![first], ..ball("Second") });
+    let target = |document: &Document, id| match &document.scene().node(id).expect("is there").kind {
+        NodeKind::Instancer(instancer) => instancer.target,
+        _ => None,
+    };
+    let alone = document.apply(Edit::Duplicate(vec![trees])).expect("copied")[0];
+    assert_eq!(target(&document, alone), Some(ground), "the target was not copied");
+    let both = document.apply(Edit::Duplicate(vec![ground, trees])).expect("copied");
+    assert_eq!(target(&document, both[1]), Some(both[0]));
+    assert_eq!(target(&document, trees), Some(ground), "the original keeps its own");
+    let copy = document.apply(Edit::Duplicate(vec![pair])).expect("copied")[0];
+    let inside: Vec<_> = document.scene().children(Some(copy)).cloned().collect();
+    assert_eq!(inside[1].apart, [inside[0].id]);
 }
 
 #[test]

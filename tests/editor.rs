@@ -1,7 +1,10 @@
 //! Drives the editor as an artist would: by pointer and keyboard, without a GPU.
 
+mod adding;
 mod attachments;
 mod fields;
+mod handles;
+mod instancers;
 mod jobs;
 mod locks;
 mod materials;
@@ -12,6 +15,7 @@ mod picture;
 mod popups;
 mod saving;
 mod timeline;
+mod transforms;
 
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};

@@ -54,6 +54,7 @@ pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Resul
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
     editor.set_recent(crate::document::RecentFiles::load());
+    editor.set_preferences(crate::document::Preferences::load());
     match start_recovery() {
         Ok(recovery) => {
             recovery.rescuer().rescue_at_panics(tell);

@@ -49,6 +49,14 @@ pub enum Edit {
         /// The operator and blend of the new group.
         group: Group,
     },
+    /// Makes nodes the types of a new instancer, at the position of the first of them. They keep their place in the
+    /// world as with [`Edit::Move`].
+    Instance {
+        /// The nodes to put into the instancer; not empty.
+        ids: Vec<NodeId>,
+        /// The instancer; its id and parent are ignored.
+        node: Node,
+    },
     /// Replaces the material of the same id.
     ReplaceMaterial(Material),
     /// Adds a material with its own id, see [`Scene::next_material_id`].
@@ -118,6 +126,11 @@ impl Edit {
                 let id = structure::group(scene, &ids, node)?;
                 Ok(Change { changed: true, added: vec![id] })
             }
+            Self::Instance { ids, node } => {
+                check_node(&node)?;
+                let id = structure::group(scene, &ids, node)?;
+                Ok(Change { changed: true, added: vec![id] })
+            }
             Self::ReplaceMaterial(material) => replace_material(scene, material),
             Self::InsertMaterial(material) => {
                 check_material(&material)?;
@@ -166,6 +179,7 @@ impl Edit {
             Self::Move { ids, .. } => format!("Reorder {}", names(scene, ids)),
             Self::Duplicate(ids) => format!("Duplicate {}", names(scene, ids)),
             Self::Group { ids, .. } => format!("Group {}", names(scene, ids)),
+            Self::Instance { ids, .. } => format!("Instance {}", names(scene, ids)),
             Self::ReplaceMaterial(material) => format!("Change material {}", material.name),
             Self::InsertMaterial(material) => format!("Add material {}", material.name),
             Self::MoveMaterial { id, .. } => format!("Reorder material {}", material_name(scene, *id)),

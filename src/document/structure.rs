@@ -41,7 +41,7 @@ pub(super) fn move_to(
     Arc::make_mut(scene).set_nodes(nodes)
 }
 
-/// Puts nodes into `node`, a new group, at the position of the first of them. Returns the group's id.
+/// Puts nodes into `node`, a new group or instancer, at the position of the first of them. Returns its id.
 pub(super) fn group(scene: &mut Arc<Scene>, ids: &[NodeId], node: Node) -> Result<NodeId, SceneError> {
     let tops = tops(scene, ids)?;
     let first = tops.first().ok_or(SceneError::Nothing)?;
@@ -82,6 +82,11 @@ pub(super) fn duplicate(scene: &mut Arc<Scene>, ids: &[NodeId]) -> Result<Vec<No
         }
     }
     nodes.extend_from_slice(&scene.nodes()[done..]);
+    // What is copied together keeps together: a copy of an instancer stands on the copy of its target.
+    let first_copy = added.first().map_or(u64::MAX, |id| id.0);
+    for copy in nodes.iter_mut().filter(|node| node.id.0 >= first_copy) {
+        Arc::make_mut(copy).rename_references(|id| new_id.get(&id).copied());
+    }
     let scene = Arc::make_mut(scene);
     scene.set_nodes(nodes)?;
     scene.copy_tracks(&new_id)?;

@@ -19,6 +19,8 @@ pub struct EditSession {
     pub messages: Messages,
     /// The file request of a panel.
     pub wanted_file: Option<WantedFile>,
+    /// The gesture goes on without a pressed button.
+    pub is_held: bool,
     gesture: Option<Id>,
 }
 
@@ -41,6 +43,8 @@ pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
     let node = scene.node(id)?;
     let of = match (part, &node.kind) {
         (Part::Modifier(place), _) => node.modifiers.get(place)?.modifier.kind().label(),
+        (Part::Dynamic(place), _) => node.dynamics.get(place)?.dynamic.kind().label(),
+        (Part::Mask(place), NodeKind::Instancer(instancer)) => instancer.masks.get(place)?.mask.kind().label(),
         (Part::Shape, NodeKind::Object(object)) => object.shape.kind().label(),
         _ => return Some(format!("{} {id}: {}", node.name, path.name)),
     };
@@ -50,7 +54,7 @@ pub fn subject(scene: &Scene, path: &ParamPath) -> Option<String> {
 impl EditSession {
     /// A session without messages.
     pub fn new(document: Document) -> Self {
-        Self { document, messages: Messages::default(), wanted_file: None, gesture: None }
+        Self { document, messages: Messages::default(), wanted_file: None, is_held: false, gesture: None }
     }
 
     /// Applies one change as its own undo step; returns the added nodes. A refusal becomes a message.
@@ -116,7 +120,7 @@ impl EditSession {
     /// Ends the gesture once its widget is released. Call once a frame, after all panels.
     pub fn settle(&mut self, ctx: &Context) {
         let Some(widget) = self.gesture else { return };
-        let held = ctx.input(|i| i.pointer.any_down()) || ctx.memory(|m| m.has_focus(widget));
+        let held = self.is_held || ctx.input(|i| i.pointer.any_down()) || ctx.memory(|m| m.has_focus(widget));
         if !held {
             self.finish();
         }

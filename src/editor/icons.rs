@@ -3,13 +3,15 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, pos2, vec2};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
-    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_PLUMBING, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM,
-    ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_ANIMATION, ICON_ARROW_SELECTOR_TOOL, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FORMAT_PAINT, ICON_GRID_ON,
+    ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_LIGHTBULB, ICON_OPEN_IN_FULL, ICON_OPEN_WITH,
+    ICON_PLUMBING, ICON_ROTATE_RIGHT, ICON_STYLUS, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VIDEOCAM,
+    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
 pub use super::shape_icons::paint_shape;
 use super::theme;
+use super::transforms::kinds::{Tool, TransformKind};
 use isolith_scene::{LightKind, Node, NodeKind, Operator};
 
 /// Paints the icon of a node: a shape's silhouette or a glyph, in the color of its kind.
@@ -50,6 +52,16 @@ pub fn operator_icon(operator: Operator) -> MaterialIcon {
         Operator::Engrave => ICON_STYLUS,
         Operator::Morph => ICON_ANIMATION,
         Operator::Paint => ICON_FORMAT_PAINT,
+    }
+}
+
+/// Icon of a tool.
+pub fn tool_icon(tool: Tool) -> MaterialIcon {
+    match tool {
+        Tool::Select => ICON_ARROW_SELECTOR_TOOL,
+        Tool::Transform(TransformKind::Move) => ICON_OPEN_WITH,
+        Tool::Transform(TransformKind::Rotate) => ICON_ROTATE_RIGHT,
+        Tool::Transform(TransformKind::Scale) => ICON_OPEN_IN_FULL,
     }
 }
 

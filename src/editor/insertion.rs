@@ -1,39 +1,44 @@
-//! Adds new nodes: into the selected group or after the selected node, at the view's target.
+//! Adds new nodes: into the selected group or after the selected node, on what is under the pointer.
 
 use std::collections::HashSet;
 
 use glam::DVec3;
 
 use super::material_edits::{self, NEW, next_color, users};
-use super::selection;
 use super::state::EditorState;
+use super::{instancing, placement, selection};
 use isolith_document::Edit;
 use isolith_scene::{Material, MaterialId, Node, NodeId, NodeKind, Object, Scene, ShapeKind};
 
 /// Adds an object of the given kind and selects it.
 pub fn shape(state: &mut EditorState, kind: ShapeKind) {
+    let at = state.view.add_at.take();
+    let placing = placement::placing(state, at);
+    let shape = placement::sized(state, kind.default_shape(), placing.point);
+    let position = placement::position(state, &shape.bounds(), &placing);
     state.session.document.begin_gesture();
     let material = material(state);
-    let object = Object { shape: kind.default_shape(), material };
-    node(state, Node::new(kind.label(), NodeKind::Object(object)));
+    let object = Object { shape, material };
+    node_in_world(state, Node::new(kind.label(), NodeKind::Object(object)).at(position));
     state.session.document.end_gesture();
 }
 
-/// Adds a node at the view's target and selects it.
+/// Adds a node where the pointer is, or at the view's target, and selects it.
 pub fn node(state: &mut EditorState, node: Node) -> Option<NodeId> {
     node_above(state, node, 0.0)
 }
 
-/// Adds a node the given number of meters above the view's target and selects it.
+/// Adds a node the given number of meters above that place and selects it.
 pub fn node_above(state: &mut EditorState, node: Node, up: f64) -> Option<NodeId> {
-    let target = if state.session.document.scene().nodes().is_empty() { DVec3::ZERO } else { tidy_target(state) };
-    node_in_world(state, node.at(target + DVec3::Y * up))
+    let at = state.view.add_at.take();
+    let point = placement::placing(state, at).point;
+    node_in_world(state, node.at(point + DVec3::Y * up))
 }
 
 /// Adds a node with a transform in world space, and selects it.
 pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> {
     let scene = state.session.document.scene();
-    let (parent, position) = place(scene, state.session.document.selection());
+    let (parent, position) = place(scene, state.session.document.selection(), &node);
     if let Some(parent) = parent {
         let local = scene.world_from_local(parent).inverse().transform_point3(node.transform.translation);
         node.transform.translation = if local.is_finite() { local } else { DVec3::ZERO };
@@ -44,25 +49,20 @@ pub fn node_in_world(state: &mut EditorState, mut node: Node) -> Option<NodeId> 
     Some(added)
 }
 
-/// The end of the active group, or the place after the active node, or the end of the scene.
-fn place(scene: &Scene, selection: &[NodeId]) -> (Option<NodeId>, usize) {
+/// The end of the active group, or the place after the active node, or the end of the scene. An instancer takes only
+/// what has a field.
+fn place(scene: &Scene, selection: &[NodeId], new: &Node) -> (Option<NodeId>, usize) {
     match selection.last().and_then(|id| scene.node(*id)) {
         None => (None, scene.children(None).count()),
-        Some(n) if n.has_children() => (Some(n.id), scene.children(Some(n.id)).count()),
+        Some(n) if n.has_children() && (new.has_field() || instancing::instancer(n).is_none()) => {
+            (Some(n.id), scene.children(Some(n.id)).count())
+        }
         Some(n) => (n.parent, selection::place(scene, n.id) + 1),
     }
 }
 
-/// The view's target, rounded to about a hundredth of the view's width.
-fn tidy_target(state: &EditorState) -> DVec3 {
-    let step = 10.0_f64.powf((state.view.navigation.distance * 0.02).log10().floor());
-    // Dividing by the step's reciprocal gives 0.3, where multiplying by 0.1 gives 0.30000000000000004.
-    let per_meter = (1.0 / step).round().max(1.0);
-    (state.view.navigation.target * per_meter).round() / per_meter
-}
-
 /// The name itself, or the name with the first free number.
-fn free_name(scene: &Scene, base: &str) -> String {
+pub fn free_name(scene: &Scene, base: &str) -> String {
     let taken: HashSet<&str> = scene.nodes().iter().map(|n| n.name.as_str()).collect();
     let mut names = std::iter::once(base.to_owned()).chain((2..).map(|n| format!("{base} {n}")));
     names.find(|name| !taken.contains(name.as_str())).unwrap_or_default()

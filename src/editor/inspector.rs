@@ -11,8 +11,8 @@ use super::multi_edit::MultiEdit;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
 use super::{
-    icons, inspector_blends, inspector_kinds, inspector_material, inspector_modifiers, inspector_scene,
-    inspector_transform, selection, theme, widgets,
+    icons, inspector_blends, inspector_instancer, inspector_kinds, inspector_lists, inspector_material,
+    inspector_scene, inspector_transform, inspector_types, selection, theme, widgets,
 };
 use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
@@ -96,6 +96,10 @@ impl Inspector {
             inspector_blends::role(ui, &mut edit);
         }
         self.transform(ui, session, &all);
+        if let Some(mut edit) = MultiEdit::new(session, all.clone()) {
+            inspector_types::of_children(ui, &mut edit);
+        }
+        let moving = all.iter().all(|n| n.can_move()).then(|| all.clone());
         let with_fields = all.iter().all(|n| n.has_field()).then(|| all.clone());
         let alike: Vec<_> = all.into_iter().filter(|n| same_kind(&n.kind, &active.kind)).collect();
         let Some(mut edit) = MultiEdit::new(session, alike) else { return };
@@ -109,12 +113,15 @@ impl Inspector {
                 inspector_kinds::mesh(ui, &mut edit, mesh);
                 inspector_material::show(ui, &mut edit, library);
             }
-            NodeKind::Instancer(_) => {}
+            NodeKind::Instancer(_) => inspector_instancer::show(ui, &mut edit, library),
             NodeKind::Light(_) => inspector_kinds::light(ui, &mut edit),
             NodeKind::Camera(_) => inspector_kinds::camera(ui, &mut edit),
         }
+        if let Some(mut edit) = moving.and_then(|nodes| MultiEdit::new(session, nodes)) {
+            inspector_lists::dynamics(ui, &mut edit);
+        }
         if let Some(mut edit) = with_fields.and_then(|nodes| MultiEdit::new(session, nodes)) {
-            inspector_modifiers::show(ui, &mut edit);
+            inspector_lists::modifiers(ui, &mut edit);
         }
     }
 }

@@ -2,11 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use super::inspector_params::{self, ParamChange};
 use super::multi_edit::MultiEdit;
 use super::widgets::{self, MIXED};
-use super::{shape_change, theme};
-use isolith_scene::{CameraNode, MeshNode, Node, NodeKind, Object, ParamPath, ParamValue, Params, Part, ShapeKind};
+use super::{inspector_params, shape_change, theme};
+use isolith_scene::{CameraNode, MeshNode, Node, NodeKind, Object, Params, Part, ShapeKind};
 
 fn object(n: &Node) -> Option<&Object> {
     if let NodeKind::Object(o) = &n.kind { Some(o) } else { None }
@@ -89,8 +88,12 @@ pub fn light(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
         for name in names {
             match &*name {
                 "light.type" => {}
-                "light.inner" => angle(ui, edit, name, "light.outer", f64::max),
-                "light.outer" => angle(ui, edit, name, "light.inner", f64::min),
+                "light.inner" => {
+                    inspector_params::end_row(ui, edit, Part::Light, ["light.inner", "light.outer"], f64::max);
+                }
+                "light.outer" => {
+                    inspector_params::end_row(ui, edit, Part::Light, ["light.outer", "light.inner"], f64::min);
+                }
                 _ => inspector_params::row(ui, edit, Part::Light, name),
             }
         }
@@ -108,24 +111,6 @@ pub fn light(ui: &mut Ui, edit: &mut MultiEdit<'_>) {
 /// Whether a parameter of a light is rarely needed.
 fn is_falloff(name: &str) -> bool {
     ["constant", "linear", "quadratic"].iter().any(|last| name.ends_with(last))
-}
-
-/// One of the angles of a spot light; adjusts the other so that the inner angle is never the larger.
-fn angle(ui: &mut Ui, edit: &mut MultiEdit<'_>, name: String, other: &'static str, give_way: fn(f64, f64) -> f64) {
-    let paths = edit.paths(Part::Light, name);
-    let Some((widget, ParamChange::Whole(ParamValue::Scalar(new)))) =
-        inspector_params::edit(ui, edit.session(), &paths, |_| {})
-    else {
-        return;
-    };
-    let Some(path) = paths.into_iter().next() else { return };
-    let other = ParamPath { name: other.into(), ..path.clone() };
-    edit.change(widget, |node| {
-        if let Some(ParamValue::Scalar(now)) = other.get_in(node) {
-            path.set_in(node, ParamValue::Scalar(new));
-            other.set_in(node, ParamValue::Scalar(give_way(now, new)));
-        }
-    });
 }
 
 /// Angle of view and clipping.

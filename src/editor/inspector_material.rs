@@ -138,7 +138,7 @@ fn picker(ui: &mut Ui, edit: &mut MultiEdit<'_>, library: &mut MaterialLibrary, 
 const MOST_LETTERS: usize = 32;
 
 /// A list entry with a ball.
-fn entry(ui: &mut Ui, library: &mut MaterialLibrary, material: &Material, selected: bool) -> egui::Response {
+pub fn entry(ui: &mut Ui, library: &mut MaterialLibrary, material: &Material, selected: bool) -> egui::Response {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SMALL_BALL, SMALL_BALL), Sense::hover());
         if ui.is_rect_visible(rect) {

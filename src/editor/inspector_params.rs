@@ -42,6 +42,32 @@ pub fn row_with(
     }
 }
 
+/// Like [`row`], for one end of a range: the other end gives way, so that the least is never above the greatest.
+pub fn end_row(
+    ui: &mut Ui,
+    nodes: &mut MultiEdit<'_>,
+    part: Part,
+    [name, other]: [&'static str; 2],
+    give_way: fn(f64, f64) -> f64,
+) {
+    let paths = nodes.paths(part, name);
+    let Some((widget, change)) = edit(ui, nodes.session(), &paths, |_| {}) else { return };
+    let (element, new) = match change {
+        ParamChange::Whole(ParamValue::Scalar(new)) => (None, new),
+        ParamChange::Element(index, ParamValue::Scalar(new)) => (Some(index), new),
+        _ => return,
+    };
+    let Some(path) = paths.into_iter().next() else { return };
+    let path = ParamPath { element, ..path };
+    let other = ParamPath { name: other.into(), ..path.clone() };
+    nodes.change(widget, |node| {
+        if let Some(ParamValue::Scalar(now)) = other.get_in(node) {
+            path.set_in(node, ParamValue::Scalar(new));
+            other.set_in(node, ParamValue::Scalar(give_way(now, new)));
+        }
+    });
+}
+
 /// A row for a parameter of a material or the environment.
 pub fn single(ui: &mut Ui, session: &mut EditSession, path: ParamPath) {
     let paths = [path];

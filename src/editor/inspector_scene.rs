@@ -38,10 +38,11 @@ pub fn show(ui: &mut Ui, session: &mut EditSession) {
     });
 }
 
-const HINTS: [(&str, &str); 6] = [
-    ("Add", "shapes with the buttons above the viewport"),
+const HINTS: [(&str, &str); 7] = [
+    ("Shift A", "adds shapes, lights and more where the pointer is"),
+    ("Drag", "the dots on a shape to change it, the arrows to move it"),
     ("Click", "something in the viewport or the outliner to select it"),
-    ("Drag", "a number sideways to change it, click it to type"),
+    ("Drag", "also a number sideways to change it, click it to type"),
     ("Select several", "with Shift, then join them with Ctrl G"),
     ("Subtract", "cuts an object out of what stands before it"),
     ("F3", "finds every command by its name"),

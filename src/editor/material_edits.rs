@@ -31,7 +31,7 @@ pub fn set_material(node: &mut Node, id: Option<MaterialId>) {
 
 /// The nodes that use a material.
 pub fn users(scene: &Scene, id: MaterialId) -> Vec<NodeId> {
-    scene.nodes().iter().filter(|node| material_of(node) == Some(id)).map(|node| node.id).collect()
+    scene.nodes().iter().filter(|node| node.materials().any(|used| used == id)).map(|node| node.id).collect()
 }
 
 /// "Used by 4", or that nothing uses it.
@@ -83,12 +83,10 @@ pub fn shared_by_others(scene: &Scene, nodes: &[NodeId]) -> Vec<MaterialId> {
     let nodes: HashSet<_> = nodes.iter().copied().collect();
     let (mut own, mut of_others) = (Vec::new(), HashSet::new());
     for node in scene.nodes() {
-        match material_of(node) {
-            Some(id) if nodes.contains(&node.id) && !own.contains(&id) => own.push(id),
-            Some(id) if !nodes.contains(&node.id) => {
-                of_others.insert(id);
-            }
-            _ => {}
+        if !nodes.contains(&node.id) {
+            of_others.extend(node.materials());
+        } else if let Some(id) = material_of(node).filter(|id| !own.contains(id)) {
+            own.push(id);
         }
     }
     own.retain(|id| of_others.contains(id));

@@ -67,8 +67,9 @@ impl MaterialLibrary {
         if self.counted != Some(document.revision()) {
             self.counted = Some(document.revision());
             self.uses.clear();
-            for id in scene.nodes().iter().filter_map(|node| material_of(node)) {
-                *self.uses.entry(id).or_default() += 1;
+            for node in scene.nodes() {
+                let used: HashSet<MaterialId> = node.materials().collect();
+                used.into_iter().for_each(|id| *self.uses.entry(id).or_default() += 1);
             }
             self.current = self.current.filter(|id| scene.material(*id).is_some());
         }

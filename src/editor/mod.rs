@@ -13,10 +13,17 @@
 //! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
 //! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
-//! | `inspector_params` | a row for any parameter, generated from its table |
-//! | `navigation`, `projection`, `gizmo`, `overlay` | the camera, the handles and the marks over the picture |
+//! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
+//! | `instancing`, `instancer_edits`, `seeds` | instancers: shares, counts and problems; commands |
+//! | `navigation`, `projection`, `gizmo`, `*overlay` | the camera, the handles and the marks over the picture |
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
+//! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
+//! | `keymap` | which keys run the commands |
+//! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
@@ -26,6 +33,7 @@
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
+mod add_palette;
 mod bounds;
 mod choosing;
 mod color_picker;
@@ -43,20 +51,28 @@ mod file_jobs;
 mod file_watch;
 mod framing;
 mod gizmo;
+mod handles;
 mod icons;
 mod input_order;
 mod insertion;
 mod inspector;
 mod inspector_blends;
+mod inspector_instancer;
 mod inspector_kinds;
+mod inspector_lists;
 mod inspector_material;
-mod inspector_modifiers;
+mod inspector_palette;
 mod inspector_params;
 mod inspector_points;
 mod inspector_scene;
 mod inspector_transform;
+mod inspector_types;
+mod instancer_edits;
+mod instancing;
 mod intent;
 mod keying;
+mod keymap;
+mod lattice_overlay;
 mod legend;
 mod material_edits;
 mod material_library;
@@ -64,12 +80,14 @@ mod materials;
 mod messages;
 mod multi_edit;
 mod navigation;
+mod node_picker;
 mod numbers;
 mod outliner;
 mod overlay;
 mod panel;
 mod panels;
 mod picking;
+mod placement;
 mod playback;
 mod portal;
 mod preset_picker;
@@ -77,20 +95,27 @@ mod projection;
 mod recovery;
 mod root;
 mod safekeeping;
+mod seeds;
 mod selection;
 mod shading_bar;
 mod shape_change;
 mod shape_icons;
 mod shell;
+mod slot_list;
 mod state;
 mod status;
+mod steps;
 mod theme;
 mod thumbnails;
 mod time_scale;
 mod timeline;
 mod toolbar;
+mod transforms;
 mod view_state;
 mod viewport;
+mod viewport_click;
+mod viewport_drag;
+mod viewport_modal;
 mod widgets;
 
 pub use commands::command::Command;

@@ -1,7 +1,7 @@
 //! The outliner: the tree of the scene, to select, rename, reorder, hide and lock nodes.
 
 use std::cell::{Cell, RefCell};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use egui::{Color32, Key, Rect, RichText, ScrollArea, TextEdit, Ui, vec2};
 use egui_ltreeview::{
@@ -16,7 +16,7 @@ use super::edit_session::EditSession;
 use super::messages::Message;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, Request};
-use super::{icons, selection, theme, widgets};
+use super::{icons, instancing, selection, theme, widgets};
 use isolith_document::Edit;
 use isolith_scene::limits::MAX_NAME;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
@@ -124,6 +124,7 @@ impl Outliner {
             let top = ui.cursor().min;
             let rows = Rows {
                 scene: &scene,
+                shares: instancing::all_shares(&scene),
                 shown: shown.as_ref(),
                 reveal,
                 requests: &requests,
@@ -271,7 +272,8 @@ fn empty(ui: &mut Ui) {
     ui.vertical_centered(|ui| {
         ui.label(RichText::new("Nothing here yet").color(theme::TEXT));
         ui.label(
-            RichText::new("Add a shape with the buttons above,\nor open a scene: File, Examples.").color(theme::WEAK),
+            RichText::new("Add a shape with the buttons above\nor with Shift A, or open a scene:\nFile, Examples.")
+                .color(theme::WEAK),
         );
     });
 }
@@ -291,7 +293,9 @@ fn destination(scene: &Scene, drag: &DragAndDrop<RowId>) -> Option<(Vec<NodeId>,
     let parent = drag.target;
     let ids: Vec<NodeId> = drag.source.iter().copied().flatten().collect();
     let into_itself = |p| ids.iter().any(|id| scene.is_within(p, *id));
-    if ids.is_empty() || parent.is_some_and(into_itself) {
+    let is_type = |id: &NodeId| scene.node(*id).is_some_and(|node| instancing::can_be_type(node));
+    let takes_types = parent.and_then(|p| scene.node(p)).is_some_and(|node| instancing::instancer(node).is_some());
+    if ids.is_empty() || parent.is_some_and(into_itself) || (takes_types && !ids.iter().all(is_type)) {
         return None;
     }
     // Positions do not count the moved nodes.
@@ -322,6 +326,8 @@ fn context_menu(ui: &mut Ui, rows: &[RowId], selection: &[NodeId], requests: &Re
 /// The input of all rows.
 struct Rows<'a> {
     scene: &'a Scene,
+    /// The shares of the types of instancers.
+    shares: HashMap<NodeId, f64>,
     shown: Option<&'a HashSet<NodeId>>,
     /// The node to scroll to.
     reveal: Option<NodeId>,
@@ -410,14 +416,19 @@ impl Rows<'_> {
         };
         let text = if node.name.is_empty() { RichText::new("(no name)").italics() } else { RichText::new(&node.name) };
         ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-            // The sign follows the name and stays visible when the name is truncated.
-            let room = if node.negative { 16.0 } else { 0.0 };
+            // What follows the name stays visible when the name is truncated.
+            let share = self.shares.get(&node.id);
+            let room = if node.negative { 16.0 } else { 0.0 } + if share.is_some() { 44.0 } else { 0.0 };
             ui.scope(|ui| {
                 ui.set_max_width((ui.available_width() - room).max(8.0));
                 ui.add(egui::Label::new(text.color(color)).selectable(false).truncate());
             });
             if node.negative {
                 ui.label(RichText::new("−").color(theme::NEGATIVE).strong());
+            }
+            if let Some(share) = share {
+                let text = RichText::new(instancing::percent(*share)).small().color(theme::GROUP);
+                ui.label(text).on_hover_text("A type of the instancer, with its share of the copies");
             }
         });
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::navigation::Side;
 use super::projection::Projection;
 use super::state::EditorState;
-use super::{bounds, icons, shading_bar, theme};
+use super::{bounds, icons, lattice_overlay, shading_bar, theme};
 use isolith_scene::{Node, NodeId, NodeKind};
 
 /// Maximum number of selection boxes.
@@ -27,7 +27,7 @@ pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Proj
     let active = selection.last().copied();
     for id in selection.into_iter().rev().take(MOST_BOXES) {
         let scene = state.session.document.scene();
-        if !scene.node(id).is_some_and(|n| needs_box(n)) {
+        if !scene.node(id).is_some_and(|n| needs_box(n)) || lattice_overlay::has_lines(state, id) {
             continue;
         }
         let Some((world_from_local, bounds)) = bounds::oriented(scene, state.derived.library(), id) else { continue };
@@ -154,6 +154,6 @@ impl Compass {
 pub fn empty_hint(painter: &Painter, rect: Rect) {
     let at = rect.center() + vec2(0.0, -10.0);
     painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::TEXT);
-    let text = "Add a shape with the buttons above, or open File, Examples";
+    let text = "Shift A adds a shape where the pointer is; File, Examples opens a scene";
     painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::WEAK);
 }

@@ -1,14 +1,54 @@
-//! Picks the node under the pointer.
+//! Picks what is under the pointer: the node in front, a point of the surface.
+
+use glam::DVec3;
 
 use super::state::EditorState;
-use isolith_field::pick;
+use isolith_field::mesh_rays::trace_meshes;
+use isolith_field::scene_eval::{RayLimits, SceneEvaluator};
+use isolith_field::{FlatScene, pick};
 use isolith_geometry::Ray;
 use isolith_scene::NodeId;
 
+/// A point of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PickedPoint {
+    /// In the world.
+    pub point: DVec3,
+    /// A unit vector.
+    pub normal: DVec3,
+}
+
 /// The node at the first hit of the ray: it traces the exact surface, not its bounds.
 pub fn pick_node(state: &EditorState, ray: &Ray) -> Option<NodeId> {
-    let flat = state.flat();
+    pick_in(state, state.flat(), ray)
+}
+
+fn pick_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Option<NodeId> {
     let meshes = flat.known_meshes(state.derived.library());
     let camera = state.view.navigation.camera();
     pick::pick(flat, &meshes, ray, camera.near, camera.far)
+}
+
+/// The point of the surface that the ray meets first.
+pub fn pick_surface(state: &EditorState, ray: &Ray) -> Option<PickedPoint> {
+    let camera = state.view.navigation.camera();
+    surface(state, state.flat(), ray, RayLimits { near: camera.near, far: camera.far })
+}
+
+fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) -> Option<PickedPoint> {
+    let meshes = flat.known_meshes(state.derived.library());
+    let mesh = trace_meshes(flat, &meshes, ray, limits.near, limits.far).map(|(_, hit)| hit);
+    let limits = RayLimits { far: mesh.as_ref().map_or(limits.far, |hit| hit.t), ..limits };
+    let mut evaluator = SceneEvaluator::new(flat);
+    let Some(hit) = evaluator.ray(ray, limits).ok().flatten() else {
+        let hit = mesh?;
+        let normal = if hit.normal.dot(ray.direction) > 0.0 { -hit.normal } else { hit.normal };
+        return Some(PickedPoint { point: ray.at(hit.t), normal });
+    };
+    let point = ray.at(hit.t);
+    // Central differences: wide enough for the digits of the field, narrow against what can be seen.
+    let step = 1e-5 * (hit.t + point.length());
+    let mut value = |axis: usize, by: f64| evaluator.distance(point + DVec3::AXES[axis] * by, 10.0 * step).value;
+    let slope = DVec3::from([0, 1, 2].map(|axis| value(axis, step) - value(axis, -step)));
+    Some(PickedPoint { point, normal: slope.try_normalize().unwrap_or(-ray.direction) })
 }

@@ -22,6 +22,11 @@ impl Projection {
         Self { camera, rect: view.rect, pixels_per_point, size_px: DVec2::new(width, height) }
     }
 
+    /// The projection of the viewport as it was last shown.
+    pub fn of(view: &ViewState) -> Self {
+        Self::new(view, view.size_px[0] as f32 / view.rect.width().max(1.0))
+    }
+
     /// The position of a world point on the screen, in points; `None` behind the eye or far outside.
     pub fn to_screen(&self, p: DVec3) -> Option<Pos2> {
         let (pixel, _) = self.camera.project(p, self.size_px)?;

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
 
+use super::add_palette::AddPalette;
 use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
@@ -19,7 +20,7 @@ use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
 use super::view_state::{Picture, ViewSettings};
 use super::{input_order, numbers, panels, theme, widgets};
-use isolith_document::{Document, RecentFiles};
+use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
 use isolith_mesh::MeshLibrary;
@@ -36,6 +37,7 @@ pub struct Editor {
     pub(super) state: EditorState,
     shell: Shell,
     pub(super) command_palette: CommandPalette,
+    pub(super) add_palette: AddPalette,
     pub(super) dialogs: Dialogs,
     /// The document being opened.
     pub(super) opening: Option<Opening>,
@@ -60,6 +62,7 @@ impl Editor {
             state: EditorState::default(),
             shell: Shell::new(panels::all()),
             command_palette: CommandPalette::default(),
+            add_palette: AddPalette::default(),
             dialogs: Dialogs::default(),
             opening: None,
             saving: None,
@@ -88,6 +91,11 @@ impl Editor {
         self.state.files.set_recent(recent);
     }
 
+    /// Sets the preferences, which persist between runs.
+    pub fn set_preferences(&mut self, preferences: Preferences) {
+        self.state.preferences = preferences;
+    }
+
     /// Sets the examples of the File menu.
     pub fn set_examples(&mut self, examples: Vec<Example>) {
         self.state.examples = examples;
@@ -103,6 +111,7 @@ impl Editor {
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
+        self.state.keymap().install(&ctx);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
         self.poll_documents(&ctx);
@@ -153,6 +162,10 @@ impl Editor {
         self.show_recovery(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
+        }
+        if let Some(command) = self.add_palette.show(&mut self.state, ctx) {
+            self.run(command, ctx);
+            self.state.view.add_at = None;
         }
         let corner = self.state.view.rect;
         let messages = &mut self.state.session.messages;
@@ -249,7 +262,11 @@ impl Editor {
 
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
-        self.dialogs.is_open() || self.command_palette.is_open() || self.conflict.is_open() || self.is_offering()
+        self.dialogs.is_open()
+            || self.command_palette.is_open()
+            || self.add_palette.is_open()
+            || self.conflict.is_open()
+            || self.is_offering()
     }
 
     /// Replaces the current document.
@@ -270,6 +287,7 @@ impl Editor {
     fn leave_document(&mut self) {
         self.state.session.finish();
         self.state.playback = Playback::default();
+        self.state.view.transforming = None;
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.materials.forget();

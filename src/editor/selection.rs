@@ -3,7 +3,6 @@
 use std::collections::HashSet;
 
 use super::edit_session::EditSession;
-use super::material_edits::material_of;
 use super::messages::Message;
 use isolith_document::Edit;
 use isolith_scene::{Group, MaterialId, Node, NodeId, NodeKind, Operator, Scene};
@@ -203,7 +202,7 @@ pub fn select_all(session: &mut EditSession) {
 
 /// Unused materials; keeps the first for new objects if all are unused.
 pub fn unused_materials(scene: &Scene) -> Vec<MaterialId> {
-    let used: HashSet<MaterialId> = scene.nodes().iter().filter_map(|node| material_of(node)).collect();
+    let used: HashSet<MaterialId> = scene.nodes().iter().flat_map(|node| node.materials()).collect();
     let keep_first = usize::from(used.is_empty());
     scene.materials().iter().map(|m| m.id).filter(|id| !used.contains(id)).skip(keep_first).collect()
 }

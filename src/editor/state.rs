@@ -7,11 +7,12 @@ use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
 use super::intent::Intent;
+use super::keymap::Keymap;
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
 use super::playback::Playback;
 use super::view_state::{Picture, ViewSettings, ViewState};
-use isolith_document::Document;
+use isolith_document::{Document, Preferences};
 use isolith_field::FlatScene;
 use isolith_scene::{NodeId, Scene};
 use isolith_session::{Notice, NoticeLevel, ReadDocument, SceneSession};
@@ -70,6 +71,8 @@ pub struct EditorState {
     pub can_recover: bool,
     /// The node to rename in place.
     pub renaming: Option<NodeId>,
+    /// What the user prefers.
+    pub preferences: Preferences,
     /// The panels that can be hidden.
     pub panels: Vec<PanelEntry>,
     /// Pending requests of panels, oldest first.
@@ -89,6 +92,7 @@ impl Default for EditorState {
             examples: Vec::new(),
             can_recover: false,
             renaming: None,
+            preferences: Preferences::default(),
             panels: Vec::new(),
             requests: Vec::new(),
         }
@@ -111,6 +115,16 @@ impl EditorState {
             view_mode: *view_mode,
             samples: *samples,
         }
+    }
+
+    /// The keymap in use.
+    pub fn keymap(&self) -> Keymap {
+        Keymap::named(&self.preferences.values().keymap)
+    }
+
+    /// Switches to a keymap, and keeps it for the next start.
+    pub fn use_keymap(&mut self, keymap: Keymap) {
+        self.preferences.change(|values| values.keymap = keymap.label().to_owned());
     }
 
     /// The flat scene; the last valid one if the document exceeds a limit.

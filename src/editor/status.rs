@@ -4,11 +4,10 @@ use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
 
 use super::commands::entries::hovered_help;
 use super::messages::Severity;
-use super::numbers::number_text;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
-use super::theme;
 use super::view_state::{Picture, PointerActivity};
+use super::{instancing, theme};
 use isolith_jobs::Task;
 use isolith_scene::NodeId;
 
@@ -75,6 +74,11 @@ fn counts(state: &EditorState, ui: &mut Ui) {
     let chosen = if selected > 1 { format!("{selected} of ") } else { String::new() };
     let text = format!("{chosen}{nodes} {}", if nodes == 1 { "node" } else { "nodes" });
     ui.label(RichText::new(text).color(theme::WEAK));
+    let active = state.session.selected().pop();
+    if let Some(text) = active.as_deref().and_then(instancing::instancer).and_then(instancing::count_text) {
+        ui.label(RichText::new("·").color(theme::RESTING));
+        ui.label(RichText::new(text).color(theme::WEAK));
+    }
 }
 
 /// The running job, a problem of the scene, or a hint on the mouse.
@@ -112,10 +116,17 @@ fn hint_of(state: &EditorState) -> String {
         PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
         PointerActivity::Panning => "Panning".into(),
         PointerActivity::Zooming => "Zooming · up is nearer".into(),
-        PointerActivity::Moving(offset) => {
-            let [x, y, z] = offset.to_array().map(|v| number_text((v * 1e3).round() / 1e3));
-            format!("Moving by {x}, {y}, {z} m · Ctrl: snap · Shift: precise · Esc: cancel")
+        PointerActivity::Moving => "Ctrl: snap · Shift: precise · Esc: cancel".into(),
+        PointerActivity::Transforming => {
+            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · Shift: precise · \
+             Click or Enter: done · Esc: cancel"
+                .into()
         }
+        PointerActivity::OverHandle(true) => {
+            "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
+        }
+        PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
         PointerActivity::Hovering => {
             "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame".into()
@@ -153,7 +164,9 @@ fn warning(state: &EditorState) -> Option<(NodeId, String)> {
         return Some(problem.clone());
     }
     let warnings = &state.flat().warnings;
-    let first = warnings.first()?;
+    let Some(first) = warnings.first() else {
+        return instancing::first_problem(state.session.document.scene());
+    };
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
     Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
 }

@@ -39,6 +39,8 @@ pub const SUCCESS: Color32 = Color32::from_rgb(126, 200, 136);
 pub const GROUP: Color32 = Color32::from_rgb(226, 184, 110);
 /// Objects.
 pub const OBJECT: Color32 = Color32::from_rgb(126, 182, 224);
+/// Handles on a shape.
+pub const HANDLE: Color32 = Color32::from_rgb(255, 190, 92);
 /// Subtracted nodes.
 pub const NEGATIVE: Color32 = Color32::from_rgb(232, 128, 118);
 /// Lights.

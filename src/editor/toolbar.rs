@@ -1,7 +1,9 @@
 //! The bar at the top: menus and the most common buttons.
 
 use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
+use egui_material_icons::icons::ICON_ADD;
 
+use super::add_palette::favorites;
 use super::commands::command::Command;
 use super::commands::entries::{menu_entries, shading_entries};
 use super::commands::info::{Icon, Menu};
@@ -9,7 +11,7 @@ use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
 use super::{icons, theme, widgets};
-use isolith_scene::{Operator, ShapeKind};
+use isolith_scene::Operator;
 
 /// The panel of the toolbar.
 pub struct Toolbar;
@@ -52,20 +54,17 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         ui.spacing_mut().item_spacing = vec2(3.0, 3.0);
         buttons(state, ui, theme::TEXT, &[Command::Undo, Command::Redo], &mut chosen);
         divider(ui);
-        for &kind in ShapeKind::ALL {
-            if shape_button(ui, kind).clicked() {
-                chosen = Some(Command::AddShape(kind));
+        for command in favorites(state) {
+            if favorite_button(ui, command).clicked() {
+                chosen = Some(command);
             }
         }
-        divider(ui);
-        buttons(
-            state,
-            ui,
-            theme::LIGHT,
-            &[Command::AddSun, Command::AddPointLight, Command::AddSpotLight, Command::AddAreaLight],
-            &mut chosen,
-        );
-        buttons(state, ui, theme::MESH, &[Command::AddMesh], &mut chosen);
+        let text = (ICON_ADD.rich_text().size(17.0).color(theme::ACCENT), RichText::new("Add"));
+        let response = ui.add(Button::new(text).min_size(vec2(60.0, 26.0)));
+        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Add something"));
+        if response.on_hover_text(Command::AddAtPointer.info().tooltip(ui.ctx())).clicked() {
+            chosen = Some(Command::AddAtPointer);
+        }
         divider(ui);
         let [unite, intersect, subtract] =
             [Operator::Union, Operator::Intersection, Operator::Difference].map(Command::Join);
@@ -85,10 +84,19 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
+        for (name, menu) in [("Transform", Menu::Tool), ("Orientation", Menu::Orientation), ("Keymap", Menu::Keymap)] {
+            let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
+            *chosen = inner.flatten().or(*chosen);
+        }
         ui.separator();
     }
     if let Some(command) = menu_entries(ui, state, menu) {
         *chosen = Some(command);
+    }
+    if menu == Menu::Edit {
+        ui.separator();
+        let presets = ui.menu_button("Instancer presets", |ui| menu_entries(ui, state, Menu::Presets));
+        *chosen = presets.inner.flatten().or(*chosen);
     }
     if menu == Menu::View {
         ui.separator();
@@ -142,11 +150,24 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
     step.map_or(tooltip.clone(), |step| format!("{tooltip}: {step}"))
 }
 
-fn shape_button(ui: &mut Ui, kind: ShapeKind) -> Response {
-    let response = square(ui, true, Button::new(""), &format!("Add {}", kind.label().to_lowercase()));
-    let color = if response.hovered() { egui::Color32::WHITE } else { theme::OBJECT };
-    icons::paint_shape(ui.painter(), icons::centered(response.rect, 17.0), kind, color);
-    response.on_hover_text(format!("Add: {}\n{}", kind.label(), kind.help()))
+/// A button that adds a favorite.
+fn favorite_button(ui: &mut Ui, command: Command) -> Response {
+    let info = command.info();
+    let response = square(ui, true, Button::new(""), &format!("Add {}", info.label.to_lowercase()));
+    let rect = icons::centered(response.rect, 17.0);
+    let hovered = response.hovered();
+    match info.icon {
+        Some(Icon::Shape(kind)) => {
+            let color = if hovered { Color32::WHITE } else { theme::OBJECT };
+            icons::paint_shape(ui.painter(), rect, kind, color);
+        }
+        Some(Icon::Material(icon)) => {
+            let color = if hovered { Color32::WHITE } else { theme::LIGHT };
+            icons::paint_icon(ui.painter(), rect, icon, color);
+        }
+        None => {}
+    }
+    response.on_hover_text(format!("Add: {}\n{}", info.label, info.help))
 }
 
 /// Maximum number of characters of a file's name in a menu.

@@ -1,9 +1,9 @@
 //! The view of the viewport, and the data exchanged with the renderer.
 
-use egui::{Pos2, Rect, TextureId, vec2};
-use glam::DVec3;
+use egui::{Event, Pos2, Rect, TextureId, vec2};
 
 use super::navigation::Navigation;
+use super::transforms::kinds::{Orientation, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
@@ -65,8 +65,14 @@ pub enum PointerActivity {
     Panning,
     /// Moves the camera forward and backward.
     Zooming,
-    /// Moves the selection; the offset so far.
-    Moving(DVec3),
+    /// Drags the gizmo.
+    Moving,
+    /// Transforms the selection, with all keys for it.
+    Transforming,
+    /// Over a handle of a shape; whether it is that of a point.
+    OverHandle(bool),
+    /// Drags a handle of a shape.
+    Shaping,
 }
 
 /// The view of the document.
@@ -83,6 +89,16 @@ pub struct ViewState {
     pub show_grid: bool,
     /// Whether to outline the selection.
     pub show_outline: bool,
+    /// What the gizmo does.
+    pub tool: Tool,
+    /// Whose axes it follows.
+    pub orientation: Orientation,
+    /// The transform that follows the pointer and takes all keys.
+    pub transforming: Option<TransformKind>,
+    /// Where in the picture the next node is added; `None` for the view's target.
+    pub add_at: Option<Pos2>,
+    /// The keys and texts of this frame that belong to it.
+    pub modal_events: Vec<Event>,
     /// The picture's rectangle, in points.
     pub rect: Rect,
     /// Its size in pixels, at least 1 × 1.
@@ -104,6 +120,11 @@ impl Default for ViewState {
             samples: SAMPLES,
             show_grid: true,
             show_outline: true,
+            tool: Tool::Transform(TransformKind::Move),
+            orientation: Orientation::World,
+            transforming: None,
+            add_at: None,
+            modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
             size_px: [640, 480],
             is_navigating: false,

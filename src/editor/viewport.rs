@@ -1,30 +1,29 @@
 //! The viewport: the picture and the pointer actions in it, which are navigating, picking and moving.
 
-use egui::{Color32, Key, PointerButton, Pos2, Rect, Response, Sense, Ui, pos2};
+use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
-use super::gizmo::{self, Arrows, Drag};
-use super::overlay::{self, Compass, Marker};
+use super::handles::handle_paint;
+use super::handles::value_drag::Pace;
+use super::handles::value_handle::{HandleSet, HandleTarget};
+use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
-use super::picking::pick_node;
 use super::projection::Projection;
 use super::state::EditorState;
+use super::transforms::transform_bar;
+use super::transforms::transform_drag::Following;
 use super::view_state::PointerActivity;
-use super::{legend, material_edits, materials, selection, shading_bar, theme};
+use super::viewport_click::{click, take_dropped_material};
+use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
+use super::viewport_modal::{ModalTransform, paint_limits};
+use super::{lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
-
-/// The current drag.
-enum Dragging {
-    Orbit,
-    Pan,
-    Zoom,
-    Move(Drag),
-}
 
 /// The panel of the viewport.
 #[derive(Default)]
 pub struct Viewport {
     dragging: Option<Dragging>,
+    modal: ModalTransform,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
 }
@@ -56,24 +55,38 @@ impl Panel for Viewport {
         self.navigate(state, ui, &response);
         self.paint(state, ui, &response);
         shading_bar::show(state, ui);
+        transform_bar::show(state, ui);
+        self.modal.settle(ui);
     }
 }
 
 impl Viewport {
-    fn activity(&self, response: &Response) -> PointerActivity {
+    fn activity(&self, state: &EditorState, ui: &Ui, response: &Response) -> PointerActivity {
+        let over_handle = || {
+            let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+            let set = HandleSet::new(state, &projection)?;
+            let key = handle_at(state, &set, &projection, response.hover_pos()?)?;
+            Some(PointerActivity::OverHandle(matches!(
+                set.get(key)?.target,
+                HandleTarget::Row(_) | HandleTarget::NewRow(_)
+            )))
+        };
         match &self.dragging {
+            _ if self.modal.is_active() => PointerActivity::Transforming,
             Some(Dragging::Orbit) => PointerActivity::Orbiting,
             Some(Dragging::Pan) => PointerActivity::Panning,
             Some(Dragging::Zoom) => PointerActivity::Zooming,
-            Some(Dragging::Move(drag)) => PointerActivity::Moving(drag.offset),
-            None if response.hovered() => PointerActivity::Hovering,
+            Some(Dragging::Transform(_)) => PointerActivity::Moving,
+            Some(Dragging::Shape(_)) => PointerActivity::Shaping,
+            None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
     }
 
     fn navigate(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
         let pixels_per_point = ui.ctx().pixels_per_point();
-        if response.drag_started() {
+        self.modal.update(state, ui, response.id);
+        if response.drag_started() && !self.modal.takes_pointer() {
             let projection = Projection::new(&state.view, pixels_per_point);
             self.dragging = start_drag(state, ui, response, &projection);
         }
@@ -82,14 +95,14 @@ impl Viewport {
         }
         self.follow_drag(state, ui, response);
         self.zoom_by_wheel(state, ui, response);
-        if response.clicked() {
+        if response.clicked() && !self.modal.takes_pointer() {
             let projection = Projection::new(&state.view, pixels_per_point);
             click(state, ui, response, &projection);
         }
         take_dropped_material(state, ui, response);
         let now = ui.input(|i| i.time);
-        state.view.is_navigating = self.dragging.is_some() || now < self.zooming_until;
-        state.view.pointer = self.activity(response);
+        state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
+        state.view.pointer = self.activity(state, ui, response);
     }
 
     fn follow_drag(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -105,22 +118,40 @@ impl Viewport {
             Some(Dragging::Orbit) => view.orbit(delta, height),
             Some(Dragging::Pan) => view.pan(delta, height),
             Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
-            Some(Dragging::Move(drag)) => {
-                let (modifiers, canceled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
-                if canceled {
-                    drag.offset = DVec3::ZERO;
-                    drag.apply(&mut state.session, response.id);
-                    state.session.finish();
-                    self.dragging = None;
-                    return;
-                }
-                let snap = if modifiers.command { gizmo::snap_step(view.distance) } else { 0.0 };
-                if let Some(pointer) = response.interact_pointer_pos() {
-                    let forward = view.rotation * DVec3::NEG_Z;
-                    drag.follow(&projection.ray(pointer), forward, modifiers.shift, snap);
-                    drag.apply(&mut state.session, response.id);
-                }
+            Some(Dragging::Transform(_) | Dragging::Shape(_)) => self.follow_change(state, ui, response, &projection),
+        }
+    }
+
+    /// Follows a drag that changes the scene.
+    fn follow_change(&mut self, state: &mut EditorState, ui: &Ui, response: &Response, projection: &Projection) {
+        let (modifiers, canceled) = ui.input(|i| (i.modifiers, i.key_pressed(Key::Escape)));
+        if canceled {
+            state.session.cancel();
+            self.dragging = None;
+            return;
+        }
+        let Some(pointer) = response.interact_pointer_pos() else { return };
+        let view = &state.view.navigation;
+        let forward = view.rotation * DVec3::NEG_Z;
+        let snap = if modifiers.command { steps::snap_step(view.distance) } else { 0.0 };
+        let ray = projection.ray(pointer);
+        match &mut self.dragging {
+            Some(Dragging::Transform(drag)) => {
+                drag.follow(projection, view.rotation, pointer, Following { precise: modifiers.shift, snap });
+                drag.apply(&mut state.session, response.id);
             }
+            Some(Dragging::Shape(drag)) => {
+                let pace = Pace {
+                    precise: modifiers.shift,
+                    snap,
+                    angle_snap: if modifiers.command { steps::ANGLE_STEP } else { 0.0 },
+                    both: modifiers.alt,
+                    finest: steps::finest_step(projection.meters_per_point(view.target)),
+                };
+                drag.follow(&ray, forward, pace);
+                drag.apply(&mut state.session, response.id);
+            }
+            _ => {}
         }
     }
 
@@ -138,6 +169,50 @@ impl Viewport {
         ui.ctx().request_repaint_after_secs(STILL_AFTER as f32);
     }
 
+    /// Paints the gizmo and the handles, or the transform in progress instead of them.
+    fn paint_tools(&self, state: &EditorState, ui: &Ui, projection: &Projection, pointer: Option<Pos2>) {
+        let painter = ui.painter_at(state.view.rect);
+        if self.modal.is_active() {
+            self.modal.paint(&painter, projection, ui.input(|i| i.pointer.latest_pos()));
+            return;
+        }
+        let transform = match &self.dragging {
+            Some(Dragging::Transform(drag)) => Some(drag),
+            _ => None,
+        };
+        if let Some(drag) = transform {
+            paint_limits(&painter, projection, drag);
+        }
+        if let Some(gizmo) = gizmo_of(state, projection) {
+            let hovered = pointer.and_then(|p| gizmo.handle_at(p)).filter(|_| self.dragging.is_none());
+            gizmo.paint(&painter, transform.map(|drag| drag.constraint).or(hovered));
+        }
+        match transform {
+            Some(drag) => {
+                let at = pointer.unwrap_or(state.view.rect.center());
+                handle_paint::tag(&painter, at, drag.text());
+            }
+            None => self.paint_handles(state, ui, projection, pointer),
+        }
+    }
+
+    /// Paints the handles of the selected shape, with the value of the one in use.
+    fn paint_handles(&self, state: &EditorState, ui: &Ui, projection: &Projection, pointer: Option<Pos2>) {
+        let Some(set) = HandleSet::new(state, projection) else { return };
+        let painter = ui.painter_at(state.view.rect);
+        let dragged = match &self.dragging {
+            Some(Dragging::Shape(drag)) => Some((drag.key(), Some(drag.text.clone()))),
+            None => pointer.and_then(|p| handle_at(state, &set, projection, p)).map(|key| (key, None)),
+            _ => None,
+        };
+        handle_paint::paint(&painter, &set, dragged.as_ref().map(|(key, _)| *key));
+        if let Some((handle, text)) = dragged.and_then(|(key, text)| Some((set.get(key)?, text))) {
+            let text = text.filter(|text| !text.is_empty()).unwrap_or_else(|| handle_paint::text_of(handle));
+            handle_paint::tag(&painter, handle.at, text);
+        }
+        handle_paint::announce(ui, &set);
+    }
+
     fn paint(&self, state: &EditorState, ui: &Ui, response: &Response) {
         let rect = state.view.rect;
         let painter = ui.painter_at(rect);
@@ -151,18 +226,12 @@ impl Viewport {
         let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
+            lattice_overlay::paint(state, &painter, &projection);
         }
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
         let pointer = response.hover_pos().filter(|_| response.hovered() || response.dragged());
-        let dragged = match &self.dragging {
-            Some(Dragging::Move(drag)) => Some(drag.handle),
-            _ => None,
-        };
-        if let Some(arrows) = arrows(state, &projection) {
-            let hovered = pointer.and_then(|p| arrows.handle_at(p)).filter(|_| self.dragging.is_none());
-            arrows.paint(&painter, dragged.or(hovered));
-        }
+        self.paint_tools(state, ui, &projection, pointer);
         if state.view.view_mode != ViewMode::Shaded {
             let depth_range = state.depth_range();
             legend::paint(&painter, rect, state.view.view_mode, &depth_range);
@@ -177,72 +246,6 @@ impl Viewport {
         if nothing && state.picture.texture.is_some() {
             overlay::empty_hint(&painter, rect);
         }
-    }
-}
-
-fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection: &Projection) -> Option<Dragging> {
-    let modifiers = ui.input(|i| i.modifiers);
-    if response.drag_started_by(PointerButton::Middle) {
-        return Some(match () {
-            () if modifiers.shift || modifiers.alt => Dragging::Pan,
-            () if modifiers.command => Dragging::Zoom,
-            () => Dragging::Orbit,
-        });
-    }
-    if response.drag_started_by(PointerButton::Secondary) {
-        return Some(match () {
-            () if modifiers.alt => Dragging::Zoom,
-            () if modifiers.shift => Dragging::Pan,
-            () => Dragging::Orbit,
-        });
-    }
-    let origin = ui.input(|i| i.pointer.press_origin())?;
-    let handle = arrows(state, projection).and_then(|a| a.handle_at(origin)).filter(|_| !modifiers.alt);
-    let forward = state.view.navigation.rotation * DVec3::NEG_Z;
-    let moving = handle.and_then(|h| Drag::begin(&state.session, h, &projection.ray(origin), forward));
-    Some(moving.map_or(if modifiers.shift { Dragging::Pan } else { Dragging::Orbit }, Dragging::Move))
-}
-
-fn arrows(state: &EditorState, projection: &Projection) -> Option<Arrows> {
-    Arrows::new(gizmo::pivot(&state.session)?, projection)
-}
-
-fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: &Projection) {
-    let Some(pointer) = response.interact_pointer_pos() else { return };
-    let compass = Compass::new(state.view.rect, state.view.navigation.rotation);
-    if let Some(side) = compass.side_at(pointer) {
-        state.view.navigation.look_from(side);
-        return;
-    }
-    let markers = overlay::markers(state, projection);
-    let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
-    let hit = marker.or_else(|| pick_node(state, &projection.ray(pointer)));
-    let scene = state.session.document.scene();
-    let hit = hit.filter(|id| selection::holder_of_lock(scene, *id).is_none());
-    let mut selection = state.session.document.selection().to_vec();
-    let adding = ui.input(|i| i.modifiers.shift || i.modifiers.command);
-    match hit {
-        Some(id) if adding && selection.contains(&id) => selection.retain(|s| *s != id),
-        Some(id) if adding => selection.push(id),
-        Some(id) => selection = vec![id],
-        None if adding => {}
-        None => selection.clear(),
-    }
-    if selection.is_empty() {
-        state.materials.current = None;
-    }
-    state.session.finish();
-    state.session.document.select(selection);
-}
-
-/// Gives a material to the node that it is dropped on.
-fn take_dropped_material(state: &mut EditorState, ui: &Ui, response: &Response) {
-    let Some(material) = materials::dropped_on(response) else { return };
-    let Some(pointer) = ui.input(|i| i.pointer.interact_pos()) else { return };
-    let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
-    if let Some(node) = pick_node(state, &projection.ray(pointer)) {
-        state.session.finish();
-        material_edits::assign(&mut state.session, &[node], Some(material));
     }
 }
 

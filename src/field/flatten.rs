@@ -16,6 +16,7 @@ use super::batch::{batched, united};
 use super::budget::{BYTES, Budget, Cancel, FlattenLimits, LEVELS, ROWS, STACK, Usage};
 use super::collect::{Components, collect};
 use super::composition::size_of_fold;
+use super::copies::moved_scene::{scene_at, unseen_dynamics};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
@@ -65,7 +66,8 @@ pub fn flatten_until(
 
 /// The arrays with all components joined into one, as for a renderer without components: the baseline of the benches.
 pub fn flatten_whole(scene: &Scene, time: f64) -> Result<FlatScene, FlattenError> {
-    let scene = &*scene.at(time);
+    let (shown, _) = scene_at(scene, time);
+    let scene = &*shown;
     let mut flat = flatten(scene, time)?;
     flat.nodes.clear();
     flat.params.clear();
@@ -111,7 +113,7 @@ fn flatten_within(
     limits: FlattenLimits,
     cancel: &Cancel,
 ) -> Result<Option<Made>, FlattenError> {
-    let (shown, faults) = scene.at_with_faults(time);
+    let (shown, faults) = scene_at(scene, time);
     flatten_shown(&shown, &faults, time, limits, cancel)
 }
 
@@ -127,6 +129,11 @@ fn flatten_shown(
     let survey = Survey::new(scene, 0..scene.nodes().len(), &limits)?;
     let mut made = on_a_stack(scene, &survey, || flatten_surveyed(scene, &survey, time, limits, cancel))?;
     if let Some(made) = &mut made {
+        made.flat.warnings.extend(scene.nodes().iter().filter_map(|node| {
+            let kind = unseen_dynamics(node)?;
+            let reason = format!("has {kind:?}, which changes materials: only copies of an instancer show it");
+            Some(Warning { node: node.id, name: node.name.clone(), reason })
+        }));
         made.flat.warnings.extend(faults.iter().filter_map(|(id, fault)| at_rest(scene, *id, fault)));
     }
     Ok(made)

@@ -7,6 +7,8 @@ use super::arrays::{Component, FlatScene};
 use super::batch::{may_be_joined, united};
 use super::budget::Cancel;
 use super::collect::{component_of, is_opened};
+use super::copies::instancer::{FlatInstancer, Placement};
+use super::copies::moved_scene::{node_dynamics, scene_at};
 use super::emit::{MaterialUse, emit};
 use super::error::FlattenError;
 use super::flat_material::FlatMaterial;
@@ -50,7 +52,7 @@ impl Flattener {
 
     /// The arrays if little has changed since the last call, and so without a wait.
     pub fn update(&mut self, scene: &Scene, time: f64) -> Option<Arc<FlatScene>> {
-        let (shown, faults) = scene.at_with_faults(time);
+        let (shown, faults) = scene_at(scene, time);
         if faults.is_empty() { self.update_shown(&shown, time) } else { None }
     }
 
@@ -74,7 +76,7 @@ impl Flattener {
         time: f64,
         cancel: &Cancel,
     ) -> Result<Option<Arc<FlatScene>>, FlattenError> {
-        let (shown, faults) = scene.at_with_faults(time);
+        let (shown, faults) = scene_at(scene, time);
         let scene = &*shown;
         if faults.is_empty()
             && let Some(flat) = self.update_shown(scene, time)
@@ -110,9 +112,12 @@ impl Last {
         {
             return false;
         }
-        // Motions depend on the time itself, and the types of copies are components of their own.
-        let has_motion = |node: &Arc<Node>| !node.dynamics.is_empty() || matches!(node.kind, NodeKind::Instancer(_));
-        if (self.time != time || !changed.is_empty()) && scene.nodes().iter().any(has_motion) {
+        // What copies stand on, and what they are copies of.
+        let stands = |instancer: &FlatInstancer| matches!(instancer.placement, Placement::List(_));
+        let is_group = |at: &usize| matches!(scene.nodes()[*at].kind, NodeKind::Group(_));
+        let has_copies = !self.flat.instancers.is_empty();
+        if !changed.is_empty() && self.flat.instancers.iter().any(stands) || has_copies && changed.iter().any(is_group)
+        {
             return false;
         }
         if !self.update_materials(scene) {
@@ -156,6 +161,14 @@ impl Last {
 
     /// Puts everything but fields and materials into its place.
     fn update_rest(&mut self, scene: &Scene, moves_others: bool, time: f64) {
+        if self.time != time && !self.flat.instancers.is_empty() {
+            // The motion of copies depends on the time itself.
+            for instancer in &mut Arc::make_mut(&mut self.flat).instancers {
+                if let Some(node) = scene.node(instancer.id) {
+                    instancer.dynamics = node_dynamics(node, time, instancer.seed);
+                }
+            }
+        }
         if moves_others {
             non_field::update(Arc::make_mut(&mut self.flat), scene, time);
         }
@@ -176,6 +189,9 @@ impl Last {
         let Some(entry) = self.flat.ids.iter().position(|i| *i == id) else { return false };
         let at = self.flat.components.partition_point(|c| c.first as usize <= entry) - 1;
         let old = self.flat.components[at].clone();
+        if old.instanced.is_some() {
+            return false;
+        }
         let Some(operands) = self.operands(scene, &old) else { return false };
         let had_warnings = old.is_modified() && !self.flat.warnings.is_empty();
         if fold_bounds(&operands).bounds.is_empty() || had_warnings {

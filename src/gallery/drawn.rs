@@ -45,6 +45,7 @@ pub(super) fn scene() -> Scene {
         spread: 50.0,
         sharpness: 0.5,
         phase: 40.0,
+        speed: 0.0,
     };
     builder.add(None, object("Sea", sea, water).at(v(1.55, 0.3, -1.15)));
 

@@ -13,6 +13,7 @@ mod drawn;
 mod ellipsoid_and_plane;
 mod fractals;
 mod image_lit;
+mod instancing;
 mod lights;
 mod materials;
 mod mesh_and_fields;
@@ -67,6 +68,11 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("shadows", shadows::scene()),
+        ("dynamics-2d", instancing::dynamics()),
+        ("terrain", instancing::terrain()),
+        ("ocean", instancing::ocean()),
+        ("city", instancing::city()),
+        ("asteroids", instancing::asteroids()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),

@@ -167,7 +167,11 @@ impl SceneBuilder {
 
     /// Adds the camera.
     pub fn camera(&mut self, position: [f64; 3], target: [f64; 3], fov_y: f64) {
-        let camera = CameraNode { fov_y, ..CameraNode::default() };
+        self.view(CameraNode { fov_y, ..CameraNode::default() }, position, target);
+    }
+
+    /// Adds a camera.
+    pub fn view(&mut self, camera: CameraNode, position: [f64; 3], target: [f64; 3]) {
         let (position, target) = (DVec3::from(position), DVec3::from(target));
         let rotation = Camera::looking_at(position, target, 1.0).rotation;
         self.add(None, Node::new("Camera", NodeKind::Camera(camera)).at(position).rotated(rotation));

@@ -36,6 +36,7 @@ mod heights;
 mod image_budget;
 mod image_file;
 mod instancer;
+mod instancer_presets;
 mod light;
 pub mod limits;
 mod material;
@@ -70,6 +71,7 @@ pub use instancer::{
     Instancer, Lattice, LatticeKind, MAX_MASKS, MAX_PALETTE, MAX_TYPES, Mask, MaskKind, MaskSlot, MaterialVariation,
     Snap, Variation,
 };
+pub use instancer_presets::InstancerPreset;
 pub use light::{Falloff, Light, LightKind};
 pub use limits::Limits;
 pub use material::{Material, MaterialId, ReflectionModel};

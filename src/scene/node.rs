@@ -132,6 +132,16 @@ impl Node {
         one.into_iter().chain(palette.iter().copied())
     }
 
+    /// Replaces the ids of other nodes that it names, for a copy together with them; `None` keeps an id.
+    pub fn rename_references(&mut self, new: impl Fn(NodeId) -> Option<NodeId>) {
+        for id in &mut self.apart {
+            *id = new(*id).unwrap_or(*id);
+        }
+        if let NodeKind::Instancer(instancer) = &mut self.kind {
+            instancer.target = instancer.target.map(|id| new(id).unwrap_or(id));
+        }
+    }
+
     /// Whether other nodes can be its children.
     pub fn has_children(&self) -> bool {
         matches!(self.kind, NodeKind::Group(_) | NodeKind::Instancer(_))

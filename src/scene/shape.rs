@@ -12,8 +12,8 @@ use super::attachment::Attachment;
 use super::drawn::{Corners, Points};
 use super::heights::Heights;
 use super::limits::{
-    ARC, CONE, CONSTANT, FOLD, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES, POSITION, POWER, REACH, SECTOR, SEED, SIDES,
-    SIZE, SQUARES, THICKNESS, TURN, UNIT, WAVELENGTH,
+    ARC, CONE, CONSTANT, FOLD, FREQUENCY, ITERATIONS, LETTERS, NO_LIMITS, OCTAVES, POSITION, POWER, REACH, SECTOR,
+    SEED, SIDES, SIZE, SQUARES, THICKNESS, TURN, UNIT, WAVELENGTH,
 };
 use isolith_font::Face;
 
@@ -390,5 +390,8 @@ shapes! {
         sharpness: f64 = 0.5, UNIT;
         /// Where the waves are in their motion: 360 is a whole turn of the longest.
         phase: f64 = 0.0, TURN;
+        /// How fast they run: periods of the longest wave per second.
+        #[serde(default)]
+        speed: f64 = 0.0, FREQUENCY;
     }
 }

@@ -77,7 +77,11 @@ fn a_monkey_finds_no_panic_and_undo_leads_back() {
         seed ^= seed << 17;
         seed % below
     };
-    const KEYS: [(Modifiers, Key); 16] = [
+    const KEYS: [(Modifiers, Key); 20] = [
+        (Modifiers::NONE, Key::G),
+        (Modifiers::NONE, Key::R),
+        (Modifiers::NONE, Key::S),
+        (Modifiers::SHIFT, Key::Y),
         (Modifiers::NONE, Key::U),
         (Modifiers::NONE, Key::I),
         (Modifiers::NONE, Key::D),

@@ -316,7 +316,7 @@ fn menus_fit_the_window_and_scroll() {
 #[test]
 fn a_menu_does_not_scroll_where_there_is_room_for_it() {
     let (scene, _) = scene();
-    let mut harness = open_in(Document::new(scene), vec2(1280.0, 1500.0));
+    let mut harness = open_in(Document::new(scene), vec2(1280.0, 1600.0));
     for (name, last) in [("Add", "Camera from view"), ("View", "Samples"), ("Edit", "Remove unused materials")] {
         open_popup(&mut harness, name);
         let [menu] = popup_rects(&harness)[..] else { panic!("one menu") };

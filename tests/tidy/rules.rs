@@ -60,6 +60,7 @@ const CRATES: &[(&str, &[&str])] = &[
 const FILE_OWNERS: &[&str] = &[
     "src/scene/file",
     "src/mesh/",
+    "src/document/preferences",
     "src/document/recent",
     "src/document/recovery",
     "src/cli/",

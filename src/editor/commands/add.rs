@@ -2,7 +2,8 @@
 
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FOLDER, ICON_LIGHTBULB, ICON_VIDEOCAM, ICON_VIEW_IN_AR, ICON_WB_SUNNY,
+    ICON_ADD, ICON_FLASHLIGHT_ON, ICON_FLUORESCENT, ICON_FOLDER, ICON_GRID_ON, ICON_LIGHTBULB, ICON_VIDEOCAM,
+    ICON_VIEW_IN_AR, ICON_WB_SUNNY,
 };
 
 use super::command::Command;
@@ -17,9 +18,14 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     let shape = |kind: ShapeKind| {
         CommandInfo::new(Menu::Add, Command::AddShape(kind), Icon::Shape(kind), kind.label(), kind.help())
     };
-    let mut all: Vec<_> = ShapeKind::ALL.iter().map(|kind| shape(*kind)).collect();
+    let help = "Everything that can be added, by category or name; it goes where the pointer is";
+    let palette =
+        row(Command::AddAtPointer, ICON_ADD, "Add at the pointer…", help).key(egui::Modifiers::SHIFT, egui::Key::A);
+    let mut all = vec![palette];
+    all.extend(ShapeKind::ALL.iter().map(|kind| shape(*kind)));
     all.extend([
         row(Command::AddGroup, ICON_FOLDER, "Empty group", "A group without children; drag nodes into it").group(),
+        row(Command::AddInstancer, ICON_GRID_ON, "Instancer", "Places copies of what is dragged into it"),
         row(Command::AddMesh, ICON_VIEW_IN_AR, "Mesh…", "Triangles from a .gltf or .glb file"),
         row(Command::AddSun, ICON_WB_SUNNY, "Sun", "Parallel light").group(),
         row(Command::AddPointLight, ICON_LIGHTBULB, "Point light", "Light from a point into every direction"),

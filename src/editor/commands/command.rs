@@ -1,9 +1,11 @@
 //! The names of the commands, without their conditions and effects.
 
+use crate::keymap::Keymap;
 use crate::navigation::Side;
+use crate::transforms::kinds::{Orientation, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
-use isolith_scene::{Operator, ShapeKind};
+use isolith_scene::{InstancerPreset, Operator, ShapeKind};
 
 /// A command of the artist. The table holds its label, menu and condition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +46,12 @@ pub enum Command {
     MoveDown,
     /// Combine the selection by an operator.
     Join(Operator),
+    /// Make the selection the types of an instancer.
+    InstanceSelection,
+    /// Give the selected instancers other seeds.
+    RerollSeeds,
+    /// Give the selected instancers, or a new one of the selection, ready-made settings.
+    ApplyPreset(InstancerPreset),
     /// Switch the selection between subtracted and joined.
     ToggleNegative,
     /// Select every node.
@@ -60,10 +68,14 @@ pub enum Command {
     MakeMaterialUnique,
     /// Remove unused materials.
     RemoveUnusedMaterials,
+    /// Open the palette of what can be added, at the pointer.
+    AddAtPointer,
     /// Add an object of this shape.
     AddShape(ShapeKind),
     /// Add an empty group.
     AddGroup,
+    /// Add an instancer without types.
+    AddInstancer,
     /// Ask for a model and add it.
     AddMesh,
     /// Add a sun.
@@ -96,6 +108,14 @@ pub enum Command {
     FindCommand,
     /// Toggle the log.
     ShowMessages,
+    /// Move, rotate or scale the selection with the pointer, until a click or Enter.
+    Transform(TransformKind),
+    /// Switch to this tool.
+    UseTool(Tool),
+    /// Switch to these axes.
+    UseOrientation(Orientation),
+    /// Switch to this keymap.
+    UseKeymap(Keymap),
     /// Switch to this shading.
     ShowShading(Shading),
     /// Switch to the next shading.

@@ -3,16 +3,19 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CONTENT_COPY, ICON_DELETE, ICON_EDIT,
-    ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_JOIN, ICON_JOIN_FULL, ICON_JOIN_INNER, ICON_JOIN_LEFT,
-    ICON_KEY, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO,
-    ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_OFF,
+    ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CONTENT_COPY,
+    ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
+    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE,
+    ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY,
+    ICON_VISIBILITY_OFF,
 };
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
+use crate::instancer_edits::{can_instance, can_take_preset};
+use crate::seeds;
 use crate::state::EditorState;
-use isolith_scene::Operator;
+use isolith_scene::{InstancerPreset, Operator};
 
 const NONE: Modifiers = Modifiers::NONE;
 const CTRL: Modifiers = Modifiers::COMMAND;
@@ -21,6 +24,7 @@ const SHIFT_CTRL: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 pub(super) fn commands() -> Vec<CommandInfo> {
     let mut all = history();
     all.extend(structure());
+    all.extend(instancers());
     all.extend(roles());
     all.extend(extended_operators());
     let keys = "Sets keys of position, rotation and scale of the selection at the moment that is shown";
@@ -83,6 +87,26 @@ fn structure() -> Vec<CommandInfo> {
         on_selection(Command::MoveDown, ICON_ARROW_DOWNWARD, "Move down", "One place down among its siblings")
             .key(Modifiers::ALT, Key::ArrowDown),
     ]
+}
+
+fn instancers() -> Vec<CommandInfo> {
+    let types = "Makes the selected objects and groups the types of a new instancer";
+    let seeds = "Other seeds for all selected instancers whose seed is not locked";
+    let mut all = vec![
+        row(Command::InstanceSelection, ICON_GRID_ON, "Instancer from selection", types)
+            .when(|state| can_instance(&state.session))
+            .group(),
+        row(Command::RerollSeeds, ICON_CASINO, "Re-roll seeds", seeds).when(|state| {
+            let document = &state.session.document;
+            seeds::unlocked(document.scene(), document.selection()).next().is_some()
+        }),
+    ];
+    all.extend(InstancerPreset::ALL.map(|preset| {
+        let label = format!("Instancer preset: {}", preset.label().to_lowercase());
+        CommandInfo::new(Menu::Presets, Command::ApplyPreset(preset), Icon::from(ICON_GRID_ON), label, preset.help())
+            .when(|state| can_take_preset(&state.session))
+    }));
+    all
 }
 
 fn roles() -> Vec<CommandInfo> {

@@ -4,6 +4,7 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
+use crate::keymap::Keymap;
 use crate::state::EditorState;
 use crate::theme;
 
@@ -44,12 +45,12 @@ pub fn shading_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
 /// Shows the context menu of the selection; returns the chosen command.
 pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     use Command::{
-        Delete, Duplicate, FrameSelected, Group, MoveDown, MoveUp, Rename, ToggleLock, ToggleNegative, ToggleVisible,
-        Ungroup,
+        Delete, Duplicate, FrameSelected, Group, InstanceSelection, MoveDown, MoveUp, Rename, ToggleLock,
+        ToggleNegative, ToggleVisible, Ungroup,
     };
     const GROUPS: [&[Command]; 4] = [
         &[Rename, Duplicate, Delete],
-        &[Group, Ungroup, ToggleNegative],
+        &[Group, Ungroup, InstanceSelection, ToggleNegative],
         &[MoveUp, MoveDown],
         &[ToggleVisible, ToggleLock, FrameSelected],
     ];
@@ -71,7 +72,7 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
-    if let Some(key) = info.keys.first() {
+    if let Some(key) = info.keys(Keymap::of(ui.ctx())).first() {
         button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
     }
     let response = ui.add_enabled(enabled, button);

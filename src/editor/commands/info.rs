@@ -7,6 +7,7 @@ use egui_material_icons::icons::{
 };
 
 use super::command::Command;
+use crate::keymap::Keymap;
 use crate::state::EditorState;
 use crate::{icons, theme};
 use isolith_scene::ShapeKind;
@@ -18,6 +19,8 @@ pub enum Menu {
     File,
     /// Changes of the selection.
     Edit,
+    /// Ready-made settings of instancers; a submenu of Edit.
+    Presets,
     /// New nodes.
     Add,
     /// The camera and the picture.
@@ -28,6 +31,12 @@ pub enum Menu {
     Debug,
     /// Samples per pixel; a submenu of View.
     Samples,
+    /// Transforms, and tools of the viewport; a submenu of View.
+    Tool,
+    /// Axes of the tools; a submenu of View.
+    Orientation,
+    /// Keymaps; a submenu of View.
+    Keymap,
 }
 
 /// An icon of a command.
@@ -65,8 +74,10 @@ pub struct CommandInfo {
     pub icon: Option<Icon>,
     /// One sentence about its effect.
     pub help: String,
-    /// Its shortcuts; menus show the first.
-    pub keys: Vec<KeyboardShortcut>,
+    /// Its shortcuts.
+    keys: Vec<KeyboardShortcut>,
+    /// The only keymap that has them; `None` for all.
+    keymap: Option<Keymap>,
     /// Whether it is enabled.
     pub is_enabled: Condition,
     /// Whether its switch is on; `None` for a command that is not a switch.
@@ -89,6 +100,7 @@ impl CommandInfo {
             icon: icon.into(),
             help: help.into(),
             keys: Vec::new(),
+            keymap: None,
             is_enabled: |_| true,
             is_on: None,
         }
@@ -97,6 +109,17 @@ impl CommandInfo {
     pub(super) fn key(mut self, modifiers: Modifiers, key: Key) -> Self {
         self.keys.push(KeyboardShortcut::new(modifiers, key));
         self
+    }
+
+    /// The same with its shortcuts in one keymap only.
+    pub(super) fn only_in(mut self, keymap: Keymap) -> Self {
+        self.keymap = Some(keymap);
+        self
+    }
+
+    /// Its shortcuts in a keymap; menus show the first.
+    pub fn keys(&self, keymap: Keymap) -> &[KeyboardShortcut] {
+        if self.keymap.is_none_or(|only| only == keymap) { &self.keys } else { &[] }
     }
 
     pub(super) fn when(mut self, is_enabled: Condition) -> Self {
@@ -116,7 +139,7 @@ impl CommandInfo {
 
     /// Name, shortcuts and help.
     pub fn tooltip(&self, ctx: &Context) -> String {
-        let keys: Vec<_> = self.keys.iter().map(|k| ctx.format_shortcut(k)).collect();
+        let keys: Vec<_> = self.keys(Keymap::of(ctx)).iter().map(|k| ctx.format_shortcut(k)).collect();
         let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
         format!("{}{keys}\n{}", self.label, self.help)
     }
@@ -124,8 +147,12 @@ impl CommandInfo {
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
         match (self.menu, on) {
-            (Menu::Shading | Menu::Debug | Menu::Samples, true) => ICON_RADIO_BUTTON_CHECKED,
-            (Menu::Shading | Menu::Debug | Menu::Samples, false) => ICON_RADIO_BUTTON_UNCHECKED,
+            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, true) => {
+                ICON_RADIO_BUTTON_CHECKED
+            }
+            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, false) => {
+                ICON_RADIO_BUTTON_UNCHECKED
+            }
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

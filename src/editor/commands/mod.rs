@@ -3,7 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `command` | the names of the commands |
-//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `add` and `view` |
+//! | `table`, `info` | label, keys, menu and condition of each; its rows are in `file`, `edit`, `tools`, `add` and `view` |
 //! | `run` | their effects |
 //! | `entries`, `shortcuts` | commands in menus and by keys |
 
@@ -16,4 +16,5 @@ pub mod info;
 mod run;
 mod shortcuts;
 mod table;
+mod tools;
 mod view;

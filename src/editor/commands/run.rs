@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{dope_sheet, insertion, keying, material_edits, selection};
+use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -21,6 +21,7 @@ impl Editor {
             return;
         }
         self.state.session.finish();
+        self.state.view.transforming = None;
         let state = &mut self.state;
         let session = &mut state.session;
         match command {
@@ -42,6 +43,9 @@ impl Editor {
             Command::Play => state.playback.toggle(&mut session.document),
             Command::Group => selection::join(session, Operator::Union, true),
             Command::Ungroup => selection::ungroup(session),
+            Command::InstanceSelection => instance(session),
+            Command::RerollSeeds => reroll(session),
+            Command::ApplyPreset(preset) => instancer_edits::apply_preset(state, preset),
             Command::MoveUp => selection::shift(session, -1),
             Command::MoveDown => selection::shift(session, 1),
             Command::Join(operator) => selection::join(session, operator, false),
@@ -53,8 +57,14 @@ impl Editor {
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
+            Command::AddAtPointer => {
+                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
+                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
+                self.add_palette.open(pointer);
+            }
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
+            Command::AddInstancer => instancer_edits::add(state),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::AddSun => add_sun(state),
             Command::AddPointLight => add_point_light(state),
@@ -69,6 +79,10 @@ impl Editor {
             Command::ToggleOutline => state.view.show_outline ^= true,
             Command::FindCommand => self.command_palette.open(),
             Command::ShowMessages => session.messages.show_log ^= true,
+            Command::Transform(kind) => state.view.transforming = Some(kind),
+            Command::UseTool(tool) => state.view.tool = tool,
+            Command::UseOrientation(orientation) => state.view.orientation = orientation,
+            Command::UseKeymap(keymap) => state.use_keymap(keymap),
             Command::ShowShading(shading) => state.view.show_shading(shading),
             Command::CycleShading => state.view.cycle_shading(),
             Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
@@ -108,6 +122,15 @@ fn remove_unused_materials(session: &mut EditSession) {
             session.apply(Edit::RemoveMaterial(id));
         }
     });
+}
+
+fn instance(session: &mut EditSession) {
+    instancer_edits::from_selection(session);
+}
+
+fn reroll(session: &mut EditSession) {
+    let selection = session.document.selection().to_vec();
+    seeds::reroll(session, &selection);
 }
 
 fn add(state: &mut EditorState, node: Node) {

@@ -1,10 +1,12 @@
 //! Runs commands by their shortcuts.
 
-use egui::{Context, Key, KeyboardShortcut, Modifiers, Popup};
+use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Popup};
 
 use super::command::Command;
 use super::info::Menu;
+use crate::add_palette::AddPalette;
 use crate::command_palette::CommandPalette;
+use crate::keymap::Keymap;
 use crate::root::Editor;
 
 impl Editor {
@@ -15,12 +17,21 @@ impl Editor {
         if self.dialogs.is_open() {
             return;
         }
+        let keymap = self.state.keymap();
         let is_of_document = |command: Command| command.info().menu == Menu::File;
-        if let Some(command) = ctx.input_mut(|i| take_shortcut(i, is_of_document)) {
+        if let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, is_of_document)) {
             ctx.memory_mut(|memory| memory.stop_text_input());
             Popup::close_all(ctx);
             self.command_palette = CommandPalette::default();
+            self.add_palette = AddPalette::default();
             self.pending = Some(command);
+            return;
+        }
+        if self.state.view.transforming.is_some() {
+            // Until its end, keys and texts belong to the transform.
+            let belongs = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
+            self.state.view.modal_events = ctx.input(|i| i.events.iter().filter(|e| belongs(e)).cloned().collect());
+            ctx.input_mut(|i| i.events.retain(|event| !belongs(event)));
             return;
         }
         let dragging = ctx.input(|i| i.pointer.any_down());
@@ -39,14 +50,14 @@ impl Editor {
         {
             jobs.cancel_foremost();
         }
-        while let Some(command) = ctx.input_mut(|i| take_shortcut(i, |_| true)) {
+        while let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, |_| true)) {
             self.run(command, ctx);
         }
     }
 }
 
 /// Consumes the first key press that belongs to one of these commands.
-fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(Command) -> bool) -> Option<Command> {
+fn take_shortcut(input: &mut egui::InputState, keymap: Keymap, is_wanted: impl Fn(Command) -> bool) -> Option<Command> {
     let mut found = None;
     input.events.retain(|event| {
         let egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
@@ -55,7 +66,7 @@ fn take_shortcut(input: &mut egui::InputState, is_wanted: impl Fn(Command) -> bo
         }
         // Compare modifiers exactly: Ctrl Z is not Shift Ctrl Z.
         let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
-        found = Command::all().find(|command| is_wanted(*command) && command.info().keys.iter().any(fits));
+        found = Command::all().find(|command| is_wanted(*command) && command.info().keys(keymap).iter().any(fits));
         found.is_none()
     });
     found

@@ -4,11 +4,11 @@ use std::sync::LazyLock;
 
 use super::command::Command;
 use super::info::CommandInfo;
-use super::{add, edit, file, view};
+use super::{add, edit, file, tools, view};
 use crate::state::EditorState;
 
 static TABLE: LazyLock<Vec<CommandInfo>> = LazyLock::new(|| {
-    let menus = [file::commands(), edit::commands(), add::commands(), view::commands()];
+    let menus = [file::commands(), edit::commands(), tools::commands(), add::commands(), view::commands()];
     menus.into_iter().flatten().collect()
 });
 
@@ -39,6 +39,7 @@ mod tests {
     use std::collections::HashSet;
 
     use super::*;
+    use crate::keymap::Keymap;
     use isolith_field::Shading;
     use isolith_field::debug_view::ViewMode;
     use isolith_scene::{Operator, ShapeKind};
@@ -52,8 +53,10 @@ mod tests {
             assert_eq!(info.command, command, "twice");
             assert!(labels.insert(&info.label), "{} twice", info.label);
             assert!(!info.help.is_empty(), "{}", info.label);
-            for key in &info.keys {
-                assert!(keys.insert(*key), "{}: {key:?} twice", info.label);
+            for keymap in Keymap::ALL {
+                for key in info.keys(keymap) {
+                    assert!(keys.insert((keymap, *key)), "{}: {key:?} twice in {keymap:?}", info.label);
+                }
             }
         }
     }

@@ -6,7 +6,8 @@ use glam::{DAffine3, DVec3};
 
 use super::dynamics::copy_envelope;
 use super::hash::copy_hash;
-use super::instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
+use super::instancer::{FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
+use super::moved_scene::node_dynamics;
 use super::variation::copy_of_place;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::Aabb;
@@ -41,9 +42,7 @@ pub fn flat_instancer(
         // Rounded as the GPU rounds it, so that both choose alike; the last one is exactly 1.
         f64::from((so_far / sum) as f32)
     });
-    let dynamics = node.dynamics.iter().enumerate().filter(|(_, slot)| slot.enabled);
-    let dynamics: Vec<FlatDynamic> =
-        dynamics.map(|(at, slot)| FlatDynamic::new(&slot.dynamic, time, at, instancer.seed)).collect();
+    let dynamics = node_dynamics(node, time, instancer.seed);
     let variation = instancer.variation;
     let envelope = copy_envelope(&dynamics);
     let scale = DVec3::from_array(variation.scale_max).max_element() * envelope.scale;

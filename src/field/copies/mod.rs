@@ -11,6 +11,7 @@ pub(crate) mod ground;
 mod hash;
 pub(crate) mod instancer;
 pub(crate) mod list;
+pub(crate) mod moved_scene;
 mod noise;
 mod trace;
 mod variation;

@@ -48,7 +48,7 @@ impl PreparedShape {
             Shape::Terrain { size, amplitude, wavelength, octaves, roughness, seed } => {
                 heightfield::terrain(*size, *amplitude, *wavelength, *octaves, *roughness, *seed)
             }
-            Shape::Ocean { size, amplitude, wavelength, waves, direction, spread, sharpness, phase } => {
+            Shape::Ocean { size, amplitude, wavelength, waves, direction, spread, sharpness, phase, speed: _ } => {
                 let run = [*direction, *spread, *phase].map(f64::to_radians);
                 heightfield::ocean(*size, *amplitude, *wavelength, *waves, run, *sharpness)
             }

@@ -1,0 +1,57 @@
+//! Commands that transform the selection, and the choice of tools, axes and keys.
+
+use egui::{Key, Modifiers};
+
+use super::command::Command;
+use super::info::{CommandInfo, Icon, Menu};
+use crate::icons::tool_icon;
+use crate::keymap::Keymap;
+use crate::state::EditorState;
+use crate::transforms::kinds::{Orientation, Tool, TransformKind};
+
+const NONE: Modifiers = Modifiers::NONE;
+
+fn any(state: &EditorState) -> bool {
+    !state.session.document.selection().is_empty()
+}
+
+fn transform(kind: TransformKind, key: Key, help: &str) -> CommandInfo {
+    let icon = Icon::from(tool_icon(Tool::Transform(kind)));
+    CommandInfo::new(Menu::Tool, Command::Transform(kind), icon, kind.label(), help)
+        .when(any)
+        .key(NONE, key)
+        .only_in(Keymap::Blender)
+}
+
+pub(super) fn commands() -> Vec<CommandInfo> {
+    let mut all = vec![
+        transform(TransformKind::Move, Key::G, "Follows the pointer; then X, Y, Z or a number; Enter ends it"),
+        transform(TransformKind::Rotate, Key::R, "Around the pivot; then X, Y, Z or degrees; Enter ends it"),
+        transform(TransformKind::Scale, Key::S, "From the pivot; then X, Y, Z or a factor; Enter ends it"),
+    ];
+    let keys = [Key::Q, Key::W, Key::E, Key::R];
+    all.extend(Tool::ALL.into_iter().zip(keys).map(|(tool, key)| {
+        let info = CommandInfo::new(
+            Menu::Tool,
+            Command::UseTool(tool),
+            Icon::from(tool_icon(tool)),
+            tool.label(),
+            tool.help(),
+        )
+        .switch(|state, command| command == Command::UseTool(state.view.tool))
+        .key(NONE, key)
+        .only_in(Keymap::Industry);
+        if tool == Tool::Select { info.group() } else { info }
+    }));
+    all.extend(Orientation::ALL.into_iter().map(|orientation| {
+        let label = format!("Orientation: {}", orientation.label());
+        CommandInfo::new(Menu::Orientation, Command::UseOrientation(orientation), None, label, orientation.help())
+            .switch(|state, command| command == Command::UseOrientation(state.view.orientation))
+    }));
+    all.extend(Keymap::ALL.into_iter().map(|keymap| {
+        let label = format!("Keymap: {}", keymap.label());
+        CommandInfo::new(Menu::Keymap, Command::UseKeymap(keymap), None, label, keymap.help())
+            .switch(|state, command| command == Command::UseKeymap(state.keymap()))
+    }));
+    all
+}

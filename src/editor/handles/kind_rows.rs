@@ -1,0 +1,132 @@
+//! The tables of handles: a parameter gets a handle by one row here or in `shape_rows`.
+
+use glam::DVec3;
+
+use super::measures::Measures;
+use super::rows::{HandleRow, zero};
+use super::shape_rows;
+use isolith_scene::{LightKind, Node, NodeKind, Part};
+
+fn forward(_: &Measures<'_>) -> DVec3 {
+    DVec3::NEG_Z
+}
+
+fn up(_: &Measures<'_>) -> DVec3 {
+    DVec3::Y
+}
+
+fn right(_: &Measures<'_>) -> DVec3 {
+    DVec3::X
+}
+
+fn left(_: &Measures<'_>) -> DVec3 {
+    DVec3::NEG_X
+}
+
+fn outward(m: &Measures<'_>) -> DVec3 {
+    m.outward()
+}
+
+fn reach(m: &Measures<'_>) -> f64 {
+    m.reach
+}
+
+/// The space between the middle of a blend and its handle, which keeps a radius of 0 apart from other handles.
+fn beside_seam(m: &Measures<'_>) -> DVec3 {
+    m.seam + m.outward() * (SEAM_GAP * m.reach)
+}
+
+/// The space beside the middle of a blend, in lengths of the reach.
+pub const SEAM_GAP: f64 = 0.3;
+
+const RADIUS: HandleRow = HandleRow::along("light.radius", zero, outward);
+const RANGE: HandleRow = HandleRow::along("light.falloff.range", zero, forward);
+
+const POINT_LIGHT: &[HandleRow] = &[RADIUS, RANGE];
+const SPOT_LIGHT: &[HandleRow] = &[
+    RADIUS,
+    RANGE,
+    HandleRow::angle("light.outer", forward, right, reach, 1.0).at_least(|m| m.number("light.inner")),
+    HandleRow::angle("light.inner", forward, left, reach, 1.0).at_most(|m| m.number("light.outer")),
+];
+const RECTANGLE: &[HandleRow] = &[HandleRow::extent("light.width", 0), HandleRow::extent("light.height", 1)];
+const CAMERA: &[HandleRow] = &[HandleRow::angle("fov_y", forward, up, reach, 0.5)];
+const LENS: &[HandleRow] = &[CAMERA[0], HandleRow::along("focus_distance", zero, forward)];
+const GROUP: &[HandleRow] = &[HandleRow::part_along("blend.radius", beside_seam, outward, |m| m.blend_unit)];
+
+/// The rows of a node's kind, with the part of the node that has the parameters.
+pub fn rows_of(node: &Node) -> (Part, &'static [HandleRow]) {
+    match &node.kind {
+        NodeKind::Object(object) => (Part::Shape, shape_rows::rows(object.shape.kind())),
+        NodeKind::Group(group) if group.operator.has_radius() => (Part::Operator, GROUP),
+        NodeKind::Group(_) => (Part::Operator, &[]),
+        NodeKind::Light(light) => (
+            Part::Light,
+            match light.light {
+                LightKind::Sun { .. } => &[],
+                LightKind::Point { .. } => POINT_LIGHT,
+                LightKind::Spot { .. } => SPOT_LIGHT,
+                LightKind::Rectangle { .. } => RECTANGLE,
+            },
+        ),
+        NodeKind::Camera(camera) => (Part::Camera, if camera.aperture > 0.0 { LENS } else { CAMERA }),
+        NodeKind::Instancer(_) => (Part::Instancer, &[]),
+        NodeKind::Mesh(_) => (Part::Mesh, &[]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use isolith_scene::{CameraNode, Falloff, Group, Light, Object, Params, ShapeKind};
+
+    fn of_every_kind() -> Vec<Node> {
+        let material = isolith_scene::MaterialId(1);
+        let object = |kind: &ShapeKind| NodeKind::Object(Object { shape: kind.default_shape(), material });
+        let mut kinds: Vec<NodeKind> = ShapeKind::ALL.iter().map(object).collect();
+        let falloff = Falloff::Attenuation { constant: 1.0, linear: 0.0, quadratic: 1.0, range: 5.0 };
+        let point = LightKind::Point { power: 1.0, radius: 0.1, falloff };
+        let spot = LightKind::Spot { power: 1.0, radius: 0.1, falloff, inner: 10.0, outer: 20.0 };
+        kinds.extend([point, spot, LightKind::RECTANGLE].map(|light| NodeKind::Light(Light::new(light))));
+        kinds.push(NodeKind::Camera(CameraNode { aperture: 0.1, ..CameraNode::default() }));
+        kinds.push(NodeKind::Group(Group::UNION));
+        kinds.into_iter().map(|kind| Node::new("Node", kind)).collect()
+    }
+
+    #[test]
+    fn every_row_names_a_parameter_that_exists_and_can_be_set() {
+        for mut node in of_every_kind() {
+            let (part, rows) = rows_of(&node);
+            for row in rows {
+                let params = part.params_mut(&mut node).unwrap();
+                let value = params.get(row.param).unwrap_or_else(|| panic!("no {} in {:?}", row.param, part));
+                assert!(params.set(row.param, value), "{}", row.param);
+            }
+        }
+    }
+
+    /// What has no place in space: the length of waves stands for a frequency.
+    const WITHOUT: &[&str] = &["light.power", "near", "far", "aperture", "width", "depth"];
+
+    #[test]
+    fn every_length_and_angle_has_a_handle() {
+        for node in of_every_kind() {
+            let (part, rows) = rows_of(&node);
+            let params: &dyn Params = part.params(&node).unwrap();
+            params.visit("", &mut |prefix, param, value| {
+                let name = format!("{prefix}{}", param.name);
+                let is_measure = ["m", "°"].contains(&param.limits.unit) && !(param.is_color);
+                let is_turn = ["direction", "spread", "phase"].contains(&param.name);
+                let is_exempt = WITHOUT.contains(&&*name) && !matches!(node.kind, NodeKind::Object(_));
+                if is_measure && !is_turn && !is_exempt {
+                    let found = rows.iter().filter(|row| row.param == name).count();
+                    let wanted = match value {
+                        isolith_scene::ParamValue::Vector(_) if !name.contains("start") && !name.contains("end") => 3,
+                        _ => 1,
+                    };
+                    assert_eq!(found, wanted, "{name} of {:?}", node.kind);
+                }
+            });
+        }
+    }
+}

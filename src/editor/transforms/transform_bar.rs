@@ -1,0 +1,57 @@
+//! The bar at the left of the viewport: the tools, and whose axes they follow.
+
+use egui::{Align, Button, Color32, Frame, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+
+use super::kinds::Tool;
+use crate::commands::command::Command;
+use crate::commands::entries::menu_entries;
+use crate::commands::info::Menu;
+use crate::state::{EditorState, Request};
+use crate::{icons, theme};
+
+/// Distance from the edges of the viewport, in points.
+const MARGIN: f32 = 10.0;
+/// Size of a button, in points.
+const BUTTON: egui::Vec2 = vec2(30.0, 28.0);
+
+/// Shows the bar over the picture.
+pub fn show(state: &mut EditorState, ui: &mut Ui) {
+    let corner = state.view.rect.left_top() + vec2(MARGIN, MARGIN);
+    let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 5.0 * (BUTTON.y + 2.0) + 8.0));
+    let mut bar = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::top_down(Align::Min)));
+    let frame =
+        Frame::new().fill(Color32::from_rgba_unmultiplied(20, 22, 26, 225)).corner_radius(7.0).inner_margin(2.0);
+    let chosen = frame.show(&mut bar, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
+        let mut chosen = None;
+        for tool in Tool::ALL {
+            let is_on = state.view.tool == tool;
+            let color = if is_on { theme::ACCENT } else { theme::TEXT };
+            let text = icons::tool_icon(tool).rich_text().size(17.0).color(color);
+            let button = Button::new(text).min_size(BUTTON).selected(is_on).frame_when_inactive(is_on);
+            let response = ui.add(button);
+            ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(tool.label()));
+            if response.on_hover_text(Command::UseTool(tool).info().tooltip(ui.ctx())).clicked() {
+                chosen = Some(Command::UseTool(tool));
+            }
+        }
+        orientation(state, ui).or(chosen)
+    });
+    state.requests.extend(chosen.inner.map(Request::Run));
+}
+
+/// The menu of orientations; its button names the one in use.
+fn orientation(state: &EditorState, ui: &mut Ui) -> Option<Command> {
+    let short: String = state.view.orientation.label().chars().take(2).collect();
+    ui.spacing_mut().button_padding.x = 2.0;
+    let opener = Button::new(RichText::new(short).size(12.0).color(theme::WEAK));
+    let opener = opener.min_size(BUTTON).frame_when_inactive(false);
+    let (button, menu) = egui::containers::menu::MenuButton::from_button(opener).ui(ui, |ui| {
+        ui.spacing_mut().button_padding.x = 8.0;
+        ui.set_min_width(190.0);
+        menu_entries(ui, state, Menu::Orientation)
+    });
+    ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Orientation"));
+    button.on_hover_text(format!("Axes of the tools: {}", state.view.orientation.label().to_lowercase()));
+    menu.and_then(|menu| menu.inner)
+}
