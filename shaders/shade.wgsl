@@ -29,6 +29,9 @@
 #end
 
 #include "light/material.wgsl"
+#if COPIES
+#include "copy/look.wgsl"
+#end
 #include "generated/shares.wgsl"
 #include "light/lighting.wgsl"
 #include "light/display.wgsl"
@@ -74,7 +77,15 @@ fn shade_pixel(pixel: vec2u) -> vec4f {
         mixture_bend = vec3f(0.0);
 #end
         let stored = textureLoad(material_target, pixel, 0);
-        var material = mixture_material(select(stored, vec4u(0u), is_mesh));
+        var mixture = select(stored, vec4u(0u), is_mesh);
+#if COPIES
+        let look = look_of_pixel(pixel, visibility);
+        mixture = look_mixture(look, mixture);
+#end
+        var material = mixture_material(mixture);
+#if COPIES
+        material = look_varied(material, look);
+#end
         var open = 1.0;
         if is_mesh {
             let surface = mesh_encoded_surface(stored);

@@ -6,6 +6,7 @@
 #include "common/subtiles.wgsl"
 #include "common/ray.wgsl"
 #include "generated/surface.wgsl"
+#include "generated/surface_seen.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_2d<f32>;
 @group(2) @binding(1) var visibility_target: texture_2d<u32>;
@@ -16,6 +17,15 @@
 @group(2) @binding(5) var<storage, read> subtiles: array<Subtile>;
 // RAY_COUNTS words per list.
 @group(2) @binding(6) var<storage, read> ray_counts: array<u32>;
+
+// The surface that a pixel shows.
+struct SeenSurface {
+    surface: Surface,
+    // Gradient in the world, of any length.
+    gradient: vec3f,
+    // Length of the field's own gradient.
+    size: f32,
+}
 
 @compute @workgroup_size(8, 8)
 fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) lane: u32) {
@@ -28,14 +38,13 @@ fn surface_pass(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     if RETURNS_EARLY && !seen {
         return;
     }
-    let ray = ray_through(component, pixel);
-    let surface = surface_entered(ray, textureLoad(depth_target, pixel, 0).x, seen);
-    let size = length(surface.gradient);
-    let normal = select(-ray.direction, surface.gradient / max(size, 1e-30), size > 0.0);
+    let found = surface_seen(component, pixel, textureLoad(depth_target, pixel, 0).x, seen);
+    let size = length(found.gradient);
+    let normal = select(-view_direction(pixel), found.gradient / max(size, 1e-30), size > 0.0);
     if seen {
-        textureStore(normal_target, pixel, vec4f(normal, size));
-        textureStore(material_target, pixel, mixture_encoded(surface.materials));
-        textureStore(leaf_target, pixel, vec4u(surface.leaf));
+        textureStore(normal_target, pixel, vec4f(normal, found.size));
+        textureStore(material_target, pixel, mixture_encoded(found.surface.materials));
+        textureStore(leaf_target, pixel, vec4u(found.surface.leaf));
     }
 }
 

@@ -8,6 +8,7 @@
 #include "generated/value.wgsl"
 #include "common/bounds.wgsl"
 #include "common/march.wgsl"
+#include "generated/trace_march.wgsl"
 #include "common/counts.wgsl"
 
 @group(2) @binding(0) var depth_target: texture_storage_2d<r32float, read_write>;
@@ -28,6 +29,16 @@
 @group(2) @binding(5) var<storage, read_write> march_counts: array<atomic<u32>>;
 
 const MARCH_ENDED: f32 = -1.0;
+
+// What a ray has found.
+struct Traced {
+    // Of the hit; NEVER without one.
+    t: f32,
+    // Where the march resumes if it has not ended.
+    resume: f32,
+    ended: bool,
+    evaluations: u32,
+}
 
 var<workgroup> hiz: array<atomic<u32>, 4>;
 // Whether a ray of the subtile has a hit, or is unfinished.
@@ -52,35 +63,21 @@ fn trace(
     let component = subject;
     field_begin(component);
     var depth = select(0.0, textureLoad(depth_target, pixel).x, exists);
-    let ray = ray_through(component, pixel);
-    let interval = bounds_interval(component, ray, 0.0);
-    let exit = min(min(interval.y, view.far), depth);
-    let passed = select(subtile.start, subtile_start(subtile, lane), VERIFIED_OVERSTEP);
-    let entry = bounds_half_space_entry(component, ray);
-    var start = max(max(interval.x, view.near), max(passed, entry));
-    if dispatch.relaunch > 0u {
-        start = textureLoad(march_target, pixel).x;
-        start = select(start, NEVER, start == MARCH_ENDED);
-    }
-    let steps = select(0u, dispatch.max_steps, exists && start <= exit);
-    // For a half space the angle of entry is known, for others the descent that the cone measured.
-    let known_descent = select(select(0.0, subtile.descent, VERIFIED_OVERSTEP), -dot(component.half_space.xyz, ray.direction), start == entry);
-    let descent = select(0.0, known_descent, dispatch.relaunch == 0u);
-    let marched = march_along(component, ray, start, exit, descent, steps);
+    let traced = trace_march(component, pixel, subtile, lane, depth, exists);
     if exists {
         // The last step may have ended behind the far limit.
-        let is_nearer = marched.hit && marched.t < min(depth, view.far);
-        if is_nearer || !marched.ended {
+        let is_nearer = traced.t < min(depth, view.far);
+        if is_nearer || !traced.ended {
             atomicOr(&has_hits[subtile_of(lane)], 1u);
         }
         if is_nearer {
-            depth = marched.t;
+            depth = traced.t;
             textureStore(depth_target, pixel, vec4f(depth));
             textureStore(visibility_target, pixel, vec4u(dispatch.component));
         }
-        trace_leave(pixel, marched);
+        trace_leave(pixel, traced);
         if COUNTING {
-            trace_count(pixel, marched.evaluations);
+            trace_count(pixel, traced.evaluations);
         }
     }
     if dispatch.compacted == 1u {
@@ -103,17 +100,17 @@ fn trace(
 }
 
 // Leaves an unfinished march to the next relaunch, or counts it after the last one.
-fn trace_leave(pixel: vec2u, marched: March) {
+fn trace_leave(pixel: vec2u, traced: Traced) {
     if dispatch.last_relaunch == 1u {
-        if !marched.ended {
+        if !traced.ended {
             atomicAdd(&march_counts[dispatch.component * COMPONENT_COUNTS], 1u);
         }
         return;
     }
     if dispatch.relaunch > 0u {
-        textureStore(march_target, pixel, vec4f(select(marched.t, MARCH_ENDED, marched.ended)));
-    } else if !marched.ended {
-        textureStore(march_target, pixel, vec4f(marched.t));
+        textureStore(march_target, pixel, vec4f(select(traced.resume, MARCH_ENDED, traced.ended)));
+    } else if !traced.ended {
+        textureStore(march_target, pixel, vec4f(traced.resume));
         let at = atomicAdd(&rays[dispatch.list], 1u);
         atomicMax(&ray_counts[dispatch.list * RAY_COUNTS], at / 64u + 1u);
         atomicStore(&rays[dispatch.rays + at], pixel.x | (pixel.y << 16u));

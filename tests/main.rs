@@ -9,6 +9,7 @@ mod cases;
 mod cli;
 mod contract;
 mod copies;
+mod copies_pictures;
 mod counts;
 mod debug_view;
 mod documents;

@@ -53,7 +53,12 @@ fn sources() -> Vec<(&'static str, String)> {
     let plain = passes().flat_map(|pass| all.each_ref().map(|evaluator| (pass, text(pass, evaluator))));
     let meshes = assemble_with("shadow.wgsl", &all[1], Options::default(), &["MESH_RAYS"]);
     let meshes = meshes.unwrap_or_else(|error| panic!("{error}"));
-    plain.chain([("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)]).collect()
+    let with_copies = Options { copies: true, ..Options::default() };
+    let of_copies = ["copy/cone.wgsl", "trace.wgsl", "surface.wgsl"].into_iter().flat_map(|pass| {
+        let text = |evaluator| assemble(pass, evaluator, with_copies).unwrap_or_else(|error| panic!("{error}"));
+        all.each_ref().map(|evaluator| (pass, text(evaluator)))
+    });
+    plain.chain(of_copies).chain([("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)]).collect()
 }
 
 /// The pass `shade` for scenes with textures.
@@ -226,7 +231,8 @@ fn dispatch_params() -> Layout {
             first_subtile,
             compacted,
             rays,
-            hits
+            hits,
+            max_cells
         }
     )
 }
@@ -307,7 +313,8 @@ fn rust_and_wgsl_agree_about_every_struct() {
                 tapes,
                 ray_origin_depth,
                 flush,
-                flush_near
+                flush_near,
+                kind
             }
         ),
         view(),

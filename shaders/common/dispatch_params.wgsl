@@ -22,4 +22,6 @@ struct DispatchParams {
     rays: u32,
     // Start of the lists of subtiles with hits in `subtiles`.
     hits: u32,
+    // Cells of an instancer that an invocation may look at in this dispatch.
+    max_cells: u32,
 }

@@ -35,6 +35,8 @@ struct Component {
     flush: f32,
     // The same at the eye. It grows with the distance from there, up to `flush`.
     flush_near: f32,
+    // Of the type of an instancer: its index among the types.
+    kind: u32,
 }
 
 const GROUP: u32 = 0xffffu;

@@ -107,7 +107,8 @@ fn copy_basis(axis: vec3f) -> mat2x3f {
 // The motion by all dynamics, in order, of the copy of an absolute cell.
 fn copy_motion(cell: vec3i, position: vec3f) -> CopyMotion {
     var motion = CopyMotion(vec3f(0.0), 1.0, vec4f(0.0, 0.0, 0.0, 1.0), 0.0, 1.0);
-    for (var i = 0u; i < instancer.dynamic_count; i += 1u) {
+    let dynamics = instancer_count(instancer.dynamic_count, position.x);
+    for (var i = 0u; i < dynamics; i += 1u) {
         let dynamic = instancer.dynamics[i];
         let randoms = copy_randoms(instancer.seed, cell, dynamic.channel);
         let turns = dynamic.fraction + dynamic.b.x * randoms.x;

@@ -93,6 +93,15 @@ struct Instancer {
 // cosine of the slope of the ground, rotation, id.
 @group(1) @binding(6) var<storage, read> places: array<vec4f>;
 
+// A number of the instancer that ends a loop or decides. lavapipe compiles a pipeline anew for each
+// value of such a uniform, and writes beyond its memory if there are several. It leaves those alone
+// that depend on an invocation's own data, here `x`, which is never this.
+const INSTANCER_NOWHERE: f32 = 3.3e38;
+
+fn instancer_count(count: u32, x: f32) -> u32 {
+    return select(count, 0u, x == INSTANCER_NOWHERE);
+}
+
 // A point of the instancer's space, relative to the anchor's place, from one relative to the eye.
 fn instancer_local_point(p: vec3f) -> vec3f {
     let q = vec4f(p, 1.0);

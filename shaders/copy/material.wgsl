@@ -17,6 +17,16 @@ struct CopyMaterial {
     emission: f32,
 }
 
+// The four words of a pixel for `shade`.
+fn copied_material(material: CopyMaterial) -> vec4u {
+    return vec4u(
+        (material.replaced & 0xffffu) | (pack2x16float(vec2f(0.0, material.roughness)) & 0xffff0000u),
+        bitcast<u32>(material.hue),
+        pack2x16float(vec2f(material.saturation, material.value)),
+        bitcast<u32>(material.emission),
+    );
+}
+
 fn copy_material(copy: Copy) -> CopyMaterial {
     let color = 2.0 * copy_randoms(instancer.seed, copy.cell, CHANNEL_COLOR) - 1.0;
     let surface = copy_randoms(instancer.seed, copy.cell, CHANNEL_SURFACE);

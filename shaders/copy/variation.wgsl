@@ -14,6 +14,8 @@ struct Copy {
     // Size along its own axes.
     scale: vec3f,
     emission: f32,
+    // Cell relative to the anchor, or the index of the place: see `copy_at`.
+    place: vec3i,
 }
 
 // Kind of a copy that does not exist.
@@ -61,21 +63,23 @@ fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
 fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
     let randoms = copy_randoms(instancer.seed, cell, CHANNEL_CHOICE);
     var share = instancer.probability;
-    for (var i = 0u; i < instancer.mask_count; i += 1u) {
+    let masks = instancer_count(instancer.mask_count, base.x);
+    for (var i = 0u; i < masks; i += 1u) {
         share *= copy_mask(instancer.masks[i], base, up);
     }
     if randoms.x >= share {
         return NO_COPY;
     }
     var kind = 0u;
-    while kind + 1u < instancer.type_count && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
+    let types = instancer_count(instancer.type_count, base.x);
+    while kind + 1u < types && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
         kind += 1u;
     }
     return kind;
 }
 
 // A copy that exists, moved and turned from its base.
-fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
+fn copy_placed(at: vec3i, cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f) -> Copy {
     let seed = instancer.seed;
     let loose = (copy_randoms(seed, cell, CHANNEL_PLACE) - 0.5) * jitter;
     let offset = mix(instancer.offset_min, instancer.offset_max, copy_randoms(seed, cell, CHANNEL_OFFSET));
@@ -100,6 +104,7 @@ fn copy_placed(cell: vec3i, kind: u32, base: vec3f, turned: vec4f, jitter: vec3f
         quaternion_product(motion.rotation, quaternion_product(turned, own)),
         scale,
         motion.emission,
+        at,
     );
 }
 
@@ -107,7 +112,7 @@ const QUATERNION_NONE: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
 // A copy that does not exist.
 fn copy_none() -> Copy {
-    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0);
+    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0, vec3i(0));
 }
 
 // Place of a cell, both relative to the anchor.
@@ -119,27 +124,35 @@ fn copy_cell_place(relative: vec3i) -> vec3f {
     return place;
 }
 
-// The copy of a cell, relative to the anchor, if it is of this type; else one of kind NO_COPY.
-fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {
-    let cell = relative + instancer.anchor;
-    let base = copy_cell_place(relative);
-    if copy_kind(cell, base, 1.0) != kind {
+// The copy of a cell relative to the anchor, or at a place of the list, if it is of this type; else
+// one of kind NO_COPY.
+fn copy_at(at: vec3i, kind: u32) -> Copy {
+    var cell = at + instancer.anchor;
+    var base = copy_cell_place(at);
+    var turned = QUATERNION_NONE;
+    var jitter = instancer.jitter;
+    // Height of the unit normal of the ground.
+    var up = 1.0;
+    if instancer_count(instancer.tree_count, base.x) > 0u {
+        let row = instancer.first_place + 3u * u32(at.x);
+        cell = bitcast<vec3i>(places[row + 2u].xyz);
+        base = places[row].xyz;
+        up = places[row].w;
+        turned = places[row + 1u];
+        jitter = vec3f(0.0);
+    }
+    if copy_kind(cell, base, up) != kind {
         return copy_none();
     }
-    return copy_placed(cell, kind, base, QUATERNION_NONE, instancer.jitter);
+    return copy_placed(at, cell, kind, base, turned, jitter);
 }
 
-// The copy at a place of the list, if it is of this type; else one of kind NO_COPY.
+fn copy_of_cell(relative: vec3i, kind: u32) -> Copy {
+    return copy_at(relative, kind);
+}
+
 fn copy_of_place(place: u32, kind: u32) -> Copy {
-    let row = instancer.first_place + 3u * place;
-    let cell = bitcast<vec3i>(places[row + 2u].xyz);
-    let rotation = places[row + 1u];
-    // The cosine of the slope of the ground is in w.
-    let base = places[row];
-    if copy_kind(cell, base.xyz, base.w) != kind {
-        return copy_none();
-    }
-    return copy_placed(cell, kind, base.xyz, rotation, vec3f(0.0));
+    return copy_at(vec3i(i32(place), 0, 0), kind);
 }
 
 // Bounding sphere of a copy: center, relative to the anchor's place, and radius.

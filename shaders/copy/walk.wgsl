@@ -2,31 +2,7 @@
 // `src/field/copies/walk.rs`.
 
 #include "copy/space.wgsl"
-
-struct CopyWalk {
-    // In the instancer's space, relative to the anchor's place. The parameter is the distance in
-    // the world, so the direction need not have unit length.
-    origin: vec3f,
-    near: f32,
-    direction: vec3f,
-    // Radius of the cone at parameter 1.
-    spread: f32,
-    // The axis along which slabs are walked, the next slab, and how many are left.
-    axis: u32,
-    slab: i32,
-    left: i32,
-    // Cells that may be looked at, so that no invocation runs on for ever; `exhausted` tells that
-    // there were more, from `entry` on.
-    budget: u32,
-    // The next cell of the current slab, and the range of its cells.
-    cell: vec3i,
-    exhausted: bool,
-    low: vec3i,
-    entry: f32,
-    high: vec3i,
-    // Open nodes of the tree; NO_OPEN ends a walk through a list.
-    open: u32,
-}
+#include "copy/walk_list.wgsl"
 
 // A copy whose bounding sphere the cone meets, and where.
 struct CopyVisit {
@@ -34,9 +10,6 @@ struct CopyVisit {
     entry: f32,
     exit: f32,
 }
-
-const WALK_DEPTH: u32 = 32u;
-var<private> walk_stack: array<u32, WALK_DEPTH>;
 
 // How far a copy may be off the place of its cell along an axis, with the shift of rows.
 fn walk_reach(axis: u32) -> f32 {
@@ -94,7 +67,7 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     if any(outside) || walk.near > end {
         return walk;
     }
-    if instancer.tree_count > 0u {
+    if instancer_count(instancer.tree_count, direction.x) > 0u {
         walk.open = 1u;
         walk_stack[0] = 0u;
         return walk;
@@ -109,10 +82,23 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
     return walk;
 }
 
+// Moves a walk that has begun on to the slab of a cell. A walk through a list stays at its beginning.
+fn copy_walk_skip(walk: ptr<function, CopyWalk>, cell: vec3i) {
+    let slab = cell[(*walk).axis];
+    (*walk).left = select((*walk).left - abs(slab - (*walk).slab), 0, (*walk).left <= 0);
+    (*walk).slab = slab;
+}
+
+// The cell that `copy_walk_skip` needs for an exhausted walk to go on.
+fn copy_walk_slab(walk: ptr<function, CopyWalk>) -> vec3i {
+    let is_between = any((*walk).cell > (*walk).high);
+    return select((*walk).low, vec3i((*walk).slab), is_between);
+}
+
 // The next copy of this kind whose bounding sphere the cone meets before `far`; false if there is
 // none.
 fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr<function, CopyVisit>) -> bool {
-    let is_list = instancer.tree_count > 0u;
+    let is_list = instancer_count(instancer.tree_count, (*walk).direction.x) > 0u;
     loop {
         if select((*walk).left <= 0 && any((*walk).cell > (*walk).high), (*walk).open == 0u, is_list) {
             return false;
@@ -122,17 +108,21 @@ fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr
             return false;
         }
         (*walk).budget -= 1u;
-        var copy = copy_none();
+        var looks = false;
         if is_list {
-            copy = walk_step_list(walk, kind, far);
+            looks = walk_step_list(walk, far);
         } else if any((*walk).cell > (*walk).high) {
             if walk_next_slab(walk, far) {
                 return false;
             }
             continue;
         } else {
-            copy = walk_step_cell(walk, kind);
+            looks = walk_step_cell(walk);
         }
+        if !looks {
+            continue;
+        }
+        let copy = copy_at((*walk).at, kind);
         if copy.kind != NO_COPY && walk_meets(walk, copy, far, found) {
             return true;
         }
@@ -161,8 +151,8 @@ fn walk_next_slab(walk: ptr<function, CopyWalk>, far: f32) -> bool {
     return false;
 }
 
-// The copy of the next cell of the slab, if it is of this kind and its reach meets the cone.
-fn walk_step_cell(walk: ptr<function, CopyWalk>, kind: u32) -> Copy {
+// Moves on to the next cell of the slab; true if its reach meets the cone.
+fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let cell = (*walk).cell;
     let low = (*walk).low;
     let high = (*walk).high;
@@ -177,43 +167,8 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>, kind: u32) -> Copy {
     let nearest = dot(away, direction) / dot(direction, direction);
     let miss = away - direction * nearest;
     let reach = instancer.reach + (*walk).spread * max(nearest + instancer.reach * inverseSqrt(dot(direction, direction)), 0.0);
-    if dot(miss, miss) > reach * reach {
-        return copy_none();
-    }
-    return copy_of_cell(cell, kind);
-}
-
-// The copy of the next node of the tree, if that is a leaf that the cone meets.
-fn walk_step_list(walk: ptr<function, CopyWalk>, kind: u32, far: f32) -> Copy {
-    (*walk).open -= 1u;
-    let index = walk_stack[(*walk).open];
-    let row = instancer.first_row + 2u * index;
-    let low = places[row];
-    let high = places[row + 1u];
-    let direction = (*walk).direction;
-    let origin = (*walk).origin;
-    let wide = (*walk).spread * far;
-    let is_flat = abs(direction) < vec3f(1e-12);
-    let safe = select(direction, vec3f(1e-12), is_flat);
-    let a = (low.xyz - wide - origin) / safe;
-    let b = (high.xyz + wide - origin) / safe;
-    let first = min(a, b);
-    let last = max(a, b);
-    let entry = max((*walk).near, max(first.x, max(first.y, first.z)));
-    let exit = min(far, min(last.x, min(last.y, last.z)));
-    if entry > exit {
-        return copy_none();
-    }
-    let link = bitcast<u32>(low.w);
-    let axis = bitcast<u32>(high.w);
-    if axis == 3u {
-        return copy_of_place(link, kind);
-    }
-    let is_backward = direction[axis] < 0.0;
-    walk_stack[(*walk).open] = select(link, index + 1u, is_backward);
-    walk_stack[(*walk).open + 1u] = select(index + 1u, link, is_backward);
-    (*walk).open += 2u;
-    return copy_none();
+    (*walk).at = cell;
+    return dot(miss, miss) <= reach * reach;
 }
 
 // Whether the cone meets the bounding sphere of a copy before `far`.

@@ -37,8 +37,8 @@ impl Standpoint {
     /// The standpoint for what `camera` sees of the component in a picture of `size` pixels.
     pub fn new(flat: &FlatScene, component: &Component, camera: &Camera, size: [u32; 2]) -> Self {
         if component.instanced.is_some() {
-            // Numbers of a copy are relative to the copy, wherever the eye is.
-            return Self::at_origin();
+            // Numbers of a copy are relative to the copy, wherever the eye is; rays count from the copy's origin.
+            return Self { eye: -component.origin, ..Self::default() };
         }
         let from = camera.position - component.origin;
         let footprint = camera.footprint(size[1].into());

@@ -108,7 +108,7 @@ impl Renderer {
         let renderer = Self {
             passes: Passes::new(building)?,
             pipelines,
-            scene: SceneResources::new(device, layouts.scene.clone()),
+            scene: SceneResources::new(device, &layouts),
             resources: FrameResources::new(device, layouts, options.counting),
             tape_cache: TapeCache::default(),
             strategy: EvalStrategy::Auto,
@@ -256,10 +256,10 @@ impl Renderer {
         let _span = tracing::debug_span!("upload").entered();
         self.gpu.check()?;
         let (Gpu { device, queue, .. }, materials) = (&self.gpu, mesh_materials::MeshMaterials::new(flat, meshes));
-        self.resources.resize(device, slot, size, &overlay);
+        self.resources.resize(device, slot, size, &overlay, !flat.instancers.is_empty());
         let standpoints = Standpoints::new(flat, camera, size);
         let (scene_is_new, template_rows) =
-            self.scene.upload(&self.gpu, flat, &standpoints, &chosen.trees, &chosen.keys);
+            self.scene.upload(&self.gpu, flat, (camera.position, &standpoints), &chosen.trees, &chosen.keys);
         let parts = (&mut self.passes, &self.scene, &mut self.resources);
         let seen = SeenScene { flat, meshes, camera, size, standpoints: &standpoints };
         let shadows_are_new = shadows::upload(&self.gpu, parts, seen, (&chosen, shadows), Self::options(&self.gpu))?;

@@ -69,6 +69,8 @@ pub struct Options {
     pub image_lit: bool,
     /// Whether light is shadowed or occluded.
     pub shadowed: bool,
+    /// Whether the components are types of instancers.
+    pub copies: bool,
 }
 
 impl Default for Options {
@@ -83,6 +85,7 @@ impl Default for Options {
             area_lights: false,
             image_lit: false,
             shadowed: false,
+            copies: false,
         }
     }
 }

@@ -11,6 +11,7 @@ pub(crate) mod ground;
 mod hash;
 pub(crate) mod instancer;
 pub(crate) mod list;
+mod look;
 pub(crate) mod moved_scene;
 mod noise;
 mod trace;
@@ -22,6 +23,7 @@ pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gr
 pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
 pub use hash::{Channel, copy_hash, copy_random, copy_randoms};
 pub use instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, MAX_PLACES, Place, PlaceList, Placement};
+pub use look::{look_at, look_color, look_mixture, look_varied};
 pub use noise::{Coordinate, copy_curl, copy_noise_1, copy_noise_2};
 pub use trace::{CopyRay, copy_ray, visit_copies};
 pub use variation::{Copy, CopyMaterial, copy_mask, copy_material, copy_of_cell, copy_of_place};

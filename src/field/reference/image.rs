@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::tolerance::{GRAZING_ANGLE, WRONG_DEPTH};
 use super::trace::{March, TraceError, Tracer};
-use crate::copies::world_surface;
+use crate::copies::{look_at, look_mixture, look_varied, world_surface};
 use crate::coverage::PixelSample;
 use crate::eval::SurfaceMaterial;
 use crate::light::arriving::{Arriving, SeenPoint};
@@ -21,6 +21,7 @@ use crate::light::texture::{textured_mixture, textured_point};
 use crate::lights::{GpuLight, gpu_lights};
 use crate::mesh_material::mesh_material;
 use crate::mesh_rays::{Meshes, trace_meshes_of_pixel};
+use crate::mixture::mixture_material;
 use crate::scene_eval::SceneEvaluator;
 use crate::{BACKGROUND_DEPTH, FlatScene, GBuffer, GpuPlacedTextures, HitTarget, MESH_BIT, NO_LEAF, gpu_textures};
 use isolith_geometry::{Camera, Ray};
@@ -192,13 +193,19 @@ impl View<'_> {
             let point = world_surface(self.flat, component, ray.at(hit.t));
             tied = point.tied;
             let normal = point.gradient.try_normalize().unwrap_or(-ray.direction);
+            let look = look_at(self.flat, component, ray.at(hit.t));
+            let mixture = look.map_or(point.materials, |look| look_mixture(&look, point.materials));
             let mut material = point.material;
+            if look.is_some_and(|look| look.replaced.is_some()) {
+                material = mixture_material(&mixture, &self.flat.materials);
+            }
             if !self.textures.is_empty() {
                 let at = textured_point(ray.direction, hit.t, normal, footprint);
                 let FlatScene { materials, textures, .. } = self.flat;
-                let (textured, bent) = textured_mixture(&point.materials, materials, textures, &self.textures, &at);
+                let (textured, bent) = textured_mixture(&mixture, materials, textures, &self.textures, &at);
                 (material, shading_normal) = (textured, Some(bent));
             }
+            material = look.map_or(material, |look| look_varied(material, &look));
             (hit.t, hit.leaf, normal, material, 1.0)
         } else if let Some((index, hit)) = mesh {
             let (normal, material, occlusion) = self.mesh_surface(index, &hit, ray.direction);

@@ -1,4 +1,5 @@
 //! The frame: its plan of dispatches, and their cost.
 
+pub mod copies_cost;
 pub mod cost_model;
 pub mod plan;

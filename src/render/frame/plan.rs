@@ -8,6 +8,7 @@ use std::time::Duration;
 use bytemuck::Zeroable as _;
 use glam::{DVec2, DVec3, UVec2};
 
+use crate::frame::copies_cost::{COPIES_OF_A_RAY, CopyLimits, LEAST_RELAUNCHES, walk_leaves};
 use crate::frame::cost_model::{Cost, CostModel};
 use crate::recipe::{Extent, Pass};
 use crate::renderer::evaluation::EvaluationCost;
@@ -141,7 +142,7 @@ pub fn plan(
         .filter_map(|index| {
             let component = &flat.components[index];
             let rect = Rect::around(component, &projection, size)?;
-            Some((index, rect, Marching::of(component, evaluations[index], cost_model)))
+            Some((index, rect, Marching::of(flat, component, evaluations[index], cost_model)))
         })
         .collect();
     let dispatches = |(_, rect, marching): &(usize, Rect, Marching)| marching.dispatches(rect);
@@ -209,23 +210,29 @@ struct Marching {
     steps: u32,
     /// Number of successive dispatches after which no ray can be left.
     relaunches: u32,
+    /// Cells of an instancer that a ray looks at in one dispatch.
+    cells: u32,
     /// Cost of a pixel, and cost limit of one dispatch.
     per_pixel: f64,
     most: f64,
 }
 
 impl Marching {
-    fn of(component: &Component, evaluation: EvaluationCost, cost_model: &CostModel) -> Self {
+    fn of(flat: &FlatScene, component: &Component, evaluation: EvaluationCost, cost_model: &CostModel) -> Self {
+        let instancer = component.instanced.map(|of| &flat.instancers[of.instancer as usize]);
         let EvaluationCost { straight, iterations, leaves } = evaluation;
         let (max_steps, at_once) = if component.world_bounds().is_finite() {
             (MAX_STEPS, MAX_STEPS)
         } else {
             (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED)
         };
-        let steps = (MAX_ITERATIONS / iterations).clamp(1, at_once);
-        let per_pixel = leaves * TRACE_EVALUATIONS;
+        let limits = instancer.map(CopyLimits::of);
+        let steps = (limits.map_or(MAX_ITERATIONS, |of| of.iterations) / iterations).clamp(1, at_once);
+        let walk = instancer.map_or(0.0, walk_leaves);
+        let per_pixel = leaves * TRACE_EVALUATIONS * instancer.map_or(1.0, |_| COPIES_OF_A_RAY) + walk;
+        let (cells, least) = limits.map_or((0, 1), |of| (of.cells, LEAST_RELAUNCHES));
         let most = cost_model.cost_in(DISPATCH_TARGET, straight).min(per_pixel * MOST_PIXELS);
-        Self { evaluation, steps, relaunches: max_steps.div_ceil(steps), per_pixel, most }
+        Self { evaluation, steps, relaunches: max_steps.div_ceil(steps).max(least), cells, per_pixel, most }
     }
 
     /// Number of dispatches of a component whose image lies within `rect`: for each part its cones, relaunches and
@@ -281,7 +288,11 @@ impl FramePlan {
         let mut parts = Vec::new();
         rect.cut(marching.per_pixel, marching.most, |rect| {
             let place = DispatchParams { list: self.lists, first_subtile: self.subtiles, ..rect.params(index as u32) };
-            parts.push(Part { rect, marching, params: DispatchParams { max_steps: marching.steps, ..place } });
+            parts.push(Part {
+                rect,
+                marching,
+                params: DispatchParams { max_steps: marching.steps, max_cells: marching.cells, ..place },
+            });
             self.lists += 1;
             self.subtiles += rect.tiles() * SUBTILES * SUBTILES;
             self.longest = self.longest.max(rect.tiles());
@@ -291,7 +302,8 @@ impl FramePlan {
 
     /// Adds the dispatches of a pass over a part.
     fn part(&mut self, pass: Pass, part: &Part) {
-        let Marching { evaluation: EvaluationCost { straight, leaves, .. }, relaunches, .. } = part.marching;
+        let Marching { evaluation: EvaluationCost { straight, .. }, relaunches, per_pixel, .. } = part.marching;
+        let leaves = per_pixel / TRACE_EVALUATIONS;
         let cost = |evaluations: f64| Cost::new(straight, part.rect.pixels() * leaves * evaluations);
         // The unfinished rays follow their count in the buffer; successive lists reuse the same place. Subtiles with
         // hits follow all other subtiles.

@@ -6,9 +6,19 @@ use wgpu::BindGroup;
 
 use super::frame_pass::{Building, FramePass};
 use crate::pipelines::field::FieldLayouts;
+use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::{Bound, RAY_COUNTS, SUBTILE_COUNTS};
 use isolith_wgsl::ShaderError;
+
+/// The first own bind group of a pass for types of instancers.
+pub fn own_of_copies(pass: Pass) -> usize {
+    match pass {
+        Pass::Trace => 2,
+        Pass::Surface => 1,
+        _ => 0,
+    }
+}
 
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;
@@ -48,7 +58,9 @@ impl FramePass for TracePass {
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
-        self.0.bind_trace(device, bound.targets, bound.resources.lists()).to_vec()
+        let (targets, lists) = (bound.targets, bound.resources.lists());
+        let of_copies = targets.copied.as_ref().map(|copied| self.0.bind_trace_copies(device, targets, lists, copied));
+        self.0.bind_trace(device, targets, lists).into_iter().chain(of_copies.into_iter().flatten()).collect()
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
@@ -59,7 +71,8 @@ impl FramePass for TracePass {
                 0 => (&resources.subtile_counts, list * SUBTILE_COUNTS),
                 _ => (&resources.ray_counts, list * RAY_COUNTS),
             };
-            let pass = recorder.component(at, compacted, |pipelines| &pipelines.trace);
+            let first = if recorder.frame.is_of_copies(dispatch) { own_of_copies(Pass::Trace) } else { 0 };
+            let pass = recorder.component(at, first + compacted, |pipelines| &pipelines.trace);
             pass.dispatch_workgroups_indirect(counts.buffer(), word as u64 * 4);
         }
     }
@@ -75,7 +88,10 @@ impl FramePass for SurfacePass {
     }
 
     fn bind(&self, device: &wgpu::Device, bound: &Bound<'_>) -> Vec<BindGroup> {
-        vec![self.0.bind_surface(device, bound.targets, bound.resources.lists())]
+        let (targets, lists) = (bound.targets, bound.resources.lists());
+        let of_copies =
+            targets.copied.as_ref().map(|copied| self.0.bind_surface_copies(device, targets, lists, copied));
+        std::iter::once(self.0.bind_surface(device, targets, lists)).chain(of_copies).collect()
     }
 
     fn record(&self, recorder: &mut Recorder<'_>, dispatches: Range<usize>) {
@@ -83,7 +99,8 @@ impl FramePass for SurfacePass {
             let dispatch = &recorder.frame.plan.dispatches[at];
             let list = dispatch.params.list as usize;
             let counts = recorder.resources.ray_counts.buffer();
-            let pass = recorder.component(at, 0, |pipelines| &pipelines.surface);
+            let own = if recorder.frame.is_of_copies(dispatch) { own_of_copies(Pass::Surface) } else { 0 };
+            let pass = recorder.component(at, own, |pipelines| &pipelines.surface);
             pass.dispatch_workgroups_indirect(counts, (list * RAY_COUNTS + 3) as u64 * 4);
         }
     }

@@ -111,6 +111,9 @@ impl FramePass for MeshPass {
         let (targets, view) = (recorder.targets, recorder.view());
         let (encoder, stamps) = recorder.drawing();
         resources.clear(encoder, lists, targets.size);
+        if let Some(copied) = &targets.copied {
+            encoder.clear_buffer(copied, 0, None);
+        }
         self.draw(encoder, targets, view, stamps);
         let [from, to] = [&targets.visibility, &targets.leaf].map(|target| target.texture.as_image_copy());
         encoder.copy_texture_to_texture(from, to, targets.visibility.texture.size());

@@ -92,6 +92,11 @@ impl FramePass for ShadePass {
             sum: sampled.map(|(sampling, accumulation)| accumulation.sum_before(sampling.index).binding()),
             textures: recorder.resources.textures(),
             shares: recorder.resources.shadows.bindings(),
+            copied: targets
+                .copied
+                .as_ref()
+                .filter(|_| frame.shade_features.copies)
+                .map(wgpu::Buffer::as_entire_binding),
         };
         let (output, target) = match sampled {
             Some((sampling, accumulation)) => (ShadeOutput::Sum, accumulation.sum(sampling.index)),

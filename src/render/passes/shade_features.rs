@@ -26,6 +26,8 @@ pub struct ShadeFeatures {
     pub image_lit: bool,
     /// Light is shadowed or occluded.
     pub shadowed: bool,
+    /// There are copies of instancers.
+    pub copies: bool,
 }
 
 impl ShadeFeatures {
@@ -38,6 +40,7 @@ impl ShadeFeatures {
             area_lights: lights.iter().any(GpuLight::has_size),
             image_lit: flat.environment_map.is_some(),
             shadowed,
+            copies: !flat.instancers.is_empty(),
         }
     }
 
@@ -46,10 +49,11 @@ impl ShadeFeatures {
     /// # Errors
     /// A shader file is missing.
     pub fn source(self) -> Result<String, ShaderError> {
-        let Self { layers, textures, area_lights, image_lit, shadowed } = self;
+        let Self { layers, textures, area_lights, image_lit, shadowed, copies } = self;
         let options = Options { layers, area_lights, image_lit, shadowed, ..Options::default() };
-        let features: &[&str] = if textures { &["TEXTURES"] } else { &[] };
-        assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, features)
+        let used = [(textures, "TEXTURES"), (copies, "COPIES")];
+        let features: Vec<&str> = used.into_iter().filter_map(|(is_used, name)| is_used.then_some(name)).collect();
+        assemble_with(Pass::Shade.file(), &Evaluator::Interpreter(OpSet::none()), options, &features)
     }
 }
 
@@ -86,6 +90,7 @@ impl ShadeOutput {
 const SUM: u32 = 0;
 const TEXTURES: [u32; 3] = [1, 2, 3];
 const SHARES: [u32; 2] = [4, 5];
+const COPIED: u32 = 6;
 
 /// The resources of group 3.
 #[derive(Clone, Debug, Default)]
@@ -96,6 +101,8 @@ pub struct ShadeExtras<'a> {
     pub textures: Option<TextureBindings<'a>>,
     /// Settings and shares of shadows and occlusion, if there are some.
     pub shares: Option<[BindingResource<'a>; 2]>,
+    /// Which copies the pixels show, if there are some.
+    pub copied: Option<BindingResource<'a>>,
 }
 
 impl ShadeFeatures {
@@ -105,7 +112,8 @@ impl ShadeFeatures {
         let of_textures = [read_storage(), read_storage(), read_only_texture(TEXELS_FORMAT)];
         let textures = TEXTURES.into_iter().zip(of_textures).filter(|_| self.textures);
         let shares = SHARES.into_iter().zip([uniform(false), read_storage()]).filter(|_| self.shadowed);
-        let all = sum.into_iter().chain(textures).chain(shares);
+        let copied = self.copies.then(|| (COPIED, read_storage()));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
         let entries: Vec<_> = all.map(|(at, ty)| entry(at, ShaderStages::FRAGMENT, ty)).collect();
         layout(device, "shade extras", &entries)
     }
@@ -118,7 +126,8 @@ impl ShadeExtras<'_> {
         let textures = self.textures.map(|TextureBindings { placed, sets, texels }| [placed, sets, texels]);
         let textures = textures.into_iter().flat_map(|resources| TEXTURES.into_iter().zip(resources));
         let shares = self.shares.into_iter().flat_map(|resources| SHARES.into_iter().zip(resources));
-        let all = sum.into_iter().chain(textures).chain(shares);
+        let copied = self.copied.map(|copied| (COPIED, copied));
+        let all = sum.into_iter().chain(textures).chain(shares).chain(copied);
         let entries: Vec<_> = all.map(|(binding, resource)| BindGroupEntry { binding, resource }).collect();
         device.create_bind_group(&BindGroupDescriptor { label: Some("shade extras"), layout, entries: &entries })
     }

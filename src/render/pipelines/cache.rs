@@ -41,7 +41,14 @@ const MAX_INTERPRETERS: usize = 8;
 #[derive(Debug)]
 struct InterpreterPipelines {
     ops: OpSet,
-    entries: Arc<FieldPipelines>,
+    /// For components, and for types of instancers: each is built when needed.
+    walked: [WalkedPipelines; 2],
+}
+
+/// Pipelines that walk through entries or tapes.
+#[derive(Debug, Default)]
+struct WalkedPipelines {
+    entries: Option<Arc<FieldPipelines>>,
     tape: Option<Arc<FieldPipelines>>,
     /// The tape evaluator for components with modifiers.
     tape_modified: Option<Arc<FieldPipelines>>,
@@ -89,11 +96,13 @@ pub enum EvalMode {
     StraightLine,
 }
 
+/// A pipeline to build: its key, its evaluator, and whether it is for types of instancers.
+type PipelineOrder = (u128, Evaluator, bool);
 type FinishedBuild = (u128, Result<FieldPipelines, String>);
 
 #[derive(Debug)]
 struct CompileWorker {
-    orders: Option<Sender<(u128, Evaluator)>>,
+    orders: Option<Sender<PipelineOrder>>,
     finished: Receiver<FinishedBuild>,
     waiting: usize,
     is_unwanted: Arc<AtomicBool>,
@@ -106,8 +115,9 @@ impl PipelineCache {
         let field = FieldLayouts::new(&gpu.device);
         let ops = OpSet::none();
         let evaluator = Evaluator::Interpreter(ops.clone());
-        let entries = Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?);
-        let interpreters = vec![InterpreterPipelines { ops, entries, tape: None, tape_modified: None }];
+        let entries = Some(Arc::new(field.build(&gpu.device, layouts, &evaluator, options)?));
+        let plain = WalkedPipelines { entries, ..WalkedPipelines::default() };
+        let interpreters = vec![InterpreterPipelines { ops, walked: [plain, WalkedPipelines::default()] }];
         let shared = Arc::new(CompileContext { gpu: gpu.clone(), layouts: layouts.clone(), field, options });
         Ok(Self {
             shared,
@@ -201,23 +211,32 @@ impl PipelineCache {
         let mut choices = vec![None; flat.components.len()];
         for (index, key) in order.iter().filter_map(|i| Some((*i, keys[*i]?))) {
             let component = &flat.components[index];
-            choices[index] = self.specialized(key.bits, strategy, || key.evaluator(flat, component, strategy));
+            choices[index] = self.specialized(key, strategy, || key.evaluator(flat, component, strategy));
         }
         let by_tape = |i: usize| strategy != EvalStrategy::Interpreter && has_tapes.get(i) == Some(&true);
         let open: Vec<usize> = (0..choices.len()).filter(|i| choices[*i].is_none()).collect();
-        let needs_tapes =
-            |modified: bool| open.iter().any(|i| by_tape(*i) && flat.components[*i].is_modified() == modified);
+        let is_of_copies = |i: usize| flat.components[i].instanced.is_some();
         if !open.is_empty() {
-            self.choose_interpreter(flat, [false, true].map(needs_tapes))?;
+            let needs = |copies: bool| {
+                let of_kind = || open.iter().filter(|i| is_of_copies(**i) == copies);
+                let tapes =
+                    |modified: bool| of_kind().any(|i| by_tape(*i) && flat.components[*i].is_modified() == modified);
+                [of_kind().next().is_some(), tapes(false), tapes(true)]
+            };
+            self.choose_interpreter(flat, [false, true].map(needs))?;
         }
         self.forget_oldest();
         let interpreter = &self.interpreters[0];
-        let tape = |i: usize| {
-            if flat.components[i].is_modified() { &interpreter.tape_modified } else { &interpreter.tape }
-        };
-        let walked = |i: usize| match tape(i) {
-            Some(pipelines) if by_tape(i) => PipelineChoice { pipelines: pipelines.clone(), mode: EvalMode::Tape },
-            _ => PipelineChoice { pipelines: interpreter.entries.clone(), mode: EvalMode::Interpreter },
+        let walked = |i: usize| {
+            let WalkedPipelines { entries, tape, tape_modified } = &interpreter.walked[usize::from(is_of_copies(i))];
+            let tape = if flat.components[i].is_modified() { tape_modified } else { tape };
+            match tape {
+                Some(pipelines) if by_tape(i) => PipelineChoice { pipelines: pipelines.clone(), mode: EvalMode::Tape },
+                _ => {
+                    let pipelines = entries.clone().expect("built for every open component");
+                    PipelineChoice { pipelines, mode: EvalMode::Interpreter }
+                }
+            }
         };
         let ready = |pipelines| PipelineChoice { pipelines, mode: EvalMode::StraightLine };
         Ok(choices.into_iter().enumerate().map(|(i, own)| own.map_or_else(|| walked(i), ready)).collect())
@@ -225,7 +244,7 @@ impl PipelineCache {
 
     fn specialized(
         &mut self,
-        key: u128,
+        PipelineKey { bits: key, copies, .. }: PipelineKey,
         strategy: EvalStrategy,
         evaluator: impl FnOnce() -> Option<Evaluator>,
     ) -> Option<Arc<FieldPipelines>> {
@@ -240,7 +259,7 @@ impl PipelineCache {
         }
         let evaluator = evaluator()?;
         if strategy != EvalStrategy::Auto {
-            let result = build(&self.shared, &evaluator);
+            let result = build(&self.shared, &evaluator, copies);
             self.store(key, result);
             return match &self.specialized.get(&key)?.state {
                 PipelineState::Ready(pipelines) => Some(pipelines.clone()),
@@ -253,7 +272,7 @@ impl PipelineCache {
         worker.waiting += 1;
         // If the worker has stopped, the interpreter draws everything.
         if let Some(orders) = &worker.orders {
-            let _ = orders.send((key, evaluator));
+            let _ = orders.send((key, evaluator, copies));
         }
         None
     }
@@ -271,31 +290,35 @@ impl PipelineCache {
     }
 
     /// Moves interpreter pipelines to the front that know all shapes of the scene and few others. Every scene pays for
-    /// all that its pipeline holds, because lavapipe executes every arm of a `switch`. `needs_tapes` tells whether
-    /// components without, and with, modifiers have tapes.
-    fn choose_interpreter(&mut self, flat: &FlatScene, needs_tapes: [bool; 2]) -> Result<(), ShaderError> {
+    /// all that its pipeline holds, because lavapipe executes every arm of a `switch`. `needs` tells for components, and
+    /// for types of instancers, whether there are any, and some with tapes without, and with, modifiers.
+    fn choose_interpreter(&mut self, flat: &FlatScene, needs: [[bool; 3]; 2]) -> Result<(), ShaderError> {
         let wanted = OpSet::of(flat);
         let CompileContext { gpu, layouts, field, options } = &*self.shared;
-        let build = |evaluator| field.build(&gpu.device, layouts, &evaluator, *options).map(Arc::new);
+        let build = |evaluator, copies| {
+            field.build(&gpu.device, layouts, &evaluator, Options { copies, ..*options }).map(Arc::new)
+        };
         let fits =
             |interpreter: &InterpreterPipelines| interpreter.ops.covers(&wanted) && interpreter.ops.is_near(&wanted);
         match self.interpreters.iter().position(fits) {
             Some(at) => self.interpreters[..=at].rotate_right(1),
             None => {
-                let entries = build(Evaluator::Interpreter(wanted.clone()))?;
-                self.interpreters
-                    .insert(0, InterpreterPipelines { ops: wanted, entries, tape: None, tape_modified: None });
+                self.interpreters.insert(0, InterpreterPipelines { ops: wanted, walked: Default::default() });
                 self.interpreters.truncate(MAX_INTERPRETERS);
-                self.built += 1;
             }
         }
-        let interpreter = &mut self.interpreters[0];
-        let [plain, modified] = tape_evaluators(&interpreter.ops);
-        let tape = [(&mut interpreter.tape, plain), (&mut interpreter.tape_modified, modified)];
-        for ((slot, evaluator), _) in tape.into_iter().zip(needs_tapes).filter(|(_, needed)| *needed) {
-            if slot.is_none() {
-                *slot = Some(build(evaluator)?);
-                self.built += 1;
+        let InterpreterPipelines { ops, walked } = &mut self.interpreters[0];
+        let [plain, modified] = tape_evaluators(ops);
+        for ((WalkedPipelines { entries, tape, tape_modified }, needed), copies) in
+            walked.iter_mut().zip(needs).zip([false, true])
+        {
+            let of_entries = Evaluator::Interpreter(ops.clone());
+            let slots = [(entries, of_entries), (tape, plain.clone()), (tape_modified, modified.clone())];
+            for ((slot, evaluator), _) in slots.into_iter().zip(needed).filter(|(_, needed)| *needed) {
+                if slot.is_none() {
+                    *slot = Some(build(evaluator, copies)?);
+                    self.built += 1;
+                }
             }
         }
         Ok(())
@@ -315,7 +338,7 @@ impl PipelineCache {
 
 impl CompileWorker {
     fn start(shared: Arc<CompileContext>) -> Self {
-        let (orders, ordered) = channel::<(u128, Evaluator)>();
+        let (orders, ordered) = channel::<PipelineOrder>();
         let (finish, finished) = channel();
         let is_unwanted = Arc::new(AtomicBool::new(false));
         let should_end = is_unwanted.clone();
@@ -324,15 +347,15 @@ impl CompileWorker {
             // its own, which takes that time and leaves the result in the driver's cache.
             let new_prewarmer = || guarded(|| Prewarmer::new(&shared.gpu, shared.options)).ok()?.ok();
             let prewarmer = if shared.gpu.is_software() { new_prewarmer() } else { None };
-            for (key, evaluator) in ordered {
+            for (key, evaluator, copies) in ordered {
                 if should_end.load(Ordering::Relaxed) {
                     return;
                 }
                 if let Some(prewarmer) = &prewarmer {
                     // A failure is reported where the pipeline is built for use.
-                    let _ = guarded(|| prewarmer.prewarm(&evaluator));
+                    let _ = guarded(|| prewarmer.prewarm(&evaluator, copies));
                 }
-                let built = guarded(|| build(&shared, &evaluator)).flatten();
+                let built = guarded(|| build(&shared, &evaluator, copies)).flatten();
                 if finish.send((key, built)).is_err() {
                     return;
                 }
@@ -357,10 +380,11 @@ impl Drop for CompileWorker {
 }
 
 /// Builds a pipeline. An error of the driver or of the validation is returned as text.
-fn build(shared: &CompileContext, evaluator: &Evaluator) -> Result<FieldPipelines, String> {
+fn build(shared: &CompileContext, evaluator: &Evaluator, copies: bool) -> Result<FieldPipelines, String> {
     let device = &shared.gpu.device;
     let scope = device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let built = shared.field.build(device, &shared.layouts, evaluator, shared.options);
+    let options = Options { copies, ..shared.options };
+    let built = shared.field.build(device, &shared.layouts, evaluator, options);
     let complaint = pollster::block_on(scope.pop());
     match (built, complaint) {
         (Ok(pipelines), None) => Ok(pipelines),

@@ -36,6 +36,36 @@ bindings! {
 }
 
 bindings! {
+    /// Group 2 of the trace pass over copies.
+    TraceCopiesBindings, "trace targets with copies", COMPUTE {
+        depth: read_write_texture(TextureFormat::R32Float),
+        visibility: write_texture(TextureFormat::R32Uint),
+        march: read_write_texture(TextureFormat::R32Float),
+        hiz: write_texture(TextureFormat::R32Float),
+        subtiles: write_storage(),
+        march_counts: write_storage(),
+        rays: write_storage(),
+        ray_counts: write_storage(),
+        subtile_counts: read_storage(),
+        copied: write_storage(),
+    }
+}
+
+bindings! {
+    /// Group 2 of the surface pass over copies.
+    SurfaceCopiesBindings, "surface targets with copies", COMPUTE {
+        depth: read_texture(false),
+        visibility: read_texture(true),
+        normal: write_texture(TextureFormat::Rgba32Float),
+        material: write_texture(TextureFormat::Rgba32Uint),
+        leaf: write_texture(TextureFormat::R32Uint),
+        subtiles: read_storage(),
+        ray_counts: read_storage(),
+        copied: write_storage(),
+    }
+}
+
+bindings! {
     /// Group 2 of the surface pass.
     SurfaceBindings, "surface targets", COMPUTE {
         depth: read_texture(false),
@@ -57,6 +87,8 @@ pub struct FieldPipelines {
     pub trace: ComputePipeline,
     /// Computes normal, material and leaf of the hits.
     pub surface: ComputePipeline,
+    /// Whether they draw types of instancers.
+    pub copies: bool,
     /// One bit for each pass that has been dispatched.
     used: AtomicU32,
 }
@@ -82,12 +114,19 @@ impl FieldPipelines {
     }
 }
 
+/// The shader of a pass. The cone pass over copies evaluates nothing and has a file of its own.
+pub fn field_file(stage: Pass, options: Options) -> &'static str {
+    if options.copies && stage == Pass::Cone { "copy/cone.wgsl" } else { stage.file() }
+}
+
 /// Layouts of the targets of the three passes.
 #[derive(Clone, Debug)]
 pub struct FieldLayouts {
     cone: BindGroupLayout,
     trace: BindGroupLayout,
     surface: BindGroupLayout,
+    trace_copies: BindGroupLayout,
+    surface_copies: BindGroupLayout,
 }
 
 /// Buffers that carry data from pass to pass.
@@ -114,6 +153,8 @@ impl FieldLayouts {
             cone: ConeBindings::layout(device),
             trace: TraceBindings::layout(device),
             surface: SurfaceBindings::layout(device),
+            trace_copies: TraceCopiesBindings::layout(device),
+            surface_copies: SurfaceCopiesBindings::layout(device),
         }
     }
 
@@ -129,14 +170,20 @@ impl FieldLayouts {
         options: Options,
     ) -> Result<FieldPipelines, ShaderError> {
         let pipeline = |stage: Pass, entry_point: &str, targets: &BindGroupLayout| {
-            let groups = [&layouts.view, &layouts.scene, targets, &layouts.dispatch_params];
-            let text = assemble(stage.file(), evaluator, options)?;
+            let scene = if options.copies { &layouts.copies } else { &layouts.scene };
+            let groups = [&layouts.view, scene, targets, &layouts.dispatch_params];
+            let text = assemble(field_file(stage, options), evaluator, options)?;
             Ok(compute_pipeline(device, stage.label(), text, entry_point, &groups))
         };
         Ok(FieldPipelines {
             cone: pipeline(Pass::Cone, "cone", &self.cone)?,
-            trace: pipeline(Pass::Trace, "trace", &self.trace)?,
-            surface: pipeline(Pass::Surface, "surface_pass", &self.surface)?,
+            trace: pipeline(Pass::Trace, "trace", if options.copies { &self.trace_copies } else { &self.trace })?,
+            surface: pipeline(
+                Pass::Surface,
+                "surface_pass",
+                if options.copies { &self.surface_copies } else { &self.surface },
+            )?,
+            copies: options.copies,
             used: AtomicU32::new(0),
         })
     }
@@ -169,6 +216,52 @@ impl FieldLayouts {
             };
             group.bind(device, &self.trace)
         })
+    }
+
+    /// Bind groups of the trace pass over copies, like [`Self::bind_trace`].
+    pub fn bind_trace_copies(
+        &self,
+        device: &wgpu::Device,
+        targets: &Targets,
+        lists: FieldBuffers<'_>,
+        copied: &wgpu::Buffer,
+    ) -> [BindGroup; 2] {
+        [lists.ray_counts, lists.nothing].map(|ray_counts| {
+            let group = TraceCopiesBindings {
+                depth: targets.depth.binding(),
+                visibility: targets.visibility.binding(),
+                march: targets.march.binding(),
+                hiz: targets.hiz.binding(),
+                subtiles: lists.subtiles.as_entire_binding(),
+                march_counts: lists.march_counts.as_entire_binding(),
+                rays: lists.rays.as_entire_binding(),
+                ray_counts: ray_counts.as_entire_binding(),
+                subtile_counts: lists.subtile_counts.as_entire_binding(),
+                copied: copied.as_entire_binding(),
+            };
+            group.bind(device, &self.trace_copies)
+        })
+    }
+
+    /// Bind group of the surface pass over copies.
+    pub fn bind_surface_copies(
+        &self,
+        device: &wgpu::Device,
+        targets: &Targets,
+        lists: FieldBuffers<'_>,
+        copied: &wgpu::Buffer,
+    ) -> BindGroup {
+        let group = SurfaceCopiesBindings {
+            depth: targets.depth.binding(),
+            visibility: targets.visibility.binding(),
+            normal: targets.normal.binding(),
+            material: targets.material.binding(),
+            leaf: targets.leaf.binding(),
+            subtiles: lists.subtiles.as_entire_binding(),
+            ray_counts: lists.ray_counts.as_entire_binding(),
+            copied: copied.as_entire_binding(),
+        };
+        group.bind(device, &self.surface_copies)
     }
 
     /// Bind group of the surface pass.

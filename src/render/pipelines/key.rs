@@ -20,6 +20,15 @@ pub struct PipelineKey {
     pub bits: u128,
     /// For a template: the shapes that its leaves may be.
     pub template: Option<ShapeSet>,
+    /// Whether it is for types of instancers.
+    pub copies: bool,
+}
+
+impl PipelineKey {
+    /// The key of the same code for a type of an instancer, if the component is one.
+    fn of_copies(self, component: &Component) -> Self {
+        if component.instanced.is_none() { self } else { Self { bits: self.bits ^ COPIES, copies: true, ..self } }
+    }
 }
 
 impl PipelineKey {
@@ -68,7 +77,18 @@ impl Templates {
         strategy: EvalStrategy,
         lengths: &[Option<f64>],
     ) -> Vec<Option<PipelineKey>> {
-        let structure = |bits| PipelineKey { bits, template: None };
+        let keys = self.of_code(flat, strategy, lengths);
+        flat.components.iter().zip(keys).map(|(c, key)| key.map(|key| key.of_copies(c))).collect()
+    }
+
+    /// The same without a difference between components and types of instancers.
+    fn of_code(
+        &mut self,
+        flat: &FlatScene,
+        strategy: EvalStrategy,
+        lengths: &[Option<f64>],
+    ) -> Vec<Option<PipelineKey>> {
+        let structure = |bits| PipelineKey { bits, template: None, copies: false };
         let components = flat.components.iter();
         match strategy {
             EvalStrategy::Interpreter | EvalStrategy::Tape => vec![None; flat.components.len()],
@@ -115,7 +135,11 @@ impl Templates {
         for (key, template) in keys.iter_mut().zip(&templates) {
             *key = template.filter(|(template, _)| is_shared(template)).map(|(template, _)| {
                 let shapes = self.shapes[&template];
-                PipelineKey { bits: template ^ (u128::from(shapes.0) << 64) ^ TEMPLATE, template: Some(shapes) }
+                PipelineKey {
+                    bits: template ^ (u128::from(shapes.0) << 64) ^ TEMPLATE,
+                    template: Some(shapes),
+                    copies: false,
+                }
             });
         }
         // The largest of the other components get pipelines of their own, as far as the limit allows.
@@ -130,7 +154,7 @@ impl Templates {
             if let Some(rest) = left.checked_sub(needed) {
                 left = rest;
                 seen.insert(bits);
-                keys[index] = Some(PipelineKey { bits, template: None });
+                keys[index] = Some(PipelineKey { bits, template: None, copies: false });
             }
         }
         keys
@@ -139,6 +163,9 @@ impl Templates {
 
 /// Distinguishes keys of templates from keys of structures.
 const TEMPLATE: u128 = 0x5eed_f0f0_0000_0000_0000_0000_0000_0001;
+
+/// Distinguishes keys for types of instancers from those of other components.
+const COPIES: u128 = 0xc0b1_e5c0_0000_0000_0000_0000_0000_0002;
 
 /// Number of entries of all different structures.
 fn entries(flat: &FlatScene, keys: &[Option<u128>]) -> usize {

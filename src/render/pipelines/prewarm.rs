@@ -3,9 +3,10 @@
 use crate::gpu::{Gpu, GpuError};
 use crate::pipelines::field::{FieldBuffers, FieldLayouts, FieldPipelines};
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::resources::layouts::{Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
+use crate::resources::layouts::{CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, window};
 use crate::resources::targets::Targets;
-use crate::resources::uniforms::{DispatchParams, GpuComponent, GpuView};
+use crate::resources::uniforms::{DispatchParams, GpuComponent, GpuView, INSTANCER_STRIDE};
+use isolith_field::copies::GpuInstancer;
 use isolith_wgsl::{Evaluator, MAX_PIPELINE_ROWS, Options};
 
 /// A device with the minimum of resources to dispatch a pipeline over no work.
@@ -16,10 +17,11 @@ pub struct Prewarmer {
     field: FieldLayouts,
     options: Options,
     view: wgpu::BindGroup,
-    scene: wgpu::BindGroup,
+    /// For components, and for types of instancers.
+    scene: [wgpu::BindGroup; 2],
     dispatch_params: wgpu::BindGroup,
     /// Bind groups of the passes of a pipeline.
-    own: [wgpu::BindGroup; FieldPipelines::STAGES.len()],
+    own: [[wgpu::BindGroup; FieldPipelines::STAGES.len()]; 2],
 }
 
 impl Prewarmer {
@@ -37,7 +39,7 @@ impl Prewarmer {
         let rows = zeros(MAX_PIPELINE_ROWS as usize * 16);
         let small = zeros(1024);
         // A dispatch must not read a buffer that it writes, so each binding has its own buffer.
-        let written = [(); 6].map(|()| zeros(1024));
+        let written = [(); 7].map(|()| zeros(1024));
         let lists = FieldBuffers {
             subtiles: written[0].buffer(),
             subtile_counts: written[1].buffer(),
@@ -55,13 +57,32 @@ impl Prewarmer {
             rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
             tapes: tapes_texture.binding(),
         };
+        let instancer = zeros(INSTANCER_STRIDE);
+        let copies = CopiesBindings {
+            nodes: small.binding(),
+            params: params.binding(),
+            subject: window(small.buffer(), size_of::<GpuComponent>()),
+            rows: window(rows.buffer(), MAX_PIPELINE_ROWS as usize * 16),
+            tapes: tapes_texture.binding(),
+            instancer: window(instancer.buffer(), size_of::<GpuInstancer>()),
+            places: small.binding(),
+        };
         // Sides that are not powers of two, as in most windows: the code that lavapipe compiles depends on it.
         let targets = Targets::new(device, [24, 24]);
         let [trace, _] = field.bind_trace(device, &targets, lists);
-        let own = [field.bind_cone(device, &targets, lists), trace, field.bind_surface(device, &targets, lists)];
+        let copied = written[6].buffer();
+        let [trace_copies, _] = field.bind_trace_copies(device, &targets, lists, copied);
+        let own = [
+            [field.bind_cone(device, &targets, lists), trace, field.bind_surface(device, &targets, lists)],
+            [
+                field.bind_cone(device, &targets, lists),
+                trace_copies,
+                field.bind_surface_copies(device, &targets, lists, copied),
+            ],
+        ];
         Ok(Self {
             view: bind(device, "view", &layouts.view, &[window(small.buffer(), size_of::<GpuView>())]),
-            scene: scene.bind(device, &layouts.scene),
+            scene: [scene.bind(device, &layouts.scene), copies.bind(device, &layouts.copies)],
             dispatch_params: bind(
                 device,
                 "dispatch_params",
@@ -80,8 +101,9 @@ impl Prewarmer {
     ///
     /// # Errors
     /// The device reports an error. The same failure shows up again where the pipeline is built for use.
-    pub fn prewarm(&self, evaluator: &Evaluator) -> Result<(), GpuError> {
-        let Ok(pipelines) = self.field.build(&self.gpu.device, &self.layouts, evaluator, self.options) else {
+    pub fn prewarm(&self, evaluator: &Evaluator, copies: bool) -> Result<(), GpuError> {
+        let options = Options { copies, ..self.options };
+        let Ok(pipelines) = self.field.build(&self.gpu.device, &self.layouts, evaluator, options) else {
             return Ok(());
         };
         let label = Some("pipelines ahead of their use");
@@ -89,9 +111,10 @@ impl Prewarmer {
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
             pass.set_bind_group(0, &self.view, &[]);
-            pass.set_bind_group(1, &self.scene, &[0, 0]);
+            let offsets = &[0; 3][..if copies { 3 } else { 2 }];
+            pass.set_bind_group(1, &self.scene[usize::from(copies)], offsets);
             pass.set_bind_group(3, &self.dispatch_params, &[0]);
-            for (stage, targets) in FieldPipelines::STAGES.into_iter().zip(&self.own) {
+            for (stage, targets) in FieldPipelines::STAGES.into_iter().zip(&self.own[usize::from(copies)]) {
                 pass.set_pipeline(pipelines.pipeline(stage));
                 pass.set_bind_group(2, targets, &[]);
                 pass.dispatch_workgroups(1, 1, 1);
@@ -115,6 +138,9 @@ mod tests {
             .and_then(|gpu| Prewarmer::new(&gpu, Options::default()))
             .unwrap_or_else(|error| panic!("{error}"));
         let flat = isolith_field::flatten(&gallery::random(8, 1), 0.0).expect("within the limits");
-        prewarmer.prewarm(&Evaluator::Interpreter(OpSet::of(&flat))).unwrap_or_else(|error| panic!("{error}"));
+        for copies in [false, true] {
+            let evaluator = Evaluator::Interpreter(OpSet::of(&flat));
+            prewarmer.prewarm(&evaluator, copies).unwrap_or_else(|error| panic!("{error}"));
+        }
     }
 }

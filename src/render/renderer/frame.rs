@@ -55,6 +55,8 @@ pub struct Frame {
     /// Offset of the template rows of each component with such a pipeline; parallel to the components.
     pub(super) template_rows: Vec<Option<u32>>,
     pub(super) origins: Vec<isolith_scene::NodeId>,
+    /// Of each component the instancer that it is a type of.
+    pub(super) instancers: Vec<Option<u32>>,
     /// Dispatches of the current part of the pass `shadow` so far.
     pub(super) shadow_relaunches: u32,
     /// Pixels whose shadows were given up.
@@ -96,6 +98,7 @@ impl Frame {
             template_rows: Vec::new(),
             rows: flat.components.iter().map(|c| c.params * size_of::<ParamRow>() as u32).collect(),
             origins: flat.components.iter().map(|c| flat.ids[c.first as usize]).collect(),
+            instancers: flat.components.iter().map(|c| c.instanced.map(|of| of.instancer)).collect(),
             shadow_relaunches: 0,
             unfinished_shadows: 0,
             shadowed_lights: [0, 0],
@@ -105,6 +108,11 @@ impl Frame {
     /// Fraction that is done, from 0 to 1.
     pub fn progress(&self) -> f32 {
         if self.is_done() { 1.0 } else { (self.seconds_done / self.seconds.max(1e-9)).min(1.0) as f32 }
+    }
+
+    /// Whether the component of a dispatch is a type of an instancer.
+    pub(crate) fn is_of_copies(&self, dispatch: &Dispatch) -> bool {
+        self.instancers[dispatch.params.component as usize].is_some()
     }
 
     /// Offset of a component's rows among the template rows, in bytes; `None` if its pipeline is not for a template.

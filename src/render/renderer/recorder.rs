@@ -4,11 +4,12 @@ use super::frame::Frame;
 use super::resources::{FrameResources, Groups, SlotState};
 use super::timings::Stamps;
 use crate::gpu::Gpu;
+use crate::passes::field::own_of_copies;
 use crate::pipelines::field::FieldPipelines;
 use crate::recipe::{Extent, Pass};
 use crate::resources::accumulation::Accumulation;
 use crate::resources::targets::{Target, Targets};
-use crate::resources::uniforms::UNIFORM_STRIDE;
+use crate::resources::uniforms::{INSTANCER_STRIDE, UNIFORM_STRIDE};
 
 /// Without timings, the passes that evaluate fields share one compute pass: beginning one for each of thousands of
 /// components would take longer than some of the components.
@@ -119,9 +120,15 @@ impl<'a> Recorder<'a> {
         let pass = self.compute(at);
         pass.set_pipeline(pipeline(&frame.choices[component].pipelines));
         let subject = (component * UNIFORM_STRIDE) as u32;
-        match frame.template_window(component) {
-            Some(window) => pass.set_bind_group(1, &groups.templates, &[subject, window]),
-            None => pass.set_bind_group(1, &groups.scene, &[subject, frame.rows[component]]),
+        let window = frame.template_window(component);
+        let rows = window.unwrap_or(frame.rows[component]);
+        match (frame.instancers[component], &groups.copies) {
+            (Some(instancer), Some(copies)) => {
+                let instancer = instancer * INSTANCER_STRIDE as u32;
+                pass.set_bind_group(1, &copies[usize::from(window.is_some())], &[subject, rows, instancer]);
+            }
+            _ if window.is_some() => pass.set_bind_group(1, &groups.templates, &[subject, rows]),
+            _ => pass.set_bind_group(1, &groups.scene, &[subject, rows]),
         }
         pass.set_bind_group(2, targets, &[]);
         pass
@@ -164,11 +171,16 @@ pub fn meet(gpu: &Gpu, groups: &Groups, pipelines: &FieldPipelines) -> bool {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label });
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label, timestamp_writes: None });
     pass.set_bind_group(0, &groups.view, &[]);
-    pass.set_bind_group(1, &groups.scene, &[0, 0]);
+    match &groups.copies {
+        Some(copies) if pipelines.copies => pass.set_bind_group(1, &copies[0], &[0, 0, 0]),
+        _ if pipelines.copies => return false,
+        _ => pass.set_bind_group(1, &groups.scene, &[0, 0]),
+    }
     pass.set_bind_group(3, &groups.dispatch_params, &[0]);
     for field_pass in fresh {
         pass.set_pipeline(pipelines.pipeline(field_pass));
-        pass.set_bind_group(2, &groups.own[field_pass as usize][0], &[]);
+        let own = if pipelines.copies { own_of_copies(field_pass) } else { 0 };
+        pass.set_bind_group(2, &groups.own[field_pass as usize][own], &[]);
         pass.dispatch_workgroups(0, 0, 0);
     }
     drop(pass);

@@ -69,6 +69,8 @@ pub struct Groups {
     pub scene: BindGroup,
     /// Like `scene`, with the rows of templates.
     pub templates: BindGroup,
+    /// The same two for types of instancers, if there are any.
+    pub copies: Option<[BindGroup; 2]>,
     pub dispatch_params: BindGroup,
     /// Own bind groups of each pass, in the order of the frame.
     pub own: Vec<Vec<BindGroup>>,
@@ -158,7 +160,15 @@ impl FrameResources {
     }
 
     /// Gives the slot targets of this size, and a target for the enlarged picture if the overlay needs one.
-    pub fn resize(&mut self, device: &wgpu::Device, slot: Slot, size: [u32; 2], overlay: &OverlaySettings) {
+    /// With `copies` it also gets a buffer for those.
+    pub fn resize(
+        &mut self,
+        device: &wgpu::Device,
+        slot: Slot,
+        size: [u32; 2],
+        overlay: &OverlaySettings,
+        copies: bool,
+    ) {
         let state = &mut self.slots[slot as usize];
         if state.as_ref().is_none_or(|state| state.targets.size != size) {
             *state = Some(SlotState {
@@ -169,6 +179,9 @@ impl FrameResources {
             });
         }
         if let Some(state) = state {
+            if copies && state.targets.keep_copied(device) {
+                state.groups = None;
+            }
             let shown = overlay.enlarged(size);
             let kept = state.enlarged.take().filter(|target| shown == Some(target.size()));
             state.enlarged = kept.or_else(|| shown.map(|size| Target::shown(device, size)));
@@ -268,6 +281,7 @@ impl FrameResources {
             view: bind(device, "view", &self.layouts.view, &[self.view.binding()]),
             scene: of_scene,
             templates,
+            copies: state.targets.copied.is_some().then(|| scene.bind_copies(device)),
             dispatch_params: bind(device, "dispatch_params", &self.layouts.dispatch_params, &[dispatch_params]),
             own: own(&bound),
         };

@@ -7,9 +7,11 @@ use wgpu::{BindGroup, BindGroupLayout};
 use crate::gpu::Gpu;
 use crate::pipelines::key::PipelineKey;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::resources::layouts::{PARAMS_FORMAT, SceneBindings, window};
+use crate::resources::layouts::{CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, window};
 use crate::resources::tape_texture::TapeTexture;
-use crate::resources::uniforms::{GpuComponent, strided};
+use crate::resources::uniforms::{GpuComponent, INSTANCER_STRIDE, strided};
+use glam::DVec3;
+use isolith_field::copies::{GpuInstancer, gpu_instancer, gpu_places};
 use isolith_field::standpoint::{Standpoint, Standpoints};
 use isolith_field::{CellTree, Component, FlatScene, ParamRow, ROW_ALIGNMENT};
 use isolith_wgsl::{MAX_PIPELINE_ROWS, template_rows};
@@ -32,13 +34,19 @@ pub struct SceneResources {
     tapes: TapeTexture,
     components: SyncedBuffer,
     materials: SyncedBuffer,
+    copies_layout: BindGroupLayout,
+    instancers: SyncedBuffer,
+    places: SyncedBuffer,
 }
 
 impl SceneResources {
     /// Empty resources.
-    pub fn new(device: &wgpu::Device, layout: BindGroupLayout) -> Self {
+    pub fn new(device: &wgpu::Device, layouts: &Layouts) -> Self {
         Self {
-            layout,
+            layout: layouts.scene.clone(),
+            copies_layout: layouts.copies.clone(),
+            instancers: SyncedBuffer::uniform(device, "instancers"),
+            places: SyncedBuffer::storage(device, "places"),
             nodes: SyncedBuffer::storage(device, "nodes"),
             rows: SyncedBuffer::uniform(device, "rows"),
             template_rows: SyncedBuffer::uniform(device, "rows of templates"),
@@ -51,9 +59,9 @@ impl SceneResources {
 
     /// Bytes uploaded so far.
     pub fn uploaded(&self) -> u64 {
-        let buffers = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials]
-            .map(SyncedBuffer::uploaded);
-        buffers.iter().sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
+        let own = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials];
+        let buffers = own.into_iter().chain([&self.instancers, &self.places]).map(SyncedBuffer::uploaded);
+        buffers.sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
     }
 
     /// Words of tapes that the device can hold.
@@ -67,7 +75,7 @@ impl SceneResources {
         &mut self,
         gpu: &Gpu,
         flat: &FlatScene,
-        standpoints: &Standpoints<'_>,
+        (eye, standpoints): (DVec3, &Standpoints<'_>),
         trees: &[Option<Arc<CellTree>>],
         keys: &[Option<PipelineKey>],
     ) -> (bool, Vec<Option<u32>>) {
@@ -93,8 +101,40 @@ impl SceneResources {
             self.nodes.set(device, queue, bytemuck::cast_slice(&flat.nodes)),
             self.components.set(device, queue, &components),
             self.materials.set(device, queue, bytemuck::cast_slice(&flat.materials)),
+            self.upload_instancers(gpu, flat, eye),
         ];
         (is_new || uploads.contains(&true), windows)
+    }
+
+    /// Uploads the instancers as seen from `eye`. Returns whether a buffer was replaced.
+    fn upload_instancers(&mut self, gpu: &Gpu, flat: &FlatScene, eye: DVec3) -> bool {
+        let (mut rows, mut bytes) = (Vec::new(), vec![0; flat.instancers.len() * INSTANCER_STRIDE]);
+        for (instancer, slot) in flat.instancers.iter().zip(bytes.chunks_exact_mut(INSTANCER_STRIDE)) {
+            let gpu = gpu_instancer(instancer, eye, rows.len() as u32);
+            slot[..size_of::<GpuInstancer>()].copy_from_slice(bytemuck::bytes_of(&gpu));
+            rows.extend(gpu_places(instancer));
+        }
+        bytes.resize(bytes.len().max(INSTANCER_STRIDE), 0);
+        let Gpu { device, queue, .. } = gpu;
+        let uploads =
+            [self.instancers.set(device, queue, &bytes), self.places.set(device, queue, bytemuck::cast_slice(&rows))];
+        uploads.contains(&true)
+    }
+
+    /// The bind groups for types of instancers, like those of [`Self::bind`].
+    pub fn bind_copies(&self, device: &wgpu::Device) -> [BindGroup; 2] {
+        [&self.rows, &self.template_rows].map(|rows| {
+            let group = CopiesBindings {
+                nodes: self.nodes.binding(),
+                params: self.params.binding(),
+                subject: window(self.components.buffer(), size_of::<GpuComponent>()),
+                rows: window(rows.buffer(), PIPELINE_WINDOW),
+                tapes: self.tapes.binding(),
+                instancer: window(self.instancers.buffer(), size_of::<GpuInstancer>()),
+                places: self.places.binding(),
+            };
+            group.bind(device, &self.copies_layout)
+        })
     }
 
     /// First word of the tapes of a component.

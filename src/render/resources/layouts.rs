@@ -55,6 +55,26 @@ bindings! {
     }
 }
 
+bindings! {
+    /// Group 1 of the field passes over types of instancers: the same and the instancer.
+    CopiesBindings, "scene with copies", COMPUTE {
+        /// The subtree-extent array.
+        nodes: read_storage(),
+        /// All rows.
+        params: read_only_texture(PARAMS_FORMAT),
+        /// The component, at a dynamic offset.
+        subject: uniform(true),
+        /// The component's own rows again, at a dynamic offset.
+        rows: uniform(true),
+        /// Tapes.
+        tapes: read_only_texture(TAPES_FORMAT),
+        /// The instancer, at a dynamic offset.
+        instancer: uniform(true),
+        /// Places of all instancers that have lists of them.
+        places: read_storage(),
+    }
+}
+
 /// Layouts that several passes share.
 #[derive(Clone, Debug)]
 pub struct Layouts {
@@ -62,6 +82,8 @@ pub struct Layouts {
     pub view: BindGroupLayout,
     /// Group 1 of the field passes: [`SceneBindings`].
     pub scene: BindGroupLayout,
+    /// The same for types of instancers: [`CopiesBindings`].
+    pub copies: BindGroupLayout,
     /// Group 3: `DispatchParams`, at a dynamic offset.
     pub dispatch_params: BindGroupLayout,
 }
@@ -73,6 +95,7 @@ impl Layouts {
         Self {
             view: layout(device, "view", &[entry(0, everywhere, uniform(false))]),
             scene: SceneBindings::layout(device),
+            copies: CopiesBindings::layout(device),
             dispatch_params: layout(device, "dispatch_params", &[entry(0, ShaderStages::COMPUTE, uniform(true))]),
         }
     }

@@ -11,9 +11,11 @@ use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits};
 use crate::resources::mesh_rays::MeshRayBuffer;
 use crate::resources::uniforms::GpuComponent;
 use glam::DVec3;
-use isolith_field::FlatScene;
+use isolith_field::hierarchy::Hierarchy;
 use isolith_field::light::occlusion::OCCLUSION_CONES;
 use isolith_field::light::shadow::cone_fineness;
+use isolith_field::{Component, FlatScene};
+use isolith_geometry::Aabb;
 use isolith_mesh::TriangleMesh;
 
 /// Settings of shadows and occlusion; `shaders/light/shadow_settings.wgsl` is its counterpart.
@@ -137,7 +139,8 @@ impl ShadowBuffers {
     ) -> bool {
         let Gpu { device, queue, .. } = gpu;
         let pixels = size[0] as usize * size[1] as usize;
-        let hierarchy = flat.hierarchy();
+        let without_copies = (!flat.instancers.is_empty()).then(|| hierarchy_without_copies(flat));
+        let hierarchy = without_copies.as_ref().unwrap_or_else(|| flat.hierarchy());
         let mut limits = SceneLimits::new(hierarchy, query.iterations);
         let had_meshes = std::mem::replace(&mut self.has_meshes, query.has_meshes);
         let mut meshes_are_new = had_meshes != self.has_meshes;
@@ -182,6 +185,15 @@ impl ShadowBuffers {
     pub fn switch_off(&mut self) -> bool {
         std::mem::take(&mut self.used).is_on()
     }
+}
+
+/// The hierarchy over the components that are no types of instancers: cones do not meet copies.
+fn hierarchy_without_copies(flat: &FlatScene) -> Hierarchy {
+    let bounds = |component: &Component| match component.instanced {
+        None => component.world_bounds(),
+        Some(_) => Aabb::EMPTY,
+    };
+    Hierarchy::build(&flat.components.iter().map(bounds).collect::<Vec<_>>())
 }
 
 #[cfg(test)]

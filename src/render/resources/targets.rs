@@ -12,6 +12,8 @@
 //! | color | Rgba8Unorm | shade, debug_view, overlay | the picture, sRGB encoded |
 //! | leaf | R32Uint | mesh, surface | entry of the subtree-extent array; the value of visibility where no field is |
 //!
+//! With instancers a buffer holds which copy each pixel shows: see `shaders/copy/copied.wgsl`.
+//!
 //! `shaders/common/depth.wgsl` implements the same conventions.
 
 use wgpu::{TextureFormat, TextureUsages};
@@ -20,6 +22,9 @@ use crate::frame::plan::{SUBTILES, TILE};
 
 /// Depth of pixels without a hit.
 pub const BACKGROUND: f32 = 1e30;
+
+/// Bytes of a pixel in the buffer of copies.
+pub const COPIED_BYTES: u64 = 32;
 
 /// The targets of a picture, see the module.
 #[derive(Debug)]
@@ -46,6 +51,8 @@ pub struct Targets {
     pub color: Target,
     /// See the module's table.
     pub hardware_depth: Target,
+    /// Which copy each pixel shows, if the scene has instancers.
+    pub copied: Option<wgpu::Buffer>,
 }
 
 /// A texture and its view.
@@ -76,7 +83,22 @@ impl Targets {
             leaf: target("leaf", TextureFormat::R32Uint, compute | TextureUsages::COPY_DST),
             color: target("color", TextureFormat::Rgba8Unorm, both),
             hardware_depth: target("hardware depth", TextureFormat::Depth32Float, TextureUsages::RENDER_ATTACHMENT),
+            copied: None,
         }
+    }
+
+    /// Makes the buffer of copies. Returns whether it was missing.
+    pub fn keep_copied(&mut self, device: &wgpu::Device) -> bool {
+        let is_missing = self.copied.is_none();
+        if is_missing {
+            self.copied = Some(device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("copied"),
+                size: u64::from(self.size[0]) * u64::from(self.size[1]) * COPIED_BYTES,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }));
+        }
+        is_missing
     }
 }
 

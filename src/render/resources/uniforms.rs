@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 
+use isolith_field::copies::GpuInstancer;
 use isolith_field::standpoint::Standpoint;
 use isolith_field::{CellTree, Component, FlatScene};
 use isolith_geometry::Camera;
@@ -117,8 +118,8 @@ pub struct GpuComponent {
     pub flush: f32,
     /// The same for a point at [`Self::eye`]; it grows with the distance, up to `flush`.
     pub flush_near: f32,
-    /// Padding of four bytes.
-    pub _padding: u32,
+    /// Of the type of an instancer: its index among the types.
+    pub kind: u32,
 }
 
 /// Rounding distance of two coincident faces, relative to the coordinates that they are computed from: each moves by a
@@ -140,6 +141,9 @@ fn flush_near(component: &Component, at: &Standpoint) -> f64 {
 
 /// Alignment of uniforms at dynamic offsets, valid on every device.
 pub const UNIFORM_STRIDE: usize = 256;
+
+/// Alignment of instancers in their buffer.
+pub const INSTANCER_STRIDE: usize = size_of::<GpuInstancer>().next_multiple_of(UNIFORM_STRIDE);
 
 /// The bytes of `all`, each aligned to [`UNIFORM_STRIDE`].
 pub fn strided<T: Pod>(all: impl ExactSizeIterator<Item = T>) -> Vec<u8> {
@@ -178,7 +182,7 @@ impl GpuComponent {
             ray_origin_depth: at.ray_origin_depth as f32,
             flush: flush(component, at) as f32,
             flush_near: flush_near(component, at) as f32,
-            _padding: 0,
+            kind: component.instanced.map_or(0, |of| of.kind),
         }
     }
 }
@@ -218,6 +222,6 @@ pub struct DispatchParams {
     pub rays: u32,
     /// Place of the lists of subtiles with hits.
     pub hits: u32,
-    /// Padding of eight bytes.
-    pub _padding: u32,
+    /// Limit of the cells of an instancer that an invocation looks at.
+    pub max_cells: u32,
 }

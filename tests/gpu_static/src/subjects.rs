@@ -132,6 +132,7 @@ const OPTIONS: Options = Options {
     area_lights: true,
     image_lit: true,
     shadowed: false,
+    copies: false,
 };
 
 /// Passes that evaluate a field, with their entry points.

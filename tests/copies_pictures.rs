@@ -1,0 +1,83 @@
+//! Pictures of copies against the reference, ray for ray.
+
+use glam::DVec3;
+
+use isolith::field::Accuracy;
+use isolith::field::reference::accuracy::verdicts;
+use isolith::field::reference::image::render_reference;
+use isolith::geometry::Camera;
+use isolith::render::EvalStrategy;
+use isolith::scene::{Instancer, Lattice, Scene};
+
+use crate::copies::{limited, scene_of, varied};
+use crate::gpu::BenchScene;
+
+/// Width and height of the pictures, in pixels.
+const SIDE: u32 = 96;
+
+/// Lattices without end along one, two and three axes.
+pub fn unlimited() -> Vec<(&'static str, Scene, DVec3)> {
+    let of = |counts, spacing, probability| {
+        let lattice = Lattice::Grid { counts, spacing };
+        scene_of(Instancer { lattice, variation: varied(), probability, seed: 5, ..Instancer::default() }, &[])
+    };
+    vec![
+        ("row", of([0, 1, 1], [1.5; 3], 0.9), DVec3::new(-4.0, 1.5, 3.0)),
+        ("plane", of([0, 1, 0], [1.5, 1.0, 1.5], 0.7), DVec3::new(1.0, 3.0, 6.0)),
+        ("space", of([0; 3], [3.0; 3], 0.5), DVec3::new(1.3, 1.7, 1.6)),
+        ("far away", of([0, 1, 0], [1.5, 1.0, 1.5], 0.7), DVec3::new(60_000.0, 3.0, -40_000.0)),
+    ]
+}
+
+/// What is wrong about the pictures of a scene by every evaluator.
+fn faults(drawn: &BenchScene, meant: &BenchScene) -> Vec<String> {
+    let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [SIDE, SIDE], &|_| ());
+    let reference = reference.unwrap_or_else(|error| panic!("{}: {error}", meant.name));
+    let hits = reference.buffers.depth.iter().filter(|depth| depth.is_finite()).count();
+    assert!(hits > 100, "{}: only {hits} pixels show a copy", meant.name);
+    let strategies = [EvalStrategy::Interpreter, EvalStrategy::Tape, EvalStrategy::StraightLine];
+    let all = strategies.map(|strategy| {
+        let picture = drawn.render(SIDE, strategy);
+        let found = Accuracy::against(&picture, &drawn.flat, &reference);
+        let wrong: Vec<_> = (0..picture.depth.len())
+            .zip(verdicts(&picture, &drawn.flat, &reference))
+            .filter(|(_, verdict)| verdict.is_wrong())
+            .map(|(i, _)| (i as u32 % SIDE, i as u32 / SIDE, picture.depth[i], reference.buffers.depth[i]))
+            .take(4)
+            .collect();
+        let of_scene = |fault: String| format!("{}, {strategy:?}: {fault} ({found:?}; {wrong:?})", drawn.name);
+        found.faults().into_iter().map(of_scene).collect::<Vec<_>>()
+    });
+    all.concat()
+}
+
+#[test]
+fn pictures_of_copies_are_as_exact_as_promised() {
+    let scenes = limited().into_iter().map(|(name, scene)| BenchScene::new(name, &scene, None));
+    let faults: Vec<_> = scenes.flat_map(|scene| faults(&scene, &scene)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn pictures_of_copies_without_end_are_as_exact_as_promised() {
+    let scenes = unlimited().into_iter().map(|(name, scene, eye)| {
+        let mut drawn = BenchScene::new(name, &scene, None);
+        drawn.camera = Camera::looking_at(eye, eye + DVec3::new(0.3, -0.25, -1.0), 0.8);
+        drawn
+    });
+    let faults: Vec<_> = scenes.flat_map(|scene| faults(&scene, &scene)).collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn a_picture_of_other_copies_is_refused() {
+    let of = |seed| {
+        let lattice = Lattice::Grid { counts: [4; 3], spacing: [1.5; 3] };
+        let scene = scene_of(Instancer { lattice, variation: varied(), seed, ..Instancer::default() }, &[]);
+        BenchScene::new("copies", &scene, None)
+    };
+    let (mut drawn, meant) = (of(1), of(2));
+    drawn.camera = meant.camera;
+    assert_eq!(faults(&meant, &meant), [""; 0]);
+    assert!(!faults(&drawn, &meant).is_empty());
+}
