@@ -15,6 +15,7 @@ use isolith::scene::{
 use isolith::session::SceneSession;
 
 use crate::gpu::{Shared, shared};
+use crate::random_scene::{Random, random_scene};
 
 fn ball() -> Node {
     let shape = Shape::Sphere { radius: 0.4 };
@@ -242,6 +243,92 @@ fn a_step_in_time_gives_the_same_arrays_as_a_fresh_start() {
             assert_eq!(*again, flatten(&scene, time).expect("within the limits"), "{name} at {time}");
         }
     }
+}
+
+/// Sets keys of a random parameter at random moments.
+fn animate(random: &mut Random, scene: &mut Scene) {
+    let all = ParamPath::all(scene);
+    let (path, param, value) = &all[random.below(all.len())];
+    let ParamValue::Scalar(_) = value else { return };
+    if !param.animatable {
+        return;
+    }
+    let keys = (0..1 + random.below(4)).map(|i| Keyframe {
+        time: i as f64 + random.unit() * 0.5,
+        value: ParamValue::Scalar(random.number(&param.limits)),
+        interpolation: random.pick(&KeyInterpolation::ALL),
+    });
+    let track = Track { path: path.clone(), keys: keys.collect() };
+    scene.set_tracks([track]).expect("random values keep the limits");
+}
+
+/// A random edit of what is seen.
+fn edit(random: &mut Random, scene: &Scene) -> Option<Edit> {
+    let node = &scene.nodes()[random.below(scene.nodes().len().max(1)).min(scene.nodes().len().checked_sub(1)?)];
+    let mut new = Node::clone(node);
+    Some(match random.below(8) {
+        0 => Edit::Remove(vec![node.id]),
+        1 => Edit::Duplicate(vec![node.id]),
+        2 => {
+            new.transform = random.transform();
+            Edit::Replace(new)
+        }
+        3 if !new.modifiers.is_empty() => {
+            new.modifiers.remove(random.below(new.modifiers.len()));
+            Edit::Replace(new)
+        }
+        4 if !new.modifiers.is_empty() => {
+            let at = random.below(new.modifiers.len());
+            new.modifiers.rotate_left(at);
+            Edit::Replace(new)
+        }
+        5 => {
+            let parents: Vec<_> = scene.nodes().iter().filter(|node| node.has_children()).map(|node| node.id).collect();
+            let parent = (!parents.is_empty()).then(|| parents[random.below(parents.len())]);
+            Edit::Move { ids: vec![node.id], parent, position: random.below(3) }
+        }
+        6 => Edit::SetDisplay(random.display()),
+        _ => {
+            let all = ParamPath::all(scene);
+            let (path, param, value) = &all[random.below(all.len())];
+            let ParamValue::Scalar(_) = value else { return None };
+            Edit::SetParam { path: path.clone(), value: ParamValue::Scalar(random.number(&param.limits)) }
+        }
+    })
+}
+
+#[test]
+fn random_edits_at_random_moments_keep_every_track_sound_and_are_undone() {
+    let (mut keyed, mut dropped) = (0, 0);
+    for seed in 0..12 {
+        let mut random = Random::new(seed);
+        let mut scene = random_scene(seed, 24);
+        for _ in 0..40 {
+            animate(&mut random, &mut scene);
+        }
+        let mut document = Document::new(scene);
+        let start = Arc::clone(document.resting());
+        for _ in 0..60 {
+            document.set_time(random.unit() * 5.0 - 0.5);
+            let before = (document.resting().animation.key_count(), document.resting().animation.tracks().len());
+            let Some(edit) = edit(&mut random, document.scene()) else { continue };
+            let seen = document.snapshot();
+            if document.apply(edit).is_err() {
+                assert_eq!(document.snapshot(), seen, "a refused edit changes nothing");
+                continue;
+            }
+            let scene = document.resting();
+            scene.assert_invariants();
+            file::to_json(scene).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            document.scene().assert_invariants();
+            let after = (scene.animation.key_count(), scene.animation.tracks().len());
+            keyed += usize::from(after.0 > before.0 && after.1 == before.1);
+            dropped += usize::from(after.1 < before.1);
+        }
+        while document.undo() {}
+        assert_eq!(**document.resting(), *start, "seed {seed}");
+    }
+    assert!(keyed > 5 && dropped > 5, "{keyed} edits set keys, {dropped} took tracks along");
 }
 
 fn picture(renderer: &mut Renderer, flat: &FlatScene) -> GBuffer {

@@ -11,7 +11,9 @@ use super::text::{complain, say};
 use crate::field::{self, Cancel, FlatScene, Usage, flatten_until};
 use crate::font::MAX_TEXT_ARCS;
 use crate::mesh::{MeshLibrary, TriangleMesh};
-use crate::scene::limits::{MAX_ATTACHMENT_BYTES, MAX_DEPTH, MAX_MATERIALS, MAX_NODES, MAX_SCENE_PIXELS};
+use crate::scene::limits::{
+    MAX_ATTACHMENT_BYTES, MAX_DEPTH, MAX_KEYS, MAX_MATERIALS, MAX_NODES, MAX_SCENE_PIXELS, MAX_TRACKS,
+};
 use crate::scene::{Node, NodeId, NodeKind, Object, Param, ParamPath, ParamValue, Scene, Shape, text_profile};
 
 /// Arguments of `isolith check`.
@@ -131,6 +133,8 @@ impl Report {
             ("nodes", scene.nodes().len(), MAX_NODES),
             ("depth of the tree", tree_depth, MAX_DEPTH),
             ("materials", scene.materials().len(), MAX_MATERIALS),
+            ("animated parameters", scene.animation.tracks().len(), MAX_TRACKS),
+            ("keys", scene.animation.key_count(), MAX_KEYS),
         ];
         let named = |id| scene.node(id).map(|node| format!("{} {id}", node.name));
         let of_scene = limits.map(|(name, used, limit)| LimitUse { name, used, limit, node: None });

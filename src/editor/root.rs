@@ -143,7 +143,10 @@ impl Editor {
         }
         self.state.session.settle(&ctx);
         self.follow_document();
-        self.state.materials.thumbnails.update(&ctx, self.state.derived.jobs());
+        // The balls of animated materials wait until the moment stays.
+        if !self.state.playback.is_moving() {
+            self.state.materials.thumbnails.update(&ctx, self.state.derived.jobs());
+        }
         if self.state.derived.jobs().foremost().is_some() {
             ctx.request_repaint_after(PROGRESS_EVERY);
         }

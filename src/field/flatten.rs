@@ -332,7 +332,7 @@ fn add_component(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use isolith_scene::{Attachment, Axis, Modifier, NodeKind, Object, ShapeKind};
+    use isolith_scene::{Attachment, Axis, Modifier, Object, ShapeKind};
 
     fn flatten_in_rows(scene: &Scene, rows: usize) -> Result<Option<Made>, FlattenError> {
         flatten_within(scene, 0.0, FlattenLimits { rows, ..FlattenLimits::default() }, &Cancel::default())

@@ -14,6 +14,7 @@ mod ellipsoid_and_plane;
 mod fractals;
 mod image_lit;
 mod instancing;
+mod keyframes;
 mod lights;
 mod materials;
 mod mesh_and_fields;
@@ -68,6 +69,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("image-lit", image_lit::scene()),
         ("mesh-and-fields", mesh_and_fields::scene()),
         ("shadows", shadows::scene()),
+        ("keyframes", keyframes::scene()),
         ("dynamics-2d", instancing::dynamics()),
         ("terrain", instancing::terrain()),
         ("ocean", instancing::ocean()),
