@@ -27,7 +27,7 @@ pub fn scene_of(instancer: Instancer, dynamics: &[DynamicKind]) -> Scene {
     }
     let top = scene.insert(None, 0, node.at(DVec3::new(0.3, -0.2, 0.1)).rotated(DQuat::from_rotation_y(0.4))).unwrap();
     let shapes = [
-        (Shape::Box { size: DVec3::new(0.5, 1.0, 0.4).to_array().into(), rounding: 0.05 }, DVec3::Y * 0.5, 2.0),
+        (Shape::Box { size: [0.5, 1.0, 0.4], rounding: 0.05 }, DVec3::Y * 0.5, 2.0),
         (Shape::Sphere { radius: 0.35 }, DVec3::ZERO, 1.0),
     ];
     for (at, (shape, place, weight)) in shapes.into_iter().enumerate() {

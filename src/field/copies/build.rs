@@ -54,7 +54,7 @@ pub fn flat_instancer(
     let mut flat = FlatInstancer {
         id: node.id,
         world_from_local,
-        placement: Placement::Lattice(FlatLattice::of(&instancer.lattice).unwrap_or(FlatLattice::ONE)),
+        placement: Placement::Lattice(masked_lattice(instancer)),
         seed: instancer.seed,
         probability: instancer.probability,
         masks: instancer.masks.iter().map(FlatMask::new).collect(),
@@ -74,6 +74,19 @@ pub fn flat_instancer(
         _ => flat.placement = listed(&flat, places),
     }
     flat
+}
+
+/// The lattice without the cells that a mask leaves empty on all sides.
+fn masked_lattice(instancer: &Instancer) -> FlatLattice {
+    let mut lattice = FlatLattice::of(&instancer.lattice).unwrap_or(FlatLattice::ONE);
+    for MaskSlot { mask, .. } in instancer.masks.iter().filter(|slot| !slot.inverted) {
+        match *mask {
+            Mask::Radius { outer, .. } => [0, 2].into_iter().for_each(|axis| lattice.keep(axis, [-outer, outer])),
+            Mask::Height { from, to, .. } => lattice.keep(1, [from, to]),
+            Mask::Noise { .. } | Mask::Slope { .. } => {}
+        }
+    }
+    lattice
 }
 
 /// Greatest angle between the Y axes of a copy and of its type, by the ranges of its rotation.
@@ -132,6 +145,21 @@ impl FlatLattice {
         let high = counts.map(|n| if n == 0 { Self::ENDLESS } else { n as i32 / 2 });
         let even = DVec3::from_array(counts.map(|n| if n > 0 && n % 2 == 0 { 0.5 } else { 0.0 }));
         Some(Self { low, high, spacing, shift: -even * spacing, stagger })
+    }
+}
+
+impl FlatLattice {
+    /// Keeps the cells whose places lie between two coordinates, and at least one.
+    fn keep(&mut self, axis: usize, [from, to]: [f64; 2]) {
+        if !self.is_long(axis) {
+            return;
+        }
+        let off = if axis == 0 { self.stagger } else { 0.0 };
+        let cell = |at: f64| (at - self.shift[axis]) / self.spacing[axis];
+        let [from, to] = [cell(from - off).floor() as i32, cell(to + off).ceil() as i32];
+        let [low, high] = [self.low[axis], self.high[axis]];
+        self.low[axis] = from.clamp(low, high);
+        self.high[axis] = to.clamp(self.low[axis], high);
     }
 }
 
