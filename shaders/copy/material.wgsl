@@ -4,7 +4,7 @@
 #include "copy/variation.wgsl"
 
 struct CopyMaterial {
-    // Index of the material instead of that of the type; NO_COPY for none.
+    // Index of the material instead of that of the type; COPY_ABSENT for none.
     replaced: u32,
     // Added to the hue, in rounds.
     hue: f32,
@@ -33,7 +33,7 @@ fn copy_material(copy: Copy) -> CopyMaterial {
     let choice = copy_randoms(instancer.seed, copy.cell, CHANNEL_CHOICE).z;
     let entry = u32(choice * f32(instancer.palette_count));
     return CopyMaterial(
-        select(NO_COPY, instancer.palette[entry / 4u][entry % 4u], instancer.palette_count > 0u),
+        select(COPY_ABSENT, instancer.palette[entry / 4u][entry % 4u], instancer.palette_count > 0u),
         instancer.hue * color.x + copy.hue,
         1.0 + instancer.saturation * color.y,
         1.0 + instancer.value * color.z,

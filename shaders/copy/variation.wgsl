@@ -19,7 +19,7 @@ struct Copy {
 }
 
 // Kind of a copy that does not exist.
-const NO_COPY: u32 = 0xffffffffu;
+const COPY_ABSENT: u32 = 0xffffffffu;
 // A copy whose scale is less than this along an axis is not there.
 const COPY_LEAST_SCALE: f32 = 1e-6;
 
@@ -59,7 +59,7 @@ fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
     return select(share, 1.0 - share, mask.inverted == 1u);
 }
 
-// The type of the copy of an absolute cell that stands at `base`; NO_COPY if there is none.
+// The type of the copy of an absolute cell that stands at `base`; COPY_ABSENT if there is none.
 fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
     let randoms = copy_randoms(instancer.seed, cell, CHANNEL_CHOICE);
     var share = instancer.probability;
@@ -68,7 +68,7 @@ fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
         share *= copy_mask(instancer.masks[i], base, up);
     }
     if randoms.x >= share {
-        return NO_COPY;
+        return COPY_ABSENT;
     }
     var kind = 0u;
     let types = instancer_count(instancer.type_count, base.x);
@@ -98,7 +98,7 @@ fn copy_placed(at: vec3i, cell: vec3i, kind: u32, base: vec3f, turned: vec4f, ji
     let is_there = min(scale.x, min(scale.y, scale.z)) >= COPY_LEAST_SCALE;
     return Copy(
         cell,
-        select(NO_COPY, kind, is_there),
+        select(COPY_ABSENT, kind, is_there),
         place + motion.translation,
         motion.hue,
         quaternion_product(motion.rotation, quaternion_product(turned, own)),
@@ -112,7 +112,7 @@ const QUATERNION_NONE: vec4f = vec4f(0.0, 0.0, 0.0, 1.0);
 
 // A copy that does not exist.
 fn copy_none() -> Copy {
-    return Copy(vec3i(0), NO_COPY, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0, vec3i(0));
+    return Copy(vec3i(0), COPY_ABSENT, vec3f(0.0), 0.0, QUATERNION_NONE, vec3f(1.0), 1.0, vec3i(0));
 }
 
 // Place of a cell, both relative to the anchor.
@@ -125,7 +125,7 @@ fn copy_cell_place(relative: vec3i) -> vec3f {
 }
 
 // The copy of a cell relative to the anchor, or at a place of the list, if it is of this type; else
-// one of kind NO_COPY.
+// one of kind COPY_ABSENT.
 fn copy_at(at: vec3i, kind: u32) -> Copy {
     var cell = at + instancer.anchor;
     var base = copy_cell_place(at);

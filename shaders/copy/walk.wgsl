@@ -123,7 +123,7 @@ fn copy_walk_next(walk: ptr<function, CopyWalk>, kind: u32, far: f32, found: ptr
             continue;
         }
         let copy = copy_at((*walk).at, kind);
-        if copy.kind != NO_COPY && walk_meets(walk, copy, far, found) {
+        if copy.kind != COPY_ABSENT && walk_meets(walk, copy, far, found) {
             return true;
         }
     }

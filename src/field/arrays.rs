@@ -424,8 +424,6 @@ impl FlatScene {
     }
 }
 
-/// The grown world bounds of a component.
-
 /// The hierarchy of a scene, built on first use. It follows from the components, so comparisons ignore it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LazyHierarchy(OnceLock<Hierarchy>);
