@@ -46,7 +46,7 @@ struct Instancer {
     anchor: vec3i,
     mask_count: u32,
     spacing: vec3f,
-    reach: f32,
+    padding_0: f32,
     // Absolute place of the anchor.
     anchor_place: vec3f,
     stagger: f32,
@@ -77,6 +77,9 @@ struct Instancer {
     first_row: u32,
     bounds_high: vec3f,
     padding: u32,
+    // How far the content of a copy may reach from its place along each axis.
+    reach: vec3f,
+    padding_1: u32,
     // Sums of the shares of the types, four per row.
     shares: array<vec4f, 8>,
     // Bounding spheres of the types.

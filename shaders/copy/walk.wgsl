@@ -13,7 +13,7 @@ struct CopyVisit {
 
 // How far a copy may be off the place of its cell along an axis, with the shift of rows.
 fn walk_reach(axis: u32) -> f32 {
-    return instancer.reach + select(0.0, 2.0 * instancer.stagger, axis == 0u);
+    return instancer.reach[axis] + select(0.0, 2.0 * instancer.stagger, axis == 0u);
 }
 
 // The first and the last cell along an axis whose copies may meet the cone between two parameters.
@@ -166,9 +166,15 @@ fn walk_step_cell(walk: ptr<function, CopyWalk>) -> bool {
     let direction = (*walk).direction;
     let nearest = dot(away, direction) / dot(direction, direction);
     let miss = away - direction * nearest;
-    let reach = instancer.reach + (*walk).spread * max(nearest + instancer.reach * inverseSqrt(dot(direction, direction)), 0.0);
+    let most = length(instancer.reach);
+    // Radius of the cone where the sphere of this radius ends at the latest.
+    let wide = (*walk).spread * max(nearest + most * inverseSqrt(dot(direction, direction)), 0.0);
     (*walk).at = cell;
-    return dot(miss, miss) <= reach * reach;
+    // Seen from above, the reach is less for what is tall.
+    let level = direction.xz;
+    let beside = abs(away.x * level.y - away.z * level.x);
+    let near = (length(instancer.reach.xz) + wide) * length(level);
+    return dot(miss, miss) <= (most + wide) * (most + wide) && beside <= near;
 }
 
 // Whether the cone meets the bounding sphere of a copy before `far`.

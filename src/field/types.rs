@@ -113,14 +113,8 @@ fn add_types<'a>(
     let NodeKind::Instancer(instancer) = &node.kind else { unreachable!("it is an instancer") };
     let palette = instancer.palette.iter().map(|id| palette(flat, *id)).collect();
     let places = places(flat, of, (node, instancer), world_from_local)?;
-    let sizes: Vec<CopyType> = types
-        .iter()
-        .map(|(weight, bounds, _)| CopyType {
-            weight: *weight,
-            center: bounds.center(),
-            radius: bounds.half().length(),
-        })
-        .collect();
+    let sizes: Vec<CopyType> =
+        types.iter().map(|(weight, bounds, _)| CopyType { weight: *weight, bounds: *bounds }).collect();
     let made = flat_instancer(node, instancer, world_from_local, of.time, &sizes, places, palette);
     if made.bounds().is_empty() {
         return Ok(());

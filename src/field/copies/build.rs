@@ -1,5 +1,6 @@
 //! From the instancer of a scene to one that can be evaluated.
 
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use glam::{DAffine3, DVec3};
@@ -11,17 +12,15 @@ use super::moved_scene::node_dynamics;
 use super::variation::copy_of_place;
 use crate::hierarchy::Hierarchy;
 use isolith_geometry::Aabb;
-use isolith_scene::{Instancer, Lattice, Mask, MaskSlot, Node};
+use isolith_scene::{Instancer, Lattice, Mask, MaskSlot, Node, Variation};
 
-/// A type of an instancer: how often it is chosen, and its bounding sphere in the space of a copy.
+/// A type of an instancer: how often it is chosen, and its bounds in the space of a copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CopyType {
     /// In relation to the others.
     pub weight: f64,
-    /// Center of the sphere.
-    pub center: DVec3,
-    /// Radius of the sphere.
-    pub radius: f64,
+    /// Its bounds.
+    pub bounds: Aabb,
 }
 
 /// The instancer of a node at `time`. `types` have a positive weight together; `places` are those of a lattice that is
@@ -45,10 +44,13 @@ pub fn flat_instancer(
     let dynamics = node_dynamics(node, time, instancer.seed);
     let variation = instancer.variation;
     let envelope = copy_envelope(&dynamics);
-    let scale = DVec3::from_array(variation.scale_max).max_element() * envelope.scale;
-    let content = types.iter().map(|one| one.center.length() + one.radius).fold(0.0, f64::max);
+    let is_listed = is_listed(instancer);
+    // Places of a list may be turned anyhow.
+    let tilt = if is_listed { PI } else { variation_tilt(&variation) + envelope.tilt };
+    let content = content_reach(types, DVec3::from_array(variation.scale_max) * envelope.scale, tilt);
     let [least, most] = [variation.offset_min, variation.offset_max].map(DVec3::from_array);
-    let offset = least.abs().max(most.abs()).length();
+    let offset = least.abs().max(most.abs());
+    let offset = if is_listed { DVec3::splat(offset.length()) } else { offset };
     let mut flat = FlatInstancer {
         id: node.id,
         world_from_local,
@@ -61,21 +63,37 @@ pub fn flat_instancer(
         palette,
         shares: shares.collect(),
         dynamics,
-        spheres: types.iter().map(|one| (one.center, one.radius)).collect(),
-        reach: 0.0,
+        spheres: types.iter().map(|one| (one.bounds.center(), one.bounds.half().length())).collect(),
+        reach: content + offset + envelope.displacement,
     };
-    let jitter = match &flat.placement {
-        Placement::Lattice(lattice) => {
+    match &flat.placement {
+        Placement::Lattice(lattice) if !is_listed => {
             let size = DVec3::from_array([0, 1, 2].map(|i| if lattice.is_long(i) { lattice.spacing[i] } else { 0.0 }));
-            0.5 * variation.looseness * size.length()
+            flat.reach += 0.5 * variation.looseness * size;
         }
-        Placement::List(_) => 0.0,
-    };
-    flat.reach = jitter + offset + envelope.displacement + content * scale;
-    if is_listed(instancer) {
-        flat.placement = listed(&flat, places, content * scale + envelope.displacement + offset);
+        _ => flat.placement = listed(&flat, places),
     }
     flat
+}
+
+/// Greatest angle between the Y axes of a copy and of its type, by the ranges of its rotation.
+fn variation_tilt(variation: &Variation) -> f64 {
+    let most = |axis: usize| variation.rotation_min[axis].abs().max(variation.rotation_max[axis].abs());
+    (most(0) + most(2)).to_radians()
+}
+
+/// How far the content of types reaches from the origin of a copy along each axis, turned about Y at will and tilted by
+/// up to `tilt`.
+fn content_reach(types: &[CopyType], scale: DVec3, tilt: f64) -> DVec3 {
+    let [mut beside, mut above]: [f64; 2] = [0.0; 2];
+    for one in types {
+        let far = one.bounds.min.abs().max(one.bounds.max.abs()) * scale;
+        (beside, above) = (beside.max(far.x.hypot(far.z)), above.max(far.y));
+    }
+    let sine = if tilt < FRAC_PI_2 { tilt.sin() } else { 1.0 };
+    let all = beside.hypot(above);
+    let [beside, above] = [beside + above * sine, above + beside * sine].map(|reach| reach.min(all));
+    DVec3::new(beside, above, beside)
 }
 
 /// Whether its copies stand in a list, not in cells.
@@ -84,15 +102,14 @@ pub fn is_listed(instancer: &Instancer) -> bool {
 }
 
 /// The places that exist, with a tree over everything that a copy there may reach at any time.
-fn listed(flat: &FlatInstancer, places: Vec<Place>, reach: f64) -> Placement {
+fn listed(flat: &FlatInstancer, places: Vec<Place>) -> Placement {
     let list = |places: Vec<Place>, boxes: &[Aabb]| {
         Placement::List(Arc::new(PlaceList { places, tree: Hierarchy::build(boxes) }))
     };
     let all = FlatInstancer { placement: list(places.clone(), &[]), ..flat.clone() };
     let exist = places.into_iter().enumerate().filter(|(at, _)| copy_of_place(&all, *at).is_some());
     let places: Vec<Place> = exist.map(|(_, place)| place).collect();
-    let boxes: Vec<Aabb> =
-        places.iter().map(|place| Aabb::from_center_half(place.position, DVec3::splat(reach))).collect();
+    let boxes: Vec<Aabb> = places.iter().map(|place| Aabb::from_center_half(place.position, flat.reach)).collect();
     list(places, &boxes)
 }
 

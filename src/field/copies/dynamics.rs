@@ -1,6 +1,6 @@
 //! Motions of copies and nodes. Counterpart of `shaders/copy/dynamics.wgsl`.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DQuat, DVec2, DVec3};
 
@@ -56,6 +56,13 @@ pub struct Envelope {
     pub displacement: f64,
     /// Greatest factor on the size.
     pub scale: f64,
+    /// Greatest angle between the copy's Y axis and the one that it has at rest.
+    pub tilt: f64,
+}
+
+impl Envelope {
+    /// Of what stands still.
+    pub const STILL: Self = Self { displacement: 0.0, scale: 1.0, tilt: 0.0 };
 }
 
 /// The curl of the noise is scaled by this before it is bounded.
@@ -149,7 +156,8 @@ impl FlatDynamic {
     /// How far it takes a copy at any time.
     pub fn envelope(&self) -> Envelope {
         let [x, y, z, w] = self.a;
-        let still = Envelope { displacement: 0.0, scale: 1.0 };
+        let still = Envelope::STILL;
+        let is_upright = x == 0.0 && z == 0.0;
         match self.kind {
             DynamicKind::Bob
             | DynamicKind::RandomWalk
@@ -157,11 +165,11 @@ impl FlatDynamic {
             | DynamicKind::CurlNoise => Envelope { displacement: DVec3::new(x, y, z).length(), ..still },
             DynamicKind::Orbit => Envelope { displacement: w.abs(), ..still },
             DynamicKind::Pulse => Envelope { scale: 1.0 + w.abs(), ..still },
-            DynamicKind::Wind
-            | DynamicKind::Sway
-            | DynamicKind::Spin
-            | DynamicKind::Flicker
-            | DynamicKind::ColorCycle => still,
+            // Quivers along the wind and across it.
+            DynamicKind::Wind => Envelope { tilt: (w + 2.0 * self.b[2]).min(FRAC_PI_2), ..still },
+            DynamicKind::Sway => Envelope { tilt: if is_upright { 0.0 } else { w.abs().min(PI) }, ..still },
+            DynamicKind::Spin => Envelope { tilt: if is_upright { 0.0 } else { PI }, ..still },
+            DynamicKind::Flicker | DynamicKind::ColorCycle => still,
         }
     }
 
@@ -277,8 +285,9 @@ pub fn copy_motion(dynamics: &[FlatDynamic], seed: u32, cell: [i32; 3], position
 
 /// How far all dynamics together take a copy.
 pub fn copy_envelope(dynamics: &[FlatDynamic]) -> Envelope {
-    dynamics.iter().map(FlatDynamic::envelope).fold(Envelope { displacement: 0.0, scale: 1.0 }, |all, one| Envelope {
+    dynamics.iter().map(FlatDynamic::envelope).fold(Envelope::STILL, |all, one| Envelope {
         displacement: all.displacement + one.displacement,
         scale: all.scale * one.scale,
+        tilt: all.tilt + one.tilt,
     })
 }

@@ -69,7 +69,7 @@ fn each_near(instancer: &FlatInstancer, lattice: &FlatLattice, point: DVec3, vis
     let home = lattice.nearest(point);
     let long = |axis: &usize| lattice.is_long(*axis);
     let spacing = (0..3).filter(long).map(|axis| lattice.spacing[axis]).fold(f64::INFINITY, f64::min);
-    let reach = instancer.reach + lattice.stagger;
+    let reach = (0..3).filter(long).map(|axis| instancer.reach[axis]).fold(0.0, f64::max) + lattice.stagger;
     // Shells from which copies come near at all.
     let shells = if spacing.is_finite() { (reach / spacing + 0.5).ceil() as i32 + SHELLS } else { 0 };
     let range = |axis: usize| {

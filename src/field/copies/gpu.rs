@@ -50,7 +50,7 @@ pub struct GpuInstancer {
     anchor: [i32; 3],
     mask_count: u32,
     spacing: [f32; 3],
-    reach: f32,
+    padding_0: f32,
     anchor_place: [f32; 3],
     stagger: f32,
     jitter: [f32; 3],
@@ -77,6 +77,8 @@ pub struct GpuInstancer {
     pub first_row: u32,
     bounds_high: [f32; 3],
     padding: u32,
+    reach: [f32; 3],
+    padding_1: u32,
     shares: [f32; MAX_TYPES],
     spheres: [[f32; 4]; MAX_TYPES],
     palette: [u32; MAX_PALETTE],
@@ -118,7 +120,7 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
         anchor,
         mask_count: instancer.masks.len() as u32,
         spacing: vector(lattice.spacing),
-        reach: instancer.reach as f32,
+        padding_0: 0.0,
         anchor_place: vector(place),
         stagger: lattice.stagger as f32,
         jitter: vector(long * lattice.spacing * variation.looseness),
@@ -142,6 +144,7 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
         bounds_low: bound(bounds.min),
         first_row,
         bounds_high: bound(bounds.max),
+        reach: vector(instancer.reach),
         ..GpuInstancer::zeroed()
     };
     for (to, share) in gpu.shares.iter_mut().zip(&instancer.shares) {

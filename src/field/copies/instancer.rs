@@ -36,8 +36,8 @@ pub struct FlatInstancer {
     pub dynamics: Vec<FlatDynamic>,
     /// Bounding sphere of the content of each type, in the space of a copy: center and radius.
     pub spheres: Vec<(DVec3, f64)>,
-    /// How far the content of a copy may reach from its place in the lattice.
-    pub reach: f64,
+    /// How far the content of a copy may reach from its place along each axis, at any time.
+    pub reach: DVec3,
 }
 
 /// Where copies stand.
@@ -183,7 +183,10 @@ impl FlatInstancer {
     /// Bounds of all copies, in its own space.
     pub fn bounds(&self) -> Aabb {
         match &self.placement {
-            Placement::Lattice(lattice) => lattice.bounds().expanded(self.reach),
+            Placement::Lattice(lattice) => {
+                let places = lattice.bounds();
+                Aabb { min: places.min - self.reach, max: places.max + self.reach }
+            }
             Placement::List(list) => list.tree.nodes.first().map_or(Aabb::EMPTY, |root| root.bounds),
         }
     }

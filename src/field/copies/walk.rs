@@ -110,7 +110,7 @@ pub fn walk_axis(lattice: &FlatLattice, direction: DVec3) -> usize {
 
 /// How far a copy may be off the place of its cell along an axis, with the shift of rows.
 fn reach(instancer: &FlatInstancer, lattice: &FlatLattice, axis: usize) -> f64 {
-    instancer.reach + if axis == 0 { lattice.stagger } else { 0.0 }
+    instancer.reach[axis] + if axis == 0 { lattice.stagger } else { 0.0 }
 }
 
 /// The first and the last cell along an axis whose copies may meet the cone between two parameters.
