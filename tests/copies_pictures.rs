@@ -6,11 +6,12 @@ use isolith::field::Accuracy;
 use isolith::field::reference::accuracy::verdicts;
 use isolith::field::reference::image::render_reference;
 use isolith::geometry::Camera;
-use isolith::render::EvalStrategy;
-use isolith::scene::{Instancer, Lattice, Scene};
+use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
+use isolith::scene::{Instancer, Lattice, Modifier, Node, Scene};
+use isolith::wgsl::Options;
 
 use crate::copies::{limited, scene_of, varied};
-use crate::gpu::BenchScene;
+use crate::gpu::{BenchScene, shared};
 
 /// Width and height of the pictures, in pixels.
 const SIDE: u32 = 96;
@@ -80,4 +81,45 @@ fn a_picture_of_other_copies_is_refused() {
     drawn.camera = meant.camera;
     assert_eq!(faults(&meant, &meant), [""; 0]);
     assert!(!faults(&drawn, &meant).is_empty());
+}
+
+/// The first type of a scene, twisted.
+fn twisted() -> BenchScene {
+    let lattice = Lattice::Grid { counts: [3, 1, 3], spacing: [1.5; 3] };
+    let mut scene = scene_of(Instancer { lattice, variation: varied(), seed: 2, ..Instancer::default() }, &[]);
+    let top = scene.children(None).next().expect("the instancer").id;
+    let node = Node::clone(scene.children(Some(top)).next().expect("a type"));
+    scene.replace(node.modified(Modifier::Twist { angle: 90.0 })).expect("a valid node");
+    BenchScene::new("twisted", &scene, None)
+}
+
+#[test]
+fn types_may_have_modifiers() {
+    let scene = twisted();
+    assert!(scene.flat.components.iter().any(|component| component.is_modified()));
+    assert_eq!(faults(&scene, &scene), [""; 0]);
+}
+
+/// One view of ever more copies: a ray looks at those it meets, however many there are.
+#[test]
+fn work_does_not_grow_with_the_number_of_copies() {
+    let gpu = shared().gpu.clone();
+    let options = Options { counting: true, ..Renderer::options(&gpu) };
+    let mut renderer = Renderer::with_options(&gpu, options).expect("a renderer");
+    renderer.set_strategy(EvalStrategy::Tape);
+    let mut means = Vec::new();
+    for side in [10, 100, 1_000, 1_000_000] {
+        let lattice = Lattice::Grid { counts: [side, 1, side], spacing: [1.5; 3] };
+        let scene = scene_of(Instancer { lattice, variation: varied(), seed: 5, ..Instancer::default() }, &[]);
+        let scene = BenchScene::new("copies", &scene, None);
+        let camera = Camera::looking_at(DVec3::new(0.0, 4.0, 8.0), DVec3::ZERO, 0.8);
+        let overlay = OverlaySettings::default();
+        let begun = renderer.begin(Slot::Full, &scene.flat, &scene.meshes, &camera, [SIDE, SIDE], overlay);
+        let mut frame = begun.expect("a frame");
+        renderer.advance(&mut frame, std::time::Duration::MAX).expect("a picture");
+        assert_eq!(renderer.unfinished_rays(&frame).expect("counts"), []);
+        means.push(renderer.pixel_counts(&frame).expect("counts").steps().mean);
+    }
+    // The first has room for more copies in view.
+    assert!(means[1..].iter().all(|mean| *mean < 1.2 * means[1]) && means[1] < 40.0, "{means:?}");
 }

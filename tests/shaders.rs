@@ -58,7 +58,11 @@ fn sources() -> Vec<(&'static str, String)> {
         let text = |evaluator| assemble(pass, evaluator, with_copies).unwrap_or_else(|error| panic!("{error}"));
         all.each_ref().map(|evaluator| (pass, text(evaluator)))
     });
-    plain.chain(of_copies).chain([("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)]).collect()
+    let shown = assemble_featured("shade.wgsl", &["COPIES"]).unwrap_or_else(|error| panic!("{error}"));
+    plain
+        .chain(of_copies)
+        .chain([("shade.wgsl", shown), ("shade.wgsl", textured()), ("shade.wgsl", shade), ("shadow.wgsl", meshes)])
+        .collect()
 }
 
 /// The pass `shade` for scenes with textures.

@@ -117,6 +117,7 @@ impl From<RenderError> for Failure {
             RenderError::Size(..) => Self::Usage(error.to_string()),
             RenderError::Shader(_)
             | RenderError::Counts(..)
+            | RenderError::Copies(..)
             | RenderError::TooManyDispatches(..)
             | RenderError::ListBytes { .. } => Self::Other(error.to_string()),
         }

@@ -32,6 +32,7 @@ use crate::passes::shade_features::ShadeFeatures;
 use crate::pipelines::cache::PipelineCache;
 use crate::pipelines::strategy::EvalStrategy;
 use crate::resources::layouts::Layouts;
+use crate::resources::targets::copied_bytes;
 use isolith_field::debug_view::{DepthRange, ViewMode};
 use isolith_field::standpoint::Standpoints;
 use isolith_field::{Cancel, FlatScene, GBuffer, GpuLight, TapeCache, Warning, gpu_lights};
@@ -248,6 +249,9 @@ impl Renderer {
         }
         if !self.resources.counts.fit(flat.components.len(), size, limits.max_storage_buffer_binding_size) {
             return Err(RenderError::Counts(size[0], size[1]));
+        }
+        if !flat.instancers.is_empty() && copied_bytes(size) > limits.max_storage_buffer_binding_size {
+            return Err(RenderError::Copies(size[0], size[1]));
         }
         let Prepared { chosen, plan, lights, shadows } = {
             let _span = tracing::debug_span!("plan", components = flat.components.len()).entered();

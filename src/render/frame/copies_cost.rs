@@ -1,6 +1,5 @@
 //! What a ray through the copies of an instancer costs.
 
-use super::plan::MAX_ITERATIONS;
 use isolith_field::copies::FlatInstancer;
 use isolith_scene::DynamicKind;
 
@@ -24,8 +23,8 @@ pub const LEAST_RELAUNCHES: u32 = 4;
 pub const COPIES_OF_A_RAY: f64 = 2.0;
 
 impl CopyLimits {
-    /// The limits for an instancer: half of the iterations are for cells.
-    pub fn of(instancer: &FlatInstancer) -> Self {
+    /// The limits for an instancer, for an invocation of `iterations`: half of them are for cells.
+    pub fn of(instancer: &FlatInstancer, iterations: u32) -> Self {
         let of_dynamic = |kind: DynamicKind| match kind {
             DynamicKind::CurlNoise => 9,
             DynamicKind::RandomWalk => 5,
@@ -35,7 +34,7 @@ impl CopyLimits {
         };
         let dynamics: u32 = instancer.dynamics.iter().map(|dynamic| of_dynamic(dynamic.kind)).sum();
         let of_cell = 3 + (instancer.masks.len() + instancer.shares.len()) as u32 + dynamics;
-        Self { iterations: MAX_ITERATIONS / 2, cells: MAX_ITERATIONS / 2 / of_cell }
+        Self { iterations: iterations / 2, cells: iterations / 2 / of_cell }
     }
 }
 

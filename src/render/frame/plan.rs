@@ -226,7 +226,7 @@ impl Marching {
         } else {
             (MAX_STEPS_UNBOUNDED, STEPS_UNBOUNDED)
         };
-        let limits = instancer.map(CopyLimits::of);
+        let limits = instancer.map(|of| CopyLimits::of(of, MAX_ITERATIONS));
         let steps = (limits.map_or(MAX_ITERATIONS, |of| of.iterations) / iterations).clamp(1, at_once);
         let walk = instancer.map_or(0.0, walk_leaves);
         let per_pixel = leaves * TRACE_EVALUATIONS * instancer.map_or(1.0, |_| COPIES_OF_A_RAY) + walk;

@@ -5,20 +5,11 @@ use std::ops::Range;
 use wgpu::BindGroup;
 
 use super::frame_pass::{Building, FramePass};
-use crate::pipelines::field::FieldLayouts;
+use crate::pipelines::field::{FieldLayouts, own_of_copies};
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
 use crate::renderer::resources::{Bound, RAY_COUNTS, SUBTILE_COUNTS};
 use isolith_wgsl::ShaderError;
-
-/// The first own bind group of a pass for types of instancers.
-pub fn own_of_copies(pass: Pass) -> usize {
-    match pass {
-        Pass::Trace => 2,
-        Pass::Surface => 1,
-        _ => 0,
-    }
-}
 
 /// Invocations in a workgroup of the cone pass.
 const CONE_GROUP: u32 = 64;

@@ -119,6 +119,15 @@ pub fn field_file(stage: Pass, options: Options) -> &'static str {
     if options.copies && stage == Pass::Cone { "copy/cone.wgsl" } else { stage.file() }
 }
 
+/// The first own bind group of a pass for types of instancers.
+pub fn own_of_copies(pass: Pass) -> usize {
+    match pass {
+        Pass::Trace => 2,
+        Pass::Surface => 1,
+        _ => 0,
+    }
+}
+
 /// Layouts of the targets of the three passes.
 #[derive(Clone, Debug)]
 pub struct FieldLayouts {

@@ -21,6 +21,9 @@ pub enum RenderError {
     /// The counters of all pixels do not fit into one buffer of the device.
     #[error("a picture of {0} by {1} pixels is too large to count what each of them takes")]
     Counts(u32, u32),
+    /// Which copies the pixels show does not fit into one buffer of the device.
+    #[error("a picture of {0} by {1} pixels is too large to remember which copy each of them shows")]
+    Copies(u32, u32),
     /// The plan needs more dispatches than one buffer of the device can hold, mostly for this node.
     #[error("a picture of {0} by {1} pixels takes too many steps for this device, most of them for node {2}")]
     TooManyDispatches(u32, u32, NodeId),

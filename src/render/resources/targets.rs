@@ -23,8 +23,10 @@ use crate::frame::plan::{SUBTILES, TILE};
 /// Depth of pixels without a hit.
 pub const BACKGROUND: f32 = 1e30;
 
-/// Bytes of a pixel in the buffer of copies.
-pub const COPIED_BYTES: u64 = 32;
+/// Bytes of the buffer of copies: two entries per pixel.
+pub fn copied_bytes(size: [u32; 2]) -> u64 {
+    u64::from(size[0]) * u64::from(size[1]) * 32
+}
 
 /// The targets of a picture, see the module.
 #[derive(Debug)]
@@ -93,7 +95,7 @@ impl Targets {
         if is_missing {
             self.copied = Some(device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("copied"),
-                size: u64::from(self.size[0]) * u64::from(self.size[1]) * COPIED_BYTES,
+                size: copied_bytes(self.size),
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }));
