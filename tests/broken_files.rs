@@ -311,7 +311,13 @@ const CASES: &[Case] = &[
     (r#""material": 2"#, r#""material": 7"#, "Foot #3", "nodes[2].object.material", "there is no material #7"),
     (r#""material": null"#, r#""material": 7"#, "Duck #4", "nodes[3].mesh.material", "there is no material #7"),
     (r#""id": 3, "parent": 1"#, r#""id": 3, "parent": 77"#, "Foot #3", "nodes[2].parent", "there is no node #77"),
-    (r#""id": 3, "parent": 1"#, r#""id": 3, "parent": 2"#, "Foot #3", "nodes[2].parent", "node #2 is not a group"),
+    (
+        r#""id": 3, "parent": 1"#,
+        r#""id": 3, "parent": 2"#,
+        "Foot #3",
+        "nodes[2].parent",
+        "node #2 is neither a group nor",
+    ),
     (r#""id": 8,"#, r#""id": 8, "parent": 8,"#, "Rest #8", "nodes[7].parent", "in a circle"),
     (
         r#""id": 1, "name": "Pawn""#,

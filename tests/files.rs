@@ -195,7 +195,7 @@ fn the_schema_describes_the_format() {
     assert_eq!(schema["additionalProperties"], false);
     let node = &schema["$defs"]["NodeFile"];
     assert_eq!(node["additionalProperties"], false);
-    assert_eq!(node["oneOf"].as_array().map(Vec::len), Some(5));
+    assert_eq!(node["oneOf"].as_array().map(Vec::len), Some(6));
     // The schema describes every written file.
     let written = file::to_json(&random_scene(4, 40)).expect("valid");
     let written: serde_json::Value = serde_json::from_str(&written).expect("JSON");

@@ -11,7 +11,7 @@ use isolith_scene::{Dynamic, DynamicKind};
 
 /// Change of a copy by its dynamics.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct CopyMotion {
     /// Displacement, in the space of the instancer or of the node's parent.
     pub translation: DVec3,
     /// Rotation about the copy's origin.
@@ -24,7 +24,7 @@ pub struct Motion {
     pub emission: f64,
 }
 
-impl Motion {
+impl CopyMotion {
     /// No motion.
     pub const NONE: Self =
         Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: 1.0, hue: 0.0, emission: 1.0 };
@@ -178,34 +178,34 @@ impl FlatDynamic {
     }
 
     /// The motion of one copy at `position`. `at` is its place among the dynamics.
-    fn motion(&self, seed: u32, at: usize, cell: [i32; 3], position: DVec3) -> Motion {
+    fn motion(&self, seed: u32, at: usize, cell: [i32; 3], position: DVec3) -> CopyMotion {
         let randoms = copy_randoms(seed, cell, Channel::Dynamics as u32 + at as u32);
         let axis = DVec3::new(self.a[0], self.a[1], self.a[2]);
         let turns = self.phase.fraction + self.b[0] * randoms[0];
         match self.kind {
             DynamicKind::Wind => self.wind(randoms, position),
-            DynamicKind::Sway => Motion::rotated(DQuat::from_axis_angle(axis, self.a[3] * (TAU * turns).sin())),
-            DynamicKind::Bob => Motion::translated(axis * (TAU * turns).sin()),
+            DynamicKind::Sway => CopyMotion::rotated(DQuat::from_axis_angle(axis, self.a[3] * (TAU * turns).sin())),
+            DynamicKind::Bob => CopyMotion::translated(axis * (TAU * turns).sin()),
             DynamicKind::Orbit => {
                 let [u, v] = copy_basis(axis);
                 let (sin, cos) = (TAU * turns).sin_cos();
-                Motion::translated((u * cos + v * sin) * self.a[3])
+                CopyMotion::translated((u * cos + v * sin) * self.a[3])
             }
-            DynamicKind::Pulse => Motion { scale: 1.0 + self.a[3] * (TAU * turns).sin(), ..Motion::NONE },
-            DynamicKind::Spin => Motion::rotated(DQuat::from_axis_angle(axis, TAU * turns)),
+            DynamicKind::Pulse => CopyMotion { scale: 1.0 + self.a[3] * (TAU * turns).sin(), ..CopyMotion::NONE },
+            DynamicKind::Spin => CopyMotion::rotated(DQuat::from_axis_angle(axis, TAU * turns)),
             DynamicKind::Flicker => {
                 let noise = 0.5 + 0.5 * copy_noise_1(self.key, self.own_time(randoms[0]));
-                Motion { emission: 1.0 - self.a[3] * noise, ..Motion::NONE }
+                CopyMotion { emission: 1.0 - self.a[3] * noise, ..CopyMotion::NONE }
             }
-            DynamicKind::ColorCycle => Motion { hue: turns, ..Motion::NONE },
-            DynamicKind::RandomWalk => Motion::translated(axis * self.walk(randoms, self.key, 1)),
+            DynamicKind::ColorCycle => CopyMotion { hue: turns, ..CopyMotion::NONE },
+            DynamicKind::RandomWalk => CopyMotion::translated(axis * self.walk(randoms, self.key, 1)),
             DynamicKind::FractionalBrownianMotion => {
-                Motion::translated(axis * self.walk(randoms, self.key, self.b[1] as u32))
+                CopyMotion::translated(axis * self.walk(randoms, self.key, self.b[1] as u32))
             }
             DynamicKind::CurlNoise => {
                 let flow = DVec3::from_array(copy_curl(self.key, self.coordinates(position), self.phase.fraction));
                 let flow = flow * CURL_SCALE;
-                Motion::translated(axis * (flow / (1.0 + flow.length_squared()).sqrt()))
+                CopyMotion::translated(axis * (flow / (1.0 + flow.length_squared()).sqrt()))
             }
         }
     }
@@ -240,7 +240,7 @@ impl FlatDynamic {
     }
 
     /// A tilt with the wind about the copy's root, and a quiver.
-    fn wind(&self, randoms: [f64; 3], position: DVec3) -> Motion {
+    fn wind(&self, randoms: [f64; 3], position: DVec3) -> CopyMotion {
         let along = DVec3::new(self.a[0], 0.0, self.a[2]);
         let across = DVec3::new(-along.z, 0.0, along.x);
         let [steady, softness, flutter, radius] = self.b;
@@ -259,11 +259,11 @@ impl FlatDynamic {
         let tilt = along * (self.a[3] * strength + quiver.x) + across * quiver.y;
         let angle = tilt.length().min(FRAC_PI_2);
         if angle == 0.0 {
-            return Motion::NONE;
+            return CopyMotion::NONE;
         }
         // About the horizontal axis at right angles to the tilt.
         let axis = DVec3::new(tilt.z, 0.0, -tilt.x) / tilt.length();
-        Motion::rotated(DQuat::from_axis_angle(axis, angle))
+        CopyMotion::rotated(DQuat::from_axis_angle(axis, angle))
     }
 }
 
@@ -278,9 +278,9 @@ pub fn copy_basis(axis: DVec3) -> [DVec3; 2] {
 }
 
 /// The motion by all dynamics, in order. `position`: place of the copy before.
-pub fn copy_motion(dynamics: &[FlatDynamic], seed: u32, cell: [i32; 3], position: DVec3) -> Motion {
+pub fn copy_motion(dynamics: &[FlatDynamic], seed: u32, cell: [i32; 3], position: DVec3) -> CopyMotion {
     let motions = dynamics.iter().enumerate().map(|(at, dynamic)| dynamic.motion(seed, at, cell, position));
-    motions.fold(Motion::NONE, Motion::then)
+    motions.fold(CopyMotion::NONE, CopyMotion::then)
 }
 
 /// How far all dynamics together take a copy.

@@ -18,7 +18,7 @@ mod trace;
 mod variation;
 mod walk;
 
-pub use dynamics::{Envelope, Motion, copy_basis, copy_envelope, copy_motion};
+pub use dynamics::{CopyMotion, Envelope, copy_basis, copy_envelope, copy_motion};
 pub use eval::{NearestCopy, nearest_copy, world_field, world_from_copy, world_gradient, world_surface};
 pub use gpu::{GpuCopyDynamic, GpuCopyMask, GpuInstancer, gpu_instancer, gpu_places};
 pub use hash::{Channel, copy_hash, copy_random, copy_randoms};

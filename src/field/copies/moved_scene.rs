@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::dynamics::{Motion, copy_motion};
+use super::dynamics::{CopyMotion, copy_motion};
 use super::instancer::FlatDynamic;
 use isolith_scene::check::Fault;
 use isolith_scene::{DynamicKind, Node, NodeId, NodeKind, Object, Scene, Shape};
@@ -47,7 +47,8 @@ fn moved(node: &Node, time: f64) -> Node {
     }
     let seed = node.id.0 as u32;
     let dynamics = node_dynamics(node, time, seed);
-    let Motion { translation, rotation, scale, .. } = copy_motion(&dynamics, seed, [0; 3], node.transform.translation);
+    let CopyMotion { translation, rotation, scale, .. } =
+        copy_motion(&dynamics, seed, [0; 3], node.transform.translation);
     out.transform.translation += translation;
     out.transform.rotation = (rotation * node.transform.rotation).normalize();
     out.transform.scale *= DVec3::splat(scale);

@@ -2,7 +2,7 @@
 
 use glam::{DAffine3, DMat3, DQuat, DVec3, EulerRot};
 
-use super::dynamics::{Motion, copy_motion};
+use super::dynamics::{CopyMotion, copy_motion};
 use super::hash::{Channel, copy_randoms};
 use super::instancer::{FlatInstancer, FlatMask, Placement};
 use super::noise::{Coordinate, copy_noise_2};
@@ -22,7 +22,7 @@ pub struct Copy {
     /// Its size along its own axes.
     pub scale: DVec3,
     /// Its dynamics, of which its place has taken effect already.
-    pub motion: Motion,
+    pub motion: CopyMotion,
 }
 
 /// A copy whose scale is less than this along an axis is not there.
