@@ -2,6 +2,7 @@
 
 mod adding;
 mod attachments;
+mod choosing;
 mod fields;
 mod handles;
 mod jobs;

@@ -68,6 +68,34 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     chosen
 }
 
+/// Shows the context menu of the viewport; returns the chosen command.
+pub fn viewport_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
+    use Command::{
+        AddAtPointer, Delete, DropOnSurface, Duplicate, FrameAll, FrameSelected, Group, Isolate, SelectAll,
+        SelectParents, SelectSimilar, ShowAll, ToggleLock, ToggleNegative, ToggleVisible,
+    };
+    const GROUPS: [&[Command]; 5] = [
+        &[AddAtPointer],
+        &[Duplicate, Delete, Group, ToggleNegative],
+        &[DropOnSurface, SelectParents, SelectSimilar],
+        &[Isolate, ToggleVisible, ToggleLock, FrameSelected],
+        &[SelectAll, ShowAll, FrameAll],
+    ];
+    let mut chosen = None;
+    let enabled = GROUPS.map(|commands| commands.iter().copied().filter(|command| command.is_enabled(state)));
+    for (index, commands) in enabled.into_iter().enumerate() {
+        for (place, command) in commands.enumerate() {
+            if index > 0 && place == 0 {
+                ui.separator();
+            }
+            if entry(ui, command, true, None).clicked() {
+                chosen = Some(command);
+            }
+        }
+    }
+    chosen
+}
+
 /// A menu entry. A switch shows its state in place of the icon.
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();

@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{insertion, material_edits, selection};
+use crate::{insertion, material_edits, relations, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -46,16 +46,18 @@ impl Editor {
             Command::ToggleNegative => selection::toggle_negative(session),
             Command::SelectAll => selection::select_all(session),
             Command::SelectNothing => select_nothing(state),
+            Command::SelectParents => relations::select_parents(state),
+            Command::SelectChildren => relations::select_children(state),
+            Command::SelectSimilar => relations::select_similar(state),
+            Command::SelectByBox => state.view.wants_box = true,
+            Command::Isolate => relations::isolate(state),
+            Command::DropOnSurface => relations::drop_on_surface(state),
             Command::ToggleVisible => selection::toggle_visible(session),
             Command::ShowAll => selection::show_all(session),
             Command::ToggleLock => selection::toggle_locked(session),
             Command::MakeMaterialUnique => make_material_unique(session),
             Command::RemoveUnusedMaterials => remove_unused_materials(session),
-            Command::AddAtPointer => {
-                let pointer = ctx.pointer_latest_pos().unwrap_or(state.view.rect.center());
-                state.view.add_at = Some(pointer).filter(|pointer| state.view.rect.contains(*pointer));
-                self.add_palette.open(pointer);
-            }
+            Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddShape(kind) => insertion::shape(state, kind),
             Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
             Command::AddMesh => self.choose_mesh(ctx),
@@ -83,6 +85,14 @@ impl Editor {
         }
     }
 
+    /// Opens the palette where the context menu was opened, or at the pointer.
+    fn add_at_pointer(&mut self, ctx: &Context) {
+        let view = &mut self.state.view;
+        let pointer = view.menu_at.take().or(ctx.pointer_latest_pos()).unwrap_or(view.rect.center());
+        view.add_at = Some(pointer).filter(|pointer| view.rect.contains(*pointer));
+        self.add_palette.open(pointer);
+    }
+
     fn reload(&mut self, ctx: &Context) {
         if let Some(path) = self.document().path().map(Path::to_path_buf) {
             self.intend(Intent::Open(path), ctx);
@@ -101,6 +111,7 @@ fn redo(session: &mut EditSession) {
 fn select_nothing(state: &mut EditorState) {
     state.session.document.select(Vec::new());
     state.materials.current = None;
+    state.view.entered = None;
 }
 
 fn make_material_unique(session: &mut EditSession) {
