@@ -11,6 +11,7 @@ mod materials;
 mod modifiers;
 mod names;
 mod order;
+mod pawn;
 mod picture;
 mod popups;
 mod saving;

@@ -4,7 +4,7 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
-use crate::keymap::Keymap;
+use crate::keymap::{Keymap, shown};
 use crate::state::EditorState;
 use crate::theme;
 
@@ -101,7 +101,7 @@ fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Resp
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
     if let Some(key) = info.keys(Keymap::of(ui.ctx())).first() {
-        button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
+        button = button.shortcut_text(RichText::new(shown(ui.ctx(), key)).color(theme::FAINT));
     }
     let response = ui.add_enabled(enabled, button);
     ui.ctx().accesskit_node_builder(response.id, |node| {

@@ -36,7 +36,8 @@ pub fn take_keys(drag: &mut TransformDrag, events: &[Event], usual: Orientation)
                 _ => {}
             },
             Event::Text(text) => {
-                let is_taken = |c: &char| !"xyz".contains(*c) && !(drag.typed.is_empty() && "grs".contains(*c));
+                let others = if drag.typed.is_empty() { "xyzgrs" } else { "xyz" };
+                let is_taken = |c: &char| !others.contains(*c);
                 let taken: Vec<char> = text.chars().map(|c| c.to_ascii_lowercase()).filter(is_taken).collect();
                 taken.into_iter().for_each(|c| drag.typed.push(c));
             }
