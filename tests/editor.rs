@@ -2,6 +2,7 @@
 
 mod adding;
 mod attachments;
+mod choosing;
 mod fields;
 mod handles;
 mod instancers;
@@ -11,6 +12,7 @@ mod materials;
 mod modifiers;
 mod names;
 mod order;
+mod pawn;
 mod picture;
 mod popups;
 mod saving;

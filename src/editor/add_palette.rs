@@ -139,7 +139,7 @@ pub struct AddPalette {
 }
 
 /// Size of the palette without its margin, and width of the categories, in points.
-const SIZE: egui::Vec2 = vec2(432.0, 356.0);
+const SIZE: egui::Vec2 = vec2(432.0, 326.0);
 const CATEGORIES: f32 = 140.0;
 
 impl AddPalette {
@@ -268,7 +268,8 @@ impl AddPalette {
                 ui.horizontal(|ui| {
                     let width = ui.available_width() - 36.0;
                     let button = Button::selectable(index == self.chosen, (RichText::new(ICON_ROOM), &*info.label))
-                        .min_size(vec2(width, 26.0));
+                        .min_size(vec2(width, 26.0))
+                        .shortcut_text("");
                     let response = ui.add_enabled(command.is_enabled(state), button);
                     info.paint_icon(ui, response.rect, true, None);
                     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("New {}", info.label)));

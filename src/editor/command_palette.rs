@@ -4,7 +4,7 @@ use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, R
 
 use super::commands::command::Command;
 use super::commands::entries::ICON_ROOM;
-use super::keymap::Keymap;
+use super::keymap::{Keymap, shown};
 use super::state::EditorState;
 use super::theme;
 
@@ -90,8 +90,7 @@ impl CommandPalette {
             }
             for (index, command) in found.iter().enumerate() {
                 let (info, is_enabled) = (command.info(), command.is_enabled(state));
-                let keys =
-                    info.keys(Keymap::of(ui.ctx())).first().map_or_else(String::new, |k| ui.ctx().format_shortcut(k));
+                let keys = info.keys(Keymap::of(ui.ctx())).first().map_or_else(String::new, |k| shown(ui.ctx(), k));
                 let button = Button::selectable(index == self.chosen, (RichText::new(ICON_ROOM), info.label.as_str()))
                     .min_size(vec2(ui.available_width(), 26.0))
                     .shortcut_text(RichText::new(keys).color(theme::FAINT));

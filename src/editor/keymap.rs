@@ -1,6 +1,6 @@
 //! The keymaps: which keys run the commands.
 
-use egui::{Context, Id};
+use egui::{Context, Id, KeyboardShortcut};
 
 /// A set of keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -46,4 +46,11 @@ impl Keymap {
     pub fn install(self, ctx: &Context) {
         ctx.data_mut(|data| data.insert_temp(Id::unique("keymap"), self));
     }
+}
+
+/// The shortcut as menus show it: signs rather than the names of their keys.
+pub fn shown(ctx: &Context, shortcut: &KeyboardShortcut) -> String {
+    const SIGNS: [(&str, &str); 4] = [("OpenBracket", "["), ("CloseBracket", "]"), ("Slash", "/"), ("Period", ".")];
+    let text = ctx.format_shortcut(shortcut);
+    SIGNS.iter().fold(text, |text, (name, sign)| text.replace(name, sign))
 }

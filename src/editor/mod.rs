@@ -22,6 +22,8 @@
 //! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
+//! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
+//! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
@@ -34,7 +36,9 @@
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod add_palette;
+mod below_list;
 mod bounds;
+mod choice_walk;
 mod choosing;
 mod color_picker;
 mod command_palette;
@@ -93,6 +97,7 @@ mod portal;
 mod preset_picker;
 mod projection;
 mod recovery;
+mod relations;
 mod root;
 mod safekeeping;
 mod seeds;

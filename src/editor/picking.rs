@@ -1,13 +1,18 @@
-//! Picks what is under the pointer: the node in front, a point of the surface.
+//! Picks what is under the pointer: the node in front, what lies below it, a point of the surface.
+
+use std::collections::HashSet;
 
 use glam::DVec3;
 
 use super::state::EditorState;
 use isolith_field::mesh_rays::trace_meshes;
 use isolith_field::scene_eval::{RayLimits, SceneEvaluator};
-use isolith_field::{FlatScene, pick};
+use isolith_field::{FlatScene, flatten, pick};
 use isolith_geometry::Ray;
-use isolith_scene::NodeId;
+use isolith_scene::{Node, NodeId, Scene};
+
+/// Most nodes in the list of what lies below the pointer.
+pub const MOST_BELOW: usize = 24;
 
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +34,48 @@ fn pick_in(state: &EditorState, flat: &FlatScene, ray: &Ray) -> Option<NodeId> {
     pick::pick(flat, &meshes, ray, camera.near, camera.far)
 }
 
+/// The nodes that the ray meets, nearest first: each is looked for without those before it.
+pub fn pick_all(state: &EditorState, ray: &Ray) -> Vec<NodeId> {
+    let mut found = Vec::new();
+    let mut scene = Scene::clone(state.session.document.scene());
+    let mut hit = pick_node(state, ray);
+    while let Some(id) = hit.filter(|_| found.len() < MOST_BELOW) {
+        found.push(id);
+        if !hide(&mut scene, id) {
+            break;
+        }
+        let Ok(flat) = flatten(&scene, 0.0) else { break };
+        hit = pick_in(state, &flat, ray).filter(|id| !found.contains(id));
+    }
+    found
+}
+
+fn hide(scene: &mut Scene, id: NodeId) -> bool {
+    let Some(node) = scene.node(id).filter(|node| node.visible) else { return false };
+    let hidden = Node { visible: false, ..Node::clone(node) };
+    scene.replace(hidden).is_ok()
+}
+
 /// The point of the surface that the ray meets first.
 pub fn pick_surface(state: &EditorState, ray: &Ray) -> Option<PickedPoint> {
     let camera = state.view.navigation.camera();
     surface(state, state.flat(), ray, RayLimits { near: camera.near, far: camera.far })
+}
+
+/// The same without some nodes, between two distances.
+pub fn pick_surface_without(
+    state: &EditorState,
+    ray: &Ray,
+    without: &[NodeId],
+    range: [f64; 2],
+) -> Option<PickedPoint> {
+    let mut scene = Scene::clone(state.session.document.scene());
+    let unique: HashSet<NodeId> = without.iter().copied().collect();
+    for id in unique {
+        hide(&mut scene, id);
+    }
+    let flat = flatten(&scene, 0.0).ok()?;
+    surface(state, &flat, ray, RayLimits { near: range[0], far: range[1] })
 }
 
 fn surface(state: &EditorState, flat: &FlatScene, ray: &Ray, limits: RayLimits) -> Option<PickedPoint> {

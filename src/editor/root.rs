@@ -19,7 +19,7 @@ use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
 use super::view_state::{Picture, ViewSettings};
-use super::{input_order, numbers, panels, theme, widgets};
+use super::{below_list, input_order, numbers, panels, theme, widgets};
 use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
@@ -167,6 +167,7 @@ impl Editor {
             self.run(command, ctx);
             self.state.view.add_at = None;
         }
+        below_list::show(&mut self.state, ctx);
         let corner = self.state.view.rect;
         let messages = &mut self.state.session.messages;
         messages.show_toasts(ctx, corner);
@@ -265,6 +266,7 @@ impl Editor {
         self.dialogs.is_open()
             || self.command_palette.is_open()
             || self.add_palette.is_open()
+            || self.state.view.below.is_some()
             || self.conflict.is_open()
             || self.is_offering()
     }
@@ -288,6 +290,8 @@ impl Editor {
         self.state.session.finish();
         self.state.playback = Playback::default();
         self.state.view.transforming = None;
+        (self.state.view.entered, self.state.view.walk, self.state.view.below) = (None, None, None);
+        self.state.view.isolated.clear();
         self.opening = None;
         self.state.files.forget_attachments();
         self.state.materials.forget();

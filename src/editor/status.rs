@@ -128,10 +128,13 @@ fn hint_of(state: &EditorState) -> String {
             "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
         PointerActivity::Hovering => {
-            "Click: select · Shift click: add · Drag: orbit · Shift middle button: pan · Wheel: zoom · F: frame".into()
+            "Click: select, again: below · Double click: into the group · Shift A: add · G R S: move, rotate, scale · \
+             Drag: orbit · Shift drag: pan · Ctrl drag: box"
+                .into()
         }
         PointerActivity::Away => {
             "Hover a field for help · Drag rows in the outliner to reorder · F3: find a command".into()

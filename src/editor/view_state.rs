@@ -2,11 +2,13 @@
 
 use egui::{Event, Pos2, Rect, TextureId, vec2};
 
+use super::choice_walk::{BelowList, Walk};
 use super::navigation::Navigation;
 use super::transforms::kinds::{Orientation, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
+use isolith_scene::NodeId;
 
 /// The output of the renderer.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +75,8 @@ pub enum PointerActivity {
     OverHandle(bool),
     /// Drags a handle of a shape.
     Shaping,
+    /// Drags a box around what is to be selected.
+    Boxing,
 }
 
 /// The view of the document.
@@ -97,6 +101,18 @@ pub struct ViewState {
     pub transforming: Option<TransformKind>,
     /// Where in the picture the next node is added; `None` for the view's target.
     pub add_at: Option<Pos2>,
+    /// The group in which clicks select; `None` for the whole scene.
+    pub entered: Option<NodeId>,
+    /// The clicks at one place so far.
+    pub walk: Option<Walk>,
+    /// The list of what lies below the pointer, while it is open.
+    pub below: Option<BelowList>,
+    /// What is hidden while something is shown alone.
+    pub isolated: Vec<NodeId>,
+    /// The next drag selects by a box.
+    pub wants_box: bool,
+    /// Where the context menu was opened.
+    pub menu_at: Option<Pos2>,
     /// The keys and texts of this frame that belong to it.
     pub modal_events: Vec<Event>,
     /// The picture's rectangle, in points.
@@ -124,6 +140,12 @@ impl Default for ViewState {
             orientation: Orientation::World,
             transforming: None,
             add_at: None,
+            entered: None,
+            walk: None,
+            below: None,
+            isolated: Vec::new(),
+            wants_box: false,
+            menu_at: None,
             modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
             size_px: [640, 480],

@@ -3,17 +3,18 @@
 use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
+use super::commands::entries::viewport_entries;
 use super::handles::handle_paint;
 use super::handles::value_drag::Pace;
 use super::handles::value_handle::{HandleSet, HandleTarget};
 use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
-use super::state::EditorState;
+use super::state::{EditorState, Request};
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
 use super::view_state::PointerActivity;
-use super::viewport_click::{click, take_dropped_material};
+use super::viewport_click::{click, prepare_menu, select_in_box, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
 use super::{lattice_overlay, legend, materials, shading_bar, steps, theme};
@@ -78,6 +79,8 @@ impl Viewport {
             Some(Dragging::Zoom) => PointerActivity::Zooming,
             Some(Dragging::Transform(_)) => PointerActivity::Moving,
             Some(Dragging::Shape(_)) => PointerActivity::Shaping,
+            Some(Dragging::Box(_)) => PointerActivity::Boxing,
+            None if state.view.wants_box => PointerActivity::Boxing,
             None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
@@ -91,6 +94,11 @@ impl Viewport {
             self.dragging = start_drag(state, ui, response, &projection);
         }
         if !response.dragged() {
+            if let Some(Dragging::Box([from, to])) = self.dragging {
+                let projection = Projection::new(&state.view, pixels_per_point);
+                let adding = ui.input(|i| i.modifiers.shift);
+                select_in_box(state, &projection, Rect::from_two_pos(from, to), adding);
+            }
             self.dragging = None;
         }
         self.follow_drag(state, ui, response);
@@ -100,9 +108,32 @@ impl Viewport {
             click(state, ui, response, &projection);
         }
         take_dropped_material(state, ui, response);
+        self.context_menu(state, ui, response);
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
         state.view.pointer = self.activity(state, ui, response);
+    }
+
+    fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
+        if self.modal.takes_pointer() {
+            return;
+        }
+        if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.secondary_clicked()) {
+            let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+            prepare_menu(state, &projection, pointer);
+        }
+        if response.clicked() {
+            state.view.menu_at = None;
+        }
+        let mut chosen = None;
+        response.context_menu(|ui| {
+            ui.set_min_width(220.0);
+            chosen = viewport_entries(ui, state);
+            if chosen.is_some() {
+                ui.close();
+            }
+        });
+        state.requests.extend(chosen.map(Request::Run));
     }
 
     fn follow_drag(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
@@ -118,6 +149,13 @@ impl Viewport {
             Some(Dragging::Orbit) => view.orbit(delta, height),
             Some(Dragging::Pan) => view.pan(delta, height),
             Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
+            Some(Dragging::Box([_, to])) => {
+                *to = response.interact_pointer_pos().unwrap_or(*to);
+                state.view.wants_box = false;
+                if ui.input(|i| i.key_pressed(Key::Escape)) {
+                    self.dragging = None;
+                }
+            }
             Some(Dragging::Transform(_) | Dragging::Shape(_)) => self.follow_change(state, ui, response, &projection),
         }
     }
@@ -239,6 +277,10 @@ impl Viewport {
         if materials::is_over(response) {
             let outline = egui::Stroke::new(2.0, theme::ACCENT);
             painter.rect_stroke(rect, 0.0, outline, egui::StrokeKind::Inside);
+        }
+        if let Some(Dragging::Box([from, to])) = self.dragging {
+            let area = Rect::from_two_pos(from, to);
+            painter.rect(area, 0.0, theme::ACCENT.gamma_multiply(0.12), (1.0, theme::ACCENT), egui::StrokeKind::Inside);
         }
         let compass = Compass::new(rect, state.view.navigation.rotation);
         compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));

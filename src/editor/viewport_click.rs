@@ -1,17 +1,20 @@
 //! Clicks in the picture: on handles, the compass, nodes; and what is dropped there.
 
-use egui::{Pos2, Response, Ui};
+use egui::{Pos2, Rect, Response, Ui};
 
+use super::bounds;
+use super::choice_walk::{BelowList, Walk, representative};
 use super::handles::grip::Grip;
 use super::handles::value_drag;
 use super::handles::value_handle::{HandleSet, HandleTarget};
 use super::overlay::{self, Compass, Marker};
-use super::picking::pick_node;
+use super::picking::{pick_all, pick_node};
 use super::projection::Projection;
 use super::state::EditorState;
 use super::viewport_drag::handle_at;
 use super::{material_edits, materials, selection};
 use isolith_document::Edit;
+use isolith_scene::{Node, NodeId, NodeKind};
 
 /// A click on a handle: adds a point, or deletes one with Ctrl. Returns whether there is a handle.
 fn click_handle(state: &mut EditorState, ui: &Ui, projection: &Projection, pointer: Pos2) -> bool {
@@ -42,14 +45,91 @@ pub fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: 
     if click_handle(state, ui, projection, pointer) {
         return;
     }
+    let (modifiers, camera) = (ui.input(|i| i.modifiers), state.view.navigation.camera());
+    if modifiers.alt {
+        list_below(state, projection, pointer);
+        return;
+    }
+    if response.double_clicked() && enter(state, projection, pointer) {
+        return;
+    }
+    let revision = state.session.document.revision();
+    let chosen = match state.view.walk.take().filter(|walk| walk.continues(pointer, &camera, revision)) {
+        Some(mut walk) => {
+            // What lies below is looked for when it is asked for.
+            if walk.is_first() {
+                walk = walk_below(state, &pick_all(state, &projection.ray(pointer)), pointer);
+            }
+            walk.step();
+            let chosen = walk.chosen();
+            state.view.walk = Some(walk);
+            chosen
+        }
+        None => first_click(state, projection, pointer),
+    };
+    choose(state, chosen, modifiers.shift || modifiers.command);
+}
+
+fn walk_below(state: &EditorState, below: &[NodeId], pointer: Pos2) -> Walk {
+    let scene = state.session.document.scene();
+    let camera = state.view.navigation.camera();
+    Walk::new(scene, state.view.entered, below, pointer, camera, state.session.document.revision())
+}
+
+/// The marker or the outermost group under the pointer; outside of the entered group, that is left.
+fn first_click(state: &mut EditorState, projection: &Projection, pointer: Pos2) -> Option<NodeId> {
+    let hit = hit_at(state, projection, pointer);
+    let scene = state.session.document.scene();
+    let is_within = |group: &NodeId| hit.is_some_and(|id| id != *group && scene.is_within(id, *group));
+    state.view.entered = state.view.entered.filter(is_within);
+    let walk = walk_below(state, hit.as_slice(), pointer);
+    let chosen = walk.chosen();
+    state.view.walk = Some(walk);
+    chosen
+}
+
+/// The marker or the node under the pointer.
+fn hit_at(state: &EditorState, projection: &Projection, pointer: Pos2) -> Option<NodeId> {
     let markers = overlay::markers(state, projection);
     let marker = markers.iter().find(|m| m.at.distance(pointer) < Marker::GRAB).map(|m| m.id);
-    let hit = marker.or_else(|| pick_node(state, &projection.ray(pointer)));
+    marker.or_else(|| pick_node(state, &projection.ray(pointer)))
+}
+
+/// Enters the group under the pointer and selects what is under the pointer there. Returns whether there is one.
+fn enter(state: &mut EditorState, projection: &Projection, pointer: Pos2) -> bool {
+    let Some(hit) = hit_at(state, projection, pointer) else { return false };
     let scene = state.session.document.scene();
-    let hit = hit.filter(|id| selection::holder_of_lock(scene, *id).is_none());
+    let group = representative(scene, state.view.entered, hit);
+    if group == hit || selection::holder_of_lock(scene, hit).is_some() {
+        return false;
+    }
+    let inner = representative(scene, Some(group), hit);
+    (state.view.entered, state.view.walk) = (Some(group), None);
+    choose(state, Some(inner), false);
+    true
+}
+
+/// Lists what lies below the pointer, with the groups that hold it.
+fn list_below(state: &mut EditorState, projection: &Projection, pointer: Pos2) {
+    let mut nodes: Vec<NodeId> = Vec::new();
+    let scene = state.session.document.scene();
+    for id in pick_all(state, &projection.ray(pointer)) {
+        let mut at = Some(id);
+        while let Some(id) = at.filter(|id| !nodes.contains(id)) {
+            nodes.push(id);
+            at = scene.node(id).and_then(|node| node.parent);
+        }
+    }
+    nodes.retain(|id| selection::holder_of_lock(scene, *id).is_none());
+    if !nodes.is_empty() {
+        state.view.below = Some(BelowList { at: pointer, nodes });
+    }
+}
+
+/// Selects a node, or nothing; `adding` adds it or takes it out.
+fn choose(state: &mut EditorState, chosen: Option<NodeId>, adding: bool) {
     let mut selection = state.session.document.selection().to_vec();
-    let adding = ui.input(|i| i.modifiers.shift || i.modifiers.command);
-    match hit {
+    match chosen {
         Some(id) if adding && selection.contains(&id) => selection.retain(|s| *s != id),
         Some(id) if adding => selection.push(id),
         Some(id) => selection = vec![id],
@@ -61,6 +141,37 @@ pub fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: 
     }
     state.session.finish();
     state.session.document.select(selection);
+}
+
+/// Selects what is under the pointer for its context menu, unless it is selected.
+pub fn prepare_menu(state: &mut EditorState, projection: &Projection, pointer: Pos2) {
+    state.view.menu_at = Some(pointer);
+    let Some(hit) = hit_at(state, projection, pointer) else { return };
+    let scene = state.session.document.scene();
+    let is_chosen = |id: &NodeId| scene.is_within(hit, *id);
+    if !state.session.document.selection().iter().any(is_chosen) {
+        let chosen = first_click(state, projection, pointer);
+        choose(state, chosen, false);
+    }
+}
+
+/// Selects what has its middle in a box of the screen: children of the entered group, or nodes of the top.
+pub fn select_in_box(state: &mut EditorState, projection: &Projection, area: Rect, adding: bool) {
+    let scene = state.session.document.scene();
+    let middle = |node: &Node| match node.kind {
+        NodeKind::Light(_) | NodeKind::Camera(_) => Some(scene.world_from_local(node.id).translation),
+        _ => bounds::of_nodes(scene, state.derived.library(), &[node.id]).map(|bounds| bounds.center()),
+    };
+    let entered = state.view.entered.filter(|id| scene.node(*id).is_some());
+    let is_in = |node: &Node| middle(node).and_then(|p| projection.to_screen(p)).is_some_and(|at| area.contains(at));
+    let inside = scene.children(entered).filter(|node| node.visible && !node.locked && is_in(node));
+    let mut found: Vec<NodeId> = inside.map(|node| node.id).collect();
+    if adding {
+        let before = state.session.document.selection().iter().copied().filter(|id| !found.contains(id));
+        found = before.chain(found.iter().copied()).collect();
+    }
+    state.session.finish();
+    state.session.document.select(found);
 }
 
 /// Gives a material to the node that it is dropped on.

@@ -23,6 +23,8 @@ pub enum Dragging {
     Transform(Box<TransformDrag>),
     /// Changes the selected shape by a handle.
     Shape(Box<ValueDrag>),
+    /// Draws a box from here to there; what is in it is selected at the end.
+    Box([Pos2; 2]),
 }
 
 /// The gizmo of the selection.
@@ -66,6 +68,9 @@ pub fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection:
         });
     }
     let origin = ui.input(|i| i.pointer.press_origin())?;
+    if state.view.wants_box {
+        return Some(Dragging::Box([origin; 2]));
+    }
     if let Some(shaping) = start_shaping(state, projection, origin).filter(|_| !modifiers.alt) {
         return Some(shaping);
     }
@@ -74,7 +79,11 @@ pub fn start_drag(state: &EditorState, ui: &Ui, response: &Response, projection:
         let axes = (state.view.orientation, state.view.navigation.rotation);
         Some(TransformDrag::begin(&state.session, kind, axes, origin)?.limited(constraint))
     });
-    let otherwise = if modifiers.shift { Dragging::Pan } else { Dragging::Orbit };
+    let otherwise = match () {
+        () if modifiers.command => Dragging::Box([origin; 2]),
+        () if modifiers.shift => Dragging::Pan,
+        () => Dragging::Orbit,
+    };
     Some(transforming.map_or(otherwise, |drag| Dragging::Transform(Box::new(drag))))
 }
 

@@ -58,6 +58,18 @@ pub enum Command {
     SelectAll,
     /// Clear the selection.
     SelectNothing,
+    /// Select the groups that hold the selection.
+    SelectParents,
+    /// Select the children of the selected groups.
+    SelectChildren,
+    /// Select what is of the same kind.
+    SelectSimilar,
+    /// Select by a box that the next drag draws.
+    SelectByBox,
+    /// Show the selection alone, or everything again.
+    Isolate,
+    /// Move the selection down onto what is below it.
+    DropOnSurface,
     /// Hide or show the selection.
     ToggleVisible,
     /// Show all hidden nodes.

@@ -5,9 +5,9 @@ use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
     ICON_ANIMATION, ICON_ARROW_DOWNWARD, ICON_ARROW_UPWARD, ICON_CALL_SPLIT, ICON_CASINO, ICON_CONTENT_COPY,
     ICON_DELETE, ICON_EDIT, ICON_FOLDER, ICON_FOLDER_OFF, ICON_FORMAT_PAINT, ICON_GRID_ON, ICON_JOIN, ICON_JOIN_FULL,
-    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_LOCK, ICON_PLUMBING, ICON_REDO, ICON_REMOVE_CIRCLE,
-    ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM, ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY,
-    ICON_VISIBILITY_OFF,
+    ICON_JOIN_INNER, ICON_JOIN_LEFT, ICON_KEY, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, ICON_LOCK, ICON_PLUMBING, ICON_REDO,
+    ICON_REMOVE_CIRCLE, ICON_SELECT, ICON_SELECT_ALL, ICON_STYLUS, ICON_UNDO, ICON_VERTICAL_ALIGN_BOTTOM,
+    ICON_VERTICAL_ALIGN_TOP, ICON_VISIBILITY, ICON_VISIBILITY_LOCK, ICON_VISIBILITY_OFF,
 };
 
 use super::command::Command;
@@ -154,6 +154,9 @@ fn extended_operators() -> Vec<CommandInfo> {
 fn showing() -> Vec<CommandInfo> {
     let nothing = "Clears the selection and shows the scene's settings";
     let unused = "Removes materials that nothing uses";
+    let similar = "Selects all with the shape, operator or kind of light of the active node";
+    let alone = "Hides everything else but lights and cameras; once more shows it again";
+    let drop = "Moves the selection down until it touches what is below it, or the ground";
     let unique = "Copies of materials that others use, too, for the selection alone";
     vec![
         row(Command::SelectAll, ICON_SELECT_ALL, "Select all", "Selects every node that is not locked")
@@ -162,6 +165,33 @@ fn showing() -> Vec<CommandInfo> {
         CommandInfo::new(Menu::Edit, Command::SelectNothing, None, "Deselect all", nothing)
             .key(NONE, Key::Escape)
             .when(|state| any(state) || state.materials.current.is_some()),
+        on_selection(
+            Command::SelectParents,
+            ICON_ARROW_UPWARD,
+            "Select parent",
+            "Selects the groups that hold the selection",
+        )
+        .key(NONE, Key::OpenBracket),
+        on_selection(
+            Command::SelectChildren,
+            ICON_ARROW_DOWNWARD,
+            "Select children",
+            "Selects what the selected groups hold",
+        )
+        .key(NONE, Key::CloseBracket),
+        on_selection(Command::SelectSimilar, ICON_SELECT_ALL, "Select similar", similar).key(Modifiers::SHIFT, Key::G),
+        row(
+            Command::SelectByBox,
+            ICON_SELECT,
+            "Select by a box",
+            "The next drag in the viewport selects what is in its box",
+        )
+        .key(NONE, Key::B),
+        CommandInfo::new(Menu::Edit, Command::Isolate, Icon::from(ICON_VISIBILITY_LOCK), "Isolate", alone)
+            .key(NONE, Key::Slash)
+            .when(|state| any(state) || !state.view.isolated.is_empty()),
+        on_selection(Command::DropOnSurface, ICON_KEYBOARD_DOUBLE_ARROW_DOWN, "Drop on surface", drop)
+            .key(NONE, Key::End),
         on_selection(
             Command::ToggleVisible,
             ICON_VISIBILITY_OFF,

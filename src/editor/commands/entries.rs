@@ -4,7 +4,7 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
-use crate::keymap::Keymap;
+use crate::keymap::{Keymap, shown};
 use crate::state::EditorState;
 use crate::theme;
 
@@ -68,12 +68,40 @@ pub fn context_entries(ui: &mut Ui) -> Option<Command> {
     chosen
 }
 
+/// Shows the context menu of the viewport; returns the chosen command.
+pub fn viewport_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
+    use Command::{
+        AddAtPointer, Delete, DropOnSurface, Duplicate, FrameAll, FrameSelected, Group, Isolate, SelectAll,
+        SelectParents, SelectSimilar, ShowAll, ToggleLock, ToggleNegative, ToggleVisible,
+    };
+    const GROUPS: [&[Command]; 5] = [
+        &[AddAtPointer],
+        &[Duplicate, Delete, Group, ToggleNegative],
+        &[DropOnSurface, SelectParents, SelectSimilar],
+        &[Isolate, ToggleVisible, ToggleLock, FrameSelected],
+        &[SelectAll, ShowAll, FrameAll],
+    ];
+    let mut chosen = None;
+    let enabled = GROUPS.map(|commands| commands.iter().copied().filter(|command| command.is_enabled(state)));
+    for (index, commands) in enabled.into_iter().enumerate() {
+        for (place, command) in commands.enumerate() {
+            if index > 0 && place == 0 {
+                ui.separator();
+            }
+            if entry(ui, command, true, None).clicked() {
+                chosen = Some(command);
+            }
+        }
+    }
+    chosen
+}
+
 /// A menu entry. A switch shows its state in place of the icon.
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
     if let Some(key) = info.keys(Keymap::of(ui.ctx())).first() {
-        button = button.shortcut_text(RichText::new(ui.ctx().format_shortcut(key)).color(theme::FAINT));
+        button = button.shortcut_text(RichText::new(shown(ui.ctx(), key)).color(theme::FAINT));
     }
     let response = ui.add_enabled(enabled, button);
     ui.ctx().accesskit_node_builder(response.id, |node| {

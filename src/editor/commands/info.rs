@@ -7,7 +7,7 @@ use egui_material_icons::icons::{
 };
 
 use super::command::Command;
-use crate::keymap::Keymap;
+use crate::keymap::{Keymap, shown};
 use crate::state::EditorState;
 use crate::{icons, theme};
 use isolith_scene::ShapeKind;
@@ -139,7 +139,7 @@ impl CommandInfo {
 
     /// Name, shortcuts and help.
     pub fn tooltip(&self, ctx: &Context) -> String {
-        let keys: Vec<_> = self.keys(Keymap::of(ctx)).iter().map(|k| ctx.format_shortcut(k)).collect();
+        let keys: Vec<_> = self.keys(Keymap::of(ctx)).iter().map(|k| shown(ctx, k)).collect();
         let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
         format!("{}{keys}\n{}", self.label, self.help)
     }

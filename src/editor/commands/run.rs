@@ -10,7 +10,7 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, seeds, selection};
+use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -52,6 +52,12 @@ impl Editor {
             Command::ToggleNegative => selection::toggle_negative(session),
             Command::SelectAll => selection::select_all(session),
             Command::SelectNothing => select_nothing(state),
+            Command::SelectParents => relations::select_parents(state),
+            Command::SelectChildren => relations::select_children(state),
+            Command::SelectSimilar => relations::select_similar(state),
+            Command::SelectByBox => state.view.wants_box = true,
+            Command::Isolate => relations::isolate(state),
+            Command::DropOnSurface => relations::drop_on_surface(state),
             Command::ToggleVisible => selection::toggle_visible(session),
             Command::ShowAll => selection::show_all(session),
             Command::ToggleLock => selection::toggle_locked(session),
@@ -86,9 +92,10 @@ impl Editor {
         }
     }
 
+    /// Opens the palette where the context menu was opened, or at the pointer.
     fn add_at_pointer(&mut self, ctx: &Context) {
         let view = &mut self.state.view;
-        let pointer = ctx.pointer_latest_pos().unwrap_or(view.rect.center());
+        let pointer = view.menu_at.take().or(ctx.pointer_latest_pos()).unwrap_or(view.rect.center());
         view.add_at = Some(pointer).filter(|pointer| view.rect.contains(*pointer));
         self.add_palette.open(pointer);
     }
@@ -111,6 +118,7 @@ fn redo(session: &mut EditSession) {
 fn select_nothing(state: &mut EditorState) {
     state.session.document.select(Vec::new());
     state.materials.current = None;
+    state.view.entered = None;
 }
 
 fn make_material_unique(session: &mut EditSession) {

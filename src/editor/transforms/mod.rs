@@ -11,7 +11,7 @@
 
 pub mod kinds;
 pub mod modal;
-mod starts;
+pub mod starts;
 pub mod transform_bar;
 pub mod transform_drag;
 mod typed;
