@@ -7,7 +7,7 @@ use isolith::field::reference::accuracy::verdicts;
 use isolith::field::reference::image::render_reference;
 use isolith::geometry::Camera;
 use isolith::render::{EvalStrategy, OverlaySettings, Renderer, Slot};
-use isolith::scene::{Instancer, Lattice, Modifier, Node, Scene};
+use isolith::scene::{Instancer, Lattice, Material, MaterialVariation, Modifier, Node, NodeKind, Scene};
 use isolith::wgsl::Options;
 
 use crate::copies::{limited, scene_of, varied};
@@ -98,6 +98,54 @@ fn types_may_have_modifiers() {
     let scene = twisted();
     assert!(scene.flat.components.iter().any(|component| component.is_modified()));
     assert_eq!(faults(&scene, &scene), [""; 0]);
+}
+
+/// A scene whose copies differ in color by `by`.
+fn colored(by: MaterialVariation, picks: bool) -> BenchScene {
+    let lattice = Lattice::Grid { counts: [6, 1, 6], spacing: [1.3; 3] };
+    let instancer = Instancer { lattice, variation: varied(), seed: 2, material: by, ..Instancer::default() };
+    let mut scene = scene_of(instancer.clone(), &[]);
+    let [mut own, mut other] = [0.9, 0.1].map(|red| {
+        let mut material = Material::clone(&scene.materials()[0]);
+        material.base_color = [red, 0.4, 0.2];
+        material
+    });
+    other.id = scene.next_material_id();
+    own.name = "Own".into();
+    let palette = if picks { vec![own.id, other.id] } else { Vec::new() };
+    scene.replace_material(own).expect("a valid material");
+    scene.insert_material(other).expect("room for a material");
+    let mut top = Node::clone(scene.children(None).next().expect("the instancer"));
+    top.kind = NodeKind::Instancer(Box::new(Instancer { palette, ..instancer }));
+    scene.replace(top).expect("a valid node");
+    BenchScene::new("colored", &scene, None)
+}
+
+/// Share of the pixels with the same surface in both whose colors differ by more than rounding.
+fn differing_colors(drawn: &BenchScene, meant: &BenchScene) -> f64 {
+    let reference = render_reference(&meant.flat, &meant.meshes, &meant.camera, [SIDE, SIDE], &|_| ());
+    let reference = reference.expect("an end").buffers;
+    let picture = drawn.render(SIDE, EvalStrategy::Tape);
+    let same = |i: &usize| {
+        let [a, b] = [picture.depth[*i], reference.depth[*i]];
+        a.is_finite() && b.is_finite() && (a - b).abs() < 1e-4 * b && picture.leaf[*i] == reference.leaf[*i]
+    };
+    let both: Vec<usize> = (0..picture.depth.len()).filter(same).collect();
+    assert!(both.len() > 200, "{} pixels", both.len());
+    let differs = |i: &&usize| (0..3).any(|c| picture.color[**i][c].abs_diff(reference.color[**i][c]) > 2);
+    both.iter().filter(differs).count() as f64 / both.len() as f64
+}
+
+#[test]
+fn copies_have_colors_of_their_own() {
+    let by = MaterialVariation { hue: 0.4, saturation: 0.5, value: 0.6, roughness: 0.3, emission: 0.0 };
+    for picks in [false, true] {
+        let varied = colored(by, picks);
+        let found = differing_colors(&varied, &varied);
+        assert!(found < 0.01, "{found} of the pixels differ");
+    }
+    let [some, none] = [by, MaterialVariation::default()].map(|by| colored(by, false));
+    assert!(differing_colors(&some, &none) > 0.5 && differing_colors(&colored(by, true), &some) > 0.2);
 }
 
 /// One view of ever more copies: a ray looks at those it meets, however many there are.
