@@ -19,10 +19,8 @@ mod saving;
 mod timeline;
 mod transforms;
 
-use egui::accesskit::Role;
-use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
-use egui_kittest::Harness;
-use egui_kittest::kittest::{NodeT, Queryable};
+use egui::{Event, Key, Modifiers, PointerButton, Pos2, accesskit::Role, vec2};
+use egui_kittest::{Harness, kittest::NodeT, kittest::Queryable};
 use isolith::document::Document;
 use isolith::editor::{Editor, Picture};
 use isolith::scene::{Group, Node, NodeId, NodeKind, Object, Scene, Shape, ShapeKind};

@@ -7,7 +7,7 @@ use super::picking::pick_surface_without;
 use super::selection;
 use super::state::EditorState;
 use super::steps::rounded;
-use super::transforms::starts::{Motion, Starts};
+use super::transforms::starts::{SelectionMotion, Starts};
 use isolith_document::Edit;
 use isolith_geometry::Ray;
 use isolith_scene::{Node, NodeId, NodeKind, Scene};
@@ -139,7 +139,7 @@ pub fn drop_on_surface(state: &mut EditorState) {
     }
     let step = 1e-9 * (1.0 + bounds.min.y.abs());
     if let Some(starts) = Starts::new(&state.session) {
-        let motion = Motion::Offset(DVec3::NEG_Y * rounded(way, step));
+        let motion = SelectionMotion::Offset(DVec3::NEG_Y * rounded(way, step));
         starts.apply(&mut state.session, egui::Id::unique("drop on surface"), motion, &DMat3::IDENTITY, step);
         state.session.finish();
     }

@@ -11,7 +11,7 @@ use isolith_scene::{BlendOverride, Node, NodeId, NodeKind, RadiusUnit};
 
 /// A motion of the world around a pivot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Motion {
+pub enum SelectionMotion {
     /// By an offset.
     Offset(DVec3),
     /// Around an axis, a unit vector, by an angle in degrees.
@@ -64,14 +64,21 @@ impl Starts {
     }
 
     /// Applies a motion. `axes` are those of a stretch; `finest` is the length of what a pixel can tell apart.
-    pub fn apply(&self, session: &mut EditSession, widget: egui::Id, motion: Motion, axes: &DMat3, finest: f64) {
+    pub fn apply(
+        &self,
+        session: &mut EditSession,
+        widget: egui::Id,
+        motion: SelectionMotion,
+        axes: &DMat3,
+        finest: f64,
+    ) {
         for start in &self.nodes {
             let moved = self.moved(start, motion, axes, finest);
             if moved.translation.is_finite() && moved.rotation.is_finite() && moved.scale.is_finite() {
                 session.change(widget, &[start.id], |node| node.transform = moved);
             }
         }
-        if let Motion::Stretch(factors) = motion {
+        if let SelectionMotion::Stretch(factors) = motion {
             let factor = (factors.x * factors.y * factors.z).abs().cbrt();
             for blend in &self.blends {
                 session.change(widget, &[blend.id], |node| scale_lengths(node, blend, factor));
@@ -79,17 +86,17 @@ impl Starts {
         }
     }
 
-    fn moved(&self, start: &Start, motion: Motion, axes: &DMat3, finest: f64) -> Transform {
+    fn moved(&self, start: &Start, motion: SelectionMotion, axes: &DMat3, finest: f64) -> Transform {
         let Transform { translation, rotation, scale } = start.transform;
         let parent_from_world = start.world_from_parent.inverse();
         let place = start.world_from_parent.transform_point3(translation);
         let linear = match motion {
-            Motion::Offset(_) => DMat3::IDENTITY,
-            Motion::Turn(axis, degrees) => DMat3::from_axis_angle(axis, degrees.to_radians()),
-            Motion::Stretch(factors) => *axes * DMat3::from_diagonal(factors) * axes.transpose(),
+            SelectionMotion::Offset(_) => DMat3::IDENTITY,
+            SelectionMotion::Turn(axis, degrees) => DMat3::from_axis_angle(axis, degrees.to_radians()),
+            SelectionMotion::Stretch(factors) => *axes * DMat3::from_diagonal(factors) * axes.transpose(),
         };
         let target = match motion {
-            Motion::Offset(offset) => place + offset,
+            SelectionMotion::Offset(offset) => place + offset,
             _ => self.pivot + linear * (place - self.pivot),
         };
         // A node at the pivot stays there to the bit. Elsewhere a cleaner number costs no more than a fraction of what
@@ -99,12 +106,12 @@ impl Starts {
             false => rounded_point(parent_from_world.transform_point3(target), finest * 1e-3),
         };
         match motion {
-            Motion::Offset(_) => Transform { translation, ..start.transform },
-            Motion::Turn(..) => {
+            SelectionMotion::Offset(_) => Transform { translation, ..start.transform },
+            SelectionMotion::Turn(..) => {
                 let in_parent = parent_from_world.matrix3 * linear * start.world_from_parent.matrix3;
                 Transform { translation, rotation: (turn_of(&in_parent) * rotation).normalize(), scale }
             }
-            Motion::Stretch(_) => {
+            SelectionMotion::Stretch(_) => {
                 let world_from_node = start.world_from_parent.matrix3 * DMat3::from_quat(rotation);
                 let factor = |axis: usize| {
                     let direction = world_from_node.col(axis).normalize_or(DVec3::AXES[axis]);
@@ -183,7 +190,7 @@ mod tests {
         (EditSession::new(Document::new(scene)), [outer, inner])
     }
 
-    fn moved(motion: Motion, chosen: usize) -> (DAffine3, DAffine3, EditSession) {
+    fn moved(motion: SelectionMotion, chosen: usize) -> (DAffine3, DAffine3, EditSession) {
         let (mut session, ids) = session();
         session.document.select(vec![ids[chosen]]);
         let before = session.document.scene().world_from_local(ids[chosen]);
@@ -195,25 +202,25 @@ mod tests {
 
     #[test]
     fn a_node_in_a_turned_and_scaled_group_moves_and_turns_as_in_the_world() {
-        let (before, after, _) = moved(Motion::Offset(DVec3::new(0.5, 0.0, -1.0)), 1);
+        let (before, after, _) = moved(SelectionMotion::Offset(DVec3::new(0.5, 0.0, -1.0)), 1);
         assert!((after.translation - before.translation - DVec3::new(0.5, 0.0, -1.0)).length() < 1e-9);
         assert!((after.matrix3 - before.matrix3).abs_diff_eq(DMat3::ZERO, 1e-12));
         let axis = DVec3::new(1.0, 2.0, -1.0).normalize();
-        let (before, after, _) = moved(Motion::Turn(axis, 40.0), 1);
+        let (before, after, _) = moved(SelectionMotion::Turn(axis, 40.0), 1);
         let wanted = DMat3::from_axis_angle(axis, 40.0_f64.to_radians()) * before.matrix3;
         assert!(after.matrix3.abs_diff_eq(wanted, 1e-9) && after.translation == before.translation);
     }
 
     #[test]
     fn scaling_a_group_scales_its_blends() {
-        let (before, after, session) = moved(Motion::Stretch(DVec3::splat(1.5)), 0);
+        let (before, after, session) = moved(SelectionMotion::Stretch(DVec3::splat(1.5)), 0);
         assert!(after.matrix3.abs_diff_eq(before.matrix3 * 1.5, 1e-9));
         let radius = |node: &Node| match node.kind {
             NodeKind::Group(group) => group.blend.radius,
             _ => panic!("a group"),
         };
         assert_eq!(radius(&session.document.scene().nodes()[0]), 0.3);
-        let (.., session) = moved(Motion::Turn(DVec3::Y, 10.0), 0);
+        let (.., session) = moved(SelectionMotion::Turn(DVec3::Y, 10.0), 0);
         assert_eq!(radius(&session.document.scene().nodes()[0]), 0.2);
     }
 
@@ -225,11 +232,11 @@ mod tests {
         let mut session = EditSession::new(Document::new(scene));
         session.document.select(vec![id]);
         let starts = Starts::new(&session).unwrap();
-        let motion = Motion::Stretch(DVec3::new(3.0, 1.0, 1.0));
+        let motion = SelectionMotion::Stretch(DVec3::new(3.0, 1.0, 1.0));
         starts.apply(&mut session, egui::Id::NULL, motion, &DMat3::IDENTITY, 1e-9);
         assert_eq!(session.document.scene().nodes()[0].transform.scale, DVec3::new(1.0, 3.0, 1.0));
         // A mirror image.
-        let motion = Motion::Stretch(DVec3::new(-1.0, 1.0, 1.0));
+        let motion = SelectionMotion::Stretch(DVec3::new(-1.0, 1.0, 1.0));
         starts.apply(&mut session, egui::Id::NULL, motion, &DMat3::IDENTITY, 1e-9);
         assert_eq!(session.document.scene().nodes()[0].transform.scale, DVec3::new(1.0, -1.0, 1.0));
     }

@@ -4,7 +4,7 @@ use egui::{Pos2, Vec2};
 use glam::{DMat3, DQuat, DVec3};
 
 use super::kinds::{Constraint, Orientation, TransformKind};
-use super::starts::{Motion, Starts, turn_of};
+use super::starts::{SelectionMotion, Starts, turn_of};
 use super::typed::Typed;
 use crate::edit_session::EditSession;
 use crate::numbers::number_text;
@@ -50,7 +50,7 @@ pub struct TransformDrag {
     last: Pos2,
     way: Vec2,
     angle: f64,
-    motion: Motion,
+    motion: SelectionMotion,
     finest: f64,
 }
 
@@ -89,7 +89,7 @@ impl TransformDrag {
             last: pointer,
             way: Vec2::ZERO,
             angle: 0.0,
-            motion: Motion::Offset(DVec3::ZERO),
+            motion: SelectionMotion::Offset(DVec3::ZERO),
             finest: 1e-9,
         })
     }
@@ -159,18 +159,18 @@ impl TransformDrag {
         }
     }
 
-    fn stretch(&self, factor: f64) -> Motion {
-        Motion::Stretch(DVec3::from([0, 1, 2].map(|axis| match self.constraint {
+    fn stretch(&self, factor: f64) -> SelectionMotion {
+        SelectionMotion::Stretch(DVec3::from([0, 1, 2].map(|axis| match self.constraint {
             Constraint::Axis(only) if only != axis => 1.0,
             Constraint::Plane(not) if not == axis => 1.0,
             _ => factor,
         })))
     }
 
-    fn as_typed(&self, view: DQuat) -> Option<Motion> {
+    fn as_typed(&self, view: DQuat) -> Option<SelectionMotion> {
         let value = |index| self.typed.value(index);
         Some(match self.kind {
-            TransformKind::Move => Motion::Offset(match self.constraint {
+            TransformKind::Move => SelectionMotion::Offset(match self.constraint {
                 Constraint::Free => self.axes * DVec3::new(value(0)?, value(1)?, value(2)?),
                 Constraint::Axis(axis) => self.axis(axis) * value(0)?,
                 Constraint::Plane(axis) => {
@@ -178,14 +178,14 @@ impl TransformDrag {
                     self.axis(a) * value(0)? + self.axis(b) * value(1)?
                 }
             }),
-            TransformKind::Rotate => Motion::Turn(self.turn_axis(view), value(0)?),
+            TransformKind::Rotate => SelectionMotion::Turn(self.turn_axis(view), value(0)?),
             TransformKind::Scale => {
                 self.stretch(value(0).filter(|factor| factor.abs() >= LEAST_FACTOR * LEAST_FACTOR)?)
             }
         })
     }
 
-    fn pointed(&self, projection: &Projection, view: DQuat, snap: f64) -> Option<Motion> {
+    fn pointed(&self, projection: &Projection, view: DQuat, snap: f64) -> Option<SelectionMotion> {
         let snaps = snap > 0.0;
         match self.kind {
             TransformKind::Move => {
@@ -203,13 +203,13 @@ impl TransformDrag {
                         _ => rounded(*along, if snaps { snap } else { self.finest }),
                     };
                 }
-                Some(Motion::Offset(self.axes * DVec3::from(along)))
+                Some(SelectionMotion::Offset(self.axes * DVec3::from(along)))
             }
             TransformKind::Rotate => {
                 let axis = self.turn_axis(view);
                 let side = if axis.dot(view * DVec3::Z) < 0.0 { -1.0 } else { 1.0 };
                 let angle = rounded(self.angle * side, if snaps { ANGLE_STEP } else { FINEST_ANGLE });
-                Some(Motion::Turn(axis, angle))
+                Some(SelectionMotion::Turn(axis, angle))
             }
             TransformKind::Scale => {
                 let center = projection.to_screen(self.pivot())?;
@@ -246,7 +246,7 @@ impl TransformDrag {
         let name = format!("{}{}", self.kind.label(), space(letters));
         let amount = match self.motion {
             _ if !self.typed.is_empty() => self.typed.shown(self.numbers()),
-            Motion::Offset(offset) => {
+            SelectionMotion::Offset(offset) => {
                 let along =
                     (self.axes.transpose() * offset).to_array().map(|v| number_text(rounded(v, self.finest * 0.1)));
                 match self.constraint {
@@ -254,8 +254,8 @@ impl TransformDrag {
                     _ => format!("{} m", along.join(", ")),
                 }
             }
-            Motion::Turn(_, degrees) => format!("{}°", number_text(degrees)),
-            Motion::Stretch(factors) => {
+            SelectionMotion::Turn(_, degrees) => format!("{}°", number_text(degrees)),
+            SelectionMotion::Stretch(factors) => {
                 let shown = match self.constraint {
                     Constraint::Axis(axis) => factors[axis.min(2)],
                     Constraint::Plane(axis) => factors[(axis + 1) % 3],

@@ -147,6 +147,12 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
         reach: vector(instancer.reach),
         ..GpuInstancer::zeroed()
     };
+    fill_lists(&mut gpu, instancer, place);
+    gpu
+}
+
+/// Fills what an instancer has several of. `place` is that of the anchor.
+fn fill_lists(gpu: &mut GpuInstancer, instancer: &FlatInstancer, place: DVec3) {
     for (to, share) in gpu.shares.iter_mut().zip(&instancer.shares) {
         *to = *share as f32;
     }
@@ -162,7 +168,6 @@ pub fn gpu_instancer(instancer: &FlatInstancer, eye: DVec3, first_row: u32) -> G
     for (at, (to, dynamic)) in gpu.dynamics.iter_mut().zip(&instancer.dynamics).enumerate() {
         *to = gpu_dynamic(dynamic, at, place);
     }
-    gpu
 }
 
 /// The places of a list, and the tree over them; empty for a lattice.
