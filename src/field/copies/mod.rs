@@ -14,6 +14,8 @@ pub(crate) mod list;
 mod look;
 pub(crate) mod moved_scene;
 mod noise;
+#[cfg(test)]
+mod tests;
 mod trace;
 mod variation;
 mod walk;

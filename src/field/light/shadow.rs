@@ -80,7 +80,9 @@ impl ShadowShare {
     /// What both leave: see [`WIDE_SPREAD`].
     fn and(self, other: Self, spread: f64) -> Self {
         let share = if spread < WIDE_SPREAD { self.share * other.share } else { self.share.min(other.share) };
-        let proof = if other.proof == ShadowProof::None { other.proof } else { self.proof };
+        let either = |proof: ShadowProof| self.proof == proof || other.proof == proof;
+        let uncertain = if either(ShadowProof::None) { ShadowProof::None } else { ShadowProof::Lit };
+        let proof = if either(ShadowProof::Dark) { ShadowProof::Dark } else { uncertain };
         Self { share, proof }
     }
 }
