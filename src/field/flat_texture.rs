@@ -102,7 +102,8 @@ pub struct FlatImage {
 
 impl PartialEq for FlatImage {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pyramid, &other.pyramid) && self.skipped == other.skipped && self.set == other.set
+        let is_same = Arc::ptr_eq(&self.pyramid, &other.pyramid) || self.pyramid == other.pyramid;
+        is_same && self.skipped == other.skipped && self.set == other.set
     }
 }
 

@@ -52,7 +52,8 @@ pub struct PlacedMap {
 
 impl PartialEq for PlacedMap {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.map, &other.map) && [self.strength, self.rotation] == [other.strength, other.rotation]
+        let is_same = Arc::ptr_eq(&self.map, &other.map) || self.map == other.map;
+        is_same && [self.strength, self.rotation] == [other.strength, other.rotation]
     }
 }
 
