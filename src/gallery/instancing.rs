@@ -318,7 +318,10 @@ mod tests {
 
     #[test]
     fn tints_are_pure_at_the_primaries() {
-        assert_eq!([0, 1, 2].map(|i| tint(0.0, i)), [1.0, 0.0, 0.0]);
-        assert!((tint(0.5, 1) - 1.0).abs() < 1e-12 && tint(0.5, 0) == 0.0);
+        for (hue, pure) in [(0.0, [1.0, 0.0, 0.0]), (0.5, [0.0, 1.0, 1.0])] {
+            for (primary, pure) in pure.into_iter().enumerate() {
+                assert!((tint(hue, primary) - pure).abs() < 1e-12, "{primary} of {hue}");
+            }
+        }
     }
 }

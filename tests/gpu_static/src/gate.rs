@@ -76,9 +76,9 @@ const COPIES: &str = "with modifiers three surfaces are alive at once, beside a 
 /// and spills the rest.
 pub const EXCEPTIONS: &[Exception] = &[
     surface("shapes", EvaluatorKind::Interpreter, 256, 371, ORBIT),
-    surface("shapes", EvaluatorKind::Straight, 232, 295, ORBIT),
+    surface("shapes", EvaluatorKind::Straight, 232, 296, ORBIT),
     surface("fractals", EvaluatorKind::Interpreter, 256, 409, ORBIT),
-    surface("fractals", EvaluatorKind::Straight, 232, 295, ORBIT),
+    surface("fractals", EvaluatorKind::Straight, 232, 296, ORBIT),
     surface("modifiers", EvaluatorKind::Interpreter, 136, 4, COPIES),
     surface("modifiers", EvaluatorKind::Straight, 136, 4, COPIES),
     surface("chessboard", EvaluatorKind::Interpreter, 136, 4, COPIES),
