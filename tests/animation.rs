@@ -363,5 +363,36 @@ fn playback_builds_no_pipeline_and_uploads_only_what_moves() {
     assert_eq!(picture(&mut fresh, &flatten(document.resting(), 0.5).expect("within the limits")), last);
 }
 
+/// Upload limit for a frame of a dozen instancers, or of two hundred places.
+const MOST_BYTES_OF_COPIES: u64 = 32_768;
+
+/// Copies that move by themselves, and copies on a sea that runs: each moment shows something new, is that of a fresh
+/// start, and compiles nothing.
+#[test]
+fn copies_play_without_a_new_pipeline() {
+    let renderer = &mut shared().renderer;
+    renderer.set_strategy(EvalStrategy::Tape);
+    for name in ["dynamics-2d", "ocean"] {
+        let scene = gallery::all().into_iter().find(|(other, _)| *other == name).expect("it is shipped").1;
+        let mut document = Document::new(scene);
+        let mut session = SceneSession::default();
+        session.follow(&document);
+        let mut last = picture(renderer, session.flat());
+        let (built, mut uploaded) = (renderer.pipelines().built(), renderer.uploaded());
+        for frame in 1..=4 {
+            let time = f64::from(frame) / 8.0;
+            document.set_time(time);
+            assert!(session.follow(&document), "{name}, frame {frame} is new");
+            assert_eq!(**session.flat(), flatten(document.resting(), time).expect("within the limits"), "{name}");
+            let next = picture(renderer, session.flat());
+            assert_ne!(next.color, last.color, "{name}, frame {frame} shows nothing new");
+            let bytes = renderer.uploaded() - uploaded;
+            assert!(bytes <= MOST_BYTES_OF_COPIES, "{name}, frame {frame} uploaded {bytes} bytes");
+            (last, uploaded) = (next, renderer.uploaded());
+        }
+        assert_eq!(renderer.pipelines().built(), built, "{name}: playback built a pipeline");
+    }
+}
+
 /// Upload limit for a frame in which two balls and a material change.
 const MOST_BYTES: u64 = 1024;
