@@ -6,6 +6,7 @@ use std::sync::Arc;
 use glam::{DAffine3, DVec3};
 
 use super::dynamics::copy_envelope;
+use super::gpu::place_rows;
 use super::hash::copy_hash;
 use super::instancer::{FlatInstancer, FlatLattice, FlatMask, Place, PlaceList, Placement};
 use super::moved_scene::node_dynamics;
@@ -117,7 +118,9 @@ pub fn is_listed(instancer: &Instancer) -> bool {
 /// The places that exist, with a tree over everything that a copy there may reach at any time.
 fn listed(flat: &FlatInstancer, places: Vec<Place>) -> Placement {
     let list = |places: Vec<Place>, boxes: &[Aabb]| {
-        Placement::List(Arc::new(PlaceList { places, tree: Hierarchy::build(boxes) }))
+        let tree = Hierarchy::build(boxes);
+        let rows = place_rows(&places, &tree);
+        Placement::List(Arc::new(PlaceList { places, tree, rows }))
     };
     let all = FlatInstancer { placement: list(places.clone(), &[]), ..flat.clone() };
     let exist = places.into_iter().enumerate().filter(|(at, _)| copy_of_place(&all, *at).is_some());

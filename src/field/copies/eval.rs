@@ -35,12 +35,13 @@ pub fn nearest_copy(flat: &FlatScene, component: &Component, point: DVec3) -> Ne
     let instancer = &flat.instancers[of.instancer as usize];
     let local = instancer.world_from_local.inverse().transform_point3(point);
     let mut nearest = NearestCopy { value: f64::INFINITY, copy: None };
-    let mut consider = |copy: Copy| {
+    let consider = |copy: Copy, floor: f64, nearest: &mut NearestCopy| {
         if copy.kind != of.kind {
             return;
         }
         let (center, radius) = copy_sphere(instancer, &copy);
-        let sphere = local.distance(center) - radius;
+        // Outside of its box, the distance to that is a bound as well.
+        let sphere = (local.distance(center) - radius).max(if floor > 0.0 { floor } else { f64::NEG_INFINITY });
         if sphere >= nearest.value {
             return;
         }
@@ -48,14 +49,30 @@ pub fn nearest_copy(flat: &FlatScene, component: &Component, point: DVec3) -> Ne
         let own = field(flat, component, q - component.origin) * copy.scale.min_element();
         let value = if sphere > 0.0 { own.max(sphere) } else { own };
         if value < nearest.value {
-            nearest = NearestCopy { value, copy: Some(copy) };
+            *nearest = NearestCopy { value, copy: Some(copy) };
         }
     };
     let beyond = match &instancer.placement {
-        Placement::Lattice(lattice) => each_near(instancer, lattice, local, &mut consider),
+        Placement::Lattice(lattice) => {
+            each_near(instancer, lattice, local, &mut |copy| consider(copy, f64::NEG_INFINITY, &mut nearest))
+        }
         Placement::List(list) => {
-            for place in 0..list.places.len() {
-                copy_of_place(instancer, place).into_iter().for_each(&mut consider);
+            let mut open: Vec<usize> = if list.tree.nodes.is_empty() { Vec::new() } else { vec![0] };
+            while let Some(index) = open.pop() {
+                let node = &list.tree.nodes[index];
+                // No value below is less: those of copies are no less than the distance to their boxes.
+                let floor = node.bounds.distance(local);
+                if floor > 0.0 && floor >= nearest.value {
+                    continue;
+                }
+                if !node.is_leaf() {
+                    let [left, right] = [index + 1, node.link as usize];
+                    let is_left =
+                        list.tree.nodes[left].bounds.distance(local) <= list.tree.nodes[right].bounds.distance(local);
+                    open.extend(if is_left { [right, left] } else { [left, right] });
+                } else if let Some(copy) = copy_of_place(instancer, node.link as usize) {
+                    consider(copy, floor, &mut nearest);
+                }
             }
             f64::INFINITY
         }

@@ -4,8 +4,9 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::hash::Channel;
-use super::instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, Placement};
+use super::instancer::{FlatDynamic, FlatInstancer, FlatLattice, FlatMask, Place, Placement};
 use super::noise::Coordinate;
+use crate::hierarchy::Hierarchy;
 use isolith_scene::{MAX_DYNAMICS, MAX_MASKS, MAX_PALETTE, MAX_TYPES};
 
 /// A mask.
@@ -171,10 +172,17 @@ fn fill_lists(gpu: &mut GpuInstancer, instancer: &FlatInstancer, place: DVec3) {
 }
 
 /// The places of a list, and the tree over them; empty for a lattice.
-pub fn gpu_places(instancer: &FlatInstancer) -> Vec<[f32; 4]> {
-    let Placement::List(list) = &instancer.placement else { return Vec::new() };
-    let mut rows = Vec::with_capacity(2 * list.tree.nodes.len() + 3 * list.places.len());
-    for node in &list.tree.nodes {
+pub fn gpu_places(instancer: &FlatInstancer) -> &[[f32; 4]] {
+    match &instancer.placement {
+        Placement::List(list) => &list.rows,
+        Placement::Lattice(_) => &[],
+    }
+}
+
+/// The rows of a tree and the places below it.
+pub(super) fn place_rows(places: &[Place], tree: &Hierarchy) -> Vec<[f32; 4]> {
+    let mut rows = Vec::with_capacity(2 * tree.nodes.len() + 3 * places.len());
+    for node in &tree.nodes {
         // Outward, so that no copy is lost by rounding.
         let slack = 1e-6 * node.bounds.min.abs().max(node.bounds.max.abs()).max_element();
         let bounds = node.bounds.expanded(slack);
@@ -183,7 +191,7 @@ pub fn gpu_places(instancer: &FlatInstancer) -> Vec<[f32; 4]> {
             rows.push([x, y, z, f32::from_bits(word)]);
         }
     }
-    for place in &list.places {
+    for place in places {
         let [x, y, z] = vector(place.position);
         rows.push([x, y, z, place.up as f32]);
         rows.push(floats(place.rotation.to_array()));

@@ -71,6 +71,8 @@ pub struct PlaceList {
     pub places: Vec<Place>,
     /// A tree over the boxes of the copies there.
     pub tree: Hierarchy,
+    /// Both as the GPU reads them: made once, not for each frame.
+    pub rows: Vec<[f32; 4]>,
 }
 
 impl PartialEq for PlaceList {

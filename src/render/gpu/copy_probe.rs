@@ -106,7 +106,7 @@ fn run(
     let group = bind(device, "probe", &own, &[input.binding(), output.binding()]);
     let placed = gpu_instancer(instancer, eye, 0);
     let uniforms = uploaded(SyncedBuffer::uniform(device, "probe"), bytemuck::bytes_of(&placed));
-    let mut places = gpu_places(instancer);
+    let mut places = gpu_places(instancer).to_vec();
     places.resize(places.len().max(1), [0.0; 4]);
     let places = rows(bytemuck::cast_slice(&places));
     let of_copies = layout(device, "copies", &[entry(5, stage, uniform(false)), entry(6, stage, read_storage())]);

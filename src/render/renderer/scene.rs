@@ -108,11 +108,12 @@ impl SceneResources {
 
     /// Uploads the instancers as seen from `eye`. Returns whether a buffer was replaced.
     fn upload_instancers(&mut self, gpu: &Gpu, flat: &FlatScene, eye: DVec3) -> bool {
-        let (mut rows, mut bytes) = (Vec::new(), vec![0; flat.instancers.len() * INSTANCER_STRIDE]);
+        let mut rows: Vec<[f32; 4]> = Vec::new();
+        let mut bytes = vec![0; flat.instancers.len() * INSTANCER_STRIDE];
         for (instancer, slot) in flat.instancers.iter().zip(bytes.chunks_exact_mut(INSTANCER_STRIDE)) {
             let gpu = gpu_instancer(instancer, eye, rows.len() as u32);
             slot[..size_of::<GpuInstancer>()].copy_from_slice(bytemuck::bytes_of(&gpu));
-            rows.extend(gpu_places(instancer));
+            rows.extend_from_slice(gpu_places(instancer));
         }
         bytes.resize(bytes.len().max(INSTANCER_STRIDE), 0);
         let Gpu { device, queue, .. } = gpu;
