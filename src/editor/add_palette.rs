@@ -1,15 +1,13 @@
 //! The palette of everything that can be added: at the pointer, by category or by name, favorites first.
 
-use egui::{
-    Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, Pos2, RichText, ScrollArea, TextEdit, Ui, vec2,
-};
+use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, Pos2, RichText, ScrollArea, Ui, vec2};
 use egui_material_icons::icons::ICON_STAR;
 
 use super::commands::command::Command;
 use super::commands::entries::ICON_ROOM;
 use super::commands::info::Menu;
 use super::state::EditorState;
-use super::theme;
+use super::{theme, widgets};
 use isolith_scene::ShapeKind;
 
 /// A category of what can be added.
@@ -209,16 +207,7 @@ impl AddPalette {
     }
 
     fn content(&mut self, state: &mut EditorState, ui: &mut Ui, found: &[Command], moved: bool) -> Option<Command> {
-        let field = TextEdit::singleline(&mut self.text)
-            .hint_text("Add…")
-            .desired_width(f32::INFINITY)
-            .margin(egui::Margin::symmetric(8, 6));
-        let response = ui.add(field);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find something to add"));
-        if self.focus {
-            response.request_focus();
-        }
-        if response.changed() {
+        if widgets::search(ui, &mut self.text, ("Add…", "Find something to add"), self.focus).changed() {
             self.chosen = 0;
         }
         ui.add_space(4.0);

@@ -1,12 +1,12 @@
 //! The command palette: finds every command by name.
 
-use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, RichText, ScrollArea, TextEdit, vec2};
+use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, RichText, ScrollArea, vec2};
 
 use super::commands::command::Command;
 use super::commands::entries::ICON_ROOM;
 use super::keymap::{Keymap, shown};
 use super::state::EditorState;
-use super::theme;
+use super::{theme, widgets};
 
 /// State of the palette while it is open.
 #[derive(Default)]
@@ -68,16 +68,7 @@ impl CommandPalette {
     }
 
     fn list(&mut self, state: &EditorState, ui: &mut egui::Ui, found: &[Command], moved: bool) -> Option<Command> {
-        let field = TextEdit::singleline(&mut self.text)
-            .hint_text("Find a command…")
-            .desired_width(f32::INFINITY)
-            .margin(egui::Margin::symmetric(8, 6));
-        let response = ui.add(field);
-        ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Find command"));
-        if self.focus {
-            response.request_focus();
-        }
-        if response.changed() {
+        if widgets::search(ui, &mut self.text, ("Find a command…", "Find command"), self.focus).changed() {
             self.chosen = 0;
         }
         ui.add_space(4.0);

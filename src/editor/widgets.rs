@@ -167,6 +167,18 @@ pub fn fixed<R>(ui: &mut Ui, add: impl FnOnce(&mut Ui) -> R) -> R {
     result
 }
 
+/// The field of a palette in which one searches; `hint` is shown while it is empty, `label` is its accessible name.
+pub fn search(ui: &mut Ui, text: &mut String, (hint, label): (&str, &str), takes_focus: bool) -> Response {
+    let field =
+        TextEdit::singleline(text).hint_text(hint).desired_width(f32::INFINITY).margin(egui::Margin::symmetric(8, 6));
+    let response = ui.add(field);
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(label));
+    if takes_focus {
+        response.request_focus();
+    }
+    response
+}
+
 #[cfg(test)]
 mod tests {
     use super::elided;
