@@ -7,6 +7,7 @@ pub mod app;
 pub mod bench;
 pub mod cli;
 
+pub use isolith_bricks as bricks;
 pub use isolith_document as document;
 #[cfg(feature = "window")]
 pub use isolith_editor as editor;
