@@ -4,6 +4,7 @@ mod accuracy;
 mod agreement;
 mod animation;
 mod branching;
+mod bricks;
 mod broken_files;
 mod cases;
 mod cli;

@@ -4,7 +4,7 @@ use isolith_geometry::Aabb;
 
 use super::{
     BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BrickGrid, Bricks, CELL_BRICKS, CELL_VOXELS, MAX_BRICK_TEXELS,
-    NO_ENTRIES, SAMPLE_REACH, SAMPLE_STEPS,
+    NO_ENTRIES, RESOLUTIONS, SAMPLE_REACH, SAMPLE_STEPS,
 };
 
 /// What is known of a brick.
@@ -33,6 +33,18 @@ pub enum BrickError {
         /// How many texels it would take.
         texels: usize,
     },
+    /// The voxels are too small for what they measure.
+    #[error("takes {voxels} voxels along its longest side, and at most {} are possible: choose larger voxels", RESOLUTIONS[1])]
+    TooFine {
+        /// How many it would take.
+        voxels: u64,
+    },
+    /// There is nothing to measure.
+    #[error("has no triangle with an area")]
+    Empty,
+    /// The size of the voxels is not one.
+    #[error("needs voxels whose size is a positive number")]
+    Voxel,
     /// The maker stopped.
     #[error("was canceled")]
     Canceled,

@@ -21,6 +21,7 @@
 //! since it is less than what the neighbors measure; or the coarse distance less its greatest error.
 
 mod bake;
+mod decode;
 mod encode;
 mod grid;
 mod placeholder;

@@ -1,0 +1,79 @@
+//! Texels as distances again.
+
+use glam::DVec3;
+
+use super::{
+    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_BRICKS, NO_ENTRIES,
+    SAMPLE_STEPS,
+};
+
+impl Bricks {
+    /// What is known of a brick; `None` in a cell without entries, and outside of the grid. The slope is that of the
+    /// entry.
+    pub fn content(&self, brick: [u32; 3]) -> Option<BrickContent> {
+        let entry = self.entry(brick)?;
+        if entry >> 31 == 0 {
+            let voxels = f64::from(entry & 0xff_ffff) / 16.0;
+            return Some(BrickContent::Far(if entry >> 30 & 1 == 1 { -voxels } else { voxels }));
+        }
+        let slope = 1.0 + f64::from(entry >> 24 & 0x7f) / 64.0;
+        let mut samples = Box::new([0; BRICK_VOLUME]);
+        let bytes = self.samples(entry)?.iter().flatten().flat_map(|word| word.to_le_bytes());
+        samples.iter_mut().zip(bytes).for_each(|(sample, byte)| *sample = byte);
+        Some(BrickContent::Near { samples, slope })
+    }
+
+    /// The distances at the corners of a cell, in meters, x fastest; `None` outside of the grid.
+    pub fn coarse(&self, cell: [u32; 3]) -> Option<[f64; 8]> {
+        let texel = self.texels.get(self.cell_index(cell)?)?;
+        let half = |i: usize| (texel[i / 2] >> (16 * (i % 2))) as u16 as i16;
+        Some([0, 1, 2, 3, 4, 5, 6, 7].map(|i| f64::from(half(i)) / 32_767.0 * self.coarse_scale))
+    }
+
+    /// The distance between the samples around a point, in meters; `None` where there are none.
+    pub fn interpolated(&self, p: DVec3) -> Option<f64> {
+        let at = (p - self.grid.origin) / self.grid.voxel;
+        let last = DVec3::from(self.grid.bricks().map(|n| f64::from(n * BRICK_VOXELS))) - 1.0;
+        if at.cmplt(DVec3::ZERO).any() || at.cmpgt(last + 1.0).any() || !at.is_finite() {
+            return None;
+        }
+        let corner = at.floor().min(last);
+        let part = at - corner;
+        let voxel = corner.to_array().map(|v| v as u32);
+        let texels = self.samples(self.entry(voxel.map(|n| n / BRICK_VOXELS)).filter(|entry| entry >> 31 == 1)?)?;
+        let [x, y, z] = voxel.map(|n| (n % BRICK_VOXELS) as usize);
+        let value = |i: usize| {
+            let index = x + (i & 1) + BRICK_SAMPLES * (y + (i >> 1 & 1) + BRICK_SAMPLES * (z + (i >> 2)));
+            let byte = texels[index / 16][index / 4 % 4].to_le_bytes()[index % 4];
+            (f64::from(byte) - 128.0) / SAMPLE_STEPS
+        };
+        let mix = |a: f64, b: f64, t: f64| a + (b - a) * t;
+        let along = |i: usize| mix(value(i), value(i + 1), part.x);
+        let flat = |i: usize| mix(along(i), along(i + 2), part.y);
+        Some(mix(flat(0), flat(4), part.z) * self.grid.voxel)
+    }
+
+    fn cell_index(&self, cell: [u32; 3]) -> Option<usize> {
+        let [nx, ny, _] = self.grid.cells.map(|n| n as usize);
+        let is_there = (0..3).all(|i| cell[i] < self.grid.cells[i]);
+        is_there.then(|| cell[0] as usize + nx * (cell[1] as usize + ny * cell[2] as usize))
+    }
+
+    fn entry(&self, brick: [u32; 3]) -> Option<u32> {
+        let cell = self.cell_index(brick.map(|n| n / CELL_BRICKS))?;
+        let cells = self.grid.cell_count();
+        let place = self.texels.get(cells + cell / 4)?[cell % 4];
+        if place == NO_ENTRIES {
+            return None;
+        }
+        let [x, y, z] = brick.map(|n| (n % CELL_BRICKS) as usize);
+        let own = x + 2 * (y + 2 * z);
+        let first = cells + cells.div_ceil(4) + 2 * place as usize;
+        Some(self.texels.get(first + own / 4)?[own % 4])
+    }
+
+    fn samples(&self, entry: u32) -> Option<&[[u32; 4]]> {
+        let first = self.first_brick as usize + (entry & 0xff_ffff) as usize * BRICK_TEXELS;
+        self.texels.get(first..first + BRICK_TEXELS)
+    }
+}
