@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_BRICKS, NO_ENTRIES,
-    SAMPLE_STEPS,
+    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_BRICKS, INSIDE, SAMPLE_STEPS,
 };
 
 impl Bricks {
@@ -63,7 +62,7 @@ impl Bricks {
         let cell = self.cell_index(brick.map(|n| n / CELL_BRICKS))?;
         let cells = self.grid.cell_count();
         let place = self.texels.get(cells + cell / 4)?[cell % 4];
-        if place == NO_ENTRIES {
+        if place >= INSIDE {
             return None;
         }
         let [x, y, z] = brick.map(|n| (n % CELL_BRICKS) as usize);

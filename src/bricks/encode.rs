@@ -3,8 +3,8 @@
 use isolith_geometry::Aabb;
 
 use super::{
-    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BrickGrid, Bricks, CELL_BRICKS, CELL_VOXELS, MAX_BRICK_TEXELS,
-    NO_ENTRIES, RESOLUTIONS, SAMPLE_REACH, SAMPLE_STEPS,
+    BAND, BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BrickGrid, Bricks, CELL_BRICKS, CELL_VOXELS, INSIDE,
+    MAX_BRICK_TEXELS, NO_ENTRIES, RESOLUTIONS, SAMPLE_REACH, SAMPLE_STEPS,
 };
 
 /// What is known of a brick.
@@ -111,7 +111,10 @@ pub fn encode(
     for (index, cell) in cells(grid.cells).enumerate() {
         texels.push(corners.packed(cell));
         let far = corners.least(cell) - coarse_error;
-        if far >= SAMPLE_REACH * grid.voxel {
+        if far >= BAND * grid.voxel {
+            if corners.of(cell)[0] < 0.0 {
+                places[index / 4][index % 4] = INSIDE;
+            }
             continue;
         }
         places[index / 4][index % 4] = (entries.len() / 2) as u32;

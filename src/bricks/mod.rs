@@ -16,19 +16,19 @@
 //! | 24–30 | the greatest slope of the samples here and in the neighbors, less 1, in 1/64, rounded up | 30: inside |
 //! | 0–23 | the number of the brick | the distance to the surface is at least this, in 1/16 of a voxel |
 //!
-//! The *surface* is where the trilinear interpolation of the samples is 0. What the evaluators make of it is a lower
-//! bound of the distance to this surface, exact in sign and zeros: the interpolated value over the slope, which holds
-//! since it is less than what the neighbors measure; or the coarse distance less its greatest error.
+//! The *surface* is where the trilinear interpolation of the samples is 0; see `levels` for the field.
 
 mod bake;
 mod decode;
 mod encode;
 mod grid;
+mod levels;
 mod placeholder;
 
 pub use bake::bake;
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
+pub use levels::{BrickLevels, LEVEL_RATIO, MAX_LEVELS};
 pub use placeholder::placeholder;
 
 use glam::DVec3;
@@ -48,12 +48,14 @@ pub const CELL_BRICKS: u32 = 2;
 pub const CELL_VOXELS: u32 = CELL_BRICKS * BRICK_VOXELS;
 /// Steps of a sample per voxel of distance; 128 is the surface.
 pub const SAMPLE_STEPS: f64 = 32.0;
-/// The greatest distance that samples hold, in voxels.
-pub const SAMPLE_REACH: f64 = 4.0;
+/// The greatest distance that samples hold, in voxels: 127 steps.
+pub const SAMPLE_REACH: f64 = 127.0 / SAMPLE_STEPS;
 /// A brick that is at least this far from the surface needs no samples, in voxels.
-pub const BAND: f64 = 2.0;
-/// Marks a cell without entries.
+pub const BAND: f64 = 4.0;
+/// Marks a cell without entries, outside of the solid.
 pub const NO_ENTRIES: u32 = u32::MAX;
+/// Marks a cell without entries, inside.
+pub const INSIDE: u32 = u32::MAX - 1;
 /// Most texels of all bricks of a scene together: 256 MiB, and what 32-bit floats count exactly.
 pub const MAX_BRICK_TEXELS: usize = 1 << 24;
 /// Fewest and most voxels along the longest side.
@@ -86,6 +88,14 @@ impl Bricks {
     /// The number of bricks with samples.
     pub fn count(&self) -> usize {
         (self.texels.len() - self.first_brick as usize) / BRICK_TEXELS
+    }
+
+    /// The greatest slope of the interpolation of its samples anywhere; at least 1.
+    pub fn slope(&self) -> f64 {
+        let cells = self.grid.cell_count();
+        let entries = &self.texels[cells + cells.div_ceil(4)..self.first_brick as usize];
+        let slope = |entry: &u32| if entry >> 31 == 1 { entry >> 24 & 0x7f } else { 0 };
+        1.0 + f64::from(entries.iter().flatten().map(slope).max().unwrap_or(0)) / 64.0
     }
 
     /// A number of 24 bits that other bricks rarely have (FNV-1a, Fowler, Noll, Vo).

@@ -15,7 +15,7 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("document", &["geometry", "jobs", "scene"]),
     ("gallery", &["geometry", "scene"]),
     ("field", &["bricks", "geometry", "guard", "jobs", "mesh", "scene"]),
-    ("wgsl", &["field", "scene"]),
+    ("wgsl", &["bricks", "field", "scene"]),
     ("render", &["bricks", "field", "geometry", "guard", "mesh", "scene", "wgsl"]),
     ("session", &["bricks", "document", "field", "geometry", "jobs", "mesh", "scene"]),
     ("editor", &["document", "field", "geometry", "guard", "jobs", "mesh", "scene", "session"]),
