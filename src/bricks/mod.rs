@@ -21,14 +21,20 @@
 //! since it is less than what the neighbors measure; or the coarse distance less its greatest error.
 
 mod bake;
+mod codec;
 mod decode;
+mod digest;
 mod encode;
 mod grid;
+mod looks;
 mod placeholder;
 
 pub use bake::bake;
+pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
+pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
+pub use looks::{LOOK_HEADER, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
 
 use glam::DVec3;
@@ -74,6 +80,8 @@ pub struct Bricks {
     pub first_brick: u32,
     /// The texels.
     pub texels: Vec<[u32; 4]>,
+    /// The looks of the surface.
+    pub looks: Option<Looks>,
 }
 
 impl std::fmt::Debug for Bricks {
@@ -88,7 +96,7 @@ impl Bricks {
         (self.texels.len() - self.first_brick as usize) / BRICK_TEXELS
     }
 
-    /// Bytes of the texels.
+    /// Bytes of the texels of distances.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.texels)
     }

@@ -12,15 +12,18 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Debug, Default)]
 pub(super) struct Facets {
     corners: Vec<[Vec3; 3]>,
+    /// The triangle of the mesh; [`NONE`] for one that closes a hole.
+    pub sources: Vec<u32>,
     bvh: Bvh,
 }
 
 impl Facets {
     /// Builds the hierarchy. Triangles without area are left out.
-    pub fn new(mut corners: Vec<[Vec3; 3]>) -> Self {
-        corners.retain(|[a, b, c]| (*b - *a).cross(*c - *a).length_squared() > 0.0);
+    pub fn new(mut triangles: Vec<([Vec3; 3], u32)>) -> Self {
+        triangles.retain(|([a, b, c], _)| (*b - *a).cross(*c - *a).length_squared() > 0.0);
+        let (corners, sources): (Vec<_>, Vec<_>) = triangles.into_iter().unzip();
         let bvh = Bvh::build(corners.len(), |t| corners[t as usize].map(|corner| corner.as_dvec3()));
-        Self { corners, bvh }
+        Self { corners, sources, bvh }
     }
 
     pub fn is_empty(&self) -> bool {
@@ -29,6 +32,11 @@ impl Facets {
 
     /// The nearest triangle within the square root of `within`, and the square of its distance.
     pub fn nearest(&self, p: Vec3, within: f32) -> Option<(f32, u32)> {
+        self.nearest_of(p, within, |_| true)
+    }
+
+    /// The same among some of the triangles.
+    pub fn nearest_of(&self, p: Vec3, within: f32, is_one: impl Fn(u32) -> bool) -> Option<(f32, u32)> {
         let (mut best, mut found) = (within, NONE);
         let at = p.as_dvec3();
         // Boxes are compared with a little less than their distance, since they are rounded in other ways.
@@ -45,7 +53,7 @@ impl Facets {
             if node.count > 0 {
                 for &triangle in &self.bvh.triangles[node.first as usize..][..node.count as usize] {
                     let squared = self.distance_squared(triangle, p);
-                    if squared <= best {
+                    if squared <= best && is_one(triangle) {
                         (best, found) = (squared, triangle);
                     }
                 }
@@ -91,10 +99,18 @@ impl Facets {
 
     /// The square of the distance from a triangle.
     pub fn distance_squared(&self, triangle: u32, p: Vec3) -> f32 {
-        let corners = &self.corners[triangle as usize];
-        let weights = nearest_weights(corners, p);
-        let [a, b, c] = corners;
-        p.distance_squared(*a * weights[0] + *b * weights[1] + *c * weights[2])
+        p.distance_squared(self.point(triangle, self.weights(triangle, p)))
+    }
+
+    /// The barycentric weights of the point of a triangle that is nearest to `p`.
+    pub fn weights(&self, triangle: u32, p: Vec3) -> [f32; 3] {
+        nearest_weights(&self.corners[triangle as usize], p)
+    }
+
+    /// The point of a triangle with these weights.
+    pub fn point(&self, triangle: u32, weights: [f32; 3]) -> Vec3 {
+        let [a, b, c] = self.corners[triangle as usize];
+        a * weights[0] + b * weights[1] + c * weights[2]
     }
 }
 
