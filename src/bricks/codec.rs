@@ -127,6 +127,8 @@ impl Bricks {
     pub fn check(&self) -> Result<(), &'static str> {
         let ensure = |is_so: bool, what| if is_so { Ok(()) } else { Err(what) };
         let Self { grid, bounds, .. } = self;
+        let sides = grid.cells.iter().try_fold(1_usize, |all, n| all.checked_mul(*n as usize));
+        let cells = sides.filter(|n| (1..=MAX_BRICK_TEXELS).contains(n)).ok_or("its grid has no cells, or too many")?;
         let is_grid = grid.origin.is_finite() && grid.voxel > 0.0 && grid.voxel.is_finite();
         ensure(is_grid && grid.bounds().is_finite(), "its grid is nowhere")?;
         ensure(bounds.is_finite() && !bounds.is_empty(), "its bounds are none")?;
@@ -134,8 +136,6 @@ impl Bricks {
         ensure(within.contains(bounds.min) && within.contains(bounds.max), "its bounds exceed its grid")?;
         let numbers = [self.coarse_scale, self.coarse_error];
         ensure(numbers.iter().all(|v| v.is_finite() && *v > 0.0), "its coarse distances have no scale")?;
-        let sides = grid.cells.iter().try_fold(1_usize, |all, n| all.checked_mul(*n as usize));
-        let cells = sides.filter(|n| (1..=MAX_BRICK_TEXELS).contains(n)).ok_or("its grid has no cells, or too many")?;
         let (places, entries) = (cells, cells + cells.div_ceil(4));
         let first = self.first_brick as usize;
         ensure(entries <= first && first <= self.texels.len(), "its samples start elsewhere")?;

@@ -6,7 +6,6 @@ use super::columns::Columns;
 use super::facets::{Facets, NONE};
 use super::solid::Solid;
 use isolith_bricks::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickGrid, SAMPLE_REACH};
-use isolith_geometry::Aabb;
 
 /// Half the thickness of sheets, in voxels. With only half a voxel one could lie between two layers of samples, and both
 /// would measure 0.
@@ -116,11 +115,11 @@ fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
     let mut nearest = Nearest { facets, origin, squared: [f32::INFINITY; BRICK_VOLUME], ids: [NONE; BRICK_VOLUME] };
     nearest.compare_all();
     // The distance changes at most as much as the place.
-    let is_wanted = |i: usize| away - place(i).distance(middle) < reach;
+    let is_wanted: [bool; BRICK_VOLUME] = std::array::from_fn(|i| away - place(i).distance(middle) < reach);
     let last = SIDE - 1;
     for corner in 0..8 {
         let i = index([corner & 1, corner >> 1 & 1, corner >> 2].map(|side| side * last));
-        if is_wanted(i)
+        if is_wanted[i]
             && let Some((squared, id)) = facets.nearest(origin + place(i), (away + HALF_DIAGONAL + 0.01).powi(2))
         {
             (nearest.squared[i], nearest.ids[i]) = (squared, id);
@@ -150,9 +149,9 @@ struct Nearest<'a> {
 impl Nearest<'_> {
     /// Compares the samples around each triangle with it.
     fn compare_all(&mut self) {
-        let bounds = Aabb::new(self.origin.as_dvec3(), (self.origin + BRICK_VOXELS as f32).as_dvec3());
         let mut found = Vec::new();
-        self.facets.within(&bounds.expanded(f64::from(EXACT)), |triangle| found.push(triangle));
+        let high = self.origin + BRICK_VOXELS as f32 + EXACT;
+        self.facets.within(self.origin - EXACT, high, |triangle| found.push(triangle));
         let last = (SIDE - 1) as f32;
         for triangle in found {
             let [low, high] = self.facets.extent(triangle);
@@ -176,13 +175,13 @@ impl Nearest<'_> {
     }
 
     /// Passes nearest triangles on to neighbors, away from a corner.
-    fn sweep(&mut self, corner: usize, is_wanted: &impl Fn(usize) -> bool) {
+    fn sweep(&mut self, corner: usize, is_wanted: &[bool; BRICK_VOLUME]) {
         // The sides of the brick are powers of two: turning an axis around is turning its bits.
         let strides = [1, SIDE, SIDE * SIDE];
         let turned: usize = (0..3).filter(|axis| corner >> axis & 1 == 1).map(|axis| (SIDE - 1) * strides[axis]).sum();
         for step in 0..BRICK_VOLUME {
             let i = step ^ turned;
-            if self.squared[i] <= EXACT * EXACT || !is_wanted(i) {
+            if self.squared[i] <= EXACT * EXACT || !is_wanted[i] {
                 continue;
             }
             for stride in strides {
