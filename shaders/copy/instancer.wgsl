@@ -90,11 +90,11 @@ struct Instancer {
     dynamics: array<CopyDynamic, 8>,
 }
 
-@group(1) @binding(5) var<uniform> instancer: Instancer;
+@group(1) @binding(6) var<uniform> instancer: Instancer;
 // Lists of places. Per instancer: a tree of boxes, two rows per node, lower and upper corner, with
 // the link and the axis as bits in w; then three rows per place: position with the
 // cosine of the slope of the ground, rotation, id.
-@group(1) @binding(6) var<storage, read> places: array<vec4f>;
+@group(1) @binding(7) var<storage, read> places: array<vec4f>;
 
 // A number of the instancer that ends a loop or decides. lavapipe compiles a pipeline anew for each
 // value of such a uniform, and writes beyond its memory if there are several. It leaves those alone

@@ -81,6 +81,7 @@ mod legend;
 mod material_edits;
 mod material_library;
 mod materials;
+mod mesh_conversion;
 mod messages;
 mod multi_edit;
 mod navigation;

@@ -99,9 +99,9 @@ impl OpSet {
     /// be far below the distance, and so may fields divided by the stretch of a deformation. Then only a change of sign
     /// is a hit, and oversteps are short: longer ones would pass bumps of a fraction of a pixel.
     pub(super) fn is_rough(&self) -> bool {
-        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, Ocean, Terrain};
+        use ShapeKind::{Heightmap, Julia, Kleinian, Mandelbulb, MengerSponge, MeshField, Ocean, Terrain};
         let is_rough = |kind: &ShapeKind| {
-            matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | Terrain | Heightmap | Ocean)
+            matches!(kind, Julia | Kleinian | Mandelbulb | MengerSponge | MeshField | Terrain | Heightmap | Ocean)
         };
         self.shapes.iter().any(is_rough) || self.modifiers.iter().any(|kind| field::is_rough(*kind))
     }

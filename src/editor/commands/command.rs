@@ -64,6 +64,10 @@ pub enum Command {
     SelectChildren,
     /// Select what is of the same kind.
     SelectSimilar,
+    /// Make fields of the selected models.
+    MeshToField,
+    /// Make triangles of the selected fields of models.
+    FieldToMesh,
     /// Select by a box that the next drag draws.
     SelectByBox,
     /// Show the selection alone, or everything again.

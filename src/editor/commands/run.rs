@@ -10,7 +10,9 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
+use crate::{
+    dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion, relations, seeds, selection,
+};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -82,6 +84,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::SelectByBox => state.view.wants_box = true,
         Command::Isolate => relations::isolate(state),
         Command::DropOnSurface => relations::drop_on_surface(state),
+        Command::MeshToField => mesh_conversion::to_fields(session),
+        Command::FieldToMesh => mesh_conversion::to_meshes(session),
         Command::ToggleVisible => selection::toggle_visible(session),
         Command::ShowAll => selection::show_all(session),
         Command::ToggleLock => selection::toggle_locked(session),

@@ -116,8 +116,8 @@ fn one_line(message: &str) -> String {
     message.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Storage textures of a pass: up to four targets, the rows and the tapes. WebGPU's default limit is four.
-const STORAGE_TEXTURES: u32 = 6;
+/// Storage textures of a pass: up to four targets, rows, tapes and bricks. WebGPU's default limit is four.
+const STORAGE_TEXTURES: u32 = 7;
 
 /// Bytes of a pixel in all targets that the mesh pass draws into. WebGPU's default limit is 32.
 const COLOR_ATTACHMENT_BYTES: u32 = 48;

@@ -8,6 +8,7 @@ use crate::gpu::readback::read_words;
 use crate::renderer::RenderError;
 use crate::renderer::evaluation::EvaluationCost;
 use crate::renderer::scene::PIPELINE_WINDOW;
+use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
 use crate::resources::layouts::{
@@ -152,12 +153,15 @@ impl SceneProbe {
         let tapes = texture("tapes", TAPES_FORMAT, bytemuck::cast_slice(&tapes));
         // Components read nothing at their dynamic offsets here.
         let none = uploaded(&[]);
+        let mut bricks = BrickTexture::new(device);
+        bricks.hold(device, queue, &flat.bricks);
         let bindings = SceneBindings {
             nodes: nodes.binding(),
             params: params.binding(),
             subject: window(none.buffer(), size_of::<GpuComponent>()),
             rows: window(none.buffer(), PIPELINE_WINDOW),
             tapes: tapes.binding(),
+            bricks: bricks.binding(),
         };
         let groups = [
             bind(device, "view", &self.layouts.view, &[view.binding()]),

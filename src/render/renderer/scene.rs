@@ -6,6 +6,7 @@ use wgpu::{BindGroup, BindGroupLayout};
 
 use crate::gpu::Gpu;
 use crate::pipelines::key::PipelineKey;
+use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
 use crate::resources::layouts::{CopiesBindings, Layouts, PARAMS_FORMAT, SceneBindings, window};
 use crate::resources::tape_texture::TapeTexture;
@@ -32,6 +33,7 @@ pub struct SceneResources {
     /// The same rows as a texture, for interpreter and tapes.
     params: DataTexture,
     tapes: TapeTexture,
+    bricks: BrickTexture,
     components: SyncedBuffer,
     materials: SyncedBuffer,
     copies_layout: BindGroupLayout,
@@ -52,6 +54,7 @@ impl SceneResources {
             template_rows: SyncedBuffer::uniform(device, "rows of templates"),
             params: DataTexture::new(device, "params", PARAMS_FORMAT),
             tapes: TapeTexture::new(device),
+            bricks: BrickTexture::new(device),
             components: SyncedBuffer::uniform(device, "components"),
             materials: SyncedBuffer::storage(device, "materials"),
         }
@@ -61,7 +64,7 @@ impl SceneResources {
     pub fn uploaded(&self) -> u64 {
         let own = [&self.nodes, &self.rows, &self.template_rows, &self.components, &self.materials];
         let buffers = own.into_iter().chain([&self.instancers, &self.places]).map(SyncedBuffer::uploaded);
-        buffers.sum::<u64>() + self.params.uploaded() + self.tapes.uploaded()
+        buffers.sum::<u64>() + self.params.uploaded() + self.tapes.uploaded() + self.bricks.uploaded()
     }
 
     /// Words of tapes that the device can hold.
@@ -83,6 +86,7 @@ impl SceneResources {
         let (windows, templates) = template_windows(flat, &standpoints.params, keys);
         let mut is_new = self.template_rows.set(device, queue, &templates);
         is_new |= self.tapes.hold(device, queue, trees);
+        is_new |= self.bricks.hold(device, queue, &flat.bricks);
         let placed = |((component, at), tree): ((&Component, &Standpoint), &Option<Arc<CellTree>>)| {
             let gpu = GpuComponent::new(component, at);
             let place = tree.as_ref().and_then(|tree| Some((tree, self.tapes.place(tree)?)));
@@ -131,6 +135,7 @@ impl SceneResources {
                 subject: window(self.components.buffer(), size_of::<GpuComponent>()),
                 rows: window(rows.buffer(), PIPELINE_WINDOW),
                 tapes: self.tapes.binding(),
+                bricks: self.bricks.binding(),
                 instancer: window(self.instancers.buffer(), size_of::<GpuInstancer>()),
                 places: self.places.binding(),
             };
@@ -157,6 +162,7 @@ impl SceneResources {
                 subject: window(self.components.buffer(), size_of::<GpuComponent>()),
                 rows: window(rows.buffer(), PIPELINE_WINDOW),
                 tapes: self.tapes.binding(),
+                bricks: self.bricks.binding(),
             };
             group.bind(device, &self.layout)
         })
