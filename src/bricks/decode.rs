@@ -17,7 +17,8 @@ impl Bricks {
         }
         let slope = 1.0 + f64::from(entry >> 24 & 0x7f) / 64.0;
         let mut samples = Box::new([0; BRICK_VOLUME]);
-        let bytes = self.samples(entry)?.iter().flatten().flat_map(|word| word.to_le_bytes());
+        let bytes =
+            self.brick_texels((entry & 0xff_ffff) as usize)?.iter().flatten().flat_map(|word| word.to_le_bytes());
         samples.iter_mut().zip(bytes).for_each(|(sample, byte)| *sample = byte);
         Some(BrickContent::Near { samples, slope })
     }
@@ -31,16 +32,8 @@ impl Bricks {
 
     /// The distance between the samples around a point, in meters; `None` where there are none.
     pub fn interpolated(&self, p: DVec3) -> Option<f64> {
-        let at = (p - self.grid.origin) / self.grid.voxel;
-        let last = DVec3::from(self.grid.bricks().map(|n| f64::from(n * BRICK_VOXELS))) - 1.0;
-        if at.cmplt(DVec3::ZERO).any() || at.cmpgt(last + 1.0).any() || !at.is_finite() {
-            return None;
-        }
-        let corner = at.floor().min(last);
-        let part = at - corner;
-        let voxel = corner.to_array().map(|v| v as u32);
-        let texels = self.samples(self.entry(voxel.map(|n| n / BRICK_VOXELS)).filter(|entry| entry >> 31 == 1)?)?;
-        let [x, y, z] = voxel.map(|n| (n % BRICK_VOXELS) as usize);
+        let (brick, [x, y, z], part) = self.voxel_around(p)?;
+        let texels = self.brick_texels(brick)?;
         let value = |i: usize| {
             let index = x + (i & 1) + BRICK_SAMPLES * (y + (i >> 1 & 1) + BRICK_SAMPLES * (z + (i >> 2)));
             let byte = texels[index / 16][index / 4 % 4].to_le_bytes()[index % 4];
@@ -50,6 +43,21 @@ impl Bricks {
         let along = |i: usize| mix(value(i), value(i + 1), part.x);
         let flat = |i: usize| mix(along(i), along(i + 2), part.y);
         Some(mix(flat(0), flat(4), part.z) * self.grid.voxel)
+    }
+
+    /// The voxel around a point: the number of its brick, its place in the brick, and the place of the point in it, from 0
+    /// to 1; `None` where there are no samples.
+    pub(super) fn voxel_around(&self, p: DVec3) -> Option<(usize, [usize; 3], DVec3)> {
+        let at = (p - self.grid.origin) / self.grid.voxel;
+        let last = DVec3::from(self.grid.bricks().map(|n| f64::from(n * BRICK_VOXELS))) - 1.0;
+        // Also refuses what is not a number.
+        if !(at.cmpge(DVec3::ZERO).all() && at.cmple(last + 1.0).all()) {
+            return None;
+        }
+        let corner = at.floor().min(last);
+        let voxel = corner.to_array().map(|v| v as u32);
+        let entry = self.entry(voxel.map(|n| n / BRICK_VOXELS)).filter(|entry| entry >> 31 == 1)?;
+        Some(((entry & 0xff_ffff) as usize, voxel.map(|n| (n % BRICK_VOXELS) as usize), at - corner))
     }
 
     fn cell_index(&self, cell: [u32; 3]) -> Option<usize> {
@@ -71,8 +79,8 @@ impl Bricks {
         Some(self.texels.get(first + own / 4)?[own % 4])
     }
 
-    fn samples(&self, entry: u32) -> Option<&[[u32; 4]]> {
-        let first = self.first_brick as usize + (entry & 0xff_ffff) as usize * BRICK_TEXELS;
+    fn brick_texels(&self, brick: usize) -> Option<&[[u32; 4]]> {
+        let first = self.first_brick as usize + brick * BRICK_TEXELS;
         self.texels.get(first..first + BRICK_TEXELS)
     }
 }

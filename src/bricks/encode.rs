@@ -133,7 +133,7 @@ pub fn encode(
     texels.extend(entries);
     let first_brick = texels.len() as u32;
     texels.extend(samples);
-    Ok(Bricks { grid, bounds, coarse_scale: corners.scale, coarse_error, first_brick, texels })
+    Ok(Bricks { grid, bounds, coarse_scale: corners.scale, coarse_error, first_brick, texels, looks: None })
 }
 
 /// All indices below `count`, x fastest.

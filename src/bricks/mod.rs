@@ -19,16 +19,22 @@
 //! The *surface* is where the trilinear interpolation of the samples is 0; see `levels` for the field.
 
 mod bake;
+mod codec;
 mod decode;
+mod digest;
 mod encode;
 mod grid;
 mod levels;
+mod looks;
 mod placeholder;
 
 pub use bake::bake;
+pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
+pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
 pub use levels::{BrickLevels, LEVEL_RATIO, MAX_LEVELS};
+pub use looks::{LOOK_HEADER, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
 
 use glam::DVec3;
@@ -76,6 +82,8 @@ pub struct Bricks {
     pub first_brick: u32,
     /// The texels.
     pub texels: Vec<[u32; 4]>,
+    /// The looks of the surface.
+    pub looks: Option<Looks>,
 }
 
 impl std::fmt::Debug for Bricks {
@@ -105,7 +113,7 @@ impl Bricks {
         (hash >> 40) as u32
     }
 
-    /// Bytes of the texels.
+    /// Bytes of the texels of distances.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.texels)
     }

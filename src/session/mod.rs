@@ -7,9 +7,13 @@
 //! | `open` | a document read and prepared by one job |
 //! | `arrays` | the arrays of a changing document |
 //! | `models` | the models that it names, read in the background and again when their files change |
+//! | `bricks` | models as distance bricks, made in the background |
+//! | `brick_cache` | their files |
 //! | `notice` | messages of a session |
 
 mod arrays;
+mod brick_cache;
+mod bricks;
 mod models;
 mod notice;
 mod open;
@@ -19,6 +23,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use arrays::Arrays;
+pub use brick_cache::CACHE_FOLDER;
+pub use bricks::{BrickLibrary, BrickResult, ModelKey};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};

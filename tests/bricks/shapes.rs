@@ -147,7 +147,7 @@ pub fn ten() -> Vec<(&'static str, Soup, bool)> {
     vec![
         ("sphere", Soup::sphere(48, 1.0), true),
         ("torus", Soup::torus(32), true),
-        ("knot", Soup::knot(24), true),
+        ("knot", Soup::knot(36), true),
         ("box", Soup::cuboid(DVec3::new(0.7, 1.0, 0.41)), false),
         ("plate", Soup::cuboid(DVec3::new(1.0, 0.013, 0.8)), false),
         ("frame", Soup::frame(), false),

@@ -66,6 +66,7 @@ const FILE_OWNERS: &[&str] = &[
     "src/document/recovery",
     "src/cli/",
     "src/gallery/write",
+    "src/session/brick_cache",
     "src/wgsl/disk",
 ];
 

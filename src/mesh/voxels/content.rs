@@ -98,7 +98,7 @@ impl Contents {
 
     /// Samples the bricks of these cells.
     fn sampled(&self, cells: &[[u32; 3]], distances: &Distances<'_>, watch: &Watch) -> Result<Vec<Known>, BrickError> {
-        let share = 0.6 / cells.len().max(1) as f64;
+        let share = 0.4 / cells.len().max(1) as f64;
         let of_cell = |cell: &[u32; 3]| {
             watch.check()?;
             let bricks = bricks_of_cell(*cell).map(|brick| self.measure(brick, distances));
@@ -185,7 +185,7 @@ fn measured(
     distances: &Distances<'_>,
     watch: &Watch,
 ) -> Result<Vec<f32>, BrickError> {
-    let share = 0.1 / (size[1] * size[2]) as f64;
+    let share = 0.05 / (size[1] * size[2]) as f64;
     let rows: Vec<Vec<f32>> = (0..size[1] * size[2])
         .into_par_iter()
         .map(|row| {

@@ -8,6 +8,8 @@
 //! | `facets` | triangles in voxels, and the nearest of them |
 //! | `samples` | the samples of a brick |
 //! | `content` | all bricks near the surface |
+//! | `paint` | the looks of the samples around the surface |
+//! | `key` | what bricks are made of, for files of them |
 //! | `watch` | progress and cancellation |
 //!
 //! Surfaces that masks cut out count as whole.
@@ -15,18 +17,22 @@
 mod columns;
 mod content;
 mod facets;
+mod key;
+mod paint;
 mod resolution;
 mod samples;
 mod solid;
 mod watch;
 
+pub use key::bricks_key;
 pub use resolution::{usual_resolution, voxel_for};
 
 use super::TriangleMesh;
 use columns::Columns;
 use content::Contents;
-use isolith_bricks::{BAND, BrickError, BrickGrid, Bricks, CELL_VOXELS, MAX_BRICK_TEXELS, RESOLUTIONS, encode};
+use isolith_bricks::{BrickContent, BrickError, BrickGrid, Bricks, CELL_VOXELS, MAX_BRICK_TEXELS, RESOLUTIONS, encode};
 use isolith_geometry::Aabb;
+use paint::painted;
 use samples::{Distances, SHEET_HALF};
 use solid::Solid;
 use watch::{Watch, watched};
@@ -81,7 +87,7 @@ fn made(mesh: &TriangleMesh, voxel: f64, watch: &Watch) -> Result<Voxelized, Bri
         return Err(BrickError::TooLarge { texels: least });
     }
     let solid = Solid::new(mesh, &grid);
-    watch.advance(0.2);
+    watch.advance(0.15);
     watch.check()?;
     if solid.closed.is_empty() && solid.thin.is_empty() {
         return Err(BrickError::Empty);
@@ -89,8 +95,9 @@ fn made(mesh: &TriangleMesh, voxel: f64, watch: &Watch) -> Result<Voxelized, Bri
     let size = [0, 1].map(|i| (grid.cells[i] * CELL_VOXELS) as usize + 1);
     let columns = Columns::new(size, &solid.chain);
     watch.advance(0.05);
-    let contents = Contents::new(grid, &Distances { solid: &solid, columns }, watch)?;
-    let bricks = encoded(grid, bounds, &contents, watch)?;
+    let distances = Distances { solid: &solid, columns };
+    let (mut bricks, order) = encoded(grid, bounds, &Contents::new(grid, &distances, watch)?, watch)?;
+    bricks.looks = Some(painted(mesh, &bricks, &order, &distances, watch)?);
     let mut remarks = Vec::new();
     if solid.has_sheets {
         remarks.push(format!(
@@ -102,10 +109,21 @@ fn made(mesh: &TriangleMesh, voxel: f64, watch: &Watch) -> Result<Voxelized, Bri
     Ok(Voxelized { bricks, remarks })
 }
 
-fn encoded(grid: BrickGrid, bounds: Aabb, contents: &Contents, watch: &Watch) -> Result<Bricks, BrickError> {
-    debug_assert!(f64::from(SHEET_HALF) < BAND);
-    encode(grid, bounds, &mut |corner| contents.corner(corner) * grid.voxel, &mut |brick| {
+/// The bricks, and those with samples in their order.
+fn encoded(
+    grid: BrickGrid,
+    bounds: Aabb,
+    contents: &Contents,
+    watch: &Watch,
+) -> Result<(Bricks, Vec<[u32; 3]>), BrickError> {
+    let mut order = Vec::new();
+    let bricks = encode(grid, bounds, &mut |corner| contents.corner(corner) * grid.voxel, &mut |brick| {
         watch.check()?;
-        Ok(contents.brick(brick))
-    })
+        let content = contents.brick(brick);
+        if matches!(content, BrickContent::Near { .. }) {
+            order.push(brick);
+        }
+        Ok(content)
+    })?;
+    Ok((bricks, order))
 }

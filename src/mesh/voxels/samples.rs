@@ -6,7 +6,6 @@ use super::columns::Columns;
 use super::facets::{Facets, NONE};
 use super::solid::Solid;
 use isolith_bricks::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickGrid, SAMPLE_REACH};
-use isolith_geometry::Aabb;
 
 /// Half the thickness of sheets, in voxels. With only half a voxel one could lie between two layers of samples, and both
 /// would measure 0.
@@ -17,9 +16,8 @@ pub(super) const HALF_DIAGONAL: f32 = 6.062_178;
 /// passes. Those farther away learn from their neighbors which triangle may be the nearest (Tsai, "Rapid and accurate
 /// computation of the distance function using grids", 2002).
 const EXACT: f32 = 1.75;
-/// The sweeps that spread nearest triangles: there and back, twice.
-const SWEEPS: usize = 4;
 const SIDE: usize = BRICK_SAMPLES;
+const _: () = assert!(SIDE.is_power_of_two());
 
 /// The distances of a solid, in voxels.
 pub(super) struct Distances<'a> {
@@ -117,11 +115,11 @@ fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
     let mut nearest = Nearest { facets, origin, squared: [f32::INFINITY; BRICK_VOLUME], ids: [NONE; BRICK_VOLUME] };
     nearest.compare_all();
     // The distance changes at most as much as the place.
-    let is_wanted = |i: usize| away - place(i).distance(middle) < reach;
+    let is_wanted: [bool; BRICK_VOLUME] = std::array::from_fn(|i| away - place(i).distance(middle) < reach);
     let last = SIDE - 1;
     for corner in 0..8 {
         let i = index([corner & 1, corner >> 1 & 1, corner >> 2].map(|side| side * last));
-        if is_wanted(i)
+        if is_wanted[i]
             && let Some((squared, id)) = facets.nearest(origin + place(i), (away + HALF_DIAGONAL + 0.01).powi(2))
         {
             (nearest.squared[i], nearest.ids[i]) = (squared, id);
@@ -130,8 +128,9 @@ fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
     for half in 0..8 {
         nearest.compare(index([half & 1, half >> 1 & 1, half >> 2].map(|side| 3 + side)), seed);
     }
-    for sweep in 0..SWEEPS {
-        nearest.sweep(sweep % 2 == 1, &is_wanted);
+    // From each corner in turn, as fast sweeping does (Zhao, 2005); opposite ones follow each other.
+    for corner in [0, 7, 1, 6, 2, 5, 3, 4] {
+        nearest.sweep(corner, &is_wanted);
     }
     for (value, squared) in band.iter_mut().zip(nearest.squared) {
         *value = squared.sqrt();
@@ -150,9 +149,9 @@ struct Nearest<'a> {
 impl Nearest<'_> {
     /// Compares the samples around each triangle with it.
     fn compare_all(&mut self) {
-        let bounds = Aabb::new(self.origin.as_dvec3(), (self.origin + BRICK_VOXELS as f32).as_dvec3());
         let mut found = Vec::new();
-        self.facets.within(&bounds.expanded(f64::from(EXACT)), |triangle| found.push(triangle));
+        let high = self.origin + BRICK_VOXELS as f32 + EXACT;
+        self.facets.within(self.origin - EXACT, high, |triangle| found.push(triangle));
         let last = (SIDE - 1) as f32;
         for triangle in found {
             let [low, high] = self.facets.extent(triangle);
@@ -175,19 +174,21 @@ impl Nearest<'_> {
         }
     }
 
-    /// Passes nearest triangles on to neighbors.
-    fn sweep(&mut self, is_back: bool, is_wanted: &impl Fn(usize) -> bool) {
+    /// Passes nearest triangles on to neighbors, away from a corner.
+    fn sweep(&mut self, corner: usize, is_wanted: &[bool; BRICK_VOLUME]) {
+        // The sides of the brick are powers of two: turning an axis around is turning its bits.
+        let strides = [1, SIDE, SIDE * SIDE];
+        let turned: usize = (0..3).filter(|axis| corner >> axis & 1 == 1).map(|axis| (SIDE - 1) * strides[axis]).sum();
         for step in 0..BRICK_VOLUME {
-            let i = if is_back { BRICK_VOLUME - 1 - step } else { step };
-            if self.squared[i] <= EXACT * EXACT || !is_wanted(i) {
+            let i = step ^ turned;
+            if self.squared[i] <= EXACT * EXACT || !is_wanted[i] {
                 continue;
             }
-            for stride in [1, SIDE, SIDE * SIDE] {
-                let border = if is_back { SIDE - 1 } else { 0 };
-                if i / stride % SIDE == border {
+            for stride in strides {
+                if step / stride % SIDE == 0 {
                     continue;
                 }
-                let id = self.ids[if is_back { i + stride } else { i - stride }];
+                let id = self.ids[(step - stride) ^ turned];
                 if id != NONE && id != self.ids[i] {
                     self.compare(i, id);
                 }

@@ -67,15 +67,16 @@ impl Solid {
         let is_sheet = |piece: &Piece| piece.lids > SHEET_LIDS * piece.area;
         let is_thin = |piece: &Piece| is_sheet(piece) || piece.volume.abs() < THIN * piece.area;
         let (mut chain, mut solid, mut thin) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, triangle) in triangles.iter().chain(&lids).enumerate() {
+        let sources = (0..triangles.len() as u32).chain(std::iter::repeat_n(NONE, lids.len()));
+        for (triangle, source) in triangles.iter().chain(&lids).zip(sources) {
             let piece = &sizes[&pieces.of(triangle[0])];
             let floats = corners(*triangle).map(DVec3::as_vec3);
             if !is_sheet(piece) {
                 chain.push(triangle.map(|p| points[p as usize]));
-                solid.push(floats);
+                solid.push((floats, source));
             }
-            if is_thin(piece) && index < triangles.len() {
-                thin.push(floats);
+            if is_thin(piece) && source != NONE {
+                thin.push((floats, source));
             }
         }
         let has_sheets = sizes.values().any(|piece| piece.area > 0.0 && is_sheet(piece));
