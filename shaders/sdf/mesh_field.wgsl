@@ -53,7 +53,7 @@ fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let index = cell.x + counts.x * (cell.y + counts.y * cell.z);
     let first = u32(size.w);
     let cells = counts.x * counts.y * counts.z;
-    let places = bricks_texel(first + cells + index / 4u);
+    let places = bricks_texel(first + index / 4u);
     let place = places[index % 4u];
     if place >= CELL_INSIDE {
         return select(SAMPLE_REACH, -SAMPLE_REACH, place == CELL_INSIDE);
@@ -61,7 +61,7 @@ fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let inner = at - vec3f(cell) * CELL_VOXELS;
     let brick = min(vec3u(max(inner, vec3f(0.0)) * (1.0 / BRICK_VOXELS)), vec3u(1u));
     let number = brick.x + 2u * brick.y + 4u * brick.z;
-    let entries = bricks_texel(first + cells + (cells + 3u) / 4u + 2u * place + number / 4u);
+    let entries = bricks_texel(first + (cells + 3u) / 4u + 2u * place + number / 4u);
     let entry = entries[number % 4u];
     if (entry >> 31u) == 0u {
         return select(SAMPLE_REACH, -SAMPLE_REACH, (entry & 0x40000000u) != 0u);

@@ -1,12 +1,11 @@
-//! Distance bricks: the distances of a solid in voxels near its surface, and coarse ones elsewhere.
+//! Distance bricks: the distances of a solid in voxels near its surface.
 //!
 //! A grid of *cells* covers the solid, each of 2³ bricks, each of 7³ voxels. Texels of four words hold, one after the
 //! other:
 //!
 //! | texels | hold |
 //! |---|---|
-//! | one per cell | the distances at its eight corners as 16-bit numbers, x fastest; 1 is [`Bricks::coarse_scale`] |
-//! | one per four cells | the place of each cell's entries, in cells with entries; [`NO_ENTRIES`] far from the surface |
+//! | one per four cells | the place of each cell's entries, in cells with entries; far from the surface [`NO_ENTRIES`], or [`INSIDE`] |
 //! | two per cell with entries | an entry for each of its bricks, x fastest |
 //! | 32 per brick | its 8³ samples as bytes, x fastest, then y, then z: neighbors share those on their common face |
 //!
@@ -74,10 +73,6 @@ pub struct Bricks {
     pub grid: BrickGrid,
     /// A box around the surface, within the grid.
     pub bounds: Aabb,
-    /// The coarse distance that a corner of 1 stands for, in meters.
-    pub coarse_scale: f64,
-    /// Coarse distances are at most this far off, in meters.
-    pub coarse_error: f64,
     /// The first texel of the samples.
     pub first_brick: u32,
     /// The texels.
@@ -100,8 +95,7 @@ impl Bricks {
 
     /// The greatest slope of the interpolation of its samples anywhere; at least 1.
     pub fn slope(&self) -> f64 {
-        let cells = self.grid.cell_count();
-        let entries = &self.texels[cells + cells.div_ceil(4)..self.first_brick as usize];
+        let entries = &self.texels[self.grid.cell_count().div_ceil(4)..self.first_brick as usize];
         let slope = |entry: &u32| if entry >> 31 == 1 { entry >> 24 & 0x7f } else { 0 };
         1.0 + f64::from(entries.iter().flatten().map(slope).max().unwrap_or(0)) / 64.0
     }

@@ -51,7 +51,7 @@ fn mesh_field_within<T: Real>(at: [T; 3], data: Data<'_>, row: usize) -> T {
     let counts = [nx, ny, nz];
     let cell = [0, 1, 2].map(|i| (at[i].value() / f64::from(CELL_VOXELS)).floor().min(counts[i] - 1.0));
     let index = (cell[0] + nx * (cell[1] + ny * cell[2])) as usize;
-    let places = first as usize + (nx * ny * nz) as usize;
+    let places = first as usize;
     let place = data.texel(places + index / 4)[index % 4];
     if place >= isolith_bricks::INSIDE {
         return T::constant(if place == isolith_bricks::INSIDE { -SAMPLE_REACH } else { SAMPLE_REACH });
