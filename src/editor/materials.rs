@@ -112,10 +112,12 @@ impl Materials {
         }
     }
 
-    /// The title, and buttons for the whole list.
+    /// The count, and buttons for the whole list.
     fn header(&mut self, ui: &mut Ui, state: &mut EditorState) {
         ui.horizontal(|ui| {
-            ui.label(RichText::new("Materials").strong().color(Color32::WHITE));
+            let count = state.session.document.scene().materials().len();
+            let text = format!("{count} {}", if count == 1 { "material" } else { "materials" });
+            ui.label(RichText::new(text).color(theme::WEAK));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 4.0;
                 let unused = widgets::icon_button(ui, ICON_DELETE_SWEEP, "Delete unused materials", theme::WEAK);

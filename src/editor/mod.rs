@@ -7,10 +7,11 @@
 //! | file | purpose |
 //! |---|---|
 //! | `state`, `edit_session`, `view_state` | document with gestures (one drag, one undo step), messages, view |
-//! | `panel`, `panels`, `shell` | the trait, the list and the layout of panels |
+//! | `panel`, `panels` | the trait and the list of panels |
+//! | `shell`, `dock`, `dock_tabs` | the layout of panels: bars, and rows and columns of tabs |
 //! | `root` | the editor: state, shell, and the windows in front |
 //! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
-//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport`, `log_panel` | the panels |
 //! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
@@ -46,6 +47,8 @@ mod commands;
 mod conflict;
 mod dialog_views;
 mod dialogs;
+mod dock;
+mod dock_tabs;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
@@ -78,6 +81,7 @@ mod keying;
 mod keymap;
 mod lattice_overlay;
 mod legend;
+mod log_panel;
 mod material_edits;
 mod material_library;
 mod materials;

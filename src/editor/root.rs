@@ -94,6 +94,11 @@ impl Editor {
     /// Sets the preferences, which persist between runs.
     pub fn set_preferences(&mut self, preferences: Preferences) {
         self.state.preferences = preferences;
+        if let Some(problem) = self.state.preferences.take_problem() {
+            self.report(Message::warning(problem));
+        }
+        self.shell.arrange(self.state.preferences.values().layout.as_ref());
+        self.state.panels = self.shell.entries();
     }
 
     /// Sets the examples of the File menu.
@@ -127,10 +132,12 @@ impl Editor {
         if let Some(later) = self.state.playback.advance(&mut self.state.session, now) {
             ctx.request_repaint_after(later);
         }
+        let before = self.state.session.document.revision();
         for index in 0..self.shell.len() {
             self.shell.show(index, &mut self.state, ui);
             self.answer_requests(&ctx);
         }
+        self.follow_panels(&ctx, before);
         if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
         }
@@ -169,10 +176,23 @@ impl Editor {
         }
         below_list::show(&mut self.state, ctx);
         let corner = self.state.view.rect;
-        let messages = &mut self.state.session.messages;
-        messages.show_toasts(ctx, corner);
-        if messages.show_log {
-            messages.show_log(ctx);
+        self.state.session.messages.show_toasts(ctx, corner);
+    }
+
+    /// Keeps a layout that the artist has changed. Shows the panels once more that were shown before a later one has
+    /// changed the document.
+    fn follow_panels(&mut self, ctx: &Context, revision: u64) {
+        if self.state.session.document.revision() != revision {
+            ctx.request_repaint();
+        }
+        if ctx.input(|i| i.pointer.any_down()) {
+            return;
+        }
+        if let Some(layout) = self.shell.take_changed_layout() {
+            self.state.panels = self.shell.entries();
+            if self.state.preferences.values().layout.as_ref() != Some(&layout) {
+                self.state.preferences.change(|values| values.layout = Some(layout));
+            }
         }
     }
 
@@ -184,6 +204,11 @@ impl Editor {
                 Request::Intend(intent) => self.intend(intent, ctx),
                 Request::TogglePanel(id) => {
                     self.shell.toggle(id);
+                    self.state.panels = self.shell.entries();
+                }
+                Request::ResetLayout => {
+                    self.shell.arrange(None);
+                    self.state.preferences.change(|values| values.layout = None);
                     self.state.panels = self.shell.entries();
                 }
             }

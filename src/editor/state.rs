@@ -36,6 +36,8 @@ pub enum Request {
     Intend(Intent),
     /// Toggle the panel of this id.
     TogglePanel(&'static str),
+    /// Put all panels back into their usual places.
+    ResetLayout,
 }
 
 /// A list entry for a panel.

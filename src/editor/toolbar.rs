@@ -111,6 +111,10 @@ fn panels(state: &mut EditorState, ui: &mut Ui) {
             state.requests.push(Request::TogglePanel(id));
         }
     }
+    ui.separator();
+    if ui.button("Reset layout").on_hover_text(Command::ResetLayout.info().tooltip(ui.ctx())).clicked() {
+        state.requests.push(Request::ResetLayout);
+    }
 }
 
 fn divider(ui: &mut Ui) {

@@ -120,6 +120,8 @@ pub enum Command {
     FindCommand,
     /// Toggle the log.
     ShowMessages,
+    /// Put all panels back into their usual places.
+    ResetLayout,
     /// Move, rotate or scale the selection with the pointer, until a click or Enter.
     Transform(TransformKind),
     /// Switch to this tool.

@@ -8,8 +8,9 @@ use glam::DQuat;
 use super::command::Command;
 use crate::edit_session::EditSession;
 use crate::intent::Intent;
+use crate::log_panel::LOG;
 use crate::root::Editor;
-use crate::state::EditorState;
+use crate::state::{EditorState, Request};
 use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
@@ -101,7 +102,8 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::LookFrom(side) => state.view.navigation.look_from(side),
         Command::ToggleGrid => state.view.show_grid ^= true,
         Command::ToggleOutline => state.view.show_outline ^= true,
-        Command::ShowMessages => session.messages.show_log ^= true,
+        Command::ShowMessages => state.requests.push(Request::TogglePanel(LOG)),
+        Command::ResetLayout => state.requests.push(Request::ResetLayout),
         Command::Transform(kind) => state.view.transforming = Some(kind),
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,

@@ -39,10 +39,6 @@ impl Editor {
         if self.has_dialog() || self.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
             return;
         }
-        let log = &mut self.state.session.messages.show_log;
-        if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
-            *log = false;
-        }
         // Escape first cancels the current action.
         let jobs = self.state.derived.jobs();
         if jobs.foremost().is_some_and(|task| task.can_cancel())

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA,
-    ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
+    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_DASHBOARD, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST,
+    ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
 };
 
 use super::command::Command;
@@ -57,6 +57,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .key(Modifiers::COMMAND, Key::P)
             .group(),
         row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
+        row(Command::ResetLayout, ICON_DASHBOARD, "Reset layout", "Puts all panels back into their usual places"),
     ]);
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());
