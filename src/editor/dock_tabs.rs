@@ -89,7 +89,7 @@ impl Behavior<usize> for DockTabs<'_> {
     fn tab_ui(&mut self, tiles: &mut Tiles<usize>, ui: &mut Ui, id: Id, tile: TileId, tab: &TabState) -> Response {
         let title = self.tab_title_for_tile(tiles, tile).text().to_owned();
         let color = if tab.active { theme::TEXT } else { theme::WEAK };
-        let galley = ui.painter().layout_no_wrap(title.clone(), FontId::proportional(TEXT), color);
+        let galley = ui.painter().layout_no_wrap(title.clone(), FontId::proportional(TEXT), color.into());
         let close = if tab.closable { CLOSE + 4.0 } else { 0.0 };
         let (_, rect) = ui.allocate_space(vec2(galley.size().x + 20.0 + close, ui.available_height()));
         let is_draggable = self.is_tile_draggable(tiles, tile);
@@ -103,7 +103,7 @@ impl Behavior<usize> for DockTabs<'_> {
                 ui.painter().rect_filled(rect, 0.0, theme::PANEL);
             }
             let at = Align2::LEFT_CENTER.align_size_within_rect(galley.size(), rect.shrink2(vec2(10.0, 0.0)));
-            ui.painter().galley(at.min, galley, color);
+            ui.painter().galley(at.min, galley, color.into());
             if tab.closable {
                 let place =
                     Rect::from_center_size(rect.right_center() - vec2(4.0 + 0.5 * CLOSE, 0.0), Vec2::splat(CLOSE));
@@ -163,7 +163,7 @@ impl Behavior<usize> for DockTabs<'_> {
     }
 
     fn tab_bar_color(&self, _: &Visuals) -> Color32 {
-        theme::BAR
+        theme::BAR.into()
     }
 
     /// In front of the picture, which is painted later than the bars.

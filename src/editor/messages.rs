@@ -24,10 +24,10 @@ impl Severity {
     /// Its color.
     pub fn color(self) -> egui::Color32 {
         match self {
-            Self::Info => theme::ACCENT,
-            Self::Success => theme::SUCCESS,
-            Self::Warning => theme::WARNING,
-            Self::Error => theme::ERROR,
+            Self::Info => *theme::ACCENT,
+            Self::Success => *theme::SUCCESS,
+            Self::Warning => *theme::WARNING,
+            Self::Error => *theme::ERROR,
         }
     }
 

@@ -23,6 +23,8 @@
 //! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
+//! | `preferences_window`, `key_editor` | the window of the preferences, with the list of all keys |
+//! | `palette`, `theme`, `appearance`, `units` | colors by role, style, what the preferences say about both, units |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
@@ -37,6 +39,7 @@
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod add_palette;
+mod appearance;
 mod below_list;
 mod bounds;
 mod choice_walk;
@@ -77,6 +80,7 @@ mod inspector_types;
 mod instancer_edits;
 mod instancing;
 mod intent;
+mod key_editor;
 mod keying;
 mod keymap;
 mod lattice_overlay;
@@ -92,12 +96,14 @@ mod node_picker;
 mod numbers;
 mod outliner;
 mod overlay;
+mod palette;
 mod panel;
 mod panels;
 mod picking;
 mod placement;
 mod playback;
 mod portal;
+mod preferences_window;
 mod preset_picker;
 mod projection;
 mod recovery;
@@ -120,6 +126,7 @@ mod time_scale;
 mod timeline;
 mod toolbar;
 mod transforms;
+mod units;
 mod view_state;
 mod viewport;
 mod viewport_click;

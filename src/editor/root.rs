@@ -7,6 +7,7 @@ use std::time::Duration;
 use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
 
 use super::add_palette::AddPalette;
+use super::appearance::Appearance;
 use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
@@ -15,6 +16,7 @@ use super::document_jobs::{Opening, Saving};
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
+use super::preferences_window::PreferencesWindow;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
@@ -29,6 +31,8 @@ use isolith_session::{Opened, folder_of};
 /// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
 
+/// Most samples per pixel that the preferences can ask for.
+const MOST_SAMPLES: u32 = 1024;
 /// Interval between updates of the progress of jobs.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
@@ -36,6 +40,8 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 pub struct Editor {
     pub(super) state: EditorState,
     shell: Shell,
+    appearance: Appearance,
+    pub(super) preferences_window: PreferencesWindow,
     pub(super) command_palette: CommandPalette,
     pub(super) add_palette: AddPalette,
     pub(super) dialogs: Dialogs,
@@ -61,6 +67,8 @@ impl Editor {
         let mut editor = Self {
             state: EditorState::default(),
             shell: Shell::new(panels::all()),
+            appearance: Appearance::default(),
+            preferences_window: PreferencesWindow::default(),
             command_palette: CommandPalette::default(),
             add_palette: AddPalette::default(),
             dialogs: Dialogs::default(),
@@ -94,6 +102,9 @@ impl Editor {
     /// Sets the preferences, which persist between runs.
     pub fn set_preferences(&mut self, preferences: Preferences) {
         self.state.preferences = preferences;
+        if let Some(samples) = self.state.preferences.values().samples {
+            self.state.view.samples = samples.clamp(1, MOST_SAMPLES);
+        }
         if let Some(problem) = self.state.preferences.take_problem() {
             self.report(Message::warning(problem));
         }
@@ -116,7 +127,7 @@ impl Editor {
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
-        self.state.keymap().install(&ctx);
+        self.appearance.apply(&ctx, &mut self.state);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
         self.poll_documents(&ctx);
@@ -164,6 +175,7 @@ impl Editor {
     }
 
     fn show_in_front(&mut self, ctx: &Context) {
+        self.show_preferences(ctx);
         self.show_dialogs(ctx);
         self.show_conflict(ctx);
         self.show_recovery(ctx);
@@ -289,6 +301,7 @@ impl Editor {
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.is_open()
+            || self.preferences_window.is_open()
             || self.command_palette.is_open()
             || self.add_palette.is_open()
             || self.state.view.below.is_some()

@@ -31,10 +31,10 @@ impl Shell {
     /// Shows a part. Call it for all parts in order; the caller carries out the requests of each before the next.
     pub fn show(&mut self, index: usize, state: &mut EditorState, ui: &mut Ui) {
         let Some(panel) = self.bars.get_mut(index) else {
-            CentralPanel::default().frame(Frame::new().fill(theme::LINE)).show(ui, |ui| self.dock.show(state, ui));
+            CentralPanel::default().frame(Frame::new().fill(*theme::LINE)).show(ui, |ui| self.dock.show(state, ui));
             return;
         };
-        let frame = |margin| Frame::new().fill(theme::BAR).inner_margin(margin);
+        let frame = |margin| Frame::new().fill(*theme::BAR).inner_margin(margin);
         let (id, place) = (panel.id(), panel.place());
         let mut add = |ui: &mut Ui| panel.ui(state, ui);
         match place {

@@ -7,7 +7,7 @@ use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
 use super::intent::Intent;
-use super::keymap::Keymap;
+use super::keymap::{KeyBindings, Keymap};
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
 use super::playback::Playback;
@@ -122,6 +122,12 @@ impl EditorState {
     /// The keymap in use.
     pub fn keymap(&self) -> Keymap {
         Keymap::named(&self.preferences.values().keymap)
+    }
+
+    /// The keys in use: the keymap with the user's changes.
+    pub fn key_bindings(&self) -> KeyBindings {
+        let keymap = self.keymap();
+        KeyBindings::new(keymap, self.preferences.values().keys.get(keymap.label()))
     }
 
     /// Switches to a keymap, and keeps it for the next start.

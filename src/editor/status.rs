@@ -64,7 +64,7 @@ fn drawing(state: &mut EditorState, ui: &mut Ui) {
     ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Stop drawing"));
     state.view.stops_drawing |= button.clicked();
     if let Some(progress) = progress {
-        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(*theme::ACCENT));
     }
 }
 
@@ -152,7 +152,7 @@ fn job(ui: &mut Ui, task: &Task, count: usize) {
         }
     }
     if let Some(progress) = task.progress() {
-        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(*theme::ACCENT));
     }
     let label = |text: String| egui::Label::new(RichText::new(text).color(theme::WEAK));
     ui.add(label(format!("{}…", task.name())).truncate());

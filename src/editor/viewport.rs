@@ -297,5 +297,5 @@ fn background(state: &EditorState, painter: &egui::Painter, rect: Rect) {
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));
     let text = "Preparing the viewport…";
     let font = egui::FontId::proportional(14.0);
-    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::WEAK);
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::ON_PICTURE);
 }

@@ -116,6 +116,8 @@ pub enum Command {
     ToggleGrid,
     /// Toggle the outline of the selection.
     ToggleOutline,
+    /// Open the preferences.
+    Preferences,
     /// Open the command palette.
     FindCommand,
     /// Toggle the log.

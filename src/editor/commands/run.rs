@@ -34,6 +34,7 @@ impl Editor {
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::FindCommand => self.command_palette.open(),
+            Command::Preferences => self.preferences_window.open(),
             _ => run_on_state(&mut self.state, command),
         }
     }
@@ -113,7 +114,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand => {}
+        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand | Command::Preferences => {}
     }
 }
 
