@@ -28,6 +28,7 @@
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -59,8 +60,10 @@ mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
+mod fly;
 mod framing;
 mod gizmo;
+mod grid_labels;
 mod handles;
 mod icons;
 mod input_order;
@@ -140,4 +143,4 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 pub use root::Editor;
 pub use state::Example;
-pub use view_state::{Picture, ViewSettings};
+pub use view_state::{GridView, Picture, ViewSettings};

@@ -51,6 +51,8 @@ pub struct Navigation {
     pub fov_y: f64,
     /// Whether parallel lines stay parallel.
     pub orthographic: bool,
+    /// Whether the next orbit ends that, because it came with a view along an axis.
+    pub leaves_axis: bool,
 }
 
 impl Default for Navigation {
@@ -62,6 +64,7 @@ impl Default for Navigation {
             rotation: camera.rotation,
             fov_y: camera.fov_y,
             orthographic: false,
+            leaves_axis: false,
         }
     }
 }
@@ -104,7 +107,7 @@ impl Navigation {
         let distance = (focus - camera.position).dot(forward);
         self.rotation = camera.rotation;
         self.fov_y = camera.fov_y;
-        self.orthographic = false;
+        (self.orthographic, self.leaves_axis) = (false, false);
         self.distance = if distance > 0.0 { self.limited(distance) } else { self.distance };
         self.target = camera.position + forward * self.distance;
     }
@@ -112,6 +115,9 @@ impl Navigation {
     /// Orbits the target: a drag over the whole height turns by half a circle. The horizon stays level;
     /// the orbit stops at straight up and straight down.
     pub fn orbit(&mut self, drag_px: DVec2, height_px: f64) {
+        if std::mem::take(&mut self.leaves_axis) {
+            self.orthographic = false;
+        }
         let angle = drag_px * (PI / height_px.max(1.0));
         let pitch_now = (self.rotation * DVec3::Z).y.clamp(-1.0, 1.0).asin();
         let pitch = (pitch_now + angle.y).clamp(-FRAC_PI_2, FRAC_PI_2) - pitch_now;
@@ -182,6 +188,19 @@ impl Navigation {
             Side::Bottom => DQuat::from_rotation_x(FRAC_PI_2),
             _ => Camera::looking_at(side.direction(), DVec3::ZERO, self.fov_y).rotation,
         };
+    }
+
+    /// Looks at the target along an axis, and in parallel until the next orbit.
+    pub fn look_along(&mut self, side: Side) {
+        self.look_from(side);
+        self.leaves_axis |= !self.orthographic;
+        self.orthographic = true;
+    }
+
+    /// Switches between perspective and orthographic.
+    pub fn toggle_orthographic(&mut self) {
+        self.orthographic ^= true;
+        self.leaves_axis = false;
     }
 
     fn limited(&self, distance: f64) -> f64 {

@@ -11,6 +11,7 @@ use super::keymap::{KeyBindings, Keymap};
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
 use super::playback::Playback;
+use super::units::LengthUnit;
 use super::view_state::{Picture, ViewSettings, ViewState};
 use isolith_document::{Document, Preferences};
 use isolith_field::FlatScene;
@@ -112,6 +113,7 @@ impl EditorState {
             size_px: *size_px,
             navigating: *is_navigating || self.session.is_changing() || self.playback.is_moving(),
             show_grid: *show_grid,
+            grid: self.view.grid(LengthUnit::named(&self.preferences.values().unit).meters()),
             show_outline: *show_outline,
             shading: *shading,
             view_mode: *view_mode,

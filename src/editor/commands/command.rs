@@ -112,7 +112,9 @@ pub enum Command {
     LookThroughCamera,
     /// Look along a world axis.
     LookFrom(Side),
-    /// Toggle the ground grid.
+    /// Switch between a perspective and an orthographic view.
+    ToggleOrthographic,
+    /// Toggle the grid.
     ToggleGrid,
     /// Toggle the outline of the selection.
     ToggleOutline,
