@@ -18,7 +18,7 @@ pub const GAP: f32 = 1.0;
 pub const LEAST: f32 = 80.0;
 const LEAST_CENTER: f32 = 220.0;
 /// Width of a panel at the left without a place of its own there, and its height, in points.
-const USUAL: Vec2 = vec2(260.0, 260.0);
+const USUAL: Vec2 = vec2(240.0, 260.0);
 
 /// The panels in their places.
 pub struct Dock {
@@ -211,6 +211,7 @@ impl Dock {
     /// Shows the panels.
     pub fn show(&mut self, state: &mut EditorState, ui: &mut Ui) {
         let area = ui.available_rect_before_wrap();
+        self.inherit_sizes();
         self.tree.simplify(&dock_tabs::simplification());
         if let Some(root) = self.tree.root() {
             self.fit(root, area.size(), state);
@@ -232,6 +233,24 @@ impl Dock {
             // Behind another panel it neither follows the pointer nor takes keys.
             (state.view.transforming, state.view.is_navigating) = (None, false);
             state.view.pointer = PointerActivity::Away;
+        }
+    }
+
+    /// A row or column that a drop has put around a part is as large as that part was; the last part of one that goes
+    /// is as large as it was.
+    fn inherit_sizes(&mut self) {
+        let linears = self.tree.tiles.iter().filter_map(|(id, tile)| match tile {
+            Tile::Container(Container::Linear(linear)) => Some((*id, linear.children.clone())),
+            _ => None,
+        });
+        for (id, children) in linears.collect::<Vec<_>>() {
+            if let ([only], Some(size)) = (&*children, self.sizes.get(&id)) {
+                self.sizes.insert(*only, *size);
+            } else if !self.sizes.contains_key(&id) && self.tree.root() != Some(id) {
+                let sizes = children.iter().filter_map(|child| self.sizes.remove(child));
+                let size = sizes.fold(0.0, f32::max);
+                self.sizes.insert(id, size);
+            }
         }
     }
 

@@ -174,10 +174,15 @@ fn names_in_any_script_and_of_any_length_fit_the_outliner() {
     for name in names {
         scene.insert(None, 0, Node::new(name, NodeKind::Group(Group::UNION))).unwrap();
     }
-    let mut harness = open(scene);
+    let mut harness = open(self::scene().0);
+    harness.ctx.add_font_provider(std::sync::Arc::new(egui_system_font_provider::SystemFontProvider::new()));
+    // A machine without fonts for a script shows boxes.
+    harness.ctx.set_missing_glyph_policy(egui::epaint::text::MissingGlyphPolicy::Tofu);
+    harness.run_steps(2);
+    let view = viewport(&harness);
+    *harness.state_mut() = Editor::new(Document::new(scene));
     harness.state_mut().document_mut().select(vec![ball]);
     harness.settle();
-    let view = viewport(&harness);
     for name in names {
         let node = harness.get_all_by_label(name).next().expect(name);
         assert!(node.rect().height() > 8.0 && node.rect().left() < view.left(), "{name}: {}", node.rect());

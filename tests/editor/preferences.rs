@@ -90,7 +90,7 @@ fn a_damaged_file_is_told_and_kept() {
 
 fn open_keys(harness: &mut Harness<'_, Editor>) {
     open_preferences(harness);
-    harness.get_by_label("Keymap").click();
+    harness.get_all_by_label("Keymap").next().expect("the page").click();
     harness.run_steps(5);
 }
 
