@@ -109,11 +109,11 @@ palette! {
     /// Background of what floats over the picture.
     FLOATING = 0x14161a, 0xf4f5f7;
     /// Background of fields for text and numbers.
-    FIELD = 0x2e323a, 0xe1e4ea;
+    FIELD = 0x2e323a, 0xd6dae2;
     /// The same with the pointer over it.
-    FIELD_HOVERED = 0x3a3f49, 0xd5d9e1;
+    FIELD_HOVERED = 0x3a3f49, 0xcacfd9;
     /// The same while it is pressed.
-    FIELD_PRESSED = 0x424854, 0xcacfd9;
+    FIELD_PRESSED = 0x424854, 0xbec4d0;
     /// Borders of cards and windows.
     BORDER = 0x3a3e48, 0xc6cad3;
     /// Thin lines between areas.

@@ -153,10 +153,18 @@ impl Editor {
     }
 }
 
+/// Rows below a title.
+fn section(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui)) {
+    ui.label(RichText::new(title).strong().color(theme::STRONG));
+    ui.add_space(2.0);
+    add(ui);
+    ui.add_space(8.0);
+}
+
 /// Theme, scale, units and samples.
 fn general(state: &mut EditorState, ui: &mut Ui) {
     let values = state.preferences.values().clone();
-    widgets::card(ui, "Appearance", |ui| {
+    section(ui, "Appearance", |ui| {
         widgets::row(ui, "Theme", "The colors of the window", |ui| {
             let current = ColorTheme::named(&values.theme);
             let help = |theme| match theme {
@@ -178,7 +186,7 @@ fn general(state: &mut EditorState, ui: &mut Ui) {
         });
     });
     ui.add_space(8.0);
-    widgets::card(ui, "Editing", |ui| {
+    section(ui, "Editing", |ui| {
         widgets::row(ui, "Unit of length", "The fields show lengths in it; a typed length may name another", |ui| {
             let current = LengthUnit::named(&values.unit);
             let label = LengthUnit::label;
@@ -189,7 +197,7 @@ fn general(state: &mut EditorState, ui: &mut Ui) {
         });
     });
     ui.add_space(8.0);
-    widgets::card(ui, "Viewport", |ui| {
+    section(ui, "Viewport", |ui| {
         widgets::row(ui, "Samples", "Samples per pixel that add up while nothing changes", |ui| {
             let samples: Vec<_> = (0..SAMPLES.len()).collect();
             let current = SAMPLES.iter().position(|(count, _)| *count == state.view.samples);
