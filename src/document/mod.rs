@@ -25,6 +25,7 @@ mod edit;
 mod history;
 mod keying;
 mod keys;
+mod layout;
 mod placement;
 mod preferences;
 mod recent;
@@ -40,7 +41,10 @@ use change::Change;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
-pub use preferences::{MAX_FAVORITES, PreferenceValues, Preferences};
+pub use layout::{Docked, DockedPart, MAX_LAYOUT_PARTS, PanelLayout};
+pub use preferences::{
+    ChangedKeys, MAX_CHANGED_KEYS, MAX_FAVORITES, PreferenceValues, Preferences, SCALES, export_keys, import_keys,
+};
 pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
 pub use state_folder::{data_folder, state_folder};

@@ -40,7 +40,7 @@ impl Editor {
         }
         let dialog = self.system_dialog(&purpose);
         let (sender, answer) = channel();
-        let (ctx, saving) = (ctx.clone(), matches!(purpose, Purpose::Save(_)));
+        let (ctx, saving) = (ctx.clone(), matches!(purpose, Purpose::Save(_) | Purpose::ExportKeys));
         let spawned = std::thread::Builder::new().name("file dialog".into()).spawn(move || {
             let answer = match portal::has_dialogs() {
                 false => SystemAnswer::NoDialog,
@@ -62,6 +62,7 @@ impl Editor {
         dialog = match purpose {
             Purpose::Mesh => dialog.add_filter("glTF", &["gltf", "glb"]),
             Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
+            Purpose::ExportKeys | Purpose::ImportKeys => dialog.add_filter("Keymap", &["json"]),
             Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &["json"]),
         };
         let path = self.state.session.document.path();
@@ -138,6 +139,8 @@ impl Editor {
             }
             Purpose::Mesh => self.add_mesh(path),
             Purpose::Attach(wanted) => self.state.files.read(self.state.derived.jobs(), wanted, path),
+            Purpose::ExportKeys => self.export_keys(&with_ending(path)),
+            Purpose::ImportKeys => self.import_keys(path),
         }
     }
 

@@ -33,6 +33,10 @@ pub enum Purpose {
     Mesh,
     /// Store a file in the scene.
     Attach(WantedFile),
+    /// Write the changed keys to a file.
+    ExportKeys,
+    /// Read changed keys from a file.
+    ImportKeys,
 }
 
 impl Purpose {
@@ -42,6 +46,8 @@ impl Purpose {
             Self::Open => "Open a scene",
             Self::Save(_) => "Save the scene",
             Self::Mesh => "Add a mesh",
+            Self::ExportKeys => "Export the keymap",
+            Self::ImportKeys => "Import a keymap",
             Self::Attach(WantedFile {
                 instead_of: Attached::Heights(_) | Attached::Texture(_) | Attached::Environment(_),
                 ..
@@ -61,10 +67,12 @@ impl Purpose {
             return Some(format!("{name} is a folder, not a file."));
         }
         match self {
-            Self::Save(_) => {}
+            Self::Save(_) | Self::ExportKeys => {}
             // Its reader reports problems in more detail.
             Self::Attach(_) => return None,
-            Self::Open | Self::Mesh => return (!path.exists()).then(|| format!("There is no file {name}.")),
+            Self::Open | Self::Mesh | Self::ImportKeys => {
+                return (!path.exists()).then(|| format!("There is no file {name}."));
+            }
         }
         let path = with_ending(path);
         if path.is_dir() {

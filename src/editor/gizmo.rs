@@ -131,7 +131,7 @@ impl Gizmo {
                 self.paint_arrow(painter, tip, color);
             }
         }
-        let color = if lit == Some(Constraint::Free) { Color32::WHITE } else { theme::TEXT };
+        let color = if lit == Some(Constraint::Free) { Color32::WHITE } else { theme::ON_PICTURE };
         match self.kind {
             TransformKind::Move => {
                 painter.circle(self.center, 4.5, color, Stroke::new(1.5, Color32::from_black_alpha(130)));

@@ -7,10 +7,11 @@
 //! | file | purpose |
 //! |---|---|
 //! | `state`, `edit_session`, `view_state` | document with gestures (one drag, one undo step), messages, view |
-//! | `panel`, `panels`, `shell` | the trait, the list and the layout of panels |
+//! | `panel`, `panels` | the trait and the list of panels |
+//! | `shell`, `dock`, `dock_tabs` | the layout of panels: bars, and rows and columns of tabs |
 //! | `root` | the editor: state, shell, and the windows in front |
 //! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
-//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport`, `log_panel` | the panels |
 //! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
@@ -22,9 +23,12 @@
 //! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
+//! | `preferences_window`, `key_editor` | the window of the preferences, with the list of all keys |
+//! | `palette`, `theme`, `appearance`, `units` | colors by role, style, what the preferences say about both, units |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -36,6 +40,7 @@
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod add_palette;
+mod appearance;
 mod below_list;
 mod bounds;
 mod choice_walk;
@@ -46,6 +51,8 @@ mod commands;
 mod conflict;
 mod dialog_views;
 mod dialogs;
+mod dock;
+mod dock_tabs;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
@@ -53,8 +60,10 @@ mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
+mod fly;
 mod framing;
 mod gizmo;
+mod grid_labels;
 mod handles;
 mod icons;
 mod input_order;
@@ -74,10 +83,12 @@ mod inspector_types;
 mod instancer_edits;
 mod instancing;
 mod intent;
+mod key_editor;
 mod keying;
 mod keymap;
 mod lattice_overlay;
 mod legend;
+mod log_panel;
 mod material_edits;
 mod material_library;
 mod materials;
@@ -89,12 +100,14 @@ mod node_picker;
 mod numbers;
 mod outliner;
 mod overlay;
+mod palette;
 mod panel;
 mod panels;
 mod picking;
 mod placement;
 mod playback;
 mod portal;
+mod preferences_window;
 mod preset_picker;
 mod projection;
 mod recovery;
@@ -117,6 +130,7 @@ mod time_scale;
 mod timeline;
 mod toolbar;
 mod transforms;
+mod units;
 mod view_state;
 mod viewport;
 mod viewport_click;
@@ -130,4 +144,4 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 pub use root::Editor;
 pub use state::Example;
-pub use view_state::{Picture, ViewSettings};
+pub use view_state::{GridView, Picture, ViewSettings};

@@ -4,8 +4,9 @@ use std::cell::RefCell;
 
 use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
 
+use super::theme;
 use super::theme::MIXED;
-use super::{expression, theme};
+use super::units::{FieldUnit, LengthUnit};
 use isolith_scene::Limits;
 use isolith_scene::limits::Rule;
 
@@ -57,12 +58,13 @@ fn prefixed_number(
     axis: Option<usize>,
 ) -> FieldResponse {
     let (Limits { soft, unit, .. }, hard) = (field.limits, field.limits.signed_range());
+    let unit = FieldUnit::new(unit, LengthUnit::of(ui.ctx()));
     let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
     // A value typed beyond the soft range must not jump when a drag begins.
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
     let mut edited = value;
     let typed = RefCell::new(None);
-    let shown = if mixed { MIXED.to_owned() } else { number_text(value) };
+    let shown = if mixed { MIXED.to_owned() } else { number_text(value / unit.one) };
     let was_canceled = canceled(ui, ui.next_auto_id());
     let parse = |text: &str| {
         if was_canceled {
@@ -70,7 +72,7 @@ fn prefixed_number(
         }
         typed.replace(Some(text.to_owned()));
         // Unchanged text keeps the digits beyond those shown.
-        if text == shown { (!mixed).then_some(value) } else { expression::evaluate(text) }
+        if text == shown { (!mixed).then_some(value) } else { unit.typed(text) }
     };
     let mut drag = DragValue::new(&mut edited)
         .range(range)
@@ -80,10 +82,10 @@ fn prefixed_number(
         .max_decimals(4)
         .min_size(vec2(width, theme::ROW_HEIGHT))
         .clip_text(true)
-        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value) })
+        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value / unit.one) })
         .custom_parser(parse);
-    if !unit.is_empty() && axis.is_none() {
-        drag = drag.suffix(RichText::new(format!(" {unit}")).color(theme::WEAK));
+    if !unit.sign.is_empty() && axis.is_none() {
+        drag = drag.suffix(RichText::new(format!(" {}", unit.sign)).color(theme::WEAK));
     }
     let response = ui.add(drag);
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
@@ -101,13 +103,13 @@ fn prefixed_number(
     if let Some(text) = finished {
         if mixed {
             // Even if the number equals the value of the active node, the other nodes must get it.
-            answer.value = expression::evaluate(&text);
+            answer.value = unit.typed(&text);
         }
-        refuse(ui, response.id, refusal(name, &text, field));
+        refuse(ui, response.id, refusal(name, &text, field, unit));
     }
     answer.value = answer.value.map(|value| field.taken(value));
     if let Some(default) = field.default
-        && wants_reset(ui, &response, default, field.limits.unit)
+        && wants_reset(ui, &response, default, unit)
     {
         answer.value = Some(default);
     }
@@ -149,10 +151,10 @@ pub fn number_text(value: f64) -> String {
 }
 
 /// Why a field does not take the typed text as it is; `None` if it does.
-fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
-    let ([least, most], unit) = (field.limits.signed_range(), field.limits.unit);
-    let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
-    match expression::evaluate(typed) {
+fn refusal(name: &str, typed: &str, field: &NumberField<'_>, unit: FieldUnit) -> Option<String> {
+    let [least, most] = field.limits.signed_range();
+    let with_unit = |number: f64| format!("{} {}", number / unit.one, unit.sign).trim_end().to_owned();
+    match unit.typed(typed) {
         None => Some(format!("{name}: “{typed}” is not a number, so it stays as it was.")),
         Some(value) if value < least => {
             Some(format!("{name}: {typed} is less than {}, the least there can be.", with_unit(least)))
@@ -229,10 +231,10 @@ fn paint_axis_mark(ui: &Ui, response: &Response, axis: usize) {
 }
 
 /// Whether the artist resets the value: by Backspace over the field, or by its context menu.
-fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
+fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: FieldUnit) -> bool {
     let mut reset = false;
     response.context_menu(|ui| {
-        let text = format!("Reset to {} {unit}", number_text(default));
+        let text = format!("Reset to {} {}", number_text(default / unit.one), unit.sign);
         if ui.button(text.trim_end()).clicked() {
             reset = true;
             ui.close();
@@ -244,6 +246,7 @@ fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::expression;
     use super::*;
     use isolith_scene::limits::{SCALE, SIDES, SIZE};
 
@@ -279,7 +282,9 @@ mod tests {
     #[test]
     fn what_becomes_of_a_number_is_said() {
         let field = |limits| NumberField { label: "", help: "", limits, default: None };
-        let said = |typed, field: &NumberField<'_>| refusal("N", typed, field);
+        let said = |typed, field: &NumberField<'_>| {
+            refusal("N", typed, field, FieldUnit::new(field.limits.unit, LengthUnit::Meters))
+        };
         assert_eq!(said("5", &field(SIDES)), None);
         assert_eq!(said("5.4", &field(SIDES)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
         assert!(said("2", &field(SIDES)).unwrap().contains("is less than 3"));

@@ -112,7 +112,7 @@ impl Outliner {
             }
             ui.spacing_mut().item_spacing = vec2(4.0, 0.0);
             // The tree paints the selection at a third of this while the keyboard is elsewhere.
-            ui.visuals_mut().widgets.inactive.weak_bg_fill = theme::ACCENT;
+            ui.visuals_mut().widgets.inactive.weak_bg_fill = *theme::ACCENT;
             let shown = self.found(&scene);
             let (tree, rename) = (&mut self.tree, &mut self.rename);
             let view = TreeView::new(ui.make_persistent_id("outliner"))
@@ -467,8 +467,8 @@ impl Rows<'_> {
             self.requests.borrow_mut().push(RowRequest::Visible(eye.id, node.id));
         }
         let (icon, verb, color) = match node.locked {
-            false => (ICON_LOCK_OPEN, "Lock", if hovered { rest } else { Color32::TRANSPARENT }),
-            true => (ICON_LOCK, "Unlock", theme::WARNING),
+            false => (ICON_LOCK_OPEN, "Lock", if hovered { *rest } else { Color32::TRANSPARENT }),
+            true => (ICON_LOCK, "Unlock", *theme::WARNING),
         };
         let lock = switch(ui, icon, &format!("{verb} {}", node.name), color);
         if lock.clicked() {
@@ -477,7 +477,7 @@ impl Rows<'_> {
     }
 }
 
-fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: Color32) -> egui::Response {
+fn switch(ui: &mut Ui, icon: MaterialIcon, name: &str, color: impl Into<Color32>) -> egui::Response {
     let text = icon.rich_text().size(14.0).color(color);
     let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));

@@ -7,6 +7,7 @@ use std::time::Duration;
 use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
 
 use super::add_palette::AddPalette;
+use super::appearance::Appearance;
 use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
@@ -15,6 +16,7 @@ use super::document_jobs::{Opening, Saving};
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
+use super::preferences_window::PreferencesWindow;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
@@ -29,6 +31,8 @@ use isolith_session::{Opened, folder_of};
 /// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
 
+/// Most samples per pixel that the preferences can ask for.
+const MOST_SAMPLES: u32 = 1024;
 /// Interval between updates of the progress of jobs.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
@@ -36,6 +40,8 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 pub struct Editor {
     pub(super) state: EditorState,
     shell: Shell,
+    appearance: Appearance,
+    pub(super) preferences_window: PreferencesWindow,
     pub(super) command_palette: CommandPalette,
     pub(super) add_palette: AddPalette,
     pub(super) dialogs: Dialogs,
@@ -61,6 +67,8 @@ impl Editor {
         let mut editor = Self {
             state: EditorState::default(),
             shell: Shell::new(panels::all()),
+            appearance: Appearance::default(),
+            preferences_window: PreferencesWindow::default(),
             command_palette: CommandPalette::default(),
             add_palette: AddPalette::default(),
             dialogs: Dialogs::default(),
@@ -94,6 +102,14 @@ impl Editor {
     /// Sets the preferences, which persist between runs.
     pub fn set_preferences(&mut self, preferences: Preferences) {
         self.state.preferences = preferences;
+        if let Some(samples) = self.state.preferences.values().samples {
+            self.state.view.samples = samples.clamp(1, MOST_SAMPLES);
+        }
+        if let Some(problem) = self.state.preferences.take_problem() {
+            self.report(Message::warning(problem));
+        }
+        self.shell.arrange(self.state.preferences.values().layout.as_ref());
+        self.state.panels = self.shell.entries();
     }
 
     /// Sets the examples of the File menu.
@@ -111,7 +127,7 @@ impl Editor {
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
-        self.state.keymap().install(&ctx);
+        self.appearance.apply(&ctx, &mut self.state);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
         self.poll_documents(&ctx);
@@ -127,10 +143,12 @@ impl Editor {
         if let Some(later) = self.state.playback.advance(&mut self.state.session, now) {
             ctx.request_repaint_after(later);
         }
+        let before = self.state.session.document.revision();
         for index in 0..self.shell.len() {
             self.shell.show(index, &mut self.state, ui);
             self.answer_requests(&ctx);
         }
+        self.follow_panels(&ctx, before);
         if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
         }
@@ -157,6 +175,7 @@ impl Editor {
     }
 
     fn show_in_front(&mut self, ctx: &Context) {
+        self.show_preferences(ctx);
         self.show_dialogs(ctx);
         self.show_conflict(ctx);
         self.show_recovery(ctx);
@@ -169,10 +188,23 @@ impl Editor {
         }
         below_list::show(&mut self.state, ctx);
         let corner = self.state.view.rect;
-        let messages = &mut self.state.session.messages;
-        messages.show_toasts(ctx, corner);
-        if messages.show_log {
-            messages.show_log(ctx);
+        self.state.session.messages.show_toasts(ctx, corner);
+    }
+
+    /// Keeps a layout that the artist has changed. Shows the panels once more that were shown before a later one has
+    /// changed the document.
+    fn follow_panels(&mut self, ctx: &Context, revision: u64) {
+        if self.state.session.document.revision() != revision {
+            ctx.request_repaint();
+        }
+        if ctx.input(|i| i.pointer.any_down()) {
+            return;
+        }
+        if let Some(layout) = self.shell.take_changed_layout() {
+            self.state.panels = self.shell.entries();
+            if self.state.preferences.values().layout.as_ref() != Some(&layout) {
+                self.state.preferences.change(|values| values.layout = Some(layout));
+            }
         }
     }
 
@@ -184,6 +216,11 @@ impl Editor {
                 Request::Intend(intent) => self.intend(intent, ctx),
                 Request::TogglePanel(id) => {
                     self.shell.toggle(id);
+                    self.state.panels = self.shell.entries();
+                }
+                Request::ResetLayout => {
+                    self.shell.arrange(None);
+                    self.state.preferences.change(|values| values.layout = None);
                     self.state.panels = self.shell.entries();
                 }
             }
@@ -264,6 +301,7 @@ impl Editor {
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.is_open()
+            || self.preferences_window.is_open()
             || self.command_palette.is_open()
             || self.add_palette.is_open()
             || self.state.view.below.is_some()

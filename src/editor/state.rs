@@ -7,10 +7,11 @@ use super::commands::command::Command;
 use super::edit_session::EditSession;
 use super::file_jobs::FileJobs;
 use super::intent::Intent;
-use super::keymap::Keymap;
+use super::keymap::{KeyBindings, Keymap};
 use super::material_library::MaterialLibrary;
 use super::messages::{Message, Severity};
 use super::playback::Playback;
+use super::units::LengthUnit;
 use super::view_state::{Picture, ViewSettings, ViewState};
 use isolith_document::{Document, Preferences};
 use isolith_field::FlatScene;
@@ -36,6 +37,8 @@ pub enum Request {
     Intend(Intent),
     /// Toggle the panel of this id.
     TogglePanel(&'static str),
+    /// Put all panels back into their usual places.
+    ResetLayout,
 }
 
 /// A list entry for a panel.
@@ -110,6 +113,7 @@ impl EditorState {
             size_px: *size_px,
             navigating: *is_navigating || self.session.is_changing() || self.playback.is_moving(),
             show_grid: *show_grid,
+            grid: self.view.grid(LengthUnit::named(&self.preferences.values().unit).meters()),
             show_outline: *show_outline,
             shading: *shading,
             view_mode: *view_mode,
@@ -120,6 +124,12 @@ impl EditorState {
     /// The keymap in use.
     pub fn keymap(&self) -> Keymap {
         Keymap::named(&self.preferences.values().keymap)
+    }
+
+    /// The keys in use: the keymap with the user's changes.
+    pub fn key_bindings(&self) -> KeyBindings {
+        let keymap = self.keymap();
+        KeyBindings::new(keymap, self.preferences.values().keys.get(keymap.label()))
     }
 
     /// Switches to a keymap, and keeps it for the next start.

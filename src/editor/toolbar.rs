@@ -1,6 +1,6 @@
 //! The bar at the top: menus and the most common buttons.
 
-use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
+use egui::{Button, MenuBar, Response, RichText, Ui, vec2};
 use egui_material_icons::icons::ICON_ADD;
 
 use super::add_palette::favorites;
@@ -111,6 +111,10 @@ fn panels(state: &mut EditorState, ui: &mut Ui) {
             state.requests.push(Request::TogglePanel(id));
         }
     }
+    ui.separator();
+    if ui.button("Reset layout").on_hover_text(Command::ResetLayout.info().tooltip(ui.ctx())).clicked() {
+        state.requests.push(Request::ResetLayout);
+    }
 }
 
 fn divider(ui: &mut Ui) {
@@ -126,7 +130,13 @@ fn square(ui: &mut Ui, enabled: bool, button: Button<'_>, name: &str) -> Respons
     response
 }
 
-fn buttons(state: &EditorState, ui: &mut Ui, color: Color32, commands: &[Command], chosen: &mut Option<Command>) {
+fn buttons(
+    state: &EditorState,
+    ui: &mut Ui,
+    color: theme::ThemeColor,
+    commands: &[Command],
+    chosen: &mut Option<Command>,
+) {
     for &command in commands {
         let info = command.info();
         let text = match info.icon {
@@ -158,11 +168,11 @@ fn favorite_button(ui: &mut Ui, command: Command) -> Response {
     let hovered = response.hovered();
     match info.icon {
         Some(Icon::Shape(kind)) => {
-            let color = if hovered { Color32::WHITE } else { theme::OBJECT };
+            let color = if hovered { *theme::STRONG } else { *theme::OBJECT };
             icons::paint_shape(ui.painter(), rect, kind, color);
         }
         Some(Icon::Material(icon)) => {
-            let color = if hovered { Color32::WHITE } else { theme::LIGHT };
+            let color = if hovered { *theme::STRONG } else { *theme::LIGHT };
             icons::paint_icon(ui.painter(), rect, icon, color);
         }
         None => {}

@@ -38,8 +38,10 @@ pub struct ViewSettings {
     pub size_px: [u32; 2],
     /// The artist drags the camera or a value: speed is more important than quality.
     pub navigating: bool,
-    /// Whether to show the ground grid.
+    /// Whether to show the grid.
     pub show_grid: bool,
+    /// The grid.
+    pub grid: GridView,
     /// Whether to outline the selection.
     pub show_outline: bool,
     /// The shading of the lit picture.
@@ -48,6 +50,17 @@ pub struct ViewSettings {
     pub view_mode: ViewMode,
     /// Samples per pixel that accumulate while nothing changes.
     pub samples: u32,
+}
+
+/// The grid of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridView {
+    /// The axis across it: 1 for the ground.
+    pub axis: usize,
+    /// Side of a fine cell, in meters; ten of them make a coarse one.
+    pub cell: f64,
+    /// Whether it fades with distance.
+    pub fades: bool,
 }
 
 /// Samples per pixel of a new view.
@@ -67,6 +80,8 @@ pub enum PointerActivity {
     Panning,
     /// Moves the camera forward and backward.
     Zooming,
+    /// Flies through the scene.
+    Flying,
     /// Drags the gizmo.
     Moving,
     /// Transforms the selection, with all keys for it.
@@ -161,6 +176,24 @@ impl ViewState {
     pub fn aspect(&self) -> f64 {
         let [width, height] = self.size_px.map(f64::from);
         width / height
+    }
+
+    /// The grid, with cells of a power of ten of this unit, in meters: on the ground, or across an orthographic view
+    /// along an axis.
+    pub fn grid(&self, unit: f64) -> GridView {
+        let navigation = &self.navigation;
+        let is_flat = navigation.orthographic;
+        let size = match is_flat {
+            true => 2.0 * navigation.distance * (0.5 * navigation.fov_y).tan(),
+            false => navigation.eye().y.abs().max(1e-3),
+        };
+        let cell = unit * 10.0_f64.powf((size / unit).log10().floor()) * 0.1;
+        GridView { axis: navigation.axis().unwrap_or(1), cell, fades: !is_flat }
+    }
+
+    /// Whether a grid is in the picture.
+    pub fn shows_grid(&self) -> bool {
+        self.show_grid && self.view_mode == ViewMode::Shaded
     }
 
     /// The shading that the picture has; `None` while a view for debugging hides it.

@@ -4,6 +4,7 @@ use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
 use super::commands::entries::viewport_entries;
+use super::fly::{self, FlySpeed};
 use super::handles::handle_paint;
 use super::handles::value_drag::Pace;
 use super::handles::value_handle::{HandleSet, HandleTarget};
@@ -17,7 +18,7 @@ use super::view_state::PointerActivity;
 use super::viewport_click::{click, prepare_menu, select_in_box, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
-use super::{lattice_overlay, legend, materials, shading_bar, steps, theme};
+use super::{grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -27,6 +28,9 @@ pub struct Viewport {
     modal: ModalTransform,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
+    fly_speed: FlySpeed,
+    /// A flight ends in this frame: the right button opens no menu.
+    has_flown: bool,
 }
 
 impl Panel for Viewport {
@@ -77,6 +81,7 @@ impl Viewport {
             Some(Dragging::Orbit) => PointerActivity::Orbiting,
             Some(Dragging::Pan) => PointerActivity::Panning,
             Some(Dragging::Zoom) => PointerActivity::Zooming,
+            Some(Dragging::Fly) => PointerActivity::Flying,
             Some(Dragging::Transform(_)) => PointerActivity::Moving,
             Some(Dragging::Shape(_)) => PointerActivity::Shaping,
             Some(Dragging::Box(_)) => PointerActivity::Boxing,
@@ -93,7 +98,15 @@ impl Viewport {
             let projection = Projection::new(&state.view, pixels_per_point);
             self.dragging = start_drag(state, ui, response, &projection);
         }
-        if !response.dragged() {
+        if fly::begins(ui, response)
+            && matches!(self.dragging, None | Some(Dragging::Orbit))
+            && !self.modal.takes_pointer()
+        {
+            self.dragging = Some(Dragging::Fly);
+        }
+        let is_flying = matches!(self.dragging, Some(Dragging::Fly));
+        self.has_flown = is_flying && !fly::goes_on(ui);
+        if !response.dragged() && (!is_flying || self.has_flown) {
             if let Some(Dragging::Box([from, to])) = self.dragging {
                 let projection = Projection::new(&state.view, pixels_per_point);
                 let adding = ui.input(|i| i.modifiers.shift);
@@ -115,7 +128,7 @@ impl Viewport {
     }
 
     fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
-        if self.modal.takes_pointer() {
+        if self.modal.takes_pointer() || self.has_flown {
             return;
         }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.secondary_clicked()) {
@@ -149,6 +162,7 @@ impl Viewport {
             Some(Dragging::Orbit) => view.orbit(delta, height),
             Some(Dragging::Pan) => view.pan(delta, height),
             Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
+            Some(Dragging::Fly) => fly::follow(view, &mut self.fly_speed, ui, delta, height),
             Some(Dragging::Box([_, to])) => {
                 *to = response.interact_pointer_pos().unwrap_or(*to);
                 state.view.wants_box = false;
@@ -195,6 +209,9 @@ impl Viewport {
 
     fn zoom_by_wheel(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
         let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
+        if matches!(self.dragging, Some(Dragging::Fly)) {
+            return;
+        }
         let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
         if scroll == 0.0 && pinch == 1.0 {
             return;
@@ -262,6 +279,9 @@ impl Viewport {
             None => background(state, &painter, rect),
         }
         let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+        if state.view.shows_grid() {
+            grid_labels::paint(state, ui, &projection);
+        }
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
             lattice_overlay::paint(state, &painter, &projection);
@@ -297,5 +317,5 @@ fn background(state: &EditorState, painter: &egui::Painter, rect: Rect) {
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));
     let text = "Preparing the viewport…";
     let font = egui::FontId::proportional(14.0);
-    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::WEAK);
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::ON_PICTURE);
 }

@@ -39,7 +39,7 @@ pub fn click(state: &mut EditorState, ui: &Ui, response: &Response, projection: 
     let Some(pointer) = response.interact_pointer_pos() else { return };
     let compass = Compass::new(state.view.rect, state.view.navigation.rotation);
     if let Some(side) = compass.side_at(pointer) {
-        state.view.navigation.look_from(side);
+        state.view.navigation.look_along(side);
         return;
     }
     if click_handle(state, ui, projection, pointer) {

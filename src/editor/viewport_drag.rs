@@ -19,6 +19,8 @@ pub enum Dragging {
     Pan,
     /// Moves the camera forward and backward.
     Zoom,
+    /// Flies through the scene.
+    Fly,
     /// Transforms the selection by the gizmo.
     Transform(Box<TransformDrag>),
     /// Changes the selected shape by a handle.

@@ -104,7 +104,7 @@ impl ModalTransform {
         let center = projection.to_screen(drag.pivot());
         let at = pointer.or(center).unwrap_or(painter.clip_rect().center());
         if let Some(center) = center.filter(|_| drag.kind != TransformKind::Move) {
-            painter.add(egui::Shape::dashed_line(&[center, at], Stroke::new(1.0, theme::TEXT), 4.0, 4.0));
+            painter.add(egui::Shape::dashed_line(&[center, at], Stroke::new(1.0, theme::ON_PICTURE), 4.0, 4.0));
         }
         tag(painter, at, drag.text());
     }

@@ -116,14 +116,20 @@ pub enum Command {
     LookThroughCamera,
     /// Look along a world axis.
     LookFrom(Side),
-    /// Toggle the ground grid.
+    /// Switch between a perspective and an orthographic view.
+    ToggleOrthographic,
+    /// Toggle the grid.
     ToggleGrid,
     /// Toggle the outline of the selection.
     ToggleOutline,
+    /// Open the preferences.
+    Preferences,
     /// Open the command palette.
     FindCommand,
     /// Toggle the log.
     ShowMessages,
+    /// Put all panels back into their usual places.
+    ResetLayout,
     /// Move, rotate or scale the selection with the pointer, until a click or Enter.
     Transform(TransformKind),
     /// Switch to this tool.

@@ -7,7 +7,7 @@ use egui_material_icons::icons::{
 };
 
 use super::command::Command;
-use crate::keymap::{Keymap, shown};
+use crate::keymap::{KeyBindings, Keymap, shown};
 use crate::state::EditorState;
 use crate::{icons, theme};
 use isolith_scene::ShapeKind;
@@ -117,9 +117,14 @@ impl CommandInfo {
         self
     }
 
-    /// Its shortcuts in a keymap; menus show the first.
+    /// Its shortcuts in a keymap that nobody has changed.
     pub fn keys(&self, keymap: Keymap) -> &[KeyboardShortcut] {
         if self.keymap.is_none_or(|only| only == keymap) { &self.keys } else { &[] }
+    }
+
+    /// Its shortcuts as the user has them.
+    pub fn keys_in<'a>(&'a self, bindings: &'a KeyBindings) -> &'a [KeyboardShortcut] {
+        bindings.keys(&self.label, self.keys(bindings.keymap()))
     }
 
     pub(super) fn when(mut self, is_enabled: Condition) -> Self {
@@ -139,7 +144,7 @@ impl CommandInfo {
 
     /// Name, shortcuts and help.
     pub fn tooltip(&self, ctx: &Context) -> String {
-        let keys: Vec<_> = self.keys(Keymap::of(ctx)).iter().map(|k| shown(ctx, k)).collect();
+        let keys: Vec<_> = self.keys_in(&KeyBindings::of(ctx)).iter().map(|k| shown(ctx, k)).collect();
         let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
         format!("{}{keys}\n{}", self.label, self.help)
     }

@@ -8,8 +8,9 @@ use glam::DQuat;
 use super::command::Command;
 use crate::edit_session::EditSession;
 use crate::intent::Intent;
+use crate::log_panel::LOG;
 use crate::root::Editor;
-use crate::state::EditorState;
+use crate::state::{EditorState, Request};
 use crate::{
     dope_sheet, insertion, instancer_edits, keying, material_edits, mesh_conversion, relations, seeds, selection,
 };
@@ -35,6 +36,7 @@ impl Editor {
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::FindCommand => self.command_palette.open(),
+            Command::Preferences => self.preferences_window.open(),
             _ => run_on_state(&mut self.state, command),
         }
     }
@@ -102,10 +104,12 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
         Command::LookThroughCamera => state.look_through_camera(),
-        Command::LookFrom(side) => state.view.navigation.look_from(side),
+        Command::LookFrom(side) => state.view.navigation.look_along(side),
+        Command::ToggleOrthographic => state.view.navigation.toggle_orthographic(),
         Command::ToggleGrid => state.view.show_grid ^= true,
         Command::ToggleOutline => state.view.show_outline ^= true,
-        Command::ShowMessages => session.messages.show_log ^= true,
+        Command::ShowMessages => state.requests.push(Request::TogglePanel(LOG)),
+        Command::ResetLayout => state.requests.push(Request::ResetLayout),
         Command::Transform(kind) => state.view.transforming = Some(kind),
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,
@@ -115,7 +119,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand => {}
+        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand | Command::Preferences => {}
     }
 }
 

@@ -1,6 +1,7 @@
-//! Commands that transform the selection, and the choice of tools, axes and keys.
+//! Commands that transform the selection, and the choice of tools, axes and keys; the preferences.
 
 use egui::{Key, Modifiers};
+use egui_material_icons::icons::ICON_SETTINGS;
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
@@ -53,5 +54,11 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         CommandInfo::new(Menu::Keymap, Command::UseKeymap(keymap), None, label, keymap.help())
             .switch(|state, command| command == Command::UseKeymap(state.keymap()))
     }));
+    let preferences = "Theme, scale, units and keys, kept for the next start";
+    all.push(
+        CommandInfo::new(Menu::Edit, Command::Preferences, Icon::from(ICON_SETTINGS), "Preferences…", preferences)
+            .key(Modifiers::COMMAND, Key::Comma)
+            .group(),
+    );
     all
 }

@@ -1,6 +1,6 @@
 //! The bar at the left of the viewport: the tools, and whose axes they follow.
 
-use egui::{Align, Button, Color32, Frame, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+use egui::{Align, Button, Frame, Layout, Rect, RichText, Ui, UiBuilder, vec2};
 
 use super::kinds::Tool;
 use crate::commands::command::Command;
@@ -19,8 +19,7 @@ pub fn show(state: &mut EditorState, ui: &mut Ui) {
     let corner = state.view.rect.left_top() + vec2(MARGIN, MARGIN);
     let room = Rect::from_min_size(corner, vec2(BUTTON.x + 4.0, 5.0 * (BUTTON.y + 2.0) + 8.0));
     let mut bar = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::top_down(Align::Min)));
-    let frame =
-        Frame::new().fill(Color32::from_rgba_unmultiplied(20, 22, 26, 225)).corner_radius(7.0).inner_margin(2.0);
+    let frame = Frame::new().fill(theme::FLOATING.gamma_multiply(0.88)).corner_radius(7.0).inner_margin(2.0);
     let chosen = frame.show(&mut bar, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let mut chosen = None;
