@@ -17,6 +17,7 @@ use thiserror::Error;
 use crate::document::recovery::Recovery;
 use crate::document::{Document, data_folder, state_folder};
 use crate::editor::{Editor, Example, Message};
+use crate::export::GpuStudio;
 use crate::gallery;
 use crate::jobs::Task;
 use crate::render::{AdapterChoice, Gpu};
@@ -53,6 +54,7 @@ const MAX_LOSSES: usize = 5;
 pub fn run(document: Document, adapter: &AdapterChoice, tell: fn(&str)) -> Result<(), AppError> {
     let mut editor = Editor::new(document);
     editor.set_examples(examples());
+    editor.set_studio(Arc::new(GpuStudio::new(adapter.clone())));
     editor.set_recent(crate::document::RecentFiles::load());
     editor.set_preferences(crate::document::Preferences::load());
     match start_recovery() {

@@ -31,6 +31,7 @@
 //! | `dialogs`, `dialog_views`, `portal`, `command_palette`, `messages` | the windows in front |
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
+//! | `rendering`, `render_view` | the render dialog: settings, and the job that renders into files |
 //! | `input_order` | events in the order of their arrival, however slow the frames are |
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
@@ -98,6 +99,8 @@ mod preset_picker;
 mod projection;
 mod recovery;
 mod relations;
+mod render_view;
+mod rendering;
 mod root;
 mod safekeeping;
 mod seeds;

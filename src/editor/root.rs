@@ -15,6 +15,7 @@ use super::document_jobs::{Opening, Saving};
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
+use super::rendering::Rendering;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
@@ -24,7 +25,7 @@ use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
 use isolith_mesh::MeshLibrary;
-use isolith_session::{Opened, folder_of};
+use isolith_session::{Opened, SharedStudio, folder_of};
 
 /// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
@@ -46,6 +47,10 @@ pub struct Editor {
     /// Keeps unsaved work; `None` if recovery is off.
     pub(super) safekeeping: Option<Safekeeping>,
     pub(super) conflict: Conflict,
+    /// Rendering into files.
+    pub(super) rendering: Rendering,
+    /// The renderer for work beside the frames.
+    pub(super) studio: Option<SharedStudio>,
     /// The first view of a new document waits for its arrays and models.
     wants_view: bool,
     shown_title: String,
@@ -68,6 +73,8 @@ impl Editor {
             saving: None,
             safekeeping: None,
             conflict: Conflict::default(),
+            rendering: Rendering::default(),
+            studio: None,
             wants_view: false,
             shown_title: String::new(),
             typing: false,
@@ -160,6 +167,7 @@ impl Editor {
         self.show_dialogs(ctx);
         self.show_conflict(ctx);
         self.show_recovery(ctx);
+        self.show_rendering(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
         }
@@ -231,6 +239,7 @@ impl Editor {
             || self.state.derived.is_preparing()
             || self.opening.is_some()
             || self.saving.is_some()
+            || self.is_rendering()
             || self.state.files.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()

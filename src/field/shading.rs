@@ -1,12 +1,13 @@
 //! Viewport shading: a flat scene under other lights, and in other materials. Geometry and ids stay as they are.
 
 use std::str::FromStr;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::arrays::FlatScene;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
-use isolith_scene::{DisplaySettings, Environment, Material};
+use super::light::environment_map::PlacedMap;
+use isolith_scene::{DisplaySettings, Environment, EnvironmentKind, Material, Shadowing};
 
 /// How a lit picture shows a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,6 +75,24 @@ impl FlatScene {
         shown.environment_map = None;
         if shading == Shading::Solid {
             shown.wear(clay());
+        }
+        Arc::new(shown)
+    }
+
+    /// The scene in such light and matter that the light of each pixel is the base color of what is seen: diffuse
+    /// surfaces in white surroundings.
+    pub fn in_base_colors(&self) -> Arc<Self> {
+        let mut shown = Self::clone(self);
+        shown.lights.clear();
+        shown.environment =
+            Environment { background: EnvironmentKind::Color { color: [1.0; 3] }, shadowing: Shadowing::off() };
+        // Pictures share it: to compute one takes longer than a small picture.
+        static WHITE: OnceLock<Option<PlacedMap>> = OnceLock::new();
+        shown.environment_map = WHITE.get_or_init(|| PlacedMap::of(&shown.environment)).clone();
+        for material in &mut shown.materials {
+            let base_color = material.base_color;
+            *material =
+                FlatMaterial { base_color, phong_weight: 1.0, phong_specular: 0.0, emission: [0.0; 3], ..*material };
         }
         Arc::new(shown)
     }

@@ -8,21 +8,31 @@
 //! | `arrays` | the arrays of a changing document |
 //! | `models` | the models that it names, read in the background and again when their files change |
 //! | `notice` | messages of a session |
+//! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
+//! | `studio` | what a renderer does for a user interface beside the frames |
 
 mod arrays;
+mod frames;
 mod models;
 mod notice;
 mod open;
 mod prepare;
+mod render_order;
+mod studio;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use arrays::Arrays;
+pub use frames::{FrameRange, numbered, parse_fps};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
 pub use prepare::PreparedScene;
+pub use render_order::{
+    DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
+};
+pub use studio::{RenderRefusal, RenderReport, SharedStudio, StillPreview, Studio};
 
 use isolith_document::Document;
 use isolith_field::FlatScene;

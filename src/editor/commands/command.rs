@@ -24,6 +24,8 @@ pub enum Command {
     ReloadModels,
     /// List recoverable work.
     Recover,
+    /// Open the render dialog.
+    Render,
     /// Close the window.
     Quit,
     /// Undo the last change.
