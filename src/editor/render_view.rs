@@ -328,7 +328,12 @@ fn progress(running: &Running, ui: &mut Ui) {
         let left = running.time_left().map_or(String::new(), |left| format!("  ·  {} left", duration_text(left)));
         let stage = if task.stage().is_empty() { String::new() } else { format!("  ·  {}", task.stage()) };
         let text = format!("{:.0} %{left}{stage}", share * 100.0);
-        ui.add(ProgressBar::new(share).desired_width(ui.available_width() - 112.0).desired_height(22.0).text(text));
+        ui.add(
+            ProgressBar::new(share)
+                .desired_width(ui.available_width() - 112.0)
+                .desired_height(22.0)
+                .text(RichText::new(text).color(ui.visuals().text_color())),
+        );
         let button = Button::new("Cancel").min_size(vec2(96.0, 28.0));
         if named(ui.add_enabled(!task.is_canceled(), button), "Cancel rendering").clicked() {
             task.cancel();

@@ -222,7 +222,7 @@ impl Rendering {
         let order = RenderOrder { scene, file: document.path().map(Path::to_path_buf), settings, may_replace };
         let (sender, previews) = channel();
         let (studio, for_wake) = (studio.clone(), jobs.clone());
-        let job = jobs.start(Task::new(format!("Rendering {name}")), move |task| {
+        let job = jobs.start(Task::lasting(format!("Rendering {name}")), move |task| {
             studio.export(&order, task, &mut |preview| {
                 // The receiver is gone if the job was dropped: its task is canceled then.
                 let _ = sender.send(preview);

@@ -3,10 +3,12 @@
 use std::str::FromStr;
 use std::sync::{Arc, OnceLock};
 
+use glam::DVec3;
+
 use super::arrays::FlatScene;
 use super::flat_material::FlatMaterial;
 use super::flat_texture::FlatTextures;
-use super::light::environment_map::PlacedMap;
+use super::light::environment_map::{EnvironmentMap, PlacedMap};
 use isolith_scene::{DisplaySettings, Environment, EnvironmentKind, Material, Shadowing};
 
 /// How a lit picture shows a scene.
@@ -88,7 +90,15 @@ impl FlatScene {
             Environment { background: EnvironmentKind::Color { color: [1.0; 3] }, shadowing: Shadowing::off() };
         // Pictures share it: to compute one takes longer than a small picture.
         static WHITE: OnceLock<Option<PlacedMap>> = OnceLock::new();
-        shown.environment_map = WHITE.get_or_init(|| PlacedMap::of(&shown.environment)).clone();
+        let white = WHITE.get_or_init(|| {
+            // Light from everywhere alike is the first harmonic alone; the sum over texels has it to three digits.
+            let mut white = PlacedMap::of(&shown.environment)?;
+            let mut harmonics = [DVec3::ZERO; 9];
+            harmonics[0] = DVec3::ONE;
+            white.map = Arc::new(EnvironmentMap { harmonics, ..EnvironmentMap::clone(&white.map) });
+            Some(white)
+        });
+        shown.environment_map = white.clone();
         for material in &mut shown.materials {
             let base_color = material.base_color;
             *material =
@@ -128,7 +138,6 @@ fn studio(shading: Shading) -> Environment {
 mod tests {
     use super::*;
     use crate::{flatten, gpu_lights};
-    use glam::DVec3;
     use isolith_geometry::Camera;
     use isolith_scene::{Light, MaterialId, Node, NodeKind, Object, Scene, ShapeKind};
 

@@ -150,9 +150,9 @@ fn frames_with_layers_are_those_of_the_command_too() {
     let of = |name: &str| &image.layer_data[0].channel_data.list[channels.iter().position(|c| c == name).unwrap()];
     let exr::prelude::FlatSamples::F32(albedo) = &of("albedo.G").sample_data else { panic!("not f32") };
     // The clay that a new scene begins with, wherever something is seen.
-    let clay = isolith::scene::Material::default().base_color[1] as f32;
+    let clay = scene().materials()[0].base_color[1] as f32;
     let off = albedo.iter().filter(|value| **value != 0.0).map(|value| (value - clay).abs()).fold(0.0, f32::max);
-    assert!(albedo.iter().any(|value| *value > 0.0) && off < 2e-4, "{off}");
+    assert!(albedo.iter().any(|value| *value > 0.0) && off < 1e-6, "{off}");
 }
 
 #[test]
@@ -192,7 +192,10 @@ fn a_canceled_picture_leaves_no_file_and_the_editor_never_waits() {
         harness.step();
         std::thread::sleep(Duration::from_millis(2));
     }
-    assert!(harness.state().is_rendering());
+    // A stray key does not end hours of work.
+    harness.key_press(Key::Escape);
+    harness.run_steps(3);
+    assert!(harness.state().is_rendering() && is_under_way(&harness));
     let cancel = harness.get_by_label("Cancel rendering").rect().center();
     super::pointer(&mut harness, cancel, true);
     super::pointer(&mut harness, cancel, false);
