@@ -3,6 +3,7 @@
 mod adding;
 mod attachments;
 mod choosing;
+mod doctor;
 mod fields;
 mod handles;
 mod instancers;

@@ -32,6 +32,7 @@
 //! | `documents`, `document_jobs`, `choosing` | opening, saving and quitting by jobs; paths of files |
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
 //! | `rendering`, `render_view` | the render dialog: settings, and the job that renders into files |
+//! | `doctor`, `doctor_view` | the field doctor: jobs that examine and measure the scene, repairs, costs |
 //! | `input_order` | events in the order of their arrival, however slow the frames are |
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
@@ -47,6 +48,8 @@ mod commands;
 mod conflict;
 mod dialog_views;
 mod dialogs;
+mod doctor;
+mod doctor_view;
 mod document_jobs;
 mod documents;
 mod dope_sheet;

@@ -11,6 +11,7 @@ use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
 use super::dialogs::Dialogs;
+use super::doctor::Doctor;
 use super::document_jobs::{Opening, Saving};
 use super::intent::Intent;
 use super::messages::Message;
@@ -49,6 +50,10 @@ pub struct Editor {
     pub(super) conflict: Conflict,
     /// Rendering into files.
     pub(super) rendering: Rendering,
+    /// The field doctor.
+    pub(super) doctor: Doctor,
+    /// The doctor shall look again once the arrays are ready.
+    pub(super) wants_scan: bool,
     /// The renderer for work beside the frames.
     pub(super) studio: Option<SharedStudio>,
     /// The first view of a new document waits for its arrays and models.
@@ -74,6 +79,8 @@ impl Editor {
             safekeeping: None,
             conflict: Conflict::default(),
             rendering: Rendering::default(),
+            doctor: Doctor::default(),
+            wants_scan: false,
             studio: None,
             wants_view: false,
             shown_title: String::new(),
@@ -168,6 +175,7 @@ impl Editor {
         self.show_conflict(ctx);
         self.show_recovery(ctx);
         self.show_rendering(ctx);
+        self.show_doctor(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
         }
@@ -240,6 +248,8 @@ impl Editor {
             || self.opening.is_some()
             || self.saving.is_some()
             || self.is_rendering()
+            || self.doctor.is_busy()
+            || self.wants_scan
             || self.state.files.is_busy()
             || self.conflict.is_looking()
             || self.is_recovering()
@@ -305,6 +315,7 @@ impl Editor {
         self.state.files.forget_attachments();
         self.state.materials.forget();
         self.forget_kept();
+        self.doctor.forget();
         self.shell.forget();
         self.wants_view = true;
     }

@@ -6,9 +6,11 @@
 //! | `outputs` | buffers → files |
 //! | `exr_light`, `exr_ids`, `exr_layers` | linear light, ids, and all of a picture as OpenEXR channels |
 //! | `exr_header` | attributes in an order of their own |
+//! | `costs` | what a picture takes, measured |
 //! | `studio` | orders of the window, carried out in jobs |
 //! | `error` | errors |
 
+mod costs;
 mod error;
 mod exr_header;
 mod exr_ids;

@@ -206,7 +206,8 @@ impl StillWatch for Shared<'_> {
     }
 }
 
-fn canceled(error: RenderError) -> ExportError {
+/// The error of a renderer; a canceled one is no failure of it.
+pub(super) fn canceled(error: RenderError) -> ExportError {
     match error {
         RenderError::Canceled => ExportError::Canceled,
         error => error.into(),

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::costs;
 use super::error::ExportError;
 use super::outputs::{self, Quantity};
 use super::still::{StillPainter, StillSettings, Stills};
@@ -13,8 +14,8 @@ use crate::jobs::Task;
 use crate::render::{AdapterChoice, Film, StillWatch};
 use crate::scene::Scene;
 use crate::session::{
-    MAX_SAMPLES, Moments, RenderOrder, RenderRefusal, RenderReport, RenderSettings, StillPreview, Studio, check_size,
-    ending, folder_of, numbered,
+    MAX_SAMPLES, MeasuredView, Moments, RenderOrder, RenderRefusal, RenderReport, RenderSettings, SceneCost,
+    StillPreview, Studio, check_size, ending, folder_of, numbered,
 };
 
 /// Longest side of a preview, in pixels.
@@ -86,6 +87,10 @@ impl Studio for GpuStudio {
         let (drawn, _) = draw().map_err(|error: ExportError| error.to_string())?;
         let samples = [THUMBNAIL_SAMPLES; 2];
         Ok(StillPreview { size, pixels: drawn.buffers.color, samples, file: None })
+    }
+
+    fn measure(&self, view: &MeasuredView, task: &Task) -> Result<SceneCost, String> {
+        costs::measure(&self.choice, view, task).map_err(|error| error.to_string())
     }
 
     fn adapter(&self) -> Option<String> {

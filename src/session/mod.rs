@@ -9,6 +9,7 @@
 //! | `models` | the models that it names, read in the background and again when their files change |
 //! | `notice` | messages of a session |
 //! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
+//! | `scene_cost` | what a picture takes, as measured |
 //! | `studio` | what a renderer does for a user interface beside the frames |
 
 mod arrays;
@@ -18,6 +19,7 @@ mod notice;
 mod open;
 mod prepare;
 mod render_order;
+mod scene_cost;
 mod studio;
 
 use std::path::PathBuf;
@@ -32,6 +34,7 @@ pub use prepare::PreparedScene;
 pub use render_order::{
     DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
 };
+pub use scene_cost::{MeasuredView, NodeCost, PassCost, SceneCost};
 pub use studio::{RenderRefusal, RenderReport, SharedStudio, StillPreview, Studio};
 
 use isolith_document::Document;

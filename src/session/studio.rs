@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::render_order::RenderOrder;
+use super::scene_cost::{MeasuredView, SceneCost};
 use isolith_field::Warning;
 use isolith_jobs::Task;
 use isolith_scene::Scene;
@@ -68,6 +69,12 @@ pub trait Studio: Send + Sync {
         size: [u32; 2],
         task: &Task,
     ) -> Result<StillPreview, String>;
+
+    /// Measures what a picture takes.
+    ///
+    /// # Errors
+    /// A reason for the user.
+    fn measure(&self, view: &MeasuredView, task: &Task) -> Result<SceneCost, String>;
 
     /// The adapter that the user has chosen by name.
     fn adapter(&self) -> Option<String> {

@@ -16,7 +16,7 @@ use isolith::geometry::Camera;
 use isolith::jobs::Task;
 use isolith::render::AdapterChoice;
 use isolith::scene::{CameraNode, MaterialId, Node, NodeKind, Object, Scene, Shape, file};
-use isolith::session::{RenderOrder, RenderRefusal, RenderReport, StillPreview, Studio};
+use isolith::session::{MeasuredView, RenderOrder, RenderRefusal, RenderReport, SceneCost, StillPreview, Studio};
 
 use super::{click, field, no_picture, open_in, press};
 use crate::settle::Settle;
@@ -222,6 +222,10 @@ impl Studio for FullDisk {
 
     fn thumbnail(&self, _: &Scene, _: Option<PathBuf>, _: [u32; 2], _: &Task) -> Result<StillPreview, String> {
         Err("no thumbnails".into())
+    }
+
+    fn measure(&self, _: &MeasuredView, _: &Task) -> Result<SceneCost, String> {
+        Err("no clock".into())
     }
 }
 

@@ -120,6 +120,8 @@ pub enum Command {
     ToggleOutline,
     /// Open the command palette.
     FindCommand,
+    /// Open the field doctor.
+    ExamineScene,
     /// Toggle the log.
     ShowMessages,
     /// Move, rotate or scale the selection with the pointer, until a click or Enter.

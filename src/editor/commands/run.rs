@@ -30,6 +30,7 @@ impl Editor {
             Command::Reload => self.reload(ctx),
             Command::Recover => self.offer_lost_work(),
             Command::Quit => self.intend(Intent::Quit, ctx),
+            Command::ExamineScene => self.open_doctor(),
             Command::Render => self.rendering.open(&self.state.session.document),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
@@ -112,7 +113,12 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::Quit | Command::Render | Command::AddAtPointer | Command::AddMesh | Command::FindCommand => {}
+        Command::Quit
+        | Command::Render
+        | Command::ExamineScene
+        | Command::AddAtPointer
+        | Command::AddMesh
+        | Command::FindCommand => {}
     }
 }
 
