@@ -5,6 +5,7 @@ mod attachments;
 mod choosing;
 mod doctor;
 mod fields;
+mod first_run;
 mod handles;
 mod instancers;
 mod jobs;

@@ -19,6 +19,8 @@ pub const MAX_FAVORITES: usize = 64;
 pub struct PreferenceValues {
     /// The name of the keymap; empty for the first.
     pub keymap: String,
+    /// Whether the program starts without the welcome.
+    pub skips_welcome: bool,
     /// The names of what is offered first for adding; `None` for the program's own choice.
     pub favorites: Option<Vec<String>>,
 }

@@ -25,6 +25,11 @@ impl Editor {
             Intent::Choose => self.perform(Next::Choose, ctx),
             Intent::Quit => self.unless_lost(Next::Quit, ctx),
             Intent::Open(path) => self.open_file(&path, false),
+            Intent::Template(index) => {
+                let Some((name, open)) = self.template(index) else { return };
+                let job = self.state.derived.open(&name, open);
+                self.opening = Some(Opening { job, name, path: None, is_agreed: false });
+            }
             Intent::Example(index) => {
                 let Some(example) = self.state.examples.get(index) else { return };
                 let job = self.state.derived.open(&example.name, example.open.clone());

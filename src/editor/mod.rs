@@ -33,6 +33,8 @@
 //! | `file_jobs` | files to store in nodes, and the list of recent files |
 //! | `rendering`, `render_view` | the render dialog: settings, and the job that renders into files |
 //! | `doctor`, `doctor_view` | the field doctor: jobs that examine and measure the scene, repairs, costs |
+//! | `first_run`, `welcome`, `tour` | what helps at the start |
+//! | `help`, `help_pages`, `changelog` | the help window: pages about panels, keys, what is new |
 //! | `input_order` | events in the order of their arrival, however slow the frames are |
 //! | `recovery`, `safekeeping` | copies of unsaved work, and their recovery |
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
@@ -40,6 +42,7 @@
 mod add_palette;
 mod below_list;
 mod bounds;
+mod changelog;
 mod choice_walk;
 mod choosing;
 mod color_picker;
@@ -57,9 +60,12 @@ mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
+mod first_run;
 mod framing;
 mod gizmo;
 mod handles;
+mod help;
+mod help_pages;
 mod icons;
 mod input_order;
 mod insertion;
@@ -121,12 +127,14 @@ mod thumbnails;
 mod time_scale;
 mod timeline;
 mod toolbar;
+mod tour;
 mod transforms;
 mod view_state;
 mod viewport;
 mod viewport_click;
 mod viewport_drag;
 mod viewport_modal;
+mod welcome;
 mod widgets;
 
 pub use commands::command::Command;

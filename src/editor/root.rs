@@ -13,6 +13,7 @@ use super::conflict::Conflict;
 use super::dialogs::Dialogs;
 use super::doctor::Doctor;
 use super::document_jobs::{Opening, Saving};
+use super::help::Help;
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
@@ -20,7 +21,9 @@ use super::rendering::Rendering;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
 use super::state::{EditorState, Example, Request};
+use super::tour::Tour;
 use super::view_state::{Picture, ViewSettings};
+use super::welcome::Welcome;
 use super::{below_list, input_order, numbers, panels, theme, widgets};
 use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
@@ -54,6 +57,10 @@ pub struct Editor {
     pub(super) doctor: Doctor,
     /// The doctor shall look again once the arrays are ready.
     pub(super) wants_scan: bool,
+    /// The window at the start, and what explains the program.
+    pub(super) welcome: Welcome,
+    pub(super) tour: Tour,
+    pub(super) help: Help,
     /// The renderer for work beside the frames.
     pub(super) studio: Option<SharedStudio>,
     /// The first view of a new document waits for its arrays and models.
@@ -81,6 +88,9 @@ impl Editor {
             rendering: Rendering::default(),
             doctor: Doctor::default(),
             wants_scan: false,
+            welcome: Welcome::default(),
+            tour: Tour::default(),
+            help: Help::default(),
             studio: None,
             wants_view: false,
             shown_title: String::new(),
@@ -176,6 +186,7 @@ impl Editor {
         self.show_recovery(ctx);
         self.show_rendering(ctx);
         self.show_doctor(ctx);
+        self.show_first_run(ctx);
         if let Some(command) = self.command_palette.show(&self.state, ctx) {
             self.run(command, ctx);
         }
@@ -288,6 +299,7 @@ impl Editor {
             || self.state.view.below.is_some()
             || self.conflict.is_open()
             || self.is_offering()
+            || self.welcome.is_open
     }
 
     /// Replaces the current document.

@@ -118,6 +118,16 @@ pub enum Command {
     ToggleGrid,
     /// Toggle the outline of the selection.
     ToggleOutline,
+    /// Open the page of help about what is under the pointer.
+    ShowHelp,
+    /// List the keys.
+    ShowKeys,
+    /// Show the latest changes of the program.
+    ShowNews,
+    /// Begin the tour.
+    StartTour,
+    /// Open the welcome.
+    ShowWelcome,
     /// Open the command palette.
     FindCommand,
     /// Open the field doctor.

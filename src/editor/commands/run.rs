@@ -7,6 +7,7 @@ use glam::DQuat;
 
 use super::command::Command;
 use crate::edit_session::EditSession;
+use crate::help::HelpTab;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
@@ -31,6 +32,11 @@ impl Editor {
             Command::Recover => self.offer_lost_work(),
             Command::Quit => self.intend(Intent::Quit, ctx),
             Command::ExamineScene => self.open_doctor(),
+            Command::ShowHelp => self.open_help(ctx),
+            Command::ShowKeys => self.open_help_tab(HelpTab::Keys),
+            Command::ShowNews => self.open_help_tab(HelpTab::News),
+            Command::StartTour => self.tour.start(),
+            Command::ShowWelcome => self.open_welcome(),
             Command::Render => self.rendering.open(&self.state.session.document),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
@@ -113,6 +119,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
+        Command::ShowHelp | Command::ShowKeys | Command::ShowNews | Command::StartTour | Command::ShowWelcome => {}
         Command::Quit
         | Command::Render
         | Command::ExamineScene
