@@ -20,6 +20,8 @@ impl Editor {
     /// question.
     pub fn intend(&mut self, intent: Intent, ctx: &Context) {
         self.state.session.finish();
+        // Whatever was chosen, also by a key: it is not in the way of what opens.
+        self.welcome.is_open = false;
         match intent {
             Intent::New => self.unless_lost(Next::New, ctx),
             Intent::Choose => self.perform(Next::Choose, ctx),

@@ -99,6 +99,12 @@ pub const PAGES: &[HelpPage] = &[
         ],
     },
     HelpPage {
+        id: "log",
+        title: "Log",
+        purpose: "All messages so far: what fades in the corner stays here.",
+        actions: &[("Open, close", "View › Log")],
+    },
+    HelpPage {
         id: "render",
         title: "Render dialog",
         purpose: "Pictures in files, while you go on working. They are those of the command that it shows.",

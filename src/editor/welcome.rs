@@ -182,7 +182,7 @@ impl Welcome {
         let bytes = || self.thumbnail_of.and_then(|of| of(name));
         if !self.pictures.contains_key(name) {
             let texture = bytes()
-                .and_then(|bytes| decoded(bytes))
+                .and_then(decoded)
                 .map(|image| ctx.load_texture(format!("picture of {name}"), image, TextureOptions::LINEAR));
             self.pictures.insert(name.to_owned(), texture);
         }

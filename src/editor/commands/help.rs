@@ -1,8 +1,10 @@
-//! Commands that explain the program.
+//! Commands that explain the program, or what is wrong with the scene.
 
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
-use egui_material_icons::icons::{ICON_CAMPAIGN, ICON_HELP, ICON_HOME, ICON_KEYBOARD, ICON_SIGNPOST};
+use egui_material_icons::icons::{
+    ICON_CAMPAIGN, ICON_HELP, ICON_HOME, ICON_KEYBOARD, ICON_MONITOR_HEART, ICON_SIGNPOST,
+};
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
@@ -12,7 +14,10 @@ fn row(command: Command, icon: MaterialIcon, label: &str, help: &str) -> Command
 }
 
 pub(super) fn commands() -> Vec<CommandInfo> {
+    let doctor = "Finds nodes that are broken or slow, and repairs them";
     vec![
+        CommandInfo::new(Menu::View, Command::ExamineScene, Icon::from(ICON_MONITOR_HEART), "Field doctor…", doctor)
+            .key(Modifiers::NONE, Key::F10),
         row(Command::ShowHelp, ICON_HELP, "Help…", "A page about the panel under the pointer")
             .key(Modifiers::NONE, Key::F1),
         row(Command::ShowKeys, ICON_KEYBOARD, "Keys…", "All keys of the keymap"),

@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_MONITOR_HEART,
-    ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
+    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA,
+    ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
 };
 
 use super::command::Command;
@@ -56,13 +56,6 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .key(NONE, Key::F3)
             .key(Modifiers::COMMAND, Key::P)
             .group(),
-        row(
-            Command::ExamineScene,
-            ICON_MONITOR_HEART,
-            "Field doctor…",
-            "Finds nodes that are broken or slow, and repairs them",
-        )
-        .key(NONE, Key::F10),
         row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
     ]);
     all.extend(Shading::ALL.into_iter().map(|shading| {

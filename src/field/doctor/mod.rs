@@ -33,10 +33,12 @@ pub fn examine(scene: &Scene, flat: &FlatScene, checks: &Checks, task: &Task) ->
     for (index, component) in flat.components.iter().enumerate() {
         task.check()?;
         task.set_stage("fields");
-        task.set_progress(fields_end * index as f32 / flat.components.len() as f32);
+        task.set_progress(0.5 * fields_end * index as f32 / flat.components.len() as f32);
         contract::look(flat, component, &mut findings);
     }
-    findings.extend(touching::findings(flat, task)?);
+    task.set_stage("proofs");
+    let told = |share: f32| task.set_progress(fields_end * (0.5 + 0.5 * share));
+    findings.extend(touching::findings(flat, task, &told)?);
     if checks.wall.is_some() || checks.loose_parts {
         task.set_stage("solid");
         let told = |share: f32| task.set_progress(fields_end + (1.0 - fields_end) * share);

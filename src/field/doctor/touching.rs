@@ -68,12 +68,13 @@ pub fn is_positive(function: &dyn Fn(DVec3) -> f64, bounds: &Aabb) -> Positive {
 }
 
 /// The findings of all components.
-pub fn findings(flat: &FlatScene, task: &Task) -> Result<Vec<Finding>, Canceled> {
+pub fn findings(flat: &FlatScene, task: &Task, told: &dyn Fn(f32)) -> Result<Vec<Finding>, Canceled> {
     // Whether each operand that cuts is proven to cut nothing, in every component in which it stands.
     let mut cutters: BTreeMap<NodeId, bool> = BTreeMap::new();
     let mut found = Vec::new();
-    for component in &flat.components {
+    for (index, component) in flat.components.iter().enumerate() {
         task.check()?;
+        told(index as f32 / flat.components.len() as f32);
         let bounds = looked_at(component);
         let all = component.first as usize..(component.first + component.count) as usize;
         look_at_fold(flat, component, all, &bounds, task, &mut cutters)?;
