@@ -11,26 +11,39 @@
 //! | `brick_cache` | their files |
 //! | `model_fields` | the shapes that are made of them |
 //! | `notice` | messages of a session |
+//! | `render_order`, `frames` | orders to render pictures into files, by a dialog or from the command line |
+//! | `scene_cost` | what a picture takes, as measured |
+//! | `studio` | what a renderer does for a user interface beside the frames |
 
 mod arrays;
 mod brick_cache;
 mod bricks;
+mod frames;
 mod model_fields;
 mod models;
 mod notice;
 mod open;
 mod prepare;
+mod render_order;
+mod scene_cost;
+mod studio;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use arrays::Arrays;
 pub use brick_cache::CACHE_FOLDER;
+pub use frames::{FrameRange, numbered, parse_fps};
 pub use model_fields::{ModelFields, pose_of};
 use models::Models;
 pub use notice::{Notice, NoticeLevel};
 pub use open::{Opened, ReadDocument, folder_of, read_file};
 pub use prepare::PreparedScene;
+pub use render_order::{
+    DEFAULT_SAMPLES, DEFAULT_SIZE, MAX_SAMPLES, MAX_SIDE, Moments, RenderOrder, RenderSettings, check_size, ending,
+};
+pub use scene_cost::{MeasuredView, NodeCost, PassCost, SceneCost};
+pub use studio::{RenderRefusal, RenderReport, SharedStudio, StillPreview, Studio};
 
 use isolith_document::Document;
 use isolith_field::FlatScene;

@@ -7,6 +7,7 @@ use glam::DQuat;
 
 use super::command::Command;
 use crate::edit_session::EditSession;
+use crate::help::HelpTab;
 use crate::intent::Intent;
 use crate::log_panel::LOG;
 use crate::root::Editor;
@@ -33,6 +34,13 @@ impl Editor {
             Command::Reload => self.reload(ctx),
             Command::Recover => self.offer_lost_work(),
             Command::Quit => self.intend(Intent::Quit, ctx),
+            Command::ExamineScene => self.open_doctor(),
+            Command::ShowHelp => self.open_help(ctx),
+            Command::ShowKeys => self.open_help_tab(HelpTab::Keys),
+            Command::ShowNews => self.open_help_tab(HelpTab::News),
+            Command::StartTour => self.tour.start(),
+            Command::ShowWelcome => self.open_welcome(),
+            Command::Render => self.rendering.open(&self.state.session.document),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
             Command::FindCommand => self.command_palette.open(),
@@ -119,7 +127,14 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::ShowView(view_mode) => state.view.toggle_view_mode(view_mode),
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
-        Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand | Command::Preferences => {}
+        Command::ShowHelp | Command::ShowKeys | Command::ShowNews | Command::StartTour | Command::ShowWelcome => {}
+        Command::Quit
+        | Command::Render
+        | Command::ExamineScene
+        | Command::AddAtPointer
+        | Command::AddMesh
+        | Command::FindCommand
+        | Command::Preferences => {}
     }
 }
 
