@@ -19,11 +19,15 @@
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
 //! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
-//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal`, `viewport_surface` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
+//! | `clipboard`, `arrange`, `arrangement` | copy and paste between scenes; aligning, distributing, origins |
+//! | `ghosts`, `hover` | lines on selected nodes that are cut away or hidden; the node under the pointer |
+//! | `drag_in`, `dropped_files` | what is dragged into the picture, and files dropped on the window |
+//! | `history_list` | all steps of undo |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
@@ -36,10 +40,13 @@
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod add_palette;
+mod arrange;
+mod arrangement;
 mod below_list;
 mod bounds;
 mod choice_walk;
 mod choosing;
+mod clipboard;
 mod color_picker;
 mod command_palette;
 mod commands;
@@ -49,13 +56,18 @@ mod dialogs;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
+mod drag_in;
+mod dropped_files;
 mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
 mod framing;
+mod ghosts;
 mod gizmo;
 mod handles;
+mod history_list;
+mod hover;
 mod icons;
 mod input_order;
 mod insertion;
@@ -87,6 +99,8 @@ mod navigation;
 mod node_picker;
 mod numbers;
 mod outliner;
+mod outliner_drop;
+mod outliner_filter;
 mod overlay;
 mod panel;
 mod panels;
@@ -121,6 +135,7 @@ mod viewport;
 mod viewport_click;
 mod viewport_drag;
 mod viewport_modal;
+mod viewport_surface;
 mod widgets;
 
 pub use commands::command::Command;

@@ -118,9 +118,9 @@ fn hint_of(state: &EditorState) -> String {
         PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
         PointerActivity::Panning => "Panning".into(),
         PointerActivity::Zooming => "Zooming · up is nearer".into(),
-        PointerActivity::Moving => "Ctrl: snap · Shift: precise · Esc: cancel".into(),
+        PointerActivity::Moving => "Ctrl: snap · F: onto a surface · Shift: precise · Esc: cancel".into(),
         PointerActivity::Transforming => {
-            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · Shift: precise · \
+            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · F: onto a surface · Shift: precise · \
              Click or Enter: done · Esc: cancel"
                 .into()
         }
@@ -128,6 +128,7 @@ fn hint_of(state: &EditorState) -> String {
             "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Lassoing => "Draw a line around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),

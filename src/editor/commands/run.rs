@@ -10,7 +10,9 @@ use crate::edit_session::EditSession;
 use crate::intent::Intent;
 use crate::root::Editor;
 use crate::state::EditorState;
-use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
+use crate::{
+    arrange, clipboard, dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection,
+};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -32,6 +34,9 @@ impl Editor {
             Command::Quit => self.intend(Intent::Quit, ctx),
             Command::AddAtPointer => self.add_at_pointer(ctx),
             Command::AddMesh => self.choose_mesh(ctx),
+            Command::Copy => clipboard::copy(&mut self.state, ctx),
+            Command::Cut => clipboard::cut(&mut self.state, ctx),
+            Command::Paste => clipboard::request(ctx),
             Command::FindCommand => self.command_palette.open(),
             _ => run_on_state(&mut self.state, command),
         }
@@ -61,6 +66,12 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Redo => redo(session),
         Command::Rename => state.renaming = session.document.selection().last().copied(),
         Command::Duplicate => selection::duplicate(session),
+        Command::DuplicateAlong => relations::duplicate_along(state),
+        Command::ShowHistory => state.show_history ^= true,
+        Command::PastePart(part) => clipboard::paste_part(state, part),
+        Command::Align(axis, edge) => arrange::align(state, axis, edge),
+        Command::Distribute(axis) => arrange::distribute(state, axis),
+        Command::MoveOrigin(place) => arrange::origin_to_children(state, place),
         Command::Delete if state.playback.deletes_keys() => dope_sheet::delete(session, &mut state.playback),
         Command::Delete => selection::delete(session),
         Command::KeyTransform => keying::key_transforms(session),
@@ -74,12 +85,12 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::MoveDown => selection::shift(session, 1),
         Command::Join(operator) => selection::join(session, operator, false),
         Command::ToggleNegative => selection::toggle_negative(session),
-        Command::SelectAll => selection::select_all(session),
-        Command::SelectNothing => select_nothing(state),
-        Command::SelectParents => relations::select_parents(state),
-        Command::SelectChildren => relations::select_children(state),
-        Command::SelectSimilar => relations::select_similar(state),
-        Command::SelectByBox => state.view.wants_box = true,
+        Command::SelectAll | Command::SelectNothing | Command::SelectParents | Command::SelectChildren => {
+            select(state, command);
+        }
+        Command::SelectSimilar | Command::SelectSameMaterial | Command::SelectByBox | Command::SelectByLasso => {
+            select(state, command);
+        }
         Command::Isolate => relations::isolate(state),
         Command::DropOnSurface => relations::drop_on_surface(state),
         Command::ToggleVisible => selection::toggle_visible(session),
@@ -105,6 +116,7 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Transform(kind) => state.view.transforming = Some(kind),
         Command::UseTool(tool) => state.view.tool = tool,
         Command::UseOrientation(orientation) => state.view.orientation = orientation,
+        Command::UsePivot(pivot) => state.view.pivot = pivot,
         Command::UseKeymap(keymap) => state.use_keymap(keymap),
         Command::ShowShading(shading) => state.view.show_shading(shading),
         Command::CycleShading => state.view.cycle_shading(),
@@ -112,6 +124,20 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Samples(samples) => state.view.samples = samples,
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
         Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand => {}
+        Command::Copy | Command::Cut | Command::Paste => {}
+    }
+}
+
+fn select(state: &mut EditorState, command: Command) {
+    match command {
+        Command::SelectAll => selection::select_all(&mut state.session),
+        Command::SelectParents => relations::select_parents(state),
+        Command::SelectChildren => relations::select_children(state),
+        Command::SelectSimilar => relations::select_similar(state),
+        Command::SelectSameMaterial => relations::select_same_material(state),
+        Command::SelectByLasso => state.view.wants_lasso = true,
+        Command::SelectByBox => state.view.wants_box = true,
+        _ => select_nothing(state),
     }
 }
 

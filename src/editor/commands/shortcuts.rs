@@ -5,6 +5,7 @@ use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Popup};
 use super::command::Command;
 use super::info::Menu;
 use crate::add_palette::AddPalette;
+use crate::clipboard;
 use crate::command_palette::CommandPalette;
 use crate::keymap::Keymap;
 use crate::root::Editor;
@@ -50,6 +51,7 @@ impl Editor {
         {
             jobs.cancel_foremost();
         }
+        clipboard::take_events(&mut self.state, ctx);
         while let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, |_| true)) {
             self.run(command, ctx);
         }
