@@ -57,7 +57,7 @@ fn the_wheel_with_ctrl_changes_a_number_and_alone_it_does_not() {
             source: MouseWheelSource::Wheel,
             modifiers,
         });
-        harness.run();
+        harness.run_steps(10);
     };
     turn(&mut harness, 1.0, Modifiers::NONE);
     assert_eq!(radius(&harness, ball), before);
@@ -86,9 +86,10 @@ fn a_value_is_copied_to_another_field_and_reset() {
 #[test]
 fn a_node_in_a_group_is_placed_in_the_world() {
     let (mut harness, ball) = with(|[_, ball, ..]| ball);
-    harness.get_by_label("Coordinates").click();
+    field(&harness, "Coordinates").click();
     harness.run();
-    choose(&mut harness, "World");
+    harness.get_by_label("World").click();
+    harness.run();
     let pos = field(&harness, "World position X").rect().center();
     super::click(&mut harness, pos);
     press(&mut harness, Modifiers::COMMAND, Key::A);
