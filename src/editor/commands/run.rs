@@ -68,10 +68,9 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::Duplicate => selection::duplicate(session),
         Command::DuplicateAlong => relations::duplicate_along(state),
         Command::ShowHistory => state.show_history ^= true,
-        Command::PastePart(part) => clipboard::paste_part(state, part),
-        Command::Align(axis, edge) => arrange::align(state, axis, edge),
-        Command::Distribute(axis) => arrange::distribute(state, axis),
-        Command::MoveOrigin(place) => arrange::origin_to_children(state, place),
+        Command::PastePart(_) | Command::Align(..) | Command::Distribute(_) | Command::MoveOrigin(_) => {
+            place(state, command)
+        }
         Command::Delete if state.playback.deletes_keys() => dope_sheet::delete(session, &mut state.playback),
         Command::Delete => selection::delete(session),
         Command::KeyTransform => keying::key_transforms(session),
@@ -101,10 +100,9 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::AddShape(kind) => insertion::shape(state, kind),
         Command::AddGroup => add(state, Node::new("Group", NodeKind::Group(Group::UNION))),
         Command::AddInstancer => instancer_edits::add(state),
-        Command::AddSun => add_sun(state),
-        Command::AddPointLight => add_point_light(state),
-        Command::AddSpotLight => add_spot_light(state),
-        Command::AddAreaLight => add_lamp(state, "Area light", LightKind::RECTANGLE),
+        Command::AddSun | Command::AddPointLight | Command::AddSpotLight | Command::AddAreaLight => {
+            add_light(state, command);
+        }
         Command::AddCamera => add_camera(state),
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
@@ -125,6 +123,16 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::New | Command::Open | Command::Save | Command::SaveAs | Command::Reload | Command::Recover => {}
         Command::Quit | Command::AddAtPointer | Command::AddMesh | Command::FindCommand => {}
         Command::Copy | Command::Cut | Command::Paste => {}
+    }
+}
+
+fn place(state: &mut EditorState, command: Command) {
+    match command {
+        Command::PastePart(part) => clipboard::paste_part(state, part),
+        Command::Align(axis, edge) => arrange::align(state, axis, edge),
+        Command::Distribute(axis) => arrange::distribute(state, axis),
+        Command::MoveOrigin(place) => arrange::origin_to_children(state, place),
+        _ => {}
     }
 }
 
@@ -187,12 +195,13 @@ fn add_sun(state: &mut EditorState) {
     add(state, Node::new("Sun", NodeKind::Light(Light::sun())).rotated(down));
 }
 
-fn add_point_light(state: &mut EditorState) {
-    add_lamp(state, "Point light", LightKind::POINT);
-}
-
-fn add_spot_light(state: &mut EditorState) {
-    add_lamp(state, "Spot light", LightKind::SPOT);
+fn add_light(state: &mut EditorState, command: Command) {
+    match command {
+        Command::AddPointLight => add_lamp(state, "Point light", LightKind::POINT),
+        Command::AddSpotLight => add_lamp(state, "Spot light", LightKind::SPOT),
+        Command::AddAreaLight => add_lamp(state, "Area light", LightKind::RECTANGLE),
+        _ => add_sun(state),
+    }
 }
 
 /// A light two meters above the view's target, shining down.
