@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use isolith::editor::Editor;
-use isolith::scene::{Material, Modifier, ModifierKind, Node, NodeId, NodeKind, Scene, file};
+use isolith::scene::{Material, ModifierKind, Node, NodeId, NodeKind, Scene, file};
 
 use super::{click, open, press, scene, undo_all};
 
@@ -123,7 +123,7 @@ fn transform_material_and_modifiers_of_a_copied_node_go_to_others() {
     let id = scene.next_material_id();
     scene.insert_material(Material::new(id, "Red", [0.8, 0.1, 0.1])).unwrap();
     let mut source = Node::clone(scene.node(ring).unwrap()).at(DVec3::new(3.0, 1.0, 0.0));
-    source.modifiers.push(Modifier::from(ModifierKind::ALL[0].default_modifier()).into());
+    source.modifiers.push(ModifierKind::ALL[0].default_modifier().into());
     if let NodeKind::Object(object) = &mut source.kind {
         object.material = id;
     }

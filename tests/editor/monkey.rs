@@ -7,6 +7,7 @@ use isolith::document::Document;
 use isolith::editor::Editor;
 use isolith::scene::{Scene, file};
 
+use super::scale::note;
 use super::{open_in, scene};
 use crate::random_scene::Random;
 
@@ -225,7 +226,7 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
         assert!(harness.state_mut().document_mut().redo(), "seed {seed}: a step is lost");
     }
     assert!(bytes(&harness) == last, "seed {seed}: {steps} steps forward is not the last document");
-    println!("seed {seed}: {steps} steps from {events} events, {} nodes", end.nodes().len());
+    note(&format!("seed {seed}: {steps} steps from {events} events, {} nodes", end.nodes().len()));
     end
 }
 

@@ -17,6 +17,12 @@ const FRAME: Duration = Duration::from_millis(8);
 /// Time from the click on a menu to the frame that shows its entries.
 const MENU: Duration = Duration::from_millis(50);
 
+/// Prints times with `--nocapture`.
+#[expect(clippy::print_stdout, reason = "a test has no other way to say how long something took")]
+pub fn note(text: &str) {
+    println!("{text}");
+}
+
 /// Groups of ten boxes until there are this many nodes.
 pub fn crowd(count: usize) -> Scene {
     let mut scene = Scene::new();
@@ -72,7 +78,8 @@ fn a_frame_at_ten_thousand_nodes_takes_eight_milliseconds() {
     let times = frames(&mut harness, 40, |harness, index| {
         harness.event(Event::PointerMoved(Pos2::new(100.0 + index as f32, 300.0 + index as f32)));
     });
-    println!("frame at 10 000 nodes: best {:?}, median {:?}, worst {:?}", times[0], times[20], times[39]);
+    let text = format!("frame at 10 000 nodes: best {:?}, median {:?}, worst {:?}", times[0], times[20], times[39]);
+    note(&text);
     // Others use the machine at the same time: the best quarter is that of the editor alone.
     assert!(times[10] <= FRAME, "{:?}", times[10]);
 }
@@ -98,7 +105,7 @@ fn a_menu_opens_at_once() {
         times.push(start.elapsed());
         press(&mut harness, Modifiers::NONE, Key::Escape);
     }
-    println!("menus at 577 nodes: {times:?}");
+    note(&format!("menus at 577 nodes: {times:?}"));
     times.sort();
     assert!(times[1] <= MENU, "{times:?}");
 }
