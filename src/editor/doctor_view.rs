@@ -321,7 +321,7 @@ fn budget_bar(cost: &SceneCost, aim: &mut u32, ui: &mut Ui) {
         true => format!("{:.0} % of the budget", 100.0 * cost.seconds / budget),
         false => format!("{:.1} times the budget", cost.seconds / budget),
     };
-    let color = if cost.seconds <= budget { theme::SUCCESS } else { ui.visuals().warn_fg_color };
+    let color = if cost.seconds <= budget { *theme::SUCCESS } else { ui.visuals().warn_fg_color };
     ui.label(RichText::new(verdict).color(color));
 }
 

@@ -247,7 +247,7 @@ impl Rendering {
         match (&self.outcome, &reason) {
             (_, Some(reason)) => colored(ui, reason, ui.visuals().warn_fg_color),
             (Some(RenderOutcome::Done(report)), _) => {
-                colored(ui, &report_text(report), theme::SUCCESS);
+                colored(ui, &report_text(report), *theme::SUCCESS);
                 for warning in report.warnings.iter().take(FILES_LISTED) {
                     colored(ui, &format!("{}: {}", warning.name, warning.reason), ui.visuals().warn_fg_color);
                 }
