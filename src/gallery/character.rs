@@ -60,9 +60,9 @@ fn limbs(builder: &mut SceneBuilder, body: NodeId, fur: MaterialId) {
 fn horns(builder: &mut SceneBuilder, body: NodeId, horn: MaterialId) {
     for side in [-1.0, 1.0] {
         let points =
-            [[0.0, 0.0, 0.0, 0.07], [0.12, 0.3, 0.02, 0.03], [0.1, 0.56, 0.14, -0.03], [-0.02, 0.72, 0.3, -0.075]];
+            [[0.0, 0.0, 0.0, 0.15], [0.12, 0.3, 0.02, 0.11], [0.1, 0.56, 0.14, 0.05], [-0.02, 0.72, 0.3, 0.01]];
         let points = Points::new(points.map(|[x, y, z, r]| [side * x, y, z, r]));
-        let curve = Shape::Tube { points, radius: 0.1, closed: false };
+        let curve = Shape::Tube { points, radius: 0.02, closed: false };
         builder.add(body, object("Horn", curve, horn).at(v(side * 0.3, 2.72, -0.05)).rotated(turn_z(side * -14.0)));
     }
 }

@@ -7,7 +7,7 @@ use std::sync::{LazyLock, Mutex, PoisonError};
 use super::dual::dual;
 use super::files::library;
 use super::modifiers::{file, own_rows};
-use isolith_scene::ModifierKind;
+use isolith_scene::{ModifierKind, ShapeKind};
 
 /// The function of a shape, or one of a modifier (see [`modifier_gradient`]), with its gradient.
 pub fn gradient_wgsl(function: &str) -> Option<String> {
@@ -15,6 +15,10 @@ pub fn gradient_wgsl(function: &str) -> Option<String> {
     let mut derived = DERIVED.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(text) = derived.get(function) {
         return Some(text.clone());
+    }
+    if function == ShapeKind::MeshField.function() {
+        // Its derivative is not what is wanted, see there.
+        return library("sdf/mesh_field_gradient.wgsl").ok();
     }
     // Functions without a derivative have no pipeline; a test derives all of them.
     let text = match function.strip_prefix("sdf_") {

@@ -4,7 +4,13 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use isolith::bricks::Bricks;
+use isolith::bricks::{BrickLevels, Bricks, bake};
+use isolith::field::PreparedShape;
+use isolith::field::eval::{Dual, Real};
+use isolith::geometry::Aabb;
+use isolith::scene::{ModelFile, Shape, ShapeKind};
+
+use super::samples::{Random, evaluate};
 
 use super::surfaces::Patch;
 
@@ -96,4 +102,49 @@ pub fn patches(bricks: &Arc<Bricks>) -> Vec<Patch> {
         }));
     }
     out
+}
+
+/// A ball of this radius as a model.
+fn ball(radius: f64, voxel: f64) -> Shape {
+    let bounds = Aabb::from_center_half(DVec3::ZERO, DVec3::splat(radius));
+    let mut make = |voxel| bake(bounds, voxel, &|p: DVec3| p.length() - radius);
+    let levels = Arc::new(BrickLevels::made(voxel, &mut make).unwrap());
+    let mut shape = ShapeKind::MeshField.default_shape();
+    if let Shape::MeshField { file, .. } = &mut shape {
+        *file = ModelFile::new("ball.glb").with_bricks(levels);
+    }
+    shape
+}
+
+#[test]
+fn normals_of_a_ball_in_voxels_are_those_of_a_ball() {
+    let prepared = PreparedShape::new(&ball(0.5, 0.02));
+    let mut random = Random::new(3);
+    let mut worst = 0.0_f64;
+    for _ in 0..500 {
+        let out = random.direction();
+        let p = out * random.range(0.49, 0.51);
+        let Dual { v, d } = evaluate(&prepared, DVec3::AXES.map(|axis| Dual::coordinate(axis, 0.0, p)));
+        assert!(v.abs() <= (p.length() - 0.5).abs() + 0.02 * 0.1 && d.length() <= 1.0 + 1e-12, "{v} {d} at {p}");
+        worst = worst.max(d.angle_between(out).to_degrees());
+    }
+    // The samples are rounded to 1/32 of a voxel, which is 1.2 degrees over a voxel and a half.
+    assert!(worst < 2.0, "{worst} degrees");
+}
+
+#[test]
+fn the_field_of_a_ball_in_voxels_stays_near_its_distance_everywhere() {
+    let prepared = PreparedShape::new(&ball(0.5, 0.02));
+    let mut random = Random::new(4);
+    let mut least = f64::INFINITY;
+    for _ in 0..3_000 {
+        let p = random.point(3.0);
+        let (value, exact) = (evaluate(&prepared, p.to_array()), p.length() - 0.5);
+        assert!(
+            value.abs() <= exact.abs() + 1e-9 + 0.02 * 0.1 && (value < 0.0) == (exact < 0.0),
+            "{value}, {exact} at {p}"
+        );
+        least = least.min(value / exact);
+    }
+    assert!(least > 0.3, "{least} of the distance");
 }

@@ -168,7 +168,8 @@ fn every_value_and_gradient_is_finite() {
 
 #[test]
 fn gradients_are_those_of_central_differences() {
-    for &kind in ShapeKind::ALL {
+    // That of models is taken over a voxel and a half, see `bricks`.
+    for &kind in ShapeKind::ALL.iter().filter(|kind| **kind != ShapeKind::MeshField) {
         let mut random = Random::new(11);
         for shape in ordinary(kind, 12) {
             let reach = 0.3 + size(&shape);

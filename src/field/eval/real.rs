@@ -20,6 +20,8 @@ pub trait Real:
     fn value(self) -> f64;
     /// A constant.
     fn constant(v: f64) -> Self;
+    /// A number whose derivatives are known: `v` with the gradient `d` at `p`. `d` is asked for only if it is needed.
+    fn known(v: f64, p: [Self; 3], d: impl FnOnce() -> DVec3) -> Self;
     /// The dot product with `row`, plus `shift`: one coordinate of an affine map of `p`, the variable of
     /// differentiation.
     fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self;
@@ -65,6 +67,9 @@ impl Real for f64 {
     fn constant(v: f64) -> Self {
         v
     }
+    fn known(v: f64, _: [Self; 3], _: impl FnOnce() -> DVec3) -> Self {
+        v
+    }
     fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self {
         row.dot(p) + shift
     }
@@ -97,6 +102,10 @@ impl Real for Dual {
     }
     fn constant(v: f64) -> Self {
         Self { v, d: DVec3::ZERO }
+    }
+    fn known(v: f64, p: [Self; 3], d: impl FnOnce() -> DVec3) -> Self {
+        let d = d();
+        Self { v, d: p[0].d * d.x + p[1].d * d.y + p[2].d * d.z }
     }
     fn coordinate(row: DVec3, shift: f64, p: DVec3) -> Self {
         Self { v: row.dot(p) + shift, d: row }
