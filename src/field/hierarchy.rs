@@ -241,6 +241,33 @@ mod tests {
     }
 
     #[test]
+    fn joined_trees_stay_whole() {
+        for counts in [vec![], vec![0], vec![5], vec![3, 0, 40], vec![1, 2, 3, 4, 5, 6, 7]] {
+            let boxes = scattered(counts.iter().sum());
+            let mut rest = boxes.as_slice();
+            let mut taken = |count: &usize| {
+                let (own, others) = rest.split_at(*count);
+                rest = others;
+                Hierarchy::build(own)
+            };
+            let parts: Vec<Hierarchy> = counts.iter().map(&mut taken).collect();
+            let counts: Vec<u32> = counts.iter().map(|count| *count as u32).collect();
+            let (all, roots) = Hierarchy::joined(&parts, &counts);
+            assert_eq!(is_right(&all, &boxes), Ok(()), "{counts:?}");
+            let mut first = 0;
+            for ((part, root), count) in parts.iter().zip(&roots).zip(&counts) {
+                assert_eq!(*root == Hierarchy::NONE, part.nodes.is_empty(), "{counts:?}");
+                for (i, node) in part.nodes.iter().enumerate() {
+                    let moved = all.nodes[*root as usize + i];
+                    let by = if node.is_leaf() { first } else { *root };
+                    assert_eq!(moved, HierarchyNode { link: node.link + by, ..*node }, "{counts:?}");
+                }
+                first += count;
+            }
+        }
+    }
+
+    #[test]
     fn what_has_no_end_stands_in_a_list() {
         let mut boxes = scattered(10);
         boxes[3] = Aabb::EVERYTHING;
