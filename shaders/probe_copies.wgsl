@@ -72,7 +72,7 @@ fn probe_walks(@builtin(global_invocation_id) id: vec3u) {
         let query = queries[id.x];
         let origin = instancer_local_point(query.origin);
         let direction = instancer_local_direction(query.direction);
-        var walk = copy_walk_begin(origin, direction, 0.0, query.far, query.spread, 20000u);
+        var walk = copy_walk_begin(query.kind, origin, direction, 0.0, query.far, query.spread, 20000u);
         var found: CopyVisit;
         var visits = 0u;
         var entries = 0.0;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use image::{Rgba, RgbaImage};
-use isolith::field::GBuffer;
+use isolith::field::{GBuffer, flatten};
 use isolith::render::EvalStrategy;
-use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape};
+use isolith::scene::{MaterialId, Node, NodeKind, Object, Scene, Shape, file};
 
 use crate::gpu::{BenchScene, scenes, shared};
 
@@ -56,13 +56,37 @@ fn every_scene_looks_as_accepted() {
     let is_lavapipe = info.driver == "llvmpipe";
     if std::env::var_os("ISOLITH_ACCEPT_GOLDEN").is_some_and(|value| value == "1") {
         assert!(is_lavapipe, "pictures are accepted on lavapipe only, and this is {}", info.name);
-        for scene in scenes() {
+        for scene in scenes().chain(moved_on()) {
             let picture = image(&scene.render(SIDE, EvalStrategy::Interpreter));
             picture.save(accepted_path(&scene.name)).expect("the accepted picture can be written");
         }
     }
     let gate = if is_lavapipe { Gate::Exact } else { Gate::Close };
     compare_with_accepted("interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
+    compare(moved_on(), "interpreted", gate, |scene, side| scene.render(side, EvalStrategy::Interpreter));
+}
+
+/// Scenes of copies that move, and the moment of their second picture, in seconds.
+const MOVING: [&str; 4] = ["asteroids", "dynamics-2d", "ocean", "terrain"];
+const LATER: f64 = 2.5;
+
+/// The moving scenes at the later moment.
+fn moved_on() -> impl Iterator<Item = BenchScene> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    MOVING.into_iter().map(move |name| {
+        let scene = file::load(&folder.join(format!("{name}.json"))).expect("it is shipped");
+        let flat = flatten(&scene, LATER).expect("within the limits");
+        BenchScene { flat, ..BenchScene::new(&format!("{name}-later"), &scene, Some(folder.clone())) }
+    })
+}
+
+#[test]
+fn later_pictures_are_others() {
+    for name in MOVING {
+        let [first, later] = [name.to_owned(), format!("{name}-later")]
+            .map(|name| image::open(accepted_path(&name)).expect("accepted").to_rgba8());
+        assert!(Gate::Close.check(&first, &later).is_err(), "{name}: nothing has moved");
+    }
 }
 
 /// Straight-line code may round differently from the interpreter, so the test does not compare bits.
@@ -74,8 +98,12 @@ fn every_scene_looks_the_same_with_straight_line_code() {
 /// Fails if a scene's picture from `draw` differs from the accepted one. `how` names the strategy in messages and file
 /// names.
 pub fn compare_with_accepted(how: &str, gate: Gate, draw: impl Fn(&BenchScene, u32) -> GBuffer) {
+    compare(scenes(), how, gate, draw);
+}
+
+fn compare(all: impl Iterator<Item = BenchScene>, how: &str, gate: Gate, draw: impl Fn(&BenchScene, u32) -> GBuffer) {
     let mut faults = Vec::new();
-    for scene in scenes() {
+    for scene in all {
         let Ok(accepted) = image::open(accepted_path(&scene.name)) else {
             faults.push(format!("{}: no picture was accepted yet; look at it and run `make golden`", scene.name));
             continue;
@@ -91,7 +119,7 @@ pub fn compare_with_accepted(how: &str, gate: Gate, draw: impl Fn(&BenchScene, u
 
 #[test]
 fn every_accepted_picture_has_its_scene() {
-    let names: Vec<_> = scenes().map(|scene| format!("{}.png", scene.name)).collect();
+    let names: Vec<_> = scenes().chain(moved_on()).map(|scene| format!("{}.png", scene.name)).collect();
     for entry in std::fs::read_dir(golden_folder()).expect("the folder can be read") {
         let name = entry.expect("an entry can be read").file_name().to_string_lossy().into_owned();
         assert!(names.contains(&name), "tests/golden/{name} belongs to no scene");

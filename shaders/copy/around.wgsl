@@ -13,8 +13,7 @@ fn copy_around_begin(center: vec3f, radius: f32) -> CopyWalk {
         return walk;
     }
     if instancer_count(instancer.tree_count, center.x) > 0u {
-        walk.open = 1u;
-        walk_stack[0] = 0u;
+        walk_begin_list(&walk, COPY_OF_ANY);
         return walk;
     }
     let reach = vec3f(walk_reach(0u), walk_reach(1u), walk_reach(2u)) + radius;

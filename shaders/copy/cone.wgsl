@@ -20,7 +20,7 @@ fn cone(@builtin(global_invocation_id) id: vec3u) {
     let spread = 0.75 * f32(TILE) * view.footprint * factor;
     let corner = max(abs(instancer.bounds_low - origin), abs(instancer.bounds_high - origin));
     let far = min(view.far, 1.01 * length(min(corner, vec3f(1e15))) / length(direction) + 1.0);
-    let walk = copy_walk_begin(origin, direction, view.near, far, spread, 0u);
+    let walk = copy_walk_begin(COPY_OF_ANY, origin, direction, view.near, far, spread, 0u);
     let is_met = id.x < columns * rows && (walk.left > 0 || walk.open > 0u);
     // Slightly early, for the rays beside the axis.
     let entry = max(walk.near * 0.99, view.near);

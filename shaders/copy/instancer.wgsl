@@ -92,13 +92,15 @@ struct Instancer {
     palette: array<vec4u, 16>,
     masks: array<CopyMask, 8>,
     dynamics: array<CopyDynamic, 8>,
+    // The nodes at which the trees of the types begin, four per row; WALK_NOWHERE for none.
+    roots: array<vec4u, 8>,
     // The components of the types, four per row; only of queries.
     components: array<vec4u, 8>,
 }
 
 // Beside it `places`, the lists of places. Per instancer: a tree of boxes, two rows per node, lower
 // and upper corner, with the link and the axis as bits in w; then three rows per place: position
-// with the cosine of the slope of the ground, rotation, id.
+// with the cosine of the slope of the ground, rotation, id with the type.
 #include "generated/instancer.wgsl"
 
 // A number of the instancer that ends a loop or decides. lavapipe compiles a pipeline anew for each

@@ -22,7 +22,7 @@ fn trace_march(component: Component, pixel: vec2u, subtile: Subtile, lane: u32, 
     let start = select(view.near, subtile.start, dispatch.compacted == 0u);
     let origin = instancer_local_point(vec3f(0.0));
     let direction = instancer_local_direction(view_direction(pixel));
-    var walk = copy_walk_begin(origin, direction, start, select(-1.0, limit, runs), 0.0, dispatch.max_cells);
+    var walk = copy_walk_begin(component.kind, origin, direction, start, select(-1.0, limit, runs), 0.0, dispatch.max_cells);
     if left_at.w != 0 {
         let mode = select(left_at.w, WALK_AT_CELL, left_at.w == TRACE_IN_COPY);
         copy_walk_go_on(&walk, vec4i(left_at.xyz, mode), limit);

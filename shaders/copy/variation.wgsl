@@ -39,9 +39,9 @@ const MASK_NOISE: u32 = 0u;
 const MASK_HEIGHT: u32 = 1u;
 const MASK_SLOPE: u32 = 2u;
 
-// The share of a mask at a position, from 0 to 1. `up` is the height of the ground's unit normal.
-fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
-    var share = 0.0;
+// The share of a mask at a position, from 0 to 1. There is no ground, so nothing is steep.
+fn copy_mask(mask: CopyMask, position: vec3f) -> f32 {
+    var share = 1.0;
     if mask.kind == MASK_NOISE {
         let s = noise_moved(NoiseCoordinate(mask.whole.x, mask.fraction.x), position.x * mask.params.z);
         let t = noise_moved(NoiseCoordinate(mask.whole.y, mask.fraction.y), position.z * mask.params.z);
@@ -51,9 +51,7 @@ fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
         if mask.kind == MASK_HEIGHT {
             share = min((at.y - mask.params.x) / mask.params.z, 1.0);
             share = max(share, 0.0) * clamp((mask.params.y - at.y) / mask.params.z, 0.0, 1.0);
-        } else if mask.kind == MASK_SLOPE {
-            share = (up - mask.params.y) / (mask.params.x - mask.params.y);
-        } else {
+        } else if mask.kind != MASK_SLOPE {
             share = (mask.params.y - length(at.xz)) / (mask.params.y - mask.params.x);
         }
     }
@@ -61,19 +59,18 @@ fn copy_mask(mask: CopyMask, position: vec3f, up: f32) -> f32 {
     return select(share, 1.0 - share, mask.inverted == 1u);
 }
 
-// The type of the copy of an absolute cell that stands at `base`; COPY_ABSENT if there is none.
-fn copy_kind(cell: vec3i, base: vec3f, up: f32) -> u32 {
-    let randoms = copy_randoms(instancer.seed, cell, CHANNEL_CHOICE);
-    var share = instancer.probability;
-    let masks = instancer_count(instancer.mask_count, base.x);
+// The type of the copy of an absolute cell that stands at `base`; COPY_ABSENT if there is none. Also the
+// numbers of the instancer, of its masks and of its types.
+fn copy_kind(cell: vec3i, base: vec3f, seed: u32, probability: f32, masks: u32, types: u32) -> u32 {
+    let randoms = copy_randoms(seed, cell, CHANNEL_CHOICE);
+    var share = probability;
     for (var i = 0u; i < masks; i += 1u) {
-        share *= copy_mask(instancer.masks[i], base, up);
+        share *= copy_mask(instancer.masks[i], base);
     }
     if randoms.x >= share {
         return COPY_ABSENT;
     }
     var kind = 0u;
-    let types = instancer_count(instancer.type_count, base.x);
     while kind + 1u < types && randoms.y >= instancer.shares[kind / 4u][kind % 4u] {
         kind += 1u;
     }
@@ -133,17 +130,23 @@ fn copy_at(at: vec3i, kind: u32) -> Copy {
     var base = copy_cell_place(at);
     var turned = QUATERNION_NONE;
     var jitter = instancer.jitter;
-    // Height of the unit normal of the ground.
-    var up = 1.0;
+    var own = COPY_ABSENT;
+    let seed = instancer.seed;
+    let probability = instancer.probability;
+    let masks = instancer_count(instancer.mask_count, base.x);
+    let types = instancer_count(instancer.type_count, base.x);
     if instancer_count(instancer.tree_count, base.x) > 0u {
         let row = instancer.first_place + 3u * u32(at.x);
-        cell = bitcast<vec3i>(places[row + 2u].xyz);
+        let id = bitcast<vec4u>(places[row + 2u]);
+        cell = vec3i(id.xyz);
+        // Only places where a copy stands are in the list.
+        own = id.w;
         base = places[row].xyz;
-        up = places[row].w;
         turned = places[row + 1u];
         jitter = vec3f(0.0);
+    } else {
+        own = copy_kind(cell, base, seed, probability, masks, types);
     }
-    let own = copy_kind(cell, base, up);
     if own == COPY_ABSENT || (own != kind && kind != COPY_OF_ANY) {
         return copy_none();
     }

@@ -44,8 +44,8 @@ fn walk_slab(walk: ptr<function, CopyWalk>, slab: i32, far: f32) -> vec2f {
     return select(vec2f(max(entry, (*walk).near), min(exit, far)), vec2f((*walk).near, far), is_still);
 }
 
-// Begins at `near`. `budget`: most cells that are looked at.
-fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread: f32, budget: u32) -> CopyWalk {
+// Begins at `near`, for copies of this kind. `budget`: most cells that are looked at.
+fn copy_walk_begin(kind: u32, origin: vec3f, direction: vec3f, near: f32, far: f32, spread: f32, budget: u32) -> CopyWalk {
     var walk: CopyWalk;
     walk.origin = origin;
     walk.direction = direction;
@@ -62,8 +62,7 @@ fn copy_walk_begin(origin: vec3f, direction: vec3f, near: f32, far: f32, spread:
         return walk;
     }
     if instancer_count(instancer.tree_count, direction.x) > 0u {
-        walk.open = 1u;
-        walk_stack[0] = 0u;
+        walk_begin_list(&walk, kind);
         return walk;
     }
     let is_long = instancer.low != instancer.high;

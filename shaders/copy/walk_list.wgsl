@@ -30,7 +30,9 @@ struct CopyWalk {
     at: vec3i,
 }
 
-const WALK_DEPTH: u32 = 32u;
+// Those of a tree for one type, see `HIERARCHY_STACK`, below one over the types.
+const WALK_DEPTH: u32 = 40u;
+const WALK_NOWHERE: u32 = 0xffffffffu;
 var<private> walk_stack: array<u32, WALK_DEPTH>;
 
 // Where the cone enters and leaves a box: its bounds along each axis alone, so it may leave later.
@@ -46,6 +48,14 @@ fn walk_interval(walk: ptr<function, CopyWalk>, low: vec3f, high: vec3f, far: f3
     let leaves = (speed > spread) | (spread <= vec3f(0.0));
     let exit = select(vec3f(1e30), behind / max(speed - spread, vec3f(1e-12)), leaves);
     return vec2f(max((*walk).near, max(entry.x, max(entry.y, entry.z))), min(far, min(exit.x, min(exit.y, exit.z))));
+}
+
+// Opens the tree of a type, or the one of all.
+fn walk_begin_list(walk: ptr<function, CopyWalk>, kind: u32) {
+    let own = instancer.roots[min(kind / 4u, 7u)][kind % 4u];
+    let root = select(own, 0u, kind == COPY_OF_ANY);
+    walk_stack[0] = root;
+    (*walk).open = select(1u, 0u, root == WALK_NOWHERE);
 }
 
 // Moves on to the next node of the tree; true if that is a leaf that the cone meets. The place to
@@ -76,9 +86,9 @@ fn walk_open_list(walk: ptr<function, CopyWalk>, index: u32, link: u32, axis: u3
     return false;
 }
 
-// Opens what a walk has open that is about to look at a node.
+// Opens what a walk has open that is about to look at a node. It has begun at the root.
 fn walk_go_on_list(walk: ptr<function, CopyWalk>, node: u32) {
-    var index = 0u;
+    var index = walk_stack[0];
     (*walk).open = 0u;
     while index < node && (*walk).open + 1u < WALK_DEPTH {
         let row = instancer.first_row + 2u * index;

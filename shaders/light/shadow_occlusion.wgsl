@@ -50,6 +50,13 @@ fn occlusion_sample(at: OcclusionPoint, march: OcclusionMarch) -> OcclusionSampl
     return OcclusionSample(along, OCCLUSION_SINE * march.t, at.p + along);
 }
 
+// Whether the bounds of the component meet the sphere.
+fn occlusion_meets(component: Component, sample: OcclusionSample) -> bool {
+    let plane = dot(component.half_space.xyz, sample.q) + component.half_space.w;
+    let away = length(max(max(component.low - sample.q, sample.q - component.high), vec3f(0.0)));
+    return max(away, plane) < sample.size * 0.999;
+}
+
 // Passes a distance, if nothing is to be evaluated there: where the bounds are outside of the sphere, so
 // is the component. At the same distances for all: steps by the field would show the bounds.
 fn occlusion_pass(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, is_found: bool) {
@@ -69,10 +76,11 @@ fn occlusion_take(at: OcclusionPoint, march: ptr<function, OcclusionMarch>, rati
     march.t = select(next, at.near, is_over);
 }
 
+// Each round finds the next evaluation first: invocations that run together then evaluate together.
 @compute @workgroup_size(8, 8)
 fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
     let pixel = dispatch.origin + id.xy;
-    // Whether it has not ended in another dispatch, which has stored its shares.
+    // Not ended in another dispatch, which has stored its shares.
     var is_open = all(pixel < dispatch.end);
     let own = shadow_place(id.xy, 1u);
     let point = shadow_point(pixel);
@@ -90,7 +98,6 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
 #end
     }
     while !march.ended && scene_evaluations < scene_limits.max_evaluations && scene_visits < scene_limits.max_visits {
-        // Finds the next evaluation. Invocations that run together then evaluate together.
         var component: Component;
         var sample: OcclusionSample;
         var is_found = false;
@@ -128,9 +135,7 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
 #end
                 component = scene_components[index];
                 sample.q += component.eye;
-                let plane = dot(component.half_space.xyz, sample.q) + component.half_space.w;
-                let bound = max(length(max(max(component.low - sample.q, sample.q - component.high), vec3f(0.0))), plane);
-                is_found = bound < sample.size * 0.999 && march.t <= at.far;
+                is_found = occlusion_meets(component, sample) && march.t <= at.far;
                 occlusion_pass(at, &march, is_found);
             }
         }
@@ -138,7 +143,11 @@ fn shadow_occlusion(@builtin(global_invocation_id) id: vec3u) {
             scene_evaluations += 1u;
             field_begin(component);
             let f = field(sample.q);
-            occlusion_take(at, &march, (f + select(0.0, field_slack(), f > 0.0)) / sample.size);
+            var size = OCCLUSION_SINE * march.t;
+#if SCENE_COPIES
+            size *= select(1.0, copies.factor, copies.is_in);
+#end
+            occlusion_take(at, &march, (f + select(0.0, field_slack(), f > 0.0)) / size);
         }
     }
     if is_open {

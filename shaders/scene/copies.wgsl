@@ -89,7 +89,7 @@ fn copies_next(cone: SceneCone, march: ptr<function, ConeMarch>, copies: ptr<fun
     if !(*copies).walks {
         let origin = instancer_local_point(cone.origin);
         let direction = instancer_local_direction(cone.direction);
-        *walk = copy_walk_begin(origin, direction, cone.near, cone.far, cone.spread * instancer.most_factor, 0u);
+        *walk = copy_walk_begin(COPY_OF_ANY, origin, direction, cone.near, cone.far, cone.spread * instancer.most_factor, 0u);
         if (*copies).left_at.w != 0 {
             copy_walk_go_on(walk, (*copies).left_at, cone.far);
         }

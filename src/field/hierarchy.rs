@@ -47,7 +47,8 @@ pub const MAX_HIERARCHY_DEPTH: u32 = 30;
 const MAX_GROWTH: f64 = 2.0;
 
 impl Hierarchy {
-    const NONE: u32 = u32::MAX;
+    /// No node.
+    pub const NONE: u32 = u32::MAX;
 
     /// Builds the tree over `boxes`. Empty boxes belong to nothing and are left out.
     pub fn build(boxes: &[Aabb]) -> Self {
@@ -85,6 +86,16 @@ impl Hierarchy {
         tree
     }
 
+    /// One tree of several, each of which stays whole: those of the parts begin at the nodes that are returned. The items
+    /// of a part follow those of the parts before; `counts` are their numbers. It cannot be refitted.
+    pub fn joined(parts: &[Self], counts: &[u32]) -> (Self, Vec<u32>) {
+        let (mut tree, mut roots) = (Self::default(), vec![Self::NONE; parts.len()]);
+        let filled: Vec<usize> = (0..parts.len()).filter(|at| !parts[*at].nodes.is_empty()).collect();
+        let firsts: Vec<u32> = counts.iter().scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count))).collect();
+        join(&mut tree.nodes, &mut roots, parts, &firsts, &filled);
+        (tree, roots)
+    }
+
     /// Gives an item another box. False if the tree has to be rebuilt: the item has become bounded or unbounded, or
     /// the boxes have grown too much to be useful.
     #[must_use]
@@ -112,6 +123,30 @@ impl Hierarchy {
             at = parent;
         }
     }
+}
+
+/// Appends the trees of these parts, and tells where each begins.
+fn join(nodes: &mut Vec<HierarchyNode>, roots: &mut [u32], parts: &[Hierarchy], firsts: &[u32], filled: &[usize]) {
+    let index = nodes.len();
+    if let [at] = filled {
+        roots[*at] = index as u32;
+        let moved = |node: &HierarchyNode| HierarchyNode {
+            link: node.link + if node.is_leaf() { firsts[*at] } else { index as u32 },
+            ..*node
+        };
+        nodes.extend(parts[*at].nodes.iter().map(moved));
+        return;
+    }
+    let (left, right) = filled.split_at(filled.len() / 2);
+    if right.is_empty() {
+        return;
+    }
+    nodes.push(HierarchyNode { bounds: Aabb::EMPTY, link: 0, axis: 0 });
+    join(nodes, roots, parts, firsts, left);
+    let middle = nodes.len();
+    join(nodes, roots, parts, firsts, right);
+    let bounds = nodes[index + 1].bounds.union(&nodes[middle].bounds);
+    nodes[index] = HierarchyNode { bounds, link: middle as u32, axis: 0 };
 }
 
 /// Half the surface area, a measure of the probability that a ray meets the box (Goldsmith and Salmon, "Automatic
@@ -202,6 +237,33 @@ mod tests {
         // All at one place, and ever farther apart: no order of splits may make the tree too deep.
         for boxes in [boxes(500, |_| DVec3::ONE), boxes(300, |i| DVec3::X * 2_f64.powf(i))] {
             assert_eq!(is_right(&Hierarchy::build(&boxes), &boxes), Ok(()));
+        }
+    }
+
+    #[test]
+    fn joined_trees_stay_whole() {
+        for counts in [vec![], vec![0], vec![5], vec![3, 0, 40], vec![1, 2, 3, 4, 5, 6, 7]] {
+            let boxes = scattered(counts.iter().sum());
+            let mut rest = boxes.as_slice();
+            let mut taken = |count: &usize| {
+                let (own, others) = rest.split_at(*count);
+                rest = others;
+                Hierarchy::build(own)
+            };
+            let parts: Vec<Hierarchy> = counts.iter().map(&mut taken).collect();
+            let counts: Vec<u32> = counts.iter().map(|count| *count as u32).collect();
+            let (all, roots) = Hierarchy::joined(&parts, &counts);
+            assert_eq!(is_right(&all, &boxes), Ok(()), "{counts:?}");
+            let mut first = 0;
+            for ((part, root), count) in parts.iter().zip(&roots).zip(&counts) {
+                assert_eq!(*root == Hierarchy::NONE, part.nodes.is_empty(), "{counts:?}");
+                for (i, node) in part.nodes.iter().enumerate() {
+                    let moved = all.nodes[*root as usize + i];
+                    let by = if node.is_leaf() { first } else { *root };
+                    assert_eq!(moved, HierarchyNode { link: node.link + by, ..*node }, "{counts:?}");
+                }
+                first += count;
+            }
         }
     }
 

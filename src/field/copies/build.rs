@@ -121,17 +121,24 @@ const BOX_SLACK: f64 = 1e-4;
 
 /// The places that exist, with a tree over everything that a copy there may reach at any time.
 fn listed(flat: &FlatInstancer, places: Vec<Place>, envelope: Envelope) -> Placement {
-    let list = |places: Vec<Place>, boxes: &[Aabb]| {
-        let tree = Hierarchy::build(boxes);
-        let rows = place_rows(&places, &tree);
-        Placement::List(Arc::new(PlaceList { places, tree, rows }))
-    };
-    let at_rest = FlatInstancer { placement: list(places.clone(), &[]), dynamics: Vec::new(), ..flat.clone() };
+    let all = PlaceList { places, tree: Hierarchy::default(), roots: Vec::new(), rows: Vec::new() };
+    let all = Arc::new(all);
+    let at_rest = FlatInstancer { placement: Placement::List(all.clone()), dynamics: Vec::new(), ..flat.clone() };
     let is_still = flat.dynamics.is_empty();
-    let box_of = |copy: &Copy| box_at_any_time(&at_rest, copy, envelope, is_still);
-    let exists = |(at, place)| Some((place, box_of(&copy_of_place(&at_rest, at)?)));
-    let (places, boxes): (Vec<Place>, Vec<Aabb>) = places.into_iter().enumerate().filter_map(exists).unzip();
-    list(places, &boxes)
+    let mut of_types = vec![(Vec::new(), Vec::new()); flat.shares.len()];
+    for (at, place) in all.places.iter().enumerate() {
+        if let Some(copy) = copy_of_place(&at_rest, at) {
+            let (places, boxes) = &mut of_types[copy.kind as usize];
+            places.push(*place);
+            boxes.push(box_at_any_time(&at_rest, &copy, envelope, is_still));
+        }
+    }
+    let trees: Vec<Hierarchy> = of_types.iter().map(|(_, boxes)| Hierarchy::build(boxes)).collect();
+    let counts: Vec<u32> = of_types.iter().map(|(places, _)| places.len() as u32).collect();
+    let (tree, roots) = Hierarchy::joined(&trees, &counts);
+    let rows = place_rows(of_types.iter().map(|(places, _)| places.as_slice()), &tree);
+    let places = of_types.into_iter().flat_map(|(places, _)| places).collect();
+    Placement::List(Arc::new(PlaceList { places, tree, roots, rows }))
 }
 
 /// What a copy may reach at any time. `copy` is at rest.

@@ -86,6 +86,7 @@ pub struct GpuInstancer {
     palette: [u32; MAX_PALETTE],
     masks: [GpuCopyMask; MAX_MASKS],
     dynamics: [GpuCopyDynamic; MAX_DYNAMICS],
+    roots: [u32; MAX_TYPES],
     /// The components of the types, for queries of the scene; `u32::MAX` for none.
     pub components: [u32; MAX_TYPES],
 }
@@ -166,6 +167,10 @@ fn fill_lists(gpu: &mut GpuInstancer, instancer: &FlatInstancer, place: DVec3) {
     for (to, material) in gpu.palette.iter_mut().zip(&instancer.palette) {
         *to = *material;
     }
+    if let Placement::List(list) = &instancer.placement {
+        gpu.roots.fill(Hierarchy::NONE);
+        gpu.roots[..list.roots.len()].copy_from_slice(&list.roots);
+    }
     for (to, mask) in gpu.masks.iter_mut().zip(&instancer.masks) {
         *to = gpu_mask(mask, place);
     }
@@ -182,9 +187,9 @@ pub fn gpu_places(instancer: &FlatInstancer) -> &[[f32; 4]] {
     }
 }
 
-/// The rows of a tree and the places below it.
-pub(super) fn place_rows(places: &[Place], tree: &Hierarchy) -> Vec<[f32; 4]> {
-    let mut rows = Vec::with_capacity(2 * tree.nodes.len() + 3 * places.len());
+/// The rows of a tree and the places below it, those of each type together.
+pub(super) fn place_rows<'a>(of_types: impl Iterator<Item = &'a [Place]>, tree: &Hierarchy) -> Vec<[f32; 4]> {
+    let mut rows = Vec::with_capacity(4 * tree.nodes.len());
     for node in &tree.nodes {
         // Outward, so that no copy is lost by rounding.
         let slack = 1e-6 * node.bounds.min.abs().max(node.bounds.max.abs()).max_element();
@@ -194,12 +199,12 @@ pub(super) fn place_rows(places: &[Place], tree: &Hierarchy) -> Vec<[f32; 4]> {
             rows.push([x, y, z, f32::from_bits(word)]);
         }
     }
-    for place in places {
+    for (kind, place) in of_types.enumerate().flat_map(|(kind, places)| places.iter().map(move |place| (kind, place))) {
         let [x, y, z] = vector(place.position);
         rows.push([x, y, z, place.up as f32]);
         rows.push(floats(place.rotation.to_array()));
         let [a, b, c] = place.cell.map(|i| f32::from_bits(i as u32));
-        rows.push([a, b, c, 0.0]);
+        rows.push([a, b, c, f32::from_bits(kind as u32)]);
     }
     rows
 }

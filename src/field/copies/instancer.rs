@@ -64,13 +64,15 @@ pub struct FlatLattice {
     pub stagger: f64,
 }
 
-/// Places that do not follow a rule, in the order of a tree over them.
+/// Places that do not follow a rule, in the order of the types of their copies.
 #[derive(Clone, Debug)]
 pub struct PlaceList {
     /// The places.
     pub places: Vec<Place>,
-    /// A tree over the boxes of the copies there.
+    /// A tree over the boxes of the copies there: of the trees over those of each type.
     pub tree: Hierarchy,
+    /// The nodes at which the trees of the types begin; [`Hierarchy::NONE`] for types without a copy.
+    pub roots: Vec<u32>,
     /// Both as the GPU reads them: made once, not for each frame.
     pub rows: Vec<[f32; 4]>,
 }
