@@ -6,6 +6,7 @@
 pub mod app;
 pub mod bench;
 pub mod cli;
+pub mod export;
 
 pub use isolith_bricks as bricks;
 pub use isolith_document as document;

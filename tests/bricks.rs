@@ -74,7 +74,8 @@ fn said(bricks: &Bricks, p: DVec3) -> f64 {
     match bricks.content(voxel.map(|n| n / BRICK_VOXELS)) {
         Some(BrickContent::Far(voxels)) => voxels * bricks.voxel(),
         Some(BrickContent::Near { .. }) => bricks.interpolated(p).unwrap(),
-        None => bricks.coarse(voxel.map(|n| n / CELL_VOXELS)).unwrap()[0],
+        None if bricks.side(voxel.map(|n| n / CELL_VOXELS)).unwrap() => -BAND * bricks.voxel(),
+        None => BAND * bricks.voxel(),
     }
 }
 
@@ -193,21 +194,19 @@ fn what_bricks_say_is_a_lower_bound() {
 }
 
 #[test]
-fn coarse_distances_are_within_a_voxel() {
+fn cells_without_entries_lie_on_their_side_and_far_from_the_surface() {
     let mut dice = Dice(4);
     for (name, soup, _) in ten() {
         let bricks = made(&soup, 96.0);
         let cells = bricks.grid.cells;
         for _ in 0..60 {
             let cell = cells.map(|n| dice.below(n as usize) as u32);
-            for (i, coarse) in bricks.coarse(cell).unwrap().into_iter().enumerate() {
-                let p = bricks.grid.corner([0, 1, 2].map(|axis| cell[axis] + (i >> axis & 1) as u32));
-                let exact = soup.distance(p);
-                let is_known = name != "open" && exact > 1e-6;
-                assert!(coarse.is_finite() && coarse.abs() <= exact + bricks.voxel(), "{name}: {coarse} for {exact}");
-                assert!(!is_known || coarse.abs() >= exact - bricks.voxel(), "{name}: {coarse} for {exact}");
-                assert!(!is_known || (coarse < 0.0) == soup.is_inside(p), "{name}: {p}");
-            }
+            let Some(is_inside) = bricks.side(cell) else { continue };
+            let inner = dice.point() * f64::from(CELL_VOXELS) * bricks.voxel();
+            let p = bricks.grid.corner(cell) + inner;
+            let exact = soup.distance(p);
+            assert!(exact >= (BAND - 0.5) * bricks.voxel(), "{name}: {exact} at {p}");
+            assert!(name == "open" || is_inside == soup.is_inside(p), "{name}: {p}");
         }
     }
 }
@@ -313,16 +312,14 @@ fn bricks_survive_as_bytes() {
         change(&mut bricks);
         from_bytes(&to_bytes(&bricks, key), key).unwrap_err()
     };
-    let cells = bricks.grid.cell_count();
-    let entries = cells + cells.div_ceil(4);
-    let changes: [&dyn Fn(&mut Bricks); 8] = [
-        &|b| b.texels[cells][0] = 1 << 20,
+    let entries = bricks.grid.cell_count().div_ceil(4);
+    let changes: [&dyn Fn(&mut Bricks); 7] = [
+        &|b| b.texels[0][0] = 1 << 20,
         &|b| b.texels[entries].fill(u32::MAX),
         &|b| b.first_brick += 1,
         &|b| b.first_brick = u32::MAX,
         &|b| b.grid.cells = [u32::MAX; 3],
         &|b| b.grid.voxel = f64::NAN,
-        &|b| b.coarse_scale = f64::INFINITY,
         &|b| b.looks.as_mut().unwrap().texels[6][0] = u32::MAX,
     ];
     for (i, change) in changes.into_iter().enumerate() {

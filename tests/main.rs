@@ -11,6 +11,7 @@ mod cli;
 mod contract;
 mod copies;
 mod copies_pictures;
+mod copies_shadows;
 mod counts;
 mod debug_view;
 mod documents;

@@ -1,70 +1,80 @@
-// Distance bricks of a model: `src/field/eval/brick_field.rs` is the counterpart and explains the payload
-// rows from `data` on, `src/bricks/mod.rs` the texels.
+// Distance bricks of a model, see `src/bricks` for their texels. `src/field/eval/brick_field.rs` is the
+// counterpart and explains the payload rows from `data` on.
 
 const CELL_VOXELS: f32 = 14.0;
 const BRICK_VOXELS: f32 = 7.0;
 const BRICK_TEXELS: u32 = 32u;
 // Steps of a sample in a voxel, and the greatest distance that samples hold, in voxels.
 const SAMPLE_STEPS: f32 = 32.0;
-const SAMPLE_REACH: f32 = 4.0;
+const SAMPLE_REACH: f32 = 3.96875;
+// Places of cells without entries: inside, and one more outside.
+const CELL_INSIDE: u32 = 0xfffffffeu;
+const LEVEL_ROWS: u32 = 3u;
 
 fn sdf_mesh_field(p: vec3f, a: vec4f, b: vec4f, data: u32) -> f32 {
-    let place = scene_row(data + 1u);
-    let size = scene_row(data + 2u);
+    let levels = u32(scene_row(data + 1u).x);
+    var row = data + 2u;
+    let finest = mesh_field_level(p, row);
+    var best = finest.x;
+    var reached = finest.y;
+    for (var level = 1u; level < levels; level += 1u) {
+        if abs(reached) < SAMPLE_REACH {
+            break;
+        }
+        row += LEVEL_ROWS;
+        let coarser = mesh_field_level(p, row);
+        best = max(best, coarser.x);
+        reached = coarser.y;
+    }
+    return select(best, -best, finest.y < 0.0);
+}
+
+// A lower bound of the distance by the samples of a level, in meters; and what they tell, in voxels.
+fn mesh_field_level(p: vec3f, row: u32) -> vec2f {
+    let place = scene_row(row);
+    let size = scene_row(row + 1u);
+    let limits = scene_row(row + 2u);
     let voxel = place.w;
     let at = (p - place.xyz) * (1.0 / voxel);
     let within = clamp(at, vec3f(0.0), size.xyz * CELL_VOXELS);
-    let value = mesh_field_within(within, size, scene_row(data + 3u), voxel);
+    let raw = mesh_field_within(within, size, u32(limits.x));
+    let value = (abs(raw) * voxel - limits.y) * limits.w;
     let beside = (at - within) * voxel;
     let beyond = dot(beside, beside);
     if beyond > 0.0 {
-        return sqrt(beyond + value * value);
+        let rest = max(value, 0.0);
+        return vec2f(sqrt(beyond + rest * rest), raw);
     }
-    return value;
+    return vec2f(value, raw);
 }
 
-// At a point within the grid, in voxels from its origin.
-fn mesh_field_within(at: vec3f, size: vec4f, coarse: vec4f, voxel: f32) -> f32 {
+// What samples tell at a point within the grid, both in voxels, from the origin of the grid.
+fn mesh_field_within(at: vec3f, size: vec4f, first_brick: u32) -> f32 {
     let counts = vec3u(size.xyz);
     let cell = min(vec3u(at * (1.0 / CELL_VOXELS)), counts - 1u);
     let index = cell.x + counts.x * (cell.y + counts.y * cell.z);
     let first = u32(size.w);
-    let corners = bricks_texel(first + index);
-    let middle = mesh_field_trilinear(
-        unpack2x16snorm(corners.x),
-        unpack2x16snorm(corners.y),
-        unpack2x16snorm(corners.z),
-        unpack2x16snorm(corners.w),
-        at * (1.0 / CELL_VOXELS) - vec3f(cell),
-    ) * coarse.x;
-    let far = abs(middle) - coarse.y;
-    if far >= SAMPLE_REACH * voxel {
-        return select(far, -far, middle < 0.0);
-    }
     let cells = counts.x * counts.y * counts.z;
-    let entries = first + cells + (cells + 3u) / 4u;
-    let places = bricks_texel(first + cells + index / 4u);
+    let places = bricks_texel(first + index / 4u);
     let place = places[index % 4u];
-    // In voxels from the origin of the cell: each of its two bricks has seven.
-    let inner = at - vec3f(cell) * CELL_VOXELS;
-    let brick = vec3u(inner >= vec3f(BRICK_VOXELS));
-    let number = brick.x + 2u * brick.y + 4u * brick.z;
-    let pair = bricks_texel(entries + 2u * place + number / 4u);
-    let entry = pair[number % 4u];
-    if (entry >> 31u) == 0u {
-        let least = max(f32(entry & 0xffffffu) * (1.0 / 16.0) * voxel, far);
-        return select(least, -least, (entry & 0x40000000u) != 0u);
+    if place >= CELL_INSIDE {
+        return select(SAMPLE_REACH, -SAMPLE_REACH, place == CELL_INSIDE);
     }
-    let slope = 1.0 + f32((entry >> 24u) & 0x7fu) * (1.0 / 64.0);
-    let samples = first + u32(coarse.z) + (entry & 0xffffffu) * BRICK_TEXELS;
-    let value = mesh_field_samples(inner - vec3f(brick) * BRICK_VOXELS, samples) * (voxel / slope);
-    let depth = max(abs(value), far);
-    return select(depth, -depth, value < 0.0);
+    let inner = at - vec3f(cell) * CELL_VOXELS;
+    let brick = min(vec3u(max(inner, vec3f(0.0)) * (1.0 / BRICK_VOXELS)), vec3u(1u));
+    let number = brick.x + 2u * brick.y + 4u * brick.z;
+    let entries = bricks_texel(first + (cells + 3u) / 4u + 2u * place + number / 4u);
+    let entry = entries[number % 4u];
+    if (entry >> 31u) == 0u {
+        return select(SAMPLE_REACH, -SAMPLE_REACH, (entry & 0x40000000u) != 0u);
+    }
+    let samples = first + first_brick + (entry & 0xffffffu) * BRICK_TEXELS;
+    return mesh_field_samples(inner - vec3f(brick) * BRICK_VOXELS, samples);
 }
 
 // The samples of a brick, in voxels, at a point in voxels from its first one.
 fn mesh_field_samples(at: vec3f, first: u32) -> f32 {
-    let low = min(vec3u(at), vec3u(6u));
+    let low = min(vec3u(max(at, vec3f(0.0))), vec3u(6u));
     let row = first + 4u * low.z;
     let after = low.y + 1u;
     let steps = mesh_field_trilinear(
@@ -88,7 +98,8 @@ fn mesh_field_pair(texel: vec4u, y: u32, x: u32) -> vec2f {
 
 // Values at the corners of a cube, interpolated: pairs along x, at (y, z) = (0, 0), (1, 0), (0, 1), (1, 1).
 fn mesh_field_trilinear(a: vec2f, b: vec2f, c: vec2f, d: vec2f, t: vec3f) -> f32 {
-    let along_x = vec4f(a.x, b.x, c.x, d.x) + (vec4f(a.y, b.y, c.y, d.y) - vec4f(a.x, b.x, c.x, d.x)) * t.x;
+    let low = vec4f(a.x, b.x, c.x, d.x);
+    let along_x = low + (vec4f(a.y, b.y, c.y, d.y) - low) * t.x;
     let along_y = along_x.xz + (along_x.yw - along_x.xz) * t.y;
     return along_y.x + (along_y.y - along_y.x) * t.z;
 }

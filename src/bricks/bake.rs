@@ -6,9 +6,7 @@ use std::collections::HashMap;
 use isolith_geometry::Aabb;
 
 use super::encode::cells;
-use super::{
-    BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, SAMPLE_REACH, encode,
-};
+use super::{BAND, BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, Bricks, encode};
 
 /// Half the diagonal of a brick, in voxels.
 const HALF_DIAGONAL: f64 = 6.062_178;
@@ -50,7 +48,6 @@ fn sampled(grid: &BrickGrid, brick: [u32; 3], distance: &dyn Fn(DVec3) -> f64) -
     let mut out = Box::new([0; BRICK_VOLUME]);
     for (sample, [x, y, z]) in out.iter_mut().zip(cells([BRICK_SAMPLES as u32; 3])) {
         let voxels = distance(grid.sample([first[0] + x, first[1] + y, first[2] + z])) / grid.voxel;
-        debug_assert!(SAMPLE_REACH > BAND);
         *sample = BrickContent::sample_byte(voxels);
     }
     out

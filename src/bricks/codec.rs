@@ -4,14 +4,14 @@
 use glam::DVec3;
 use isolith_geometry::Aabb;
 
-use super::{BRICK_TEXELS, BrickGrid, Bricks, ContentHash, ContentKey, Looks, MAX_BRICK_TEXELS, NO_ENTRIES};
+use super::{BRICK_TEXELS, BrickGrid, Bricks, ContentHash, ContentKey, INSIDE, Looks, MAX_BRICK_TEXELS};
 
 /// The first bytes of a file of bricks.
 pub const CODEC_MAGIC: [u8; 8] = *b"isobrick";
 /// The version of the layout.
 const VERSION: u32 = 1;
 /// Bytes before the texels.
-const HEADER: usize = 8 + 4 + 4 + 16 + 8 * 12 + 4 * 4 + 3 * 8;
+const HEADER: usize = 8 + 4 + 4 + 16 + 8 * 10 + 4 * 4 + 3 * 8;
 /// Bytes behind them.
 const CHECKSUM: usize = 16;
 
@@ -53,7 +53,7 @@ pub fn to_bytes(bricks: &Bricks, key: ContentKey) -> Vec<u8> {
     out.extend(key.0.iter().flat_map(|word| word.to_le_bytes()));
     let Bricks { grid, bounds, .. } = bricks;
     let points = [grid.origin, bounds.min, bounds.max].into_iter().flat_map(|p| p.to_array());
-    let numbers = points.chain([grid.voxel, bricks.coarse_scale, bricks.coarse_error]);
+    let numbers = points.chain([grid.voxel]);
     out.extend(numbers.flat_map(f64::to_le_bytes));
     out.extend(grid.cells.into_iter().chain([bricks.first_brick]).flat_map(u32::to_le_bytes));
     let first_look = bricks.looks.as_ref().map_or(0, |looks| looks.first_look as usize);
@@ -87,7 +87,7 @@ pub fn from_bytes(bytes: &[u8], key: ContentKey) -> Result<Bricks, CodecError> {
     let has_looks = read.word() == 1;
     let own_key = ContentKey([read.long(), read.long()]);
     let [origin, min, max] = [0; 3].map(|_| DVec3::new(read.number(), read.number(), read.number()));
-    let [voxel, coarse_scale, coarse_error] = [0; 3].map(|_| read.number());
+    let voxel = read.number();
     let [x, y, z, first_brick] = [0; 4].map(|_| read.word());
     let [texels, looks, first_look] = [0; 3].map(|_| read.long());
     let is_possible = texels <= MAX_BRICK_TEXELS as u64 && looks <= 2 * MAX_BRICK_TEXELS as u64;
@@ -109,8 +109,6 @@ pub fn from_bytes(bytes: &[u8], key: ContentKey) -> Result<Bricks, CodecError> {
     let bricks = Bricks {
         grid: BrickGrid { origin, voxel, cells: [x, y, z] },
         bounds: Aabb::new(min, max),
-        coarse_scale,
-        coarse_error,
         first_brick,
         texels: all,
         looks: has_looks.then_some(looks),
@@ -134,17 +132,15 @@ impl Bricks {
         ensure(bounds.is_finite() && !bounds.is_empty(), "its bounds are none")?;
         let within = grid.bounds().expanded(grid.voxel);
         ensure(within.contains(bounds.min) && within.contains(bounds.max), "its bounds exceed its grid")?;
-        let numbers = [self.coarse_scale, self.coarse_error];
-        ensure(numbers.iter().all(|v| v.is_finite() && *v > 0.0), "its coarse distances have no scale")?;
-        let (places, entries) = (cells, cells + cells.div_ceil(4));
+        let entries = cells.div_ceil(4);
         let first = self.first_brick as usize;
         ensure(entries <= first && first <= self.texels.len(), "its samples start elsewhere")?;
         ensure((first - entries).is_multiple_of(2), "half of a cell's entries is missing")?;
         ensure((self.texels.len() - first).is_multiple_of(BRICK_TEXELS), "a part of a brick is missing")?;
         ensure(self.texels.len() <= MAX_BRICK_TEXELS, "it is too large")?;
         let with_entries = (first - entries) / 2;
-        let is_place = |place: &u32| *place == NO_ENTRIES || (*place as usize) < with_entries;
-        ensure(self.texels[places..entries].iter().flatten().all(is_place), "a cell's entries are nowhere")?;
+        let is_place = |place: &u32| *place >= INSIDE || (*place as usize) < with_entries;
+        ensure(self.texels[..entries].iter().flatten().all(is_place), "a cell's entries are nowhere")?;
         let count = self.count();
         let is_entry = |entry: &u32| entry >> 31 == 0 || ((entry & 0xff_ffff) as usize) < count;
         ensure(self.texels[entries..first].iter().flatten().all(is_entry), "a brick is nowhere")?;

@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::{
-    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_BRICKS, NO_ENTRIES,
-    SAMPLE_STEPS,
+    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Bricks, CELL_BRICKS, INSIDE, SAMPLE_STEPS,
 };
 
 impl Bricks {
@@ -22,13 +21,6 @@ impl Bricks {
             self.brick_texels((entry & 0xff_ffff) as usize)?.iter().flatten().flat_map(|word| word.to_le_bytes());
         samples.iter_mut().zip(bytes).for_each(|(sample, byte)| *sample = byte);
         Some(BrickContent::Near { samples, slope })
-    }
-
-    /// The distances at the corners of a cell, in meters, x fastest; `None` outside of the grid.
-    pub fn coarse(&self, cell: [u32; 3]) -> Option<[f64; 8]> {
-        let texel = self.texels.get(self.cell_index(cell)?)?;
-        let half = |i: usize| (texel[i / 2] >> (16 * (i % 2))) as u16 as i16;
-        Some([0, 1, 2, 3, 4, 5, 6, 7].map(|i| f64::from(half(i)) / 32_767.0 * self.coarse_scale))
     }
 
     /// The distance between the samples around a point, in meters; `None` where there are none.
@@ -61,6 +53,13 @@ impl Bricks {
         Some(((entry & 0xff_ffff) as usize, voxel.map(|n| (n % BRICK_VOXELS) as usize), at - corner))
     }
 
+    /// Whether a cell without entries is inside; `None` for one with entries, and outside of the grid.
+    pub fn side(&self, cell: [u32; 3]) -> Option<bool> {
+        let cell = self.cell_index(cell)?;
+        let place = self.texels.get(cell / 4)?[cell % 4];
+        (place >= INSIDE).then_some(place == INSIDE)
+    }
+
     fn cell_index(&self, cell: [u32; 3]) -> Option<usize> {
         let [nx, ny, _] = self.grid.cells.map(|n| n as usize);
         let is_there = (0..3).all(|i| cell[i] < self.grid.cells[i]);
@@ -69,14 +68,13 @@ impl Bricks {
 
     fn entry(&self, brick: [u32; 3]) -> Option<u32> {
         let cell = self.cell_index(brick.map(|n| n / CELL_BRICKS))?;
-        let cells = self.grid.cell_count();
-        let place = self.texels.get(cells + cell / 4)?[cell % 4];
-        if place == NO_ENTRIES {
+        let place = self.texels.get(cell / 4)?[cell % 4];
+        if place >= INSIDE {
             return None;
         }
         let [x, y, z] = brick.map(|n| (n % CELL_BRICKS) as usize);
         let own = x + 2 * (y + 2 * z);
-        let first = cells + cells.div_ceil(4) + 2 * place as usize;
+        let first = self.grid.cell_count().div_ceil(4) + 2 * place as usize;
         Some(self.texels.get(first + own / 4)?[own % 4])
     }
 

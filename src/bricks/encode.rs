@@ -3,8 +3,8 @@
 use isolith_geometry::Aabb;
 
 use super::{
-    BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BrickGrid, Bricks, CELL_BRICKS, CELL_VOXELS, MAX_BRICK_TEXELS,
-    NO_ENTRIES, RESOLUTIONS, SAMPLE_REACH, SAMPLE_STEPS,
+    BAND, BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BrickGrid, Bricks, CELL_BRICKS, CELL_VOXELS, INSIDE,
+    MAX_BRICK_TEXELS, NO_ENTRIES, RESOLUTIONS, SAMPLE_REACH, SAMPLE_STEPS,
 };
 
 /// What is known of a brick.
@@ -97,21 +97,21 @@ pub fn encode(
     corner: &mut dyn FnMut([u32; 3]) -> f64,
     brick: &mut dyn FnMut([u32; 3]) -> Result<BrickContent, BrickError>,
 ) -> Result<Bricks, BrickError> {
-    let least = grid.cell_count() + grid.cell_count().div_ceil(4);
+    let least = grid.cell_count().div_ceil(4);
     if least > MAX_BRICK_TEXELS {
         return Err(BrickError::TooLarge { texels: least });
     }
     let corners = Corners::new(&grid, corner);
-    // The distance at a point is at most half a diagonal off from what its cell's corners say, the surface of the
-    // samples at most a voxel from that of the solid, as are the corners.
-    let coarse_error = grid.voxel * (0.75_f64.sqrt() * f64::from(CELL_VOXELS) + 2.0) + corners.scale / 65_534.0;
+    // The distance at a point is at most half a diagonal off from that of some corner, and the corners a voxel.
+    let error = grid.voxel * (0.75_f64.sqrt() * f64::from(CELL_VOXELS) + 1.0);
     let (mut entries, mut samples) = (Vec::new(), Vec::new());
-    let mut texels: Vec<[u32; 4]> = Vec::with_capacity(least);
-    let mut places = vec![[NO_ENTRIES; 4]; grid.cell_count().div_ceil(4)];
+    let mut places = vec![[NO_ENTRIES; 4]; least];
     for (index, cell) in cells(grid.cells).enumerate() {
-        texels.push(corners.packed(cell));
-        let far = corners.least(cell) - coarse_error;
-        if far >= SAMPLE_REACH * grid.voxel {
+        let side = corners.side(cell);
+        if side.abs() - error >= BAND * grid.voxel {
+            if side < 0.0 {
+                places[index / 4][index % 4] = INSIDE;
+            }
             continue;
         }
         places[index / 4][index % 4] = (entries.len() / 2) as u32;
@@ -126,11 +126,11 @@ pub fn encode(
             return Err(BrickError::TooLarge { texels });
         }
     }
-    texels.extend(places);
+    let mut texels = places;
     texels.extend(entries);
     let first_brick = texels.len() as u32;
     texels.extend(samples);
-    Ok(Bricks { grid, bounds, coarse_scale: corners.scale, coarse_error, first_brick, texels, looks: None })
+    Ok(Bricks { grid, bounds, first_brick, texels, looks: None })
 }
 
 /// All indices below `count`, x fastest.
@@ -157,36 +157,30 @@ fn written(content: BrickContent, texels: &mut Vec<[u32; 4]>) -> u32 {
     }
 }
 
-/// The coarse distances.
+/// The distances at the corners of cells.
 struct Corners {
     count: [usize; 3],
     values: Vec<f64>,
-    scale: f64,
 }
 
 impl Corners {
     fn new(grid: &BrickGrid, corner: &mut dyn FnMut([u32; 3]) -> f64) -> Self {
         let count = grid.cells.map(|n| n + 1);
-        let values: Vec<f64> = cells(count).map(corner).collect();
-        let scale = values.iter().fold(grid.voxel, |most, v| most.max(v.abs()));
-        Self { count: count.map(|n| n as usize), values, scale }
+        Self { count: count.map(|n| n as usize), values: cells(count).map(corner).collect() }
     }
 
-    fn of(&self, cell: [u32; 3]) -> [f64; 8] {
+    /// The distance of least size at the corners of a cell; 0 if the signs differ.
+    fn side(&self, cell: [u32; 3]) -> f64 {
         let [x, y, z] = cell.map(|n| n as usize);
         let at = |i: usize| x + (i & 1) + self.count[0] * (y + (i >> 1 & 1) + self.count[1] * (z + (i >> 2)));
-        [0, 1, 2, 3, 4, 5, 6, 7].map(|i| self.values[at(i)])
-    }
-
-    /// The least distance at the corners, without sign; 0 if the signs differ.
-    fn least(&self, cell: [u32; 3]) -> f64 {
-        let corners = self.of(cell);
-        let is_one_side = corners.iter().all(|v| *v > 0.0) || corners.iter().all(|v| *v < 0.0);
-        if is_one_side { corners.iter().fold(f64::INFINITY, |least, v| least.min(v.abs())) } else { 0.0 }
-    }
-
-    fn packed(&self, cell: [u32; 3]) -> [u32; 4] {
-        let steps = self.of(cell).map(|v| u32::from((v / self.scale * 32_767.0).round() as i16 as u16));
-        [0, 2, 4, 6].map(|i| steps[i] | steps[i + 1] << 16)
+        let corners = [0, 1, 2, 3, 4, 5, 6, 7].map(|i| self.values[at(i)]);
+        let least = corners.iter().fold(f64::INFINITY, |least, v| least.min(v.abs()));
+        if corners.iter().all(|v| *v > 0.0) {
+            least
+        } else if corners.iter().all(|v| *v < 0.0) {
+            -least
+        } else {
+            0.0
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{BAND, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS};
+use super::{BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS};
 use isolith_geometry::Aabb;
 
 /// A grid of cells, bricks and voxels along the axes.
@@ -19,7 +19,8 @@ pub struct BrickGrid {
 impl BrickGrid {
     /// The grid for a surface within `bounds`, which are finite. On each side is a margin of two voxels and more.
     pub fn around(bounds: &Aabb, voxel: f64) -> Self {
-        let margin = 2.0 * BAND;
+        // Two voxels on each side, and one more for rounding.
+        let margin = 5.0;
         let count = |size: f64| ((size / voxel + margin) / f64::from(CELL_VOXELS)).ceil().max(1.0) as u32;
         let cells = (2.0 * bounds.half()).to_array().map(count);
         let size = DVec3::from(cells.map(f64::from)) * (f64::from(CELL_VOXELS) * voxel);

@@ -1,12 +1,11 @@
-//! Distance bricks: the distances of a solid in voxels near its surface, and coarse ones elsewhere.
+//! Distance bricks: the distances of a solid in voxels near its surface.
 //!
 //! A grid of *cells* covers the solid, each of 2³ bricks, each of 7³ voxels. Texels of four words hold, one after the
 //! other:
 //!
 //! | texels | hold |
 //! |---|---|
-//! | one per cell | the distances at its eight corners as 16-bit numbers, x fastest; 1 is [`Bricks::coarse_scale`] |
-//! | one per four cells | the place of each cell's entries, in cells with entries; [`NO_ENTRIES`] far from the surface |
+//! | one per four cells | the place of each cell's entries, in cells with entries; far from the surface [`NO_ENTRIES`], or [`INSIDE`] |
 //! | two per cell with entries | an entry for each of its bricks, x fastest |
 //! | 32 per brick | its 8³ samples as bytes, x fastest, then y, then z: neighbors share those on their common face |
 //!
@@ -16,9 +15,7 @@
 //! | 24–30 | the greatest slope of the samples here and in the neighbors, less 1, in 1/64, rounded up | 30: inside |
 //! | 0–23 | the number of the brick | the distance to the surface is at least this, in 1/16 of a voxel |
 //!
-//! The *surface* is where the trilinear interpolation of the samples is 0. What the evaluators make of it is a lower
-//! bound of the distance to this surface, exact in sign and zeros: the interpolated value over the slope, which holds
-//! since it is less than what the neighbors measure; or the coarse distance less its greatest error.
+//! The *surface* is where the trilinear interpolation of the samples is 0; see `levels` for the field.
 
 mod bake;
 mod codec;
@@ -26,6 +23,7 @@ mod decode;
 mod digest;
 mod encode;
 mod grid;
+mod levels;
 mod looks;
 mod placeholder;
 
@@ -34,6 +32,7 @@ pub use codec::{CODEC_MAGIC, CodecError, from_bytes, to_bytes};
 pub use digest::{ContentHash, ContentKey};
 pub use encode::{BrickContent, BrickError, encode};
 pub use grid::BrickGrid;
+pub use levels::{BrickLevels, LEVEL_RATIO, MAX_LEVELS};
 pub use looks::{LOOK_HEADER, Looks, VoxelLook, linear_from_srgb, surface_samples};
 pub use placeholder::placeholder;
 
@@ -54,12 +53,14 @@ pub const CELL_BRICKS: u32 = 2;
 pub const CELL_VOXELS: u32 = CELL_BRICKS * BRICK_VOXELS;
 /// Steps of a sample per voxel of distance; 128 is the surface.
 pub const SAMPLE_STEPS: f64 = 32.0;
-/// The greatest distance that samples hold, in voxels.
-pub const SAMPLE_REACH: f64 = 4.0;
+/// The greatest distance that samples hold, in voxels: 127 steps.
+pub const SAMPLE_REACH: f64 = 127.0 / SAMPLE_STEPS;
 /// A brick that is at least this far from the surface needs no samples, in voxels.
-pub const BAND: f64 = 2.0;
-/// Marks a cell without entries.
+pub const BAND: f64 = 4.0;
+/// Marks a cell without entries, outside of the solid.
 pub const NO_ENTRIES: u32 = u32::MAX;
+/// Marks a cell without entries, inside.
+pub const INSIDE: u32 = u32::MAX - 1;
 /// Most texels of all bricks of a scene together: 256 MiB, and what 32-bit floats count exactly.
 pub const MAX_BRICK_TEXELS: usize = 1 << 24;
 /// Fewest and most voxels along the longest side.
@@ -72,10 +73,6 @@ pub struct Bricks {
     pub grid: BrickGrid,
     /// A box around the surface, within the grid.
     pub bounds: Aabb,
-    /// The coarse distance that a corner of 1 stands for, in meters.
-    pub coarse_scale: f64,
-    /// Coarse distances are at most this far off, in meters.
-    pub coarse_error: f64,
     /// The first texel of the samples.
     pub first_brick: u32,
     /// The texels.
@@ -94,6 +91,13 @@ impl Bricks {
     /// The number of bricks with samples.
     pub fn count(&self) -> usize {
         (self.texels.len() - self.first_brick as usize) / BRICK_TEXELS
+    }
+
+    /// The greatest slope of the interpolation of its samples anywhere; at least 1.
+    pub fn slope(&self) -> f64 {
+        let entries = &self.texels[self.grid.cell_count().div_ceil(4)..self.first_brick as usize];
+        let slope = |entry: &u32| if entry >> 31 == 1 { entry >> 24 & 0x7f } else { 0 };
+        1.0 + f64::from(entries.iter().flatten().map(slope).max().unwrap_or(0)) / 64.0
     }
 
     /// A number of 24 bits that other bricks rarely have (FNV-1a, Fowler, Noll, Vo).

@@ -5,16 +5,16 @@ use std::sync::{Arc, LazyLock};
 use glam::{DVec2, DVec3};
 use isolith_geometry::Aabb;
 
-use super::{Bricks, bake};
+use super::{BrickLevels, bake};
 
 /// Size of a voxel, in meters.
 const VOXEL: f64 = 0.02;
 
 /// A ring that stands on a disc, half a meter high: the shape of a model that is not there.
-pub fn placeholder() -> Arc<Bricks> {
-    static MADE: LazyLock<Arc<Bricks>> = LazyLock::new(|| {
+pub fn placeholder() -> Arc<BrickLevels> {
+    static MADE: LazyLock<Arc<BrickLevels>> = LazyLock::new(|| {
         let bounds = Aabb::new(DVec3::new(-0.3, -0.3, -0.3), DVec3::new(0.3, 0.45, 0.3));
-        Arc::new(bake(bounds, VOXEL, &distance).expect("it is small"))
+        Arc::new(BrickLevels::made(VOXEL, &mut |voxel| bake(bounds, voxel, &distance)).expect("it is small"))
     });
     MADE.clone()
 }

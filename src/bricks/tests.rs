@@ -27,7 +27,8 @@ fn the_slope_of_a_plane_is_that_of_its_distance() {
 
 #[test]
 fn the_placeholder_has_samples_where_its_surface_is_and_nowhere_else() {
-    let bricks = placeholder();
+    let levels = placeholder();
+    let bricks = levels.finest();
     assert!((40..400).contains(&bricks.count()), "{bricks:?}");
     assert_eq!(bricks.texels.len(), bricks.first_brick as usize + bricks.count() * BRICK_TEXELS);
     assert!(bricks.grid.bounds().contains(bricks.bounds.min) && bricks.grid.bounds().contains(bricks.bounds.max));

@@ -7,7 +7,7 @@ use super::flat_texture::RepeatedSpace;
 use super::lower_bound::{LowerBound, fold_bounds};
 use super::modifier_table::modifier_payload_row;
 use super::operand::{Operand, Value};
-use super::prepare::FIRST_TEXEL_ROW;
+use super::prepare::first_texels;
 use super::stack::shallow;
 use isolith_geometry::Aabb;
 use isolith_scene::{BlendKernel, MaterialId, ModifierKind, ShapeKind};
@@ -206,7 +206,7 @@ fn emit_data(flat: &mut FlatScene, operands: &[Operand<'_>], entries: &mut dyn I
             {
                 // Exact: there are fewer texels than f32 can count.
                 let first = flat.bricks.place(bricks) as f32;
-                flat.params[row + offset as usize + FIRST_TEXEL_ROW][3] = first;
+                first_texels(bricks, |at| flat.params[row + offset as usize + at][3] += first);
             }
         }
         if let Value::Fold(inner) | Value::Modified { content: inner, .. } = &operand.value {

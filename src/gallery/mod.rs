@@ -5,6 +5,7 @@
 
 mod blend_kernels;
 mod boolean_operations;
+mod character;
 mod chess_pawn;
 mod chessboard;
 mod crowds;
@@ -25,13 +26,17 @@ mod scene_builder;
 mod shadows;
 mod shapes;
 mod showcase;
+mod templates;
 mod textures;
+mod thumbnails;
 mod write;
 
 use isolith_scene::Scene;
 
 pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;
+pub use templates::{Template, templates};
+pub use thumbnails::thumbnail;
 pub use write::{install, write_all};
 
 /// The scene that opens first.
@@ -75,6 +80,7 @@ pub fn all() -> Vec<(&'static str, Scene)> {
         ("ocean", instancing::ocean()),
         ("city", instancing::city()),
         ("asteroids", instancing::asteroids()),
+        ("character", character::scene()),
         ("random-37", random(32, RANDOM_SEED)),
         ("random-145", random(128, RANDOM_SEED)),
         ("random-577", random(512, RANDOM_SEED)),

@@ -41,12 +41,12 @@ pub use gpu::{brdf_probe, copy_probe, driver, mesh_ray_probe, probe, scene_probe
 pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::Overlay;
-pub use passes::overlay_settings::OverlaySettings;
+pub use passes::overlay_settings::{GridPlane, OverlaySettings};
 pub use pipelines::cache::PipelineCache;
 pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;
 pub use renderer::{
-    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, TraceCounts,
+    Counts, Distribution, Film, Frame, PassTime, PixelCounts, RenderError, Renderer, Slot, StillWatch, TraceCounts,
 };
 pub use resources::hierarchy::{GpuHierarchyNode, SceneLimits};
 pub use resources::mesh_rays::{MAX_MESH_VISITS, MeshRayBuffer, RayMesh};

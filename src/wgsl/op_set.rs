@@ -121,6 +121,8 @@ pub fn shape_loops(kind: ShapeKind) -> [u32; 2] {
         ShapeKind::Mandelbulb => [4, 240],
         ShapeKind::Tube | ShapeKind::Extrusion | ShapeKind::Revolution | ShapeKind::Text => [3, 0],
         ShapeKind::Terrain | ShapeKind::Ocean => [1, 0],
+        // Over its levels.
+        ShapeKind::MeshField => [1, isolith_bricks::MAX_LEVELS as u32],
         _ => [0, 0],
     }
 }

@@ -47,10 +47,10 @@ fn entry_of(bricks: &Bricks, brick: DVec3) -> Option<u32> {
     let [x, y, z] = index.map(|v| v as usize);
     let cell = x / 2 + counts[0] * (y / 2 + counts[1] * (z / 2));
     let cells = counts[0] * counts[1] * counts[2];
-    let place = bricks.texels[cells + cell / 4][cell % 4];
+    let place = bricks.texels[cell / 4][cell % 4];
     let number = x % 2 + 2 * (y % 2) + 4 * (z % 2);
-    let entries = cells + cells.div_ceil(4) + 2 * place as usize;
-    (place != u32::MAX).then(|| bricks.texels[entries + number / 4][number % 4])
+    let entries = cells.div_ceil(4) + 2 * place as usize;
+    (place < u32::MAX - 1).then(|| bricks.texels[entries + number / 4][number % 4])
 }
 
 /// 99 outside of the solid and -99 inside, by the entry or the sign of the cell.
@@ -65,7 +65,7 @@ fn side(bricks: &Bricks, p: DVec3) -> f64 {
         return 99.0;
     }
     let index = (cell.x + counts.x * (cell.y + counts.y * cell.z)) as usize;
-    if bricks.texels[index][0] as u16 as i16 > 0 { 99.0 } else { -99.0 }
+    if bricks.texels[index / 4][index % 4] == u32::MAX { 99.0 } else { -99.0 }
 }
 
 /// What can be seen of the surface along each axis.

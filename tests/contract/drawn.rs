@@ -141,7 +141,7 @@ pub fn inside(shape: &Shape, p: DVec3) -> bool {
             let is_below = || p.y < height(&PreparedShape::new(shape), p.x, p.z);
             p.x.abs() < 0.5 * x && p.z.abs() < 0.5 * z && p.y > -depth && is_below()
         }
-        Shape::MeshField { file, .. } => bricks::interpolated(&file.bricks(), p) < 0.0,
+        Shape::MeshField { file, .. } => bricks::interpolated(file.bricks().finest(), p) < 0.0,
         _ => panic!("stands in `surfaces`"),
     }
 }
@@ -166,7 +166,7 @@ pub fn patches(shape: &Shape) -> Vec<Patch> {
         Shape::Terrain { size, .. } | Shape::Ocean { size, .. } | Shape::Heightmap { size, .. } => {
             heightfield(shape, *size)
         }
-        Shape::MeshField { file, .. } => bricks::patches(&file.bricks()),
+        Shape::MeshField { file, .. } => bricks::patches(&file.bricks().all()[0]),
         _ => panic!("stands in `surfaces`"),
     }
 }

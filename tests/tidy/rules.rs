@@ -15,29 +15,30 @@ pub const MODULES: &[(&str, &[&str])] = &[
     ("document", &["geometry", "jobs", "scene"]),
     ("gallery", &["geometry", "scene"]),
     ("field", &["bricks", "geometry", "guard", "jobs", "mesh", "scene"]),
-    ("wgsl", &["field", "scene"]),
+    ("wgsl", &["bricks", "field", "scene"]),
     ("render", &["bricks", "field", "geometry", "guard", "mesh", "scene", "wgsl"]),
     ("session", &["bricks", "document", "field", "geometry", "jobs", "mesh", "scene"]),
     ("editor", &["document", "field", "geometry", "guard", "jobs", "mesh", "scene", "session"]),
+    ("export", &["field", "geometry", "jobs", "mesh", "render", "scene", "session"]),
     ("bench", &["field", "geometry", "guard", "mesh", "render", "scene", "wgsl"]),
     (
         "app",
         &[
-            "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh", "render", "scene",
-            "session", "wgsl",
+            "document", "editor", "export", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh", "render",
+            "scene", "session", "wgsl",
         ],
     ),
     (
         "cli",
         &[
-            "app", "bench", "document", "editor", "field", "font", "gallery", "geometry", "guard", "jobs", "mesh",
-            "render", "scene", "session", "wgsl",
+            "app", "bench", "document", "editor", "export", "field", "font", "gallery", "geometry", "guard", "jobs",
+            "mesh", "render", "scene", "session", "wgsl",
         ],
     ),
 ];
 
 /// The modules of the program itself.
-pub const PROGRAM: &[&str] = &["app", "bench", "cli"];
+pub const PROGRAM: &[&str] = &["app", "bench", "cli", "export"];
 
 /// Crates that only some modules may name. An entry also covers crates whose names start with it.
 const CRATES: &[(&str, &[&str])] = &[
@@ -52,7 +53,7 @@ const CRATES: &[(&str, &[&str])] = &[
     ("harfrust", &["font"]),
     ("unicode_bidi", &["font"]),
     ("skrifa", &["font"]),
-    ("exr", &["scene", "cli"]),
+    ("exr", &["scene", "export"]),
     ("indicatif", &["cli"]),
     ("ctrlc", &["cli"]),
 ];

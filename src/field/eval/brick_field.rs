@@ -1,65 +1,75 @@
-//! The field of distance bricks, see `isolith_bricks` for their texels. Rows of the payload: origin of the voxels and
-//! their size; cells along each axis, first texel; what a coarse distance of 1 stands for, its greatest error, the first
-//! texel of samples after the first of all, and a number that says which bricks they are.
+//! The field of distance bricks, see `isolith_bricks` for their texels and for why it is a lower bound. Rows of the
+//! payload: the number of levels, and a number that says which bricks they are. Then for each level: origin of the voxels
+//! and their size; cells along each axis, first texel; the first texel of samples after that one, how much it may exceed
+//! the distance in meters, the greatest distance of its samples in voxels, one over its greatest slope.
 
 use super::Real;
 use super::sdf::{Data, length3};
-use isolith_bricks::{BAND, BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, SAMPLE_REACH, SAMPLE_STEPS};
+use isolith_bricks::{BRICK_TEXELS, BRICK_VOXELS, CELL_BRICKS, CELL_VOXELS, SAMPLE_REACH, SAMPLE_STEPS};
 
-/// A model; a lower bound of the distance to where the interpolation of its samples is 0.
+/// Rows of a level.
+const LEVEL_ROWS: usize = 3;
+
+/// A model; a lower bound of the distance to where the interpolation of its finest samples is 0. Its slope is at most 1.
+pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
+    let levels = data.row(1)[0] as usize;
+    let (mut best, mut level, is_inside) = mesh_field_level(p, data, 0);
+    while let Some(next) = level.filter(|next| *next < levels) {
+        let (value, after, _) = mesh_field_level(p, data, next);
+        (best, level) = (best.max(value), after);
+    }
+    if is_inside { -best } else { best }
+}
+
+/// A lower bound of the distance by the samples of a level, in meters; the next level if these samples reach no farther;
+/// and whether the point is inside.
 ///
 /// Outside of the grid the distance to the grid and that from there on are the sides of a right triangle or of an obtuse
 /// one, since the grid is convex and holds the surface.
-pub fn sdf_mesh_field<T: Real>(p: [T; 3], _: &[f64; 8], data: Data<'_>) -> T {
-    let [x, y, z, voxel] = data.row(1);
-    let size = data.row(2);
+fn mesh_field_level<T: Real>(p: [T; 3], data: Data<'_>, level: usize) -> (T, Option<usize>, bool) {
+    let row = 2 + LEVEL_ROWS * level;
+    let [x, y, z, voxel] = data.row(row);
+    let size = data.row(row + 1);
+    let [_, error, reach, over_slope] = data.row(row + 2);
     let at = [(p[0] - x) * (1.0 / voxel), (p[1] - y) * (1.0 / voxel), (p[2] - z) * (1.0 / voxel)];
     let most = [0, 1, 2].map(|i| T::constant(size[i] * f64::from(CELL_VOXELS)));
     let within = [0, 1, 2].map(|i| at[i].max(T::constant(0.0)).min(most[i]));
-    let value = mesh_field_within(within, data, voxel);
+    let raw = mesh_field_within(within, data, row);
+    let next = (raw.value().abs() >= reach).then_some(level + 1);
+    let value = (raw.abs() * voxel - error) * over_slope;
     let beside = [0, 1, 2].map(|i| (at[i] - within[i]) * voxel);
-    if beside.iter().all(|v| v.value() == 0.0) { value } else { length3([length3(beside), value, T::constant(0.0)]) }
+    let is_within = beside.iter().all(|v| v.value() == 0.0);
+    let value = if is_within { value } else { length3([length3(beside), value.positive(), T::constant(0.0)]) };
+    (value, next, raw.value() < 0.0)
 }
 
-/// The same at a point within the grid, in voxels from its origin.
-fn mesh_field_within<T: Real>(at: [T; 3], data: Data<'_>, voxel: f64) -> T {
-    let [nx, ny, nz, first] = data.row(2);
-    let [scale, error, first_brick, _] = data.row(3);
+/// The distance that samples tell at a point within the grid, both in voxels, from the origin of the grid.
+fn mesh_field_within<T: Real>(at: [T; 3], data: Data<'_>, row: usize) -> T {
+    let [nx, ny, nz, first] = data.row(row + 1);
     let counts = [nx, ny, nz];
     let cell = [0, 1, 2].map(|i| (at[i].value() / f64::from(CELL_VOXELS)).floor().min(counts[i] - 1.0));
     let index = (cell[0] + nx * (cell[1] + ny * cell[2])) as usize;
-    let (first, cells) = (first as usize, (nx * ny * nz) as usize);
-    let corners = data.texel(first + index).map(snorm_pair);
-    let t = [0, 1, 2].map(|i| at[i] * (1.0 / f64::from(CELL_VOXELS)) - cell[i]);
-    let coarse = trilinear(corners, t) * scale;
-    let far = coarse.abs() - error;
-    if far.value() >= SAMPLE_REACH * voxel {
-        return if coarse.value() < 0.0 { -far } else { far };
+    let places = first as usize;
+    let place = data.texel(places + index / 4)[index % 4];
+    if place >= isolith_bricks::INSIDE {
+        return T::constant(if place == isolith_bricks::INSIDE { -SAMPLE_REACH } else { SAMPLE_REACH });
     }
-    let entries = first + cells + cells.div_ceil(4);
-    let place = data.texel(first + cells + index / 4)[index % 4] as usize;
+    let inner = [0, 1, 2].map(|i| at[i] - cell[i] * f64::from(CELL_VOXELS));
     let last = f64::from(CELL_BRICKS - 1);
-    let brick = [0, 1, 2].map(|i| {
-        let before = f64::from(CELL_BRICKS) * cell[i];
-        ((at[i].value() / f64::from(BRICK_VOXELS)).floor() - before).clamp(0.0, last)
-    });
+    let brick = [0, 1, 2].map(|i| (inner[i].value() / f64::from(BRICK_VOXELS)).floor().clamp(0.0, last));
     let number = (brick[0] + 2.0 * brick[1] + 4.0 * brick[2]) as usize;
-    let entry = data.texel(entries + 2 * place + number / 4)[number % 4];
+    let entries = places + ((nx * ny * nz) as usize).div_ceil(4);
+    let entry = data.texel(entries + 2 * place as usize + number / 4)[number % 4];
     if entry >> 31 == 0 {
-        let least = T::constant(f64::from(entry & 0xff_ffff) / 16.0 * voxel).max(far);
-        return if entry & (1 << 30) == 0 { least } else { -least };
+        return T::constant(if entry & (1 << 30) == 0 { SAMPLE_REACH } else { -SAMPLE_REACH });
     }
-    let slope = 1.0 + f64::from(entry >> 24 & 0x7f) / 64.0;
-    let samples = first + first_brick as usize + (entry & 0xff_ffff) as usize * BRICK_TEXELS;
-    let within = [0, 1, 2].map(|i| at[i] - (f64::from(CELL_BRICKS) * cell[i] + brick[i]) * f64::from(BRICK_VOXELS));
-    let value = mesh_field_samples(within, samples, data) * (voxel / slope);
-    let depth = value.abs().max(far);
-    if value.value() < 0.0 { -depth } else { depth }
+    let samples = first as usize + data.row(row + 2)[0] as usize + (entry & 0xff_ffff) as usize * BRICK_TEXELS;
+    let within = [0, 1, 2].map(|i| inner[i] - brick[i] * f64::from(BRICK_VOXELS));
+    mesh_field_samples(within, samples, data)
 }
 
 /// The interpolation of a brick's samples at a point, in voxels from its first sample.
 fn mesh_field_samples<T: Real>(at: [T; 3], first: usize, data: Data<'_>) -> T {
-    debug_assert!(BAND < SAMPLE_REACH);
     let last = f64::from(BRICK_VOXELS - 1);
     let low = at.map(|v| v.value().floor().clamp(0.0, last));
     let [x, y, z] = low.map(|v| v as usize);
@@ -76,9 +86,4 @@ fn trilinear<T: Real>(pairs: [[f64; 2]; 4], [x, y, z]: [T; 3]) -> T {
     let [a, b, c, d] = pairs.map(|[low, high]| x * (high - low) + low);
     let (front, back) = (a + (b - a) * y, c + (d - c) * y);
     front + (back - front) * z
-}
-
-/// Two 16-bit numbers from -1 to 1.
-fn snorm_pair(word: u32) -> [f64; 2] {
-    [word & 0xffff, word >> 16].map(|half| (f64::from(half as u16 as i16) / 32_767.0).max(-1.0))
 }

@@ -29,6 +29,30 @@ pub fn entry_field(flat: &FlatScene, component: &Component, index: usize, p: DVe
     operand(flat, component, index, at(p))
 }
 
+/// The field of one entry with its gradient at `p`, which is relative to the space of the entry.
+pub fn entry_gradient(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> (f64, DVec3) {
+    let Dual { v, d } = operand(flat, component, index, at(p));
+    (v, d)
+}
+
+/// The result of the first operands of a fold, those in `range`, at `p`.
+pub fn partial_field(flat: &FlatScene, component: &Component, range: Range<usize>, p: DVec3) -> f64 {
+    fold(flat, component, range, at(p))
+}
+
+/// The point in the space of what an entry holds, of a modifier in its first copy; `None` for leaves and runs, which
+/// hold nothing.
+pub fn content_point(flat: &FlatScene, component: &Component, index: usize, p: DVec3) -> Option<DVec3> {
+    let node = &flat.nodes[index];
+    if node.is_leaf() || node.is_run() {
+        return None;
+    }
+    let Some(placing) = component.placing(flat, index) else { return Some(p) };
+    let local = placed(&placing, p.to_array());
+    let rows = &flat.params[node.params as usize..][MODIFIER_ROWS..];
+    node.modifier().map(|kind| modifier_point(kind, local, 0, rows).into())
+}
+
 /// The rounding of 32-bit numbers in the weight of an operand: the largest deviation from one half where both
 /// operands weigh the same.
 pub const TIE: f64 = 16.0 * f32::EPSILON as f64;

@@ -24,7 +24,10 @@ pub use crate::mixture::{
     MIXED, Mixture, SurfaceMaterial, mixture_add, mixture_decoded, mixture_joined, mixture_material, mixture_of,
 };
 pub use brick_field::sdf_mesh_field;
-pub use component::{SurfacePoint, TIE, entry_field, field, gradient, modified_field, surface};
+pub use component::{
+    SurfacePoint, TIE, content_point, entry_field, entry_gradient, field, gradient, modified_field, partial_field,
+    surface,
+};
 pub use ellipsoid::sdf_ellipsoid;
 pub use heightfield::{
     heightmap_height, ocean_height, sdf_heightmap, sdf_heights, sdf_ocean, sdf_terrain, terrain_height,

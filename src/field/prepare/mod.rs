@@ -15,13 +15,13 @@ mod profile;
 mod tube;
 
 pub(super) use heightfield::spline;
-pub(super) use mesh_field::FIRST_TEXEL_ROW;
+pub(super) use mesh_field::first_texels;
 use prepared_params::{PreparedParams, bounding_sphere};
 
 use std::sync::Arc;
 
 use super::eval::Payload;
-use isolith_bricks::Bricks;
+use isolith_bricks::BrickLevels;
 use isolith_geometry::Aabb;
 use isolith_scene::{Heights, SHAPE_FLOATS, Shape, ShapeKind, text_profile};
 
@@ -37,7 +37,19 @@ pub struct PreparedShape {
     /// A box around the surface, in local space.
     pub bounds: Aabb,
     /// The bricks of a model.
-    pub bricks: Option<Arc<Bricks>>,
+    pub bricks: Option<Arc<BrickLevels>>,
+}
+
+/// The texel at an index over all levels.
+fn level_texel(levels: &BrickLevels, index: usize) -> [u32; 4] {
+    let mut at = index;
+    for bricks in levels.all() {
+        if let Some(texel) = bricks.texels.get(at) {
+            return *texel;
+        }
+        at -= bricks.texels.len();
+    }
+    [0; 4]
 }
 
 impl Payload for PreparedShape {
@@ -45,7 +57,7 @@ impl Payload for PreparedShape {
         self.payload[index]
     }
     fn texel(&self, index: usize) -> [u32; 4] {
-        self.bricks.as_ref().map_or([0; 4], |bricks| bricks.texels[index])
+        self.bricks.as_ref().map_or([0; 4], |levels| level_texel(levels, index))
     }
 }
 

@@ -6,7 +6,7 @@ use super::samples::{Distances, HALF_DIAGONAL, Sampled, voxels};
 use super::watch::Watch;
 use isolith_bricks::{
     BAND, BRICK_SAMPLES, BRICK_TEXELS, BRICK_VOLUME, BRICK_VOXELS, BrickContent, BrickError, BrickGrid, CELL_BRICKS,
-    CELL_VOXELS, MAX_BRICK_TEXELS, SAMPLE_REACH,
+    CELL_VOXELS, MAX_BRICK_TEXELS,
 };
 
 /// Cells farther than this from the surface have no entries, in voxels: half a diagonal of a cell and more.
@@ -126,7 +126,7 @@ impl Contents {
         let corner = self.corners[joined(brick.map(|n| (n / CELL_BRICKS) as usize), self.size)].abs();
         let away = distances.at(voxels(&self.grid, self.grid.middle(brick)), first, corner + 25.0);
         let beyond = away.abs() - HALF_DIAGONAL - 0.01;
-        if beyond >= SAMPLE_REACH as f32 {
+        if beyond >= BAND as f32 {
             return Known::Far(beyond.copysign(away));
         }
         let Sampled { samples, least } = distances.sampled(brick);

@@ -10,7 +10,7 @@ use crate::renderer::evaluation::EvaluationCost;
 use crate::renderer::scene::PIPELINE_WINDOW;
 use crate::resources::brick_texture::BrickTexture;
 use crate::resources::buffers::{DataTexture, SyncedBuffer};
-use crate::resources::hierarchy::{HierarchyBuffers, SceneLimits, query_components};
+use crate::resources::hierarchy::{HierarchyBuffers, Obstacles, SceneLimits, query_components};
 use crate::resources::layouts::{
     Layouts, PARAMS_FORMAT, SceneBindings, TAPES_FORMAT, bind, compute_pipeline, entry, layout, read_storage, uniform,
     window, write_storage,
@@ -99,7 +99,7 @@ impl SceneProbe {
         let entries: Vec<_> =
             types.into_iter().enumerate().map(|(i, ty)| entry(i as u32, ShaderStages::COMPUTE, ty)).collect();
         let own = layout(device, "scene probe", &entries);
-        let hierarchy = HierarchyBuffers::layout(device, false);
+        let hierarchy = HierarchyBuffers::layout(device, Obstacles::default());
         let text = assemble("probe_scene.wgsl", &evaluator, Options::default())?;
         let pipeline = |entry_point| {
             let groups = [&layouts.view, &layouts.scene, &own, &hierarchy];
@@ -166,7 +166,7 @@ impl SceneProbe {
         let groups = [
             bind(device, "view", &self.layouts.view, &[view.binding()]),
             bindings.bind(device, &self.layouts.scene),
-            buffers.bind(device, &self.hierarchy, None),
+            buffers.bind(device, &self.hierarchy, None, None),
         ];
         LoadedScene { probe: self, gpu, origin, groups }
     }

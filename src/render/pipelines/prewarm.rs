@@ -50,9 +50,7 @@ impl Prewarmer {
             ray_counts: written[4].buffer(),
             nothing: written[5].buffer(),
         };
-        let [params, tapes_texture, bricks] =
-            [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT), ("bricks", BRICKS_FORMAT)]
-                .map(|(l, f)| DataTexture::new(device, l, f));
+        let [params, tapes_texture, bricks] = empty_textures(device);
         let scene = SceneBindings {
             nodes: small.binding(),
             params: params.binding(),
@@ -128,6 +126,12 @@ impl Prewarmer {
         self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait()
     }
+}
+
+/// Textures of rows, tapes and bricks without contents.
+fn empty_textures(device: &wgpu::Device) -> [DataTexture; 3] {
+    [("params", PARAMS_FORMAT), ("tapes", TAPES_FORMAT), ("bricks", BRICKS_FORMAT)]
+        .map(|(label, format)| DataTexture::new(device, label, format))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use wgpu::{BindGroup, BindGroupLayout};
 
+use crate::frame::copies_cost::cell_loops;
 use crate::gpu::Gpu;
 use crate::pipelines::key::PipelineKey;
 use crate::resources::brick_texture::BrickTexture;
@@ -39,6 +40,8 @@ pub struct SceneResources {
     copies_layout: BindGroupLayout,
     instancers: SyncedBuffer,
     places: SyncedBuffer,
+    /// The instancers as the device has them.
+    placed: Vec<GpuInstancer>,
 }
 
 impl SceneResources {
@@ -49,6 +52,7 @@ impl SceneResources {
             copies_layout: layouts.copies.clone(),
             instancers: SyncedBuffer::uniform(device, "instancers"),
             places: SyncedBuffer::storage(device, "places"),
+            placed: Vec::new(),
             nodes: SyncedBuffer::storage(device, "nodes"),
             rows: SyncedBuffer::uniform(device, "rows"),
             template_rows: SyncedBuffer::uniform(device, "rows of templates"),
@@ -114,10 +118,12 @@ impl SceneResources {
     fn upload_instancers(&mut self, gpu: &Gpu, flat: &FlatScene, eye: DVec3) -> bool {
         let mut rows: Vec<[f32; 4]> = Vec::new();
         let mut bytes = vec![0; flat.instancers.len() * INSTANCER_STRIDE];
+        self.placed.clear();
         for (instancer, slot) in flat.instancers.iter().zip(bytes.chunks_exact_mut(INSTANCER_STRIDE)) {
             let gpu = gpu_instancer(instancer, eye, rows.len() as u32);
             slot[..size_of::<GpuInstancer>()].copy_from_slice(bytemuck::bytes_of(&gpu));
             rows.extend_from_slice(gpu_places(instancer));
+            self.placed.push(gpu);
         }
         bytes.resize(bytes.len().max(INSTANCER_STRIDE), 0);
         let Gpu { device, queue, .. } = gpu;
@@ -146,6 +152,26 @@ impl SceneResources {
     /// First word of the tapes of a component.
     pub fn place(&self, tree: &Arc<CellTree>) -> Option<u32> {
         self.tapes.place(tree)
+    }
+
+    /// The instancers, for queries of the whole scene, which have to find the components of their types.
+    pub fn queried_instancers(&self, flat: &FlatScene) -> Vec<GpuInstancer> {
+        let mut all = self.placed.clone();
+        for (gpu, instancer) in all.iter_mut().zip(&flat.instancers) {
+            gpu.cell_visits = cell_loops(instancer);
+            gpu.components.fill(u32::MAX);
+        }
+        for (index, component) in flat.components.iter().enumerate() {
+            if let Some(of) = component.instanced {
+                all[of.instancer as usize].components[of.kind as usize] = index as u32;
+            }
+        }
+        all
+    }
+
+    /// The places of all instancers.
+    pub fn places(&self) -> wgpu::BindingResource<'_> {
+        self.places.binding()
     }
 
     /// All materials.

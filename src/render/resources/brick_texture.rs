@@ -26,10 +26,12 @@ impl BrickTexture {
         let kept = if grown { 0 } else { bricks.all().iter().zip(self.held.all()).take_while(same).count() };
         let mut at = 0;
         for (index, held) in bricks.all().iter().enumerate() {
-            if index >= kept {
-                self.texture.write(queue, at * texel, bytemuck::cast_slice(&held.texels));
+            for level in held.all() {
+                if index >= kept {
+                    self.texture.write(queue, at * texel, bytemuck::cast_slice(&level.texels));
+                }
+                at += level.texels.len();
             }
-            at += held.texels.len();
         }
         self.held = bricks.clone();
         grown
