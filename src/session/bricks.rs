@@ -13,7 +13,6 @@ use isolith_jobs::{Job, JobEnd, Jobs, Task};
 use isolith_mesh::{
     ClipTime, MeshLibrary, ModelPose, TriangleMesh, bricks_key, usual_resolution, voxel_for, voxelized,
 };
-use isolith_scene::ModelRequest;
 
 /// A model in a pose, and the size of its voxels.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,14 +33,6 @@ impl Hash for ModelKey {
         self.pose.hash(state);
         // Equal numbers have equal bits, but for the two zeros.
         [self.resolution, self.voxel].map(|v| (v + 0.0).to_bits()).hash(state);
-    }
-}
-
-impl From<&ModelRequest> for ModelKey {
-    fn from(request: &ModelRequest) -> Self {
-        let ModelRequest { path, clip, clip_time, resolution, voxel_size } = request.clone();
-        let clip = (!clip.is_empty()).then_some(ClipTime { name: clip, time: clip_time });
-        Self { pose: ModelPose { path, clip }, resolution, voxel: voxel_size }
     }
 }
 
