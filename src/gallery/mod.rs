@@ -23,6 +23,7 @@ mod modifiers;
 mod operators;
 mod random_groups;
 mod scene_builder;
+mod sculptures;
 mod shadows;
 mod shapes;
 mod showcase;
@@ -35,6 +36,7 @@ use isolith_scene::Scene;
 
 pub use crowds::{boxes, crowd, spheres};
 pub use random_groups::random;
+pub use sculptures::SCULPTURES;
 pub use templates::{Template, templates};
 pub use thumbnails::thumbnail;
 pub use write::{install, write_all};

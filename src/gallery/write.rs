@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use super::sculptures::SCULPTURES;
 use isolith_scene::file::{self, FileError};
 use isolith_scene::{Node, NodeKind, Scene};
 
-/// Every model of the examples: its path beside the scene, and its bytes.
+/// Every model of the examples that others made: its path beside the scene, and its bytes.
 const MODELS: &[(&str, &[u8])] = &[("models/suzanne.glb", include_bytes!("models/suzanne.glb"))];
 
 /// Writes every scene as `NAME.json` into `folder`, which must exist, and the models below it. Returns the scene files.
@@ -21,15 +22,17 @@ pub fn write_all(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
 /// # Errors
 /// A file that cannot be written.
 pub fn install(name: &str, scene: &Scene, folder: &Path) -> Result<PathBuf, FileError> {
-    for (model, bytes) in MODELS.iter().filter(|(model, _)| shows(scene, model)) {
+    let given = MODELS.iter().filter(|(model, _)| shows(scene, model)).map(|(model, bytes)| (*model, bytes.to_vec()));
+    let own = SCULPTURES.iter().filter(|(model, _)| shows(scene, model)).map(|(model, make)| (*model, make()));
+    for (model, bytes) in given.chain(own) {
         let path = folder.join(model);
         // An identical file stays untouched: it may be watched.
-        if std::fs::read(&path).is_ok_and(|present| present == *bytes) {
+        if std::fs::read(&path).is_ok_and(|present| present == bytes) {
             continue;
         }
         let parent = path.parent().unwrap_or(folder);
         std::fs::create_dir_all(parent).map_err(|error| FileError::new(parent, error.to_string()))?;
-        file::replace(&path, bytes, 0).map_err(|error| FileError::new(&path, error.to_string()))?;
+        file::replace(&path, &bytes, 0).map_err(|error| FileError::new(&path, error.to_string()))?;
     }
     let path = folder.join(format!("{name}.json"));
     file::save(scene, &path).map(|()| path)

@@ -75,7 +75,7 @@ fn sheets_get_a_thickness_wherever_they_lie() {
 fn the_usual_resolution_follows_the_edges() {
     let of = |soup: Soup| usual_resolution(&soup.mesh());
     assert_eq!(of(Soup::cuboid(DVec3::ONE)), 64.0);
-    let (some, many) = (of(Soup::sphere(40, 1.0)), of(Soup::knot(80)));
+    let (some, many) = (of(Soup::sphere(40, 1.0)), of(Soup::knot(160)));
     assert!((64.0..=128.0).contains(&some) && many > some && many <= 512.0, "{some} and {many}");
 }
 

@@ -13,8 +13,8 @@ use isolith_bricks::{
 const ASKED: f32 = 20.0;
 /// Bricks of a cell.
 const IN_CELL: usize = (CELL_BRICKS * CELL_BRICKS * CELL_BRICKS) as usize;
-/// The nearest triangles that neighbors know are this far from the best at most, in voxels.
-const SPREAD_ERROR: f64 = 0.1;
+/// More than distances in 32 bits are off, in voxels.
+const ROUNDING: f64 = 0.01;
 /// Of all bricks with samples, about half are near enough to keep them.
 const SAMPLED_PER_KEPT: usize = 4;
 
@@ -132,7 +132,7 @@ impl Contents {
         let Sampled { samples, least } = distances.sampled(brick);
         // The square of a distance, less that of the place, is concave: between samples it is at most 1/4 for each axis
         // below the least of theirs.
-        let least = f64::from(least) - SPREAD_ERROR;
+        let least = f64::from(least) - ROUNDING;
         let between =
             if distances.solid.thin.is_empty() { (least * least - 0.75).max(0.0).sqrt() } else { least - 0.87 };
         let far = between.max(f64::from(beyond));

@@ -12,12 +12,10 @@ use isolith_bricks::{BRICK_SAMPLES, BRICK_VOLUME, BRICK_VOXELS, BrickContent, Br
 pub(super) const SHEET_HALF: f32 = 0.75;
 /// Half the diagonal of a brick, in voxels.
 pub(super) const HALF_DIAGONAL: f32 = 6.062_178;
-/// Up to this far from a triangle samples are compared with all triangles: the corners of the voxels that the surface
-/// passes. Those farther away learn from their neighbors which triangle may be the nearest (Tsai, "Rapid and accurate
-/// computation of the distance function using grids", 2002).
+/// Up to this far from a triangle all samples around it are compared with it: the corners of the voxels that the surface
+/// passes. Those farther away look for the nearest in the hierarchy, from what their neighbors found.
 const EXACT: f32 = 1.75;
 const SIDE: usize = BRICK_SAMPLES;
-const _: () = assert!(SIDE.is_power_of_two());
 
 /// The distances of a solid, in voxels.
 pub(super) struct Distances<'a> {
@@ -116,22 +114,10 @@ fn band(facets: &Facets, first: [u32; 3], reach: f32) -> Band {
     nearest.compare_all();
     // The distance changes at most as much as the place.
     let is_wanted: [bool; BRICK_VOLUME] = std::array::from_fn(|i| away - place(i).distance(middle) < reach);
-    let last = SIDE - 1;
-    for corner in 0..8 {
-        let i = index([corner & 1, corner >> 1 & 1, corner >> 2].map(|side| side * last));
-        if is_wanted[i]
-            && let Some((squared, id)) = facets.nearest(origin + place(i), (away + HALF_DIAGONAL + 0.01).powi(2))
-        {
-            (nearest.squared[i], nearest.ids[i]) = (squared, id);
-        }
-    }
     for half in 0..8 {
         nearest.compare(index([half & 1, half >> 1 & 1, half >> 2].map(|side| 3 + side)), seed);
     }
-    // From each corner in turn, as fast sweeping does (Zhao, 2005); opposite ones follow each other.
-    for corner in [0, 7, 1, 6, 2, 5, 3, 4] {
-        nearest.sweep(corner, &is_wanted);
-    }
+    nearest.complete(reach, &is_wanted);
     for (value, squared) in band.iter_mut().zip(nearest.squared) {
         *value = squared.sqrt();
     }
@@ -174,24 +160,21 @@ impl Nearest<'_> {
         }
     }
 
-    /// Passes nearest triangles on to neighbors, away from a corner.
-    fn sweep(&mut self, corner: usize, is_wanted: &[bool; BRICK_VOLUME]) {
-        // The sides of the brick are powers of two: turning an axis around is turning its bits.
-        let strides = [1, SIDE, SIDE * SIDE];
-        let turned: usize = (0..3).filter(|axis| corner >> axis & 1 == 1).map(|axis| (SIDE - 1) * strides[axis]).sum();
-        for step in 0..BRICK_VOLUME {
-            let i = step ^ turned;
+    /// Finds the nearest triangles of all others, no farther than what their neighbors found.
+    fn complete(&mut self, reach: f32, is_wanted: &[bool; BRICK_VOLUME]) {
+        for i in 0..BRICK_VOLUME {
             if self.squared[i] <= EXACT * EXACT || !is_wanted[i] {
                 continue;
             }
-            for stride in strides {
-                if step / stride % SIDE == 0 {
-                    continue;
-                }
-                let id = self.ids[(step - stride) ^ turned];
+            for stride in [1, SIDE, SIDE * SIDE] {
+                let id = if i / stride % SIDE > 0 { self.ids[i - stride] } else { NONE };
                 if id != NONE && id != self.ids[i] {
                     self.compare(i, id);
                 }
+            }
+            let within = self.squared[i].min(reach * reach);
+            if let Some((squared, id)) = self.facets.nearest(self.origin + place(i), within) {
+                (self.squared[i], self.ids[i]) = (squared, id);
             }
         }
     }
