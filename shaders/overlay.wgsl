@@ -8,7 +8,8 @@
 #include "common/screen.wgsl"
 
 struct Overlay {
-    // The eye in the world, x and z reduced to one coarse cell of the grid; y is its true height.
+    // The eye in the world, turned so that the grid lies across y; x and z are reduced to one
+    // coarse cell of the grid, y is its true height.
     eye: vec3f,
     // Side of a fine cell; ten of them make a coarse one.
     cell: f32,
@@ -19,6 +20,13 @@ struct Overlay {
     leaf_count: u32,
     // Size of the target in pixels, the picture's or larger: width plus 65 536 times height.
     size: u32,
+    // The axis across the grid; 1 for the ground.
+    axis: u32,
+    // Distance over which the grid loses half of its strength.
+    reach: f32,
+    // Share of the depth by which the grid must be nearer than a surface.
+    bias: f32,
+    padding: f32,
 }
 
 @group(1) @binding(0) var<uniform> overlay: Overlay;
@@ -114,7 +122,13 @@ fn overlay_is_selected(pixel: vec2i) -> bool {
     return ((selected[index >> 5u] >> (index & 31u)) & 1u) == 1u;
 }
 
-// Lines one pixel wide on the plane y = 0. Nearer surfaces hide them; they fade with distance.
+// The vector with the axis across the grid in the place of y.
+fn overlay_turned(v: vec3f) -> vec3f {
+    return select(select(v.xzy, v, overlay.axis == 1u), v.yxz, overlay.axis == 0u);
+}
+
+// Lines one pixel wide on the plane y = 0, after turning. Nearer surfaces hide them; they fade
+// with distance.
 fn overlay_grid(pixel: vec2u) -> vec4f {
     let direction = overlay_direction(pixel);
     if direction.y * overlay.eye.y >= 0.0 {
@@ -122,13 +136,13 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     }
     let t = -overlay.eye.y / direction.y;
     let seen = overlay_inside(vec2i(round(overlay_place(vec2f(pixel) + 0.5))));
-    if t > textureLoad(depth_target, seen, 0).x * (1.0 - 1e-4) {
+    if t > textureLoad(depth_target, seen, 0).x * (1.0 - overlay.bias) {
         return vec4f(0.0);
     }
     let at = overlay_ground(pixel);
     // Step on the ground from this pixel to its neighbors.
-    let right = view.right * (2.0 / f32(view.width));
-    let down = view.up * (-2.0 / f32(view.height));
+    let right = overlay_turned(view.right) * (2.0 / f32(view.width));
+    let down = overlay_turned(view.up) * (-2.0 / f32(view.height));
     let width = overlay_step(pixel, right) + overlay_step(pixel, down);
     let fine = overlay_lines(at, overlay.cell, width) * 0.12;
     let coarse = overlay_lines(at, overlay.cell * 10.0, width) * 0.25;
@@ -136,20 +150,20 @@ fn overlay_grid(pixel: vec2u) -> vec4f {
     var strength = max(fine, coarse);
     let on_axis = vec2f(abs(at.y - overlay.axis_x), abs(at.x - overlay.axis_z)) < width.yx;
     if on_axis.x {
-        color = vec3f(0.9, 0.3, 0.33);
+        color = select(vec3f(0.9, 0.3, 0.33), vec3f(0.45, 0.7, 0.3), overlay.axis == 0u);
         strength = 0.6;
     } else if on_axis.y {
-        color = vec3f(0.3, 0.5, 0.95);
+        color = select(vec3f(0.3, 0.5, 0.95), vec3f(0.45, 0.7, 0.3), overlay.axis == 2u);
         strength = 0.6;
     }
-    let fade = exp2(-t / (overlay.cell * 60.0));
+    let fade = exp2(-t / overlay.reach);
     return vec4f(color, strength * fade);
 }
 
 // Unit direction of the ray through the center of a pixel of the target.
 fn overlay_direction(pixel: vec2u) -> vec3f {
     let at = (vec2f(pixel) + 0.5) / overlay_size() * 2.0 - 1.0;
-    return normalize(view.right * at.x - view.up * at.y + view.forward);
+    return normalize(overlay_turned(view.right * at.x - view.up * at.y + view.forward));
 }
 
 // Where the ray of a pixel meets the plane y = 0, in the reduced grid.
@@ -162,7 +176,7 @@ fn overlay_ground(pixel: vec2u) -> vec2f {
 // Step on the ground for a `step` in the picture. Avoids the difference of two places on the
 // ground, which are nearly equal in narrow pictures.
 fn overlay_step(pixel: vec2u, step: vec3f) -> vec2f {
-    let along = view_offset(vec2f(pixel) + 0.5 - view.jitter) + view.forward;
+    let along = overlay_turned(view_offset(vec2f(pixel) + 0.5 - view.jitter) + view.forward);
     let falls = vec2f(along.y, along.y + step.y);
     let safe = select(falls, vec2f(1e-6), abs(falls) < vec2f(1e-6));
     return abs(step.xz * along.y - along.xz * step.y) * abs(overlay.eye.y / (safe.x * safe.y));

@@ -90,7 +90,7 @@ fn marked(bench_scene: &BenchScene, size: u32, selected: &[NodeId]) -> Vec<bool>
     let mut shown = |outline: &[NodeId]| {
         let shown_at = Some([SIDE, SIDE]);
         let grid = true;
-        let overlay = OverlaySettings { outline: outline.to_vec(), shown_at, grid };
+        let overlay = OverlaySettings { outline: outline.to_vec(), shown_at, grid, ..OverlaySettings::default() };
         let mut frame = renderer.begin(Slot::Preview, flat, meshes, camera, [size, size], overlay).expect("a frame");
         renderer.advance(&mut frame, Duration::MAX).expect("a picture");
         assert_eq!(renderer.picture(Slot::Preview).expect("a picture").1, [SIDE, SIDE]);

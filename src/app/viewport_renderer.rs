@@ -8,11 +8,11 @@ use eframe::egui_wgpu::RenderState;
 use egui::TextureId;
 
 use super::samples::Samples;
-use crate::editor::{Editor, Message, Picture, ViewSettings};
+use crate::editor::{Editor, GridView, Message, Picture, ViewSettings};
 use crate::field::debug_view::{DepthRange, ViewMode};
 use crate::field::{FlatScene, Shading};
 use crate::mesh::TriangleMesh;
-use crate::render::{Frame, Gpu, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
+use crate::render::{Frame, Gpu, GridPlane, OverlaySettings, RenderError, Renderer, Slot, coarse_size};
 use crate::scene::NodeId;
 
 /// A picture that takes longer than this starts with a coarse one.
@@ -232,10 +232,10 @@ impl ViewportRenderer {
     fn differs_in_marks_only(&self, request: &RenderRequest) -> bool {
         let complete = self.shown == Some(Slot::Full) && self.in_flight.is_none() && !self.waiting;
         let marked_alike = |shown: &RenderRequest| {
-            let ViewSettings { show_grid, show_outline, view_mode, .. } = shown.view;
+            let ViewSettings { show_grid, grid, show_outline, view_mode, .. } = shown.view;
             let view_mode =
                 if view_mode.counts() == request.view.view_mode.counts() { view_mode } else { request.view.view_mode };
-            let view = ViewSettings { show_grid, show_outline, view_mode, ..request.view };
+            let view = ViewSettings { show_grid, grid, show_outline, view_mode, ..request.view };
             RenderRequest { view, outline: shown.outline.clone(), ..request.clone() }
         };
         // The hits of a later sample are not those of the picture.
@@ -347,11 +347,21 @@ impl ViewportRenderer {
         meshes: &[Option<Arc<TriangleMesh>>],
         size_px: [u32; 2],
     ) -> Result<Frame, RenderError> {
-        let RenderRequest { view: ViewSettings { camera, show_grid, view_mode, .. }, flat, outline, .. } = request;
+        let RenderRequest {
+            view: ViewSettings { camera, show_grid, grid: GridView { axis, cell, fades }, view_mode, .. },
+            flat,
+            outline,
+            ..
+        } = request;
         // Grid lines would falsify the colors of a view mode.
         let grid = *show_grid && *view_mode == ViewMode::Shaded;
         let shown_at = Some(request.view.size_px);
-        let overlay = OverlaySettings { grid, outline: outline.clone(), shown_at };
+        let overlay = OverlaySettings {
+            grid,
+            plane: GridPlane { axis: *axis, cell: Some(*cell), fades: *fades },
+            outline: outline.clone(),
+            shown_at,
+        };
         let renderer = self.renderers.active();
         let mut frame = renderer.begin(slot, flat, meshes, camera, size_px, overlay)?;
         if *view_mode != ViewMode::Shaded {

@@ -21,10 +21,12 @@
 //! ```
 
 mod change;
+mod copying;
 mod edit;
 mod history;
 mod keying;
 mod keys;
+mod layout;
 mod placement;
 mod preferences;
 mod recent;
@@ -37,10 +39,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use change::Change;
+pub use copying::extracted;
 pub use edit::Edit;
 use history::{History, State};
 pub use history::{MAX_HISTORY_NODES, MAX_STEPS};
-pub use preferences::{MAX_FAVORITES, PreferenceValues, Preferences};
+pub use layout::{Docked, DockedPart, MAX_LAYOUT_PARTS, PanelLayout};
+pub use preferences::{
+    ChangedKeys, MAX_CHANGED_KEYS, MAX_FAVORITES, PreferenceValues, Preferences, SCALES, export_keys, import_keys,
+};
 pub use recent::{MAX_RECENT, RecentFiles};
 pub use save::{SaveOrder, Saved};
 pub use state_folder::{data_folder, state_folder};
@@ -82,7 +88,10 @@ pub enum OverwriteRisk {
 #[derive(Debug)]
 struct Gesture {
     start: State,
+    /// The label of its first edit.
     label: Option<String>,
+    /// A label for all of it.
+    name: Option<String>,
     depth: u32,
 }
 
@@ -228,7 +237,16 @@ impl Document {
     pub fn begin_gesture(&mut self) {
         match &mut self.gesture {
             Some(gesture) => gesture.depth += 1,
-            None => self.gesture = Some(Gesture { start: self.state.clone(), label: None, depth: 1 }),
+            None => self.gesture = Some(Gesture { start: self.state.clone(), label: None, name: None, depth: 1 }),
+        }
+    }
+
+    /// Like [`Document::begin_gesture`], with the label of the step. A gesture within another does not name it.
+    pub fn begin_step(&mut self, label: impl Into<String>) {
+        let is_outermost = self.gesture.is_none();
+        self.begin_gesture();
+        if let Some(gesture) = self.gesture.as_mut().filter(|_| is_outermost) {
+            gesture.name = Some(label.into());
         }
     }
 
@@ -244,7 +262,7 @@ impl Document {
         if gesture.start.scene == self.state.scene {
             self.state.mark = gesture.start.mark;
         } else {
-            self.history.push(label, gesture.start);
+            self.history.push(gesture.name.unwrap_or(label), gesture.start);
         }
     }
 
@@ -281,7 +299,8 @@ impl Document {
 
     /// The label of the step that [`Document::undo`] would undo.
     pub fn undo_label(&self) -> Option<&str> {
-        let open = self.gesture.as_ref().and_then(|g| g.label.as_deref());
+        let open = self.gesture.as_ref().and_then(|g| g.label.as_ref().map(|label| g.name.as_ref().unwrap_or(label)));
+        let open = open.map(String::as_str);
         open.or_else(|| self.undo_labels().next())
     }
 

@@ -35,7 +35,7 @@ pub fn show(state: &mut EditorState, ctx: &Context) {
                     let is_on = state.session.document.selection().contains(&node.id);
                     let button = Button::selectable(is_on, (RichText::new(ICON_ROOM), RichText::new(name)))
                         .min_size(vec2(WIDTH, 26.0))
-                        .shortcut_text(RichText::new(group).color(theme::FAINT));
+                        .shortcut_text(RichText::new(group).color(theme::WEAK));
                     let response = ui.add(button);
                     let icon = response.rect.left_center() + vec2(ui.spacing().button_padding.x + 10.0, 0.0);
                     let square = egui::Rect::from_center_size(icon, egui::Vec2::splat(16.0));

@@ -158,12 +158,12 @@ pub fn button(ui: &mut Ui, label: &str, value: &mut [f32; 3], mixed: bool) -> (R
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::ColorWell, ui.is_enabled(), label));
     let color = Rgba::from_rgb(value[0], value[1], value[2]).into();
-    let fill: Color32 = if mixed { theme::FIELD } else { color };
+    let fill: Color32 = if mixed { *theme::FIELD } else { color };
     let border = if response.hovered() { theme::TEXT } else { theme::RESTING };
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, Stroke::new(1.0, border), egui::StrokeKind::Inside);
     if mixed {
         let font = egui::TextStyle::Button.resolve(ui.style());
-        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, theme::MIXED, font, theme::TEXT);
+        ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, theme::MIXED, font, *theme::TEXT);
     }
     let mut changed = false;
     let close = egui::PopupCloseBehavior::CloseOnClickOutside;

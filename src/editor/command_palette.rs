@@ -4,7 +4,7 @@ use egui::{Align2, Button, Color32, Context, Frame, Id, Key, Modal, Modifiers, R
 
 use super::commands::command::Command;
 use super::commands::entries::ICON_ROOM;
-use super::keymap::{Keymap, shown};
+use super::keymap::{KeyBindings, shown};
 use super::state::EditorState;
 use super::{theme, widgets};
 
@@ -81,10 +81,11 @@ impl CommandPalette {
             }
             for (index, command) in found.iter().enumerate() {
                 let (info, is_enabled) = (command.info(), command.is_enabled(state));
-                let keys = info.keys(Keymap::of(ui.ctx())).first().map_or_else(String::new, |k| shown(ui.ctx(), k));
+                let keys =
+                    info.keys_in(&KeyBindings::of(ui.ctx())).first().map_or_else(String::new, |k| shown(ui.ctx(), k));
                 let button = Button::selectable(index == self.chosen, (RichText::new(ICON_ROOM), info.label.as_str()))
                     .min_size(vec2(ui.available_width(), 26.0))
-                    .shortcut_text(RichText::new(keys).color(theme::FAINT));
+                    .shortcut_text(RichText::new(keys).color(theme::WEAK));
                 let response = ui.add_enabled(is_enabled, button);
                 info.paint_icon(ui, response.rect, is_enabled, None);
                 ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(format!("Run {}", info.label)));

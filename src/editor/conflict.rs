@@ -63,7 +63,7 @@ pub fn ask(ctx: &Context, path: &Path) -> Option<OverwriteAnswer> {
     let response = Modal::new(Id::unique("changed by others")).frame(frame).show(ctx, |ui| {
         ui.set_width(520.0);
         let heading = RichText::new(format!("“{name}” was changed by another program")).heading();
-        ui.add(egui::Label::new(heading.color(egui::Color32::WHITE)).wrap());
+        ui.add(egui::Label::new(heading.color(theme::STRONG)).wrap());
         ui.add_space(2.0);
         let text = "It is not the file any more that was opened or saved here. To write over it loses what the other \
                     program has written, though a backup stays beside it; to reload it loses your changes.";
@@ -78,8 +78,8 @@ pub fn ask(ctx: &Context, path: &Path) -> Option<OverwriteAnswer> {
                 answer = Some(OverwriteAnswer::Overwrite);
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let text = RichText::new("Save as…").color(egui::Color32::BLACK);
-                if ui.add(Button::new(text).fill(theme::ACCENT).min_size(size)).clicked() {
+                let text = RichText::new("Save as…").color(theme::ON_ACCENT);
+                if ui.add(Button::new(text).fill(*theme::ACCENT).min_size(size)).clicked() {
                     answer = Some(OverwriteAnswer::SaveAs);
                 }
                 if ui.add(Button::new("Cancel").min_size(size)).clicked() {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Button, Color32, Context, Id, Key, Label, Modal, Modifiers, RichText, TextEdit, Ui, vec2};
+use egui::{Button, Context, Id, Key, Label, Modal, Modifiers, RichText, TextEdit, Ui, vec2};
 
 use super::dialogs::{Next, PathField, Purpose, Question};
 use super::root::Editor;
@@ -65,7 +65,7 @@ impl Editor {
         let mut done = None;
         let response = Modal::new(Id::unique("path")).frame(frame(ctx)).show(ctx, |ui| {
             ui.set_width(460.0);
-            ui.label(RichText::new(field.purpose.title()).heading().color(Color32::WHITE));
+            ui.label(RichText::new(field.purpose.title()).heading().color(theme::STRONG));
             ui.add_space(6.0);
             done = path_field(ui, field);
         });
@@ -113,7 +113,8 @@ fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     }
     ui.add_space(10.0);
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let ok = if matches!(field.purpose, Purpose::Save(_)) { "Save" } else { "Open" };
+        let saves = matches!(field.purpose, Purpose::Save(_) | Purpose::ExportKeys);
+        let ok = if saves { "Save" } else { "Open" };
         if accented(ui, ok) {
             done = Some(true);
         }
@@ -136,7 +137,7 @@ fn question(
         ui.set_width(380.0);
         ui.add_space(4.0);
         let short = widgets::elided(name, NAME);
-        let title = RichText::new(format!("{verb} “{short}”?")).heading().color(Color32::WHITE);
+        let title = RichText::new(format!("{verb} “{short}”?")).heading().color(theme::STRONG);
         let title = ui.add(Label::new(title).wrap());
         if short != name {
             title.on_hover_text(name);
@@ -167,8 +168,8 @@ fn wants_save(ctx: &Context) -> bool {
 }
 
 fn accented(ui: &mut Ui, text: &str) -> bool {
-    let text = RichText::new(text).color(Color32::BLACK);
-    ui.add(Button::new(text).fill(theme::ACCENT).min_size(BUTTON)).clicked()
+    let text = RichText::new(text).color(theme::ON_ACCENT);
+    ui.add(Button::new(text).fill(*theme::ACCENT).min_size(BUTTON)).clicked()
 }
 
 /// Selects the file's name without folder and extension, so that typing replaces it.

@@ -73,7 +73,7 @@ fn row(state: &mut EditorState, ui: &mut Ui, scale: &TimeScale, scene: &Scene, t
     let lane = Rect::from_x_y_ranges(scale.lane, rect.y_range());
     let names = rect.with_max_x(lane.left() - 6.0);
     let painter = ui.painter().with_clip_rect(names.intersect(ui.clip_rect()));
-    painter.text(names.left_center(), Align2::LEFT_CENTER, &name, FontId::proportional(12.5), theme::TEXT);
+    painter.text(names.left_center(), Align2::LEFT_CENTER, &name, FontId::proportional(12.5), *theme::TEXT);
     let response = ui.interact(lane, ui.scope_id().with(("keys", &track.path)), Sense::CLICK | Sense::DRAG);
     response.widget_info(|| WidgetInfo::labeled(Role::ListItem, true, format!("Keys of {name}")));
     ui.painter().hline(lane.x_range(), rect.bottom(), (1.0, theme::LINE));
@@ -83,7 +83,7 @@ fn row(state: &mut EditorState, ui: &mut Ui, scale: &TimeScale, scene: &Scene, t
     }
     for key in &track.keys {
         let is_selected = state.playback.selected.contains(&id_of(track, key));
-        let color = if is_selected { theme::KEYED } else { theme::TEXT };
+        let color = if is_selected { *theme::KEYED } else { *theme::TEXT };
         diamond(ui, pos2(scale.x_of(key.time), lane.center().y), KEY, color, true);
     }
     answer(state, ui, scale, track, &response);

@@ -30,12 +30,12 @@ pub fn paint_node(painter: &Painter, rect: Rect, node: &Node) {
 /// The color of a node's kind.
 pub fn node_color(node: &Node) -> Color32 {
     match node.kind {
-        _ if node.negative => theme::NEGATIVE,
-        NodeKind::Object(_) => theme::OBJECT,
-        NodeKind::Group(_) | NodeKind::Instancer(_) => theme::GROUP,
-        NodeKind::Mesh(_) => theme::MESH,
-        NodeKind::Light(_) => theme::LIGHT,
-        NodeKind::Camera(_) => theme::CAMERA,
+        _ if node.negative => *theme::NEGATIVE,
+        NodeKind::Object(_) => *theme::OBJECT,
+        NodeKind::Group(_) | NodeKind::Instancer(_) => *theme::GROUP,
+        NodeKind::Mesh(_) => *theme::MESH,
+        NodeKind::Light(_) => *theme::LIGHT,
+        NodeKind::Camera(_) => *theme::CAMERA,
     }
 }
 
@@ -76,9 +76,9 @@ pub fn light_icon(light: &LightKind) -> MaterialIcon {
 }
 
 /// Paints an icon in the center of `rect`.
-pub fn paint_icon(painter: &Painter, rect: Rect, icon: MaterialIcon, color: Color32) {
+pub fn paint_icon(painter: &Painter, rect: Rect, icon: MaterialIcon, color: impl Into<Color32>) {
     let font = FontId::new(rect.height(), icon.font_family());
-    painter.text(rect.center(), Align2::CENTER_CENTER, icon.codepoint, font, color);
+    painter.text(rect.center(), Align2::CENTER_CENTER, icon.codepoint, font, color.into());
 }
 
 /// A square of the given side in the center of `rect`.

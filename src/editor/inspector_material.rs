@@ -59,7 +59,7 @@ pub fn show_alone(ui: &mut Ui, session: &mut EditSession, library: &mut Material
     let Some(material) = session.document.scene().material(id).cloned() else { return };
     widgets::card(ui, "Material", |ui| {
         beside_ball(ui, library, &material, |ui, library| {
-            ui.label(RichText::new(widgets::elided(&material.name, MOST_LETTERS)).strong().color(Color32::WHITE));
+            ui.label(RichText::new(widgets::elided(&material.name, MOST_LETTERS)).strong().color(theme::STRONG));
             ui.horizontal(|ui| {
                 let uses = library.uses(id);
                 ui.label(RichText::new(use_text(uses)).color(theme::WEAK));

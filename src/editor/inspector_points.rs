@@ -48,7 +48,7 @@ pub fn list(ui: &mut Ui, field: &NumberField<'_>, shown: &List, is_mixed: bool) 
     }
     ui.horizontal(|ui| {
         ui.label(RichText::new(label).color(theme::WEAK)).on_hover_text(field.help);
-        ui.label(RichText::new(format!("{}, {}", shown.rows.len(), shown.columns.join(" "))).color(theme::FAINT));
+        ui.label(RichText::new(format!("{}, {}", shown.rows.len(), shown.columns.join(" "))).color(theme::WEAK));
     });
     let mut done = None;
     ScrollArea::vertical().id_salt(label).max_height(MOST_HEIGHT).show(ui, |ui| {

@@ -8,7 +8,7 @@ use isolith_scene::{DisplaySettings, ParamPath, Params, Shadowing};
 
 /// The cards.
 pub fn show(ui: &mut Ui, session: &mut EditSession) {
-    ui.label(RichText::new("Scene").heading().color(egui::Color32::WHITE));
+    ui.label(RichText::new("Scene").heading().color(theme::STRONG));
     widgets::card(ui, "World", |ui| {
         let mut names = Vec::new();
         let environment = &session.document.scene().environment;

@@ -35,9 +35,9 @@ impl KeyState {
     /// The color of its mark.
     pub fn color(self) -> Color32 {
         match self {
-            Self::Still => theme::FAINT,
-            Self::Animated => theme::ANIMATED,
-            Self::Keyed => theme::KEYED,
+            Self::Still => *theme::FAINT,
+            Self::Animated => *theme::ANIMATED,
+            Self::Keyed => *theme::KEYED,
         }
     }
 }
@@ -103,7 +103,7 @@ pub fn mark(ui: &mut Ui, session: &mut EditSession, label: &str, paths: &[ParamP
     let response = ui.interact(rect, ui.scope_id().with(("key", path)), Sense::CLICK);
     let line = rect.union(Rect::from_min_size(top, vec2(ui.available_width(), theme::ROW_HEIGHT)));
     if state != KeyState::Still || ui.rect_contains_pointer(line) {
-        let color = if response.hovered() { Color32::WHITE } else { state.color() };
+        let color = if response.hovered() { *theme::STRONG } else { state.color() };
         diamond(ui, center, 0.5 * MARK, color, state == KeyState::Keyed);
     }
     let (name, help) = match state {

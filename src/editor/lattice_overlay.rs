@@ -112,7 +112,7 @@ pub fn paint(state: &EditorState, painter: &Painter, projection: &Projection) {
     let selection = state.session.document.selection();
     for id in selection {
         let Some(instancer) = scene.node(*id).and_then(|node| instancer(node)) else { continue };
-        let color = if selection.last() == Some(id) { theme::GROUP } else { theme::GROUP.gamma_multiply(0.6) };
+        let color = if selection.last() == Some(id) { *theme::GROUP } else { theme::GROUP.gamma_multiply(0.6) };
         paint_lines(painter, projection, &scene.world_from_local(*id), &lines(&instancer.lattice), color);
     }
 }

@@ -23,12 +23,12 @@ pub fn paint(painter: &Painter, rect: Rect, view_mode: ViewMode, depth_range: &D
     let swatches = if legend.swatches.is_empty() { 0.0 } else { LINE + 4.0 };
     let size = vec2(BAR_WIDTH + 2.0 * MARGIN + 8.0, 2.0 * LINE + 10.0 + bar + swatches + MARGIN);
     let card = Rect::from_min_size(rect.left_bottom() + vec2(MARGIN, -MARGIN - size.y), size);
-    painter.rect_filled(card, CornerRadius::same(8), Color32::from_rgba_unmultiplied(20, 22, 26, 225));
+    painter.rect_filled(card, CornerRadius::same(8), theme::FLOATING.gamma_multiply(0.88));
     let mut at = card.min + vec2(MARGIN + 4.0, MARGIN - 2.0);
     let title = capitalized(view_mode.name());
-    painter.text(at, Align2::LEFT_TOP, title, FontId::proportional(14.0), theme::TEXT);
+    painter.text(at, Align2::LEFT_TOP, title, FontId::proportional(14.0), *theme::TEXT);
     at.y += LINE + 1.0;
-    painter.text(at, Align2::LEFT_TOP, &legend.unit, FontId::proportional(12.0), theme::WEAK);
+    painter.text(at, Align2::LEFT_TOP, &legend.unit, FontId::proportional(12.0), *theme::WEAK);
     at.y += LINE + 3.0;
     if !legend.bar.is_empty() {
         paint_bar(painter, at, &legend);
@@ -67,7 +67,7 @@ fn paint_bar(painter: &Painter, at: Pos2, legend: &Legend) {
             share if share > 0.98 => (Align2::RIGHT_TOP, x + 1.0),
             _ => (Align2::CENTER_TOP, x),
         };
-        painter.text(pos2(x, rect.bottom() + 5.0), align, number, FontId::proportional(11.5), theme::TEXT);
+        painter.text(pos2(x, rect.bottom() + 5.0), align, number, FontId::proportional(11.5), *theme::TEXT);
     }
 }
 
@@ -76,7 +76,7 @@ fn paint_swatches(painter: &Painter, mut at: Pos2, legend: &Legend) {
         let square = Rect::from_min_size(at + vec2(0.0, 2.0), vec2(BAR_HEIGHT, BAR_HEIGHT));
         painter.rect_filled(square, CornerRadius::same(3), color32(*color));
         let text = at + vec2(BAR_HEIGHT + 5.0, 1.0);
-        let text = painter.text(text, Align2::LEFT_TOP, name, FontId::proportional(11.5), theme::TEXT);
+        let text = painter.text(text, Align2::LEFT_TOP, name, FontId::proportional(11.5), *theme::TEXT);
         at.x = text.right() + 14.0;
     }
 }

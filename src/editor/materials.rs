@@ -112,10 +112,12 @@ impl Materials {
         }
     }
 
-    /// The title, and buttons for the whole list.
+    /// The count, and buttons for the whole list.
     fn header(&mut self, ui: &mut Ui, state: &mut EditorState) {
         ui.horizontal(|ui| {
-            ui.label(RichText::new("Materials").strong().color(Color32::WHITE));
+            let count = state.session.document.scene().materials().len();
+            let text = format!("{count} {}", if count == 1 { "material" } else { "materials" });
+            ui.label(RichText::new(text).color(theme::WEAK));
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 4.0;
                 let unused = widgets::icon_button(ui, ICON_DELETE_SWEEP, "Delete unused materials", theme::WEAK);
@@ -256,8 +258,8 @@ impl Row<'_> {
 
     fn paint_background(&self, ui: &Ui, rect: Rect, response: &Response, is_current: bool) {
         let fill = match (is_current, response.contains_pointer()) {
-            (true, _) => theme::SELECTED,
-            (false, true) => theme::CARD,
+            (true, _) => *theme::SELECTED,
+            (false, true) => *theme::CARD,
             (false, false) => Color32::TRANSPARENT,
         };
         ui.painter().rect_filled(rect, f32::from(theme::RADIUS), fill);
@@ -273,9 +275,9 @@ impl Row<'_> {
         let painter = ui.painter().with_clip_rect(rect.with_max_x(rect.right() - room).intersect(ui.clip_rect()));
         let name = if self.material.name.is_empty() { "(no name)" } else { self.material.name.as_str() };
         let at = rect.left_center();
-        painter.text(at + vec2(0.0, -1.0), Align2::LEFT_BOTTOM, name, FontId::proportional(13.5), theme::TEXT);
+        painter.text(at + vec2(0.0, -1.0), Align2::LEFT_BOTTOM, name, FontId::proportional(13.5), *theme::TEXT);
         let color = if uses == 0 { theme::FAINT } else { theme::WEAK };
-        painter.text(at + vec2(0.0, 2.0), Align2::LEFT_TOP, use_text(uses), FontId::proportional(11.5), color);
+        painter.text(at + vec2(0.0, 2.0), Align2::LEFT_TOP, use_text(uses), FontId::proportional(11.5), *color);
     }
 
     fn assign_button(&self, ui: &mut Ui, rect: Rect) -> Response {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use egui::{Align2, Area, Context, Frame, Id, Order, RichText, vec2};
+use egui::{Align2, Area, Context, Frame, Id, Order, RichText, Ui, vec2};
 use egui_material_icons::icons::{ICON_CHECK_CIRCLE, ICON_CLOSE, ICON_ERROR, ICON_INFO, ICON_WARNING};
 
 use super::theme;
@@ -24,10 +24,10 @@ impl Severity {
     /// Its color.
     pub fn color(self) -> egui::Color32 {
         match self {
-            Self::Info => theme::ACCENT,
-            Self::Success => theme::SUCCESS,
-            Self::Warning => theme::WARNING,
-            Self::Error => theme::ERROR,
+            Self::Info => *theme::ACCENT,
+            Self::Success => *theme::SUCCESS,
+            Self::Warning => *theme::WARNING,
+            Self::Error => *theme::ERROR,
         }
     }
 
@@ -95,8 +95,6 @@ struct LogEntry {
 #[derive(Default)]
 pub struct Messages {
     entries: VecDeque<LogEntry>,
-    /// Whether the log is open.
-    pub show_log: bool,
 }
 
 impl Messages {
@@ -141,23 +139,24 @@ impl Messages {
         }
     }
 
-    /// Shows the window with all messages.
-    pub fn show_log(&mut self, ctx: &Context) {
-        let mut open = self.show_log;
-        egui::Window::new("Log").open(&mut open).default_size([460.0, 260.0]).show(ctx, |ui| {
-            if self.entries.is_empty() {
-                ui.label(RichText::new("No messages").color(theme::WEAK));
+    /// Shows all messages, newest last.
+    pub fn show_all(&self, ui: &mut Ui) {
+        if self.entries.is_empty() {
+            ui.label(RichText::new("No messages").color(theme::WEAK));
+        }
+        egui::ScrollArea::vertical().stick_to_bottom(true).auto_shrink(false).show(ui, |ui| {
+            for entry in &self.entries {
+                ui.horizontal_wrapped(|ui| {
+                    ui.label(entry.message.severity.icon());
+                    ui.label(entry.text());
+                });
             }
-            egui::ScrollArea::vertical().stick_to_bottom(true).auto_shrink(false).show(ui, |ui| {
-                for entry in &self.entries {
-                    ui.horizontal_wrapped(|ui| {
-                        ui.label(entry.message.severity.icon());
-                        ui.label(entry.text());
-                    });
-                }
-            });
         });
-        self.show_log = open;
+    }
+
+    /// Forgets all messages.
+    pub fn clear(&mut self) {
+        self.entries.clear();
     }
 }
 
@@ -167,7 +166,7 @@ impl LogEntry {
     }
 }
 
-fn toast(ui: &mut egui::Ui, entry: &mut LogEntry) {
+fn toast(ui: &mut Ui, entry: &mut LogEntry) {
     let color = entry.message.severity.color();
     let frame = Frame::popup(ui.style()).inner_margin(10.0).stroke((1.0, color.gamma_multiply(0.5)));
     frame.show(ui, |ui| {

@@ -7,10 +7,11 @@
 //! | file | purpose |
 //! |---|---|
 //! | `state`, `edit_session`, `view_state` | document with gestures (one drag, one undo step), messages, view |
-//! | `panel`, `panels`, `shell` | the trait, the list and the layout of panels |
+//! | `panel`, `panels` | the trait and the list of panels |
+//! | `shell`, `dock`, `dock_tabs` | the layout of panels: bars, and rows and columns of tabs |
 //! | `root` | the editor: state, shell, and the windows in front |
 //! | `commands/` | one table of all commands: menus, toolbar, shortcuts, command palette |
-//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport` | the panels |
+//! | `outliner`, `materials`, `inspector*`, `toolbar`, `status`, `viewport`, `log_panel` | the panels |
 //! | `material_library`, `thumbnails`, `material_edits`, `preset_picker` | the materials: counts, balls, changes, presets |
 //! | `multi_edit`, `widgets`, `numbers`, `color_picker` | fields bound to the selected nodes, and their widgets |
 //! | `inspector_params`, `slot_list` | a row for any parameter, and lists of modifiers, dynamics and masks, from their tables |
@@ -19,12 +20,19 @@
 //! | `timeline`, `dope_sheet`, `time_scale` | the timeline with the keys of the selection |
 //! | `playback`, `keying` | the clock of the timeline; marks and keys of parameters |
 //! | `handles/` | the handles on the selected shape, light, camera or group, by a table |
-//! | `viewport_click`, `viewport_drag`, `viewport_modal` | clicks, drags and transforms in the picture |
+//! | `viewport_click`, `viewport_drag`, `viewport_modal`, `viewport_surface` | clicks, drags and transforms in the picture |
 //! | `transforms/` | moving, rotating and scaling, by the gizmo or by keys |
 //! | `keymap` | which keys run the commands |
+//! | `preferences_window`, `key_editor` | the window of the preferences, with the list of all keys |
+//! | `palette`, `theme`, `appearance`, `units` | colors by role, style, what the preferences say about both, units |
 //! | `choice_walk`, `below_list` | what a click selects, the list of what lies below |
 //! | `selection`, `relations` | actions on the selection; selecting by relation, isolating, dropping |
+//! | `clipboard`, `arrange`, `arrangement` | copy and paste between scenes; aligning, distributing, origins |
+//! | `ghosts`, `hover` | lines on selected nodes that are cut away or hidden; the node under the pointer |
+//! | `drag_in`, `dropped_files` | what is dragged into the picture, and files dropped on the window |
+//! | `history_list` | all steps of undo |
 //! | `add_palette`, `placement` | what can be added, and where it goes |
+//! | `fly`, `grid_labels` | flying with the right button and keys; the measures of the grid |
 //! | `steps` | round numbers for what is dragged |
 //! | `shading_bar` | the choice of the shading, over the picture |
 //! | `legend` | the meaning of the colors of a view mode |
@@ -40,32 +48,45 @@
 //! | `conflict`, `file_watch` | conflicts with another program that changes the file |
 
 mod add_palette;
+mod appearance;
+mod arrange;
+mod arrangement;
 mod below_list;
 mod bounds;
 mod changelog;
 mod choice_walk;
 mod choosing;
+mod clipboard;
 mod color_picker;
 mod command_palette;
 mod commands;
 mod conflict;
 mod dialog_views;
 mod dialogs;
+mod dock;
+mod dock_tabs;
 mod doctor;
 mod doctor_view;
 mod document_jobs;
 mod documents;
 mod dope_sheet;
+mod drag_in;
+mod dropped_files;
 mod edit_session;
 mod expression;
 mod file_jobs;
 mod file_watch;
 mod first_run;
+mod fly;
 mod framing;
+mod ghosts;
 mod gizmo;
+mod grid_labels;
 mod handles;
 mod help;
 mod help_pages;
+mod history_list;
+mod hover;
 mod icons;
 mod input_order;
 mod insertion;
@@ -84,26 +105,33 @@ mod inspector_types;
 mod instancer_edits;
 mod instancing;
 mod intent;
+mod key_editor;
 mod keying;
 mod keymap;
 mod lattice_overlay;
 mod legend;
+mod log_panel;
 mod material_edits;
 mod material_library;
 mod materials;
+mod mesh_conversion;
 mod messages;
 mod multi_edit;
 mod navigation;
 mod node_picker;
 mod numbers;
 mod outliner;
+mod outliner_drop;
+mod outliner_filter;
 mod overlay;
+mod palette;
 mod panel;
 mod panels;
 mod picking;
 mod placement;
 mod playback;
 mod portal;
+mod preferences_window;
 mod preset_picker;
 mod projection;
 mod recovery;
@@ -129,11 +157,13 @@ mod timeline;
 mod toolbar;
 mod tour;
 mod transforms;
+mod units;
 mod view_state;
 mod viewport;
 mod viewport_click;
 mod viewport_drag;
 mod viewport_modal;
+mod viewport_surface;
 mod welcome;
 mod widgets;
 
@@ -143,4 +173,4 @@ pub use messages::{Message, Severity};
 pub use navigation::{Navigation, Side};
 pub use root::Editor;
 pub use state::Example;
-pub use view_state::{Picture, ViewSettings};
+pub use view_state::{GridView, Picture, ViewSettings};

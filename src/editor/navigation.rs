@@ -47,14 +47,25 @@ pub struct Navigation {
     pub distance: f64,
     /// Rotation from camera space to world space.
     pub rotation: DQuat,
-    /// Full vertical angle of view in radians.
+    /// Full vertical angle of view in radians. An orthographic view shows at the target what this angle shows there.
     pub fov_y: f64,
+    /// Whether parallel lines stay parallel.
+    pub orthographic: bool,
+    /// Whether the next orbit ends that, because it came with a view along an axis.
+    pub leaves_axis: bool,
 }
 
 impl Default for Navigation {
     fn default() -> Self {
         let camera = Camera::looking_at(DVec3::new(3.2, 2.4, 4.0), DVec3::ZERO, Camera::DEFAULT_FOV_Y);
-        Self { target: DVec3::ZERO, distance: camera.position.length(), rotation: camera.rotation, fov_y: camera.fov_y }
+        Self {
+            target: DVec3::ZERO,
+            distance: camera.position.length(),
+            rotation: camera.rotation,
+            fov_y: camera.fov_y,
+            orthographic: false,
+            leaves_axis: false,
+        }
     }
 }
 
@@ -62,20 +73,32 @@ impl Navigation {
     /// Minimum and maximum distance to the target, in meters.
     pub const DISTANCES: [f64; 2] = [1e-4, 1e7];
 
+    /// An orthographic view is one from this many times as far, through an angle that much smaller: a point as far
+    /// behind the target as the picture is high is off by half a thousandth of the picture's height at its border. The
+    /// renderer is exact at such angles.
+    pub const TELEPHOTO: f64 = 1e3;
+
     /// The camera for the renderer.
     pub fn camera(&self) -> Camera {
-        Camera {
-            position: self.eye(),
-            rotation: self.rotation,
-            fov_y: self.fov_y,
-            near: self.distance * 1e-3,
-            far: self.distance.max(1.0) * 1e4,
-        }
+        let (fov_y, near) = if self.orthographic {
+            // Most of the way from the eye to the target is seen.
+            let half = ((0.5 * self.fov_y).tan() / Self::TELEPHOTO).atan();
+            (2.0 * half, self.eye_distance() - self.distance * 0.9 * Self::TELEPHOTO)
+        } else {
+            (self.fov_y, self.distance * 1e-3)
+        };
+        let far = self.eye_distance() + self.distance.max(1.0) * 1e4;
+        Camera { position: self.eye(), rotation: self.rotation, fov_y, near, far }
     }
 
     /// The position of the eye.
     pub fn eye(&self) -> DVec3 {
-        self.target + self.rotation * DVec3::Z * self.distance
+        self.target + self.rotation * DVec3::Z * self.eye_distance()
+    }
+
+    /// Distance from the target to the eye, in meters.
+    pub fn eye_distance(&self) -> f64 {
+        if self.orthographic { self.distance * Self::TELEPHOTO } else { self.distance }
     }
 
     /// Takes over a camera's placement; the new target is the point in front of it nearest to `focus`.
@@ -84,6 +107,7 @@ impl Navigation {
         let distance = (focus - camera.position).dot(forward);
         self.rotation = camera.rotation;
         self.fov_y = camera.fov_y;
+        (self.orthographic, self.leaves_axis) = (false, false);
         self.distance = if distance > 0.0 { self.limited(distance) } else { self.distance };
         self.target = camera.position + forward * self.distance;
     }
@@ -91,6 +115,9 @@ impl Navigation {
     /// Orbits the target: a drag over the whole height turns by half a circle. The horizon stays level;
     /// the orbit stops at straight up and straight down.
     pub fn orbit(&mut self, drag_px: DVec2, height_px: f64) {
+        if std::mem::take(&mut self.leaves_axis) {
+            self.orthographic = false;
+        }
         let angle = drag_px * (PI / height_px.max(1.0));
         let pitch_now = (self.rotation * DVec3::Z).y.clamp(-1.0, 1.0).asin();
         let pitch = (pitch_now + angle.y).clamp(-FRAC_PI_2, FRAC_PI_2) - pitch_now;
@@ -98,9 +125,27 @@ impl Navigation {
         self.rotation = turned.normalize();
     }
 
+    /// Turns the view around the eye.
+    pub fn look_around(&mut self, drag_px: DVec2, height_px: f64) {
+        let eye = self.eye();
+        self.orbit(drag_px * (self.fov_y / PI), height_px);
+        self.target = eye - self.rotation * DVec3::Z * self.eye_distance();
+    }
+
+    /// Moves eye and target along the axes of the view, in meters: right, up, forward.
+    pub fn fly(&mut self, by: DVec3) {
+        self.target += self.rotation * DVec3::new(by.x, by.y, -by.z);
+    }
+
+    /// The axis of the world along which an orthographic view looks; `None` for any other view.
+    pub fn axis(&self) -> Option<usize> {
+        let forward = (self.rotation * DVec3::Z).abs();
+        (0..3).find(|axis| self.orthographic && forward[*axis] > 1.0 - 1e-9)
+    }
+
     /// Moves sideways: points at the depth of the target follow the pointer.
     pub fn pan(&mut self, drag_px: DVec2, height_px: f64) {
-        let per_px = self.camera().footprint(height_px) * self.distance;
+        let per_px = self.camera().footprint(height_px) * self.eye_distance();
         self.target += self.rotation * DVec3::new(-drag_px.x, drag_px.y, 0.0) * per_px;
     }
 
@@ -117,7 +162,7 @@ impl Navigation {
     pub fn under_pointer(&self, pixel: DVec2, size_px: DVec2) -> DVec3 {
         let ray = self.ray(pixel, size_px);
         let forward = self.rotation * DVec3::NEG_Z;
-        ray.at(self.distance / ray.direction.dot(forward))
+        ray.at(self.eye_distance() / ray.direction.dot(forward))
     }
 
     /// The ray through a pixel.
@@ -143,6 +188,19 @@ impl Navigation {
             Side::Bottom => DQuat::from_rotation_x(FRAC_PI_2),
             _ => Camera::looking_at(side.direction(), DVec3::ZERO, self.fov_y).rotation,
         };
+    }
+
+    /// Looks at the target along an axis, and in parallel until the next orbit.
+    pub fn look_along(&mut self, side: Side) {
+        self.look_from(side);
+        self.leaves_axis |= !self.orthographic;
+        self.orthographic = true;
+    }
+
+    /// Switches between perspective and orthographic.
+    pub fn toggle_orthographic(&mut self) {
+        self.orthographic ^= true;
+        self.leaves_axis = false;
     }
 
     fn limited(&self, distance: f64) -> f64 {
@@ -235,6 +293,58 @@ mod tests {
             assert!((view.rotation * DVec3::Z - side.direction()).length() < 1e-12, "{side:?}");
             assert!((view.rotation * DVec3::X).y.abs() < 1e-12, "{side:?}");
         }
+    }
+
+    #[test]
+    fn an_orthographic_view_shows_the_target_as_large_and_keeps_parallels() {
+        let near = somewhere();
+        let far = Navigation { orthographic: true, ..near };
+        let height = |view: &Navigation, depth: f64| {
+            let at = |up: f64| view.target + view.rotation * DVec3::new(0.0, up, -depth);
+            let [low, high] = [-0.5, 0.5].map(|up| view.camera().project(at(up), SIZE).unwrap().0.y);
+            (low - high).abs()
+        };
+        assert!((height(&near, 0.0) - height(&far, 0.0)).abs() < 1e-3);
+        let picture = 2.0 * near.distance * (0.5 * near.fov_y).tan();
+        let (front, back) = (height(&far, -picture), height(&far, picture));
+        assert!((front / back - 1.0).abs() < 2e-3, "{front} {back}");
+        assert!(height(&near, -picture) / height(&near, picture) > 2.0, "unlike in perspective");
+        for depth in [-20.0 * picture, 20.0 * picture] {
+            let point = far.target - far.rotation * DVec3::Z * depth;
+            let distance = point.distance(far.eye());
+            assert!((far.camera().near..far.camera().far).contains(&distance), "{depth}");
+        }
+        let mut moved = far;
+        let start = DVec2::new(200.5, 130.25);
+        let point = moved.under_pointer(start, SIZE);
+        moved.pan(DVec2::new(57.0, -21.0), SIZE.y);
+        let (pixel, _) = moved.camera().project(point, SIZE).unwrap();
+        assert!((pixel - start - DVec2::new(57.0, -21.0)).length() < 1e-5, "{pixel}");
+    }
+
+    #[test]
+    fn looking_around_keeps_the_eye_and_flying_keeps_the_direction() {
+        let before = somewhere();
+        let mut view = before;
+        view.look_around(DVec2::new(90.0, -30.0), SIZE.y);
+        assert!((view.eye() - before.eye()).length() < 1e-9);
+        let right = before.rotation * DVec3::X;
+        assert!((view.rotation * DVec3::NEG_Z).dot(right) > 0.05, "a drag to the right looks to the right");
+        let turned = view;
+        view.fly(DVec3::new(0.0, 0.0, 2.0));
+        let forward = turned.rotation * DVec3::NEG_Z;
+        assert!((view.eye() - turned.eye() - forward * 2.0).length() < 1e-9 && view.rotation == turned.rotation);
+    }
+
+    #[test]
+    fn only_an_orthographic_view_along_an_axis_has_one() {
+        let mut view = somewhere();
+        view.look_from(Side::Right);
+        assert_eq!(view.axis(), None);
+        view.orthographic = true;
+        assert_eq!(view.axis(), Some(0));
+        view.orbit(DVec2::new(3.0, 0.0), SIZE.y);
+        assert_eq!(view.axis(), None);
     }
 
     #[test]

@@ -2,10 +2,12 @@
 
 use std::cell::RefCell;
 
-use egui::{Context, DragValue, Id, Key, Response, RichText, Ui, vec2};
+use egui::{Context, DragValue, Event, Id, Key, Response, RichText, Ui, vec2};
 
+use super::steps::rounded;
+use super::theme;
 use super::theme::MIXED;
-use super::{expression, theme};
+use super::units::{FieldUnit, LengthUnit};
 use isolith_scene::Limits;
 use isolith_scene::limits::Rule;
 
@@ -57,12 +59,13 @@ fn prefixed_number(
     axis: Option<usize>,
 ) -> FieldResponse {
     let (Limits { soft, unit, .. }, hard) = (field.limits, field.limits.signed_range());
+    let unit = FieldUnit::new(unit, LengthUnit::of(ui.ctx()));
     let dragged = ui.ctx().is_being_dragged(ui.next_auto_id());
     // A value typed beyond the soft range must not jump when a drag begins.
     let range = if dragged { soft[0].min(value)..=soft[1].max(value) } else { hard[0]..=hard[1] };
     let mut edited = value;
     let typed = RefCell::new(None);
-    let shown = if mixed { MIXED.to_owned() } else { number_text(value) };
+    let shown = if mixed { MIXED.to_owned() } else { number_text(value / unit.one) };
     let was_canceled = canceled(ui, ui.next_auto_id());
     let parse = |text: &str| {
         if was_canceled {
@@ -70,7 +73,7 @@ fn prefixed_number(
         }
         typed.replace(Some(text.to_owned()));
         // Unchanged text keeps the digits beyond those shown.
-        if text == shown { (!mixed).then_some(value) } else { expression::evaluate(text) }
+        if text == shown { (!mixed).then_some(value) } else { unit.typed(text) }
     };
     let mut drag = DragValue::new(&mut edited)
         .range(range)
@@ -80,10 +83,10 @@ fn prefixed_number(
         .max_decimals(4)
         .min_size(vec2(width, theme::ROW_HEIGHT))
         .clip_text(true)
-        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value) })
+        .custom_formatter(move |value, _| if mixed { MIXED.into() } else { number_text(value / unit.one) })
         .custom_parser(parse);
-    if !unit.is_empty() && axis.is_none() {
-        drag = drag.suffix(RichText::new(format!(" {unit}")).color(theme::WEAK));
+    if !unit.sign.is_empty() && axis.is_none() {
+        drag = drag.suffix(RichText::new(format!(" {}", unit.sign)).color(theme::WEAK));
     }
     let response = ui.add(drag);
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));
@@ -101,15 +104,16 @@ fn prefixed_number(
     if let Some(text) = finished {
         if mixed {
             // Even if the number equals the value of the active node, the other nodes must get it.
-            answer.value = expression::evaluate(&text);
+            answer.value = unit.typed(&text);
         }
-        refuse(ui, response.id, refusal(name, &text, field));
+        refuse(ui, response.id, refusal(name, &text, field, unit));
     }
     answer.value = answer.value.map(|value| field.taken(value));
-    if let Some(default) = field.default
-        && wants_reset(ui, &response, default, field.limits.unit)
-    {
-        answer.value = Some(default);
+    if let Some(value) = from_menu(ui, &response, field, value, unit) {
+        answer.value = Some(field.taken(value));
+    }
+    if let Some(value) = by_wheel(ui, &response, field, value) {
+        answer.value = Some(value);
     }
     if !field.help.is_empty() && !dragged {
         response.on_hover_text(field.help);
@@ -149,10 +153,10 @@ pub fn number_text(value: f64) -> String {
 }
 
 /// Why a field does not take the typed text as it is; `None` if it does.
-fn refusal(name: &str, typed: &str, field: &NumberField<'_>) -> Option<String> {
-    let ([least, most], unit) = (field.limits.signed_range(), field.limits.unit);
-    let with_unit = |number: f64| format!("{number} {unit}").trim_end().to_owned();
-    match expression::evaluate(typed) {
+fn refusal(name: &str, typed: &str, field: &NumberField<'_>, unit: FieldUnit) -> Option<String> {
+    let [least, most] = field.limits.signed_range();
+    let with_unit = |number: f64| format!("{} {}", number / unit.one, unit.sign).trim_end().to_owned();
+    match unit.typed(typed) {
         None => Some(format!("{name}: “{typed}” is not a number, so it stays as it was.")),
         Some(value) if value < least => {
             Some(format!("{name}: {typed} is less than {}, the least there can be.", with_unit(least)))
@@ -228,22 +232,67 @@ fn paint_axis_mark(ui: &Ui, response: &Response, axis: usize) {
     ui.painter().rect_filled(bar, 1.0, theme::AXES[axis]);
 }
 
-/// Whether the artist resets the value: by Backspace over the field, or by its context menu.
-fn wants_reset(ui: &Ui, response: &Response, default: f64, unit: &str) -> bool {
-    let mut reset = false;
+/// Key of the number that was copied last.
+fn copied() -> Id {
+    Id::unique("number copied last")
+}
+
+/// The value that the artist chooses by the context menu, or by Backspace over the field: the default, or the one that
+/// was copied.
+fn from_menu(ui: &Ui, response: &Response, field: &NumberField<'_>, value: f64, unit: FieldUnit) -> Option<f64> {
+    let mut chosen = None;
     response.context_menu(|ui| {
-        let text = format!("Reset to {} {unit}", number_text(default));
-        if ui.button(text.trim_end()).clicked() {
-            reset = true;
+        if let Some(default) = field.default {
+            let text = format!("Reset to {} {}", number_text(default / unit.one), unit.sign);
+            if ui.button(text.trim_end()).clicked() {
+                chosen = Some(default);
+                ui.close();
+            }
+        }
+        if ui.button("Copy value").clicked() {
+            ui.ctx().copy_text(value.to_string());
+            ui.data_mut(|d| d.insert_temp(copied(), value));
+            ui.close();
+        }
+        let copied = ui.data(|d| d.get_temp::<f64>(copied()));
+        let text = copied.map_or_else(
+            || "Paste value".into(),
+            |v| format!("Paste value {} {}", number_text(v / unit.one), unit.sign),
+        );
+        if ui.add_enabled(copied.is_some(), egui::Button::new(text.trim_end())).clicked() {
+            chosen = copied;
             ui.close();
         }
     });
     let typing = ui.ctx().text_edit_focused();
-    reset || (!typing && response.hovered() && ui.input(|i| i.key_pressed(Key::Backspace)))
+    let resets = !typing && response.hovered() && ui.input(|i| i.key_pressed(Key::Backspace));
+    chosen.or(field.default.filter(|_| resets))
+}
+
+/// The value after turns of the wheel with Ctrl, which egui takes for a zoom; without Ctrl the panel scrolls.
+fn by_wheel(ui: &Ui, response: &Response, field: &NumberField<'_>, value: f64) -> Option<f64> {
+    if !response.hovered() || !response.enabled() {
+        return None;
+    }
+    let (turns, precise) = ui.input(|i| {
+        let turn = |event: &Event| match event {
+            Event::MouseWheel { delta, modifiers, .. } if modifiers.command && delta.y != 0.0 => delta.y.signum(),
+            _ => 0.0,
+        };
+        (i.events.iter().map(turn).sum::<f32>(), i.modifiers.shift)
+    });
+    if turns == 0.0 {
+        return None;
+    }
+    // A round step of about a fiftieth of the value or of the range that is dragged.
+    let step = drag_speed(field.limits.soft, value) * if precise { 1.0 } else { 10.0 };
+    let step = if field.limits.rule == Rule::Whole { 1.0 } else { 10.0_f64.powf(step.log10().round()) };
+    Some(field.taken(rounded(value + f64::from(turns) * step, step)))
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::expression;
     use super::*;
     use isolith_scene::limits::{SCALE, SIDES, SIZE};
 
@@ -279,7 +328,9 @@ mod tests {
     #[test]
     fn what_becomes_of_a_number_is_said() {
         let field = |limits| NumberField { label: "", help: "", limits, default: None };
-        let said = |typed, field: &NumberField<'_>| refusal("N", typed, field);
+        let said = |typed, field: &NumberField<'_>| {
+            refusal("N", typed, field, FieldUnit::new(field.limits.unit, LengthUnit::Meters))
+        };
         assert_eq!(said("5", &field(SIDES)), None);
         assert_eq!(said("5.4", &field(SIDES)).unwrap(), "N: 5.4 is no whole number; it is 5 now.");
         assert!(said("2", &field(SIDES)).unwrap().contains("is less than 3"));

@@ -31,14 +31,15 @@ pub fn selection_boxes(state: &EditorState, painter: &Painter, projection: &Proj
             continue;
         }
         let Some((world_from_local, bounds)) = bounds::oriented(scene, state.derived.library(), id) else { continue };
-        let color = if Some(id) == active { theme::ACCENT } else { theme::ACCENT.gamma_multiply(0.6) };
+        let color = if Some(id) == active { *theme::ACCENT } else { theme::ACCENT.gamma_multiply(0.6) };
         let corners = bounds.corners().map(|c| projection.to_screen(world_from_local.transform_point3(c)));
+        paint_box(painter, &corners, Stroke::new(3.0, Color32::from_black_alpha(110)));
         paint_box(painter, &corners, Stroke::new(1.25, color));
     }
 }
 
 /// Paints each corner of a box as three short strokes, which hide little of the picture.
-fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
+pub fn paint_box(painter: &Painter, corners: &[Option<Pos2>; 8], stroke: Stroke) {
     const SHARE: f32 = 0.22;
     for (index, corner) in corners.iter().enumerate() {
         for axis in 0..3 {
@@ -90,8 +91,8 @@ pub fn paint_markers(state: &EditorState, painter: &Painter, projection: &Projec
                 painter.arrow(marker.at, tip - marker.at, Stroke::new(1.5, color.gamma_multiply(0.8)));
             }
         }
-        let ring = if selected { theme::ACCENT } else { Color32::from_black_alpha(0) };
-        painter.circle(marker.at, 11.0, Color32::from_black_alpha(110), Stroke::new(1.5, ring));
+        let ring = if selected { *theme::ACCENT } else { Color32::TRANSPARENT };
+        painter.circle(marker.at, 11.0, theme::FLOATING.gamma_multiply(0.55), Stroke::new(1.5, ring));
         icons::paint_node(painter, icons::centered(Rect::from_center_size(marker.at, vec2(14.0, 14.0)), 14.0), node);
     }
 }
@@ -150,10 +151,18 @@ impl Compass {
     }
 }
 
+/// Paints the line of a lasso, and its end back to the start.
+pub fn lasso(painter: &Painter, line: &[Pos2]) {
+    painter.add(egui::Shape::line(line.to_vec(), Stroke::new(1.5, theme::ACCENT)));
+    if let (Some(first), Some(last)) = (line.first(), line.last()) {
+        painter.add(egui::Shape::dashed_line(&[*last, *first], Stroke::new(1.0, theme::ACCENT), 4.0, 4.0));
+    }
+}
+
 /// A hint for beginners in the center of an empty viewport.
 pub fn empty_hint(painter: &Painter, rect: Rect) {
     let at = rect.center() + vec2(0.0, -10.0);
-    painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::TEXT);
+    painter.text(at, Align2::CENTER_BOTTOM, "An empty scene", FontId::proportional(20.0), theme::ON_PICTURE);
     let text = "Shift A adds a shape where the pointer is; File, Examples opens a scene";
-    painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::WEAK);
+    painter.text(at + vec2(0.0, 8.0), Align2::CENTER_TOP, text, FontId::proportional(13.5), theme::ON_PICTURE);
 }

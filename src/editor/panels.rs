@@ -1,6 +1,7 @@
 //! The registry of panels: a new panel is a file and a line here.
 
 use super::inspector::Inspector;
+use super::log_panel::Log;
 use super::materials::Materials;
 use super::outliner::Outliner;
 use super::panel::Panel;
@@ -15,6 +16,7 @@ pub fn all() -> Vec<Box<dyn Panel>> {
         Box::new(Toolbar),
         Box::new(StatusBar),
         Box::<TimelinePanel>::default(),
+        Box::new(Log),
         Box::<Outliner>::default(),
         Box::<Materials>::default(),
         Box::<Inspector>::default(),

@@ -84,7 +84,7 @@ fn entry(ui: &mut Ui, library: &mut MaterialLibrary, index: usize, preset: &Mate
     library.thumbnails.paint(ui, ball, ThumbnailKey::OfPreset(index), preset);
     let name = widgets::elided(&preset.name, 13);
     let at = rect.center_bottom() - vec2(0.0, 5.0);
-    let color = if response.hovered() { egui::Color32::WHITE } else { theme::TEXT };
+    let color = if response.hovered() { *theme::STRONG } else { *theme::TEXT };
     ui.painter().text(at, Align2::CENTER_BOTTOM, name, FontId::proportional(11.5), color);
     response
 }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use egui::{Context, Key, SurrenderFocusOn, Ui, ViewportCommand};
 
 use super::add_palette::AddPalette;
+use super::appearance::Appearance;
 use super::command_palette::CommandPalette;
 use super::commands::command::Command;
 use super::conflict::Conflict;
@@ -17,6 +18,7 @@ use super::help::Help;
 use super::intent::Intent;
 use super::messages::Message;
 use super::playback::Playback;
+use super::preferences_window::PreferencesWindow;
 use super::rendering::Rendering;
 use super::safekeeping::Safekeeping;
 use super::shell::Shell;
@@ -24,7 +26,7 @@ use super::state::{EditorState, Example, Request};
 use super::tour::Tour;
 use super::view_state::{Picture, ViewSettings};
 use super::welcome::Welcome;
-use super::{below_list, input_order, numbers, panels, theme, widgets};
+use super::{below_list, drag_in, history_list, input_order, numbers, panels, theme, widgets};
 use isolith_document::{Document, Preferences, RecentFiles};
 use isolith_field::FlatScene;
 use isolith_jobs::Jobs;
@@ -34,6 +36,8 @@ use isolith_session::{Opened, SharedStudio, folder_of};
 /// Maximum number of characters of a file's name in the window's title.
 const MOST_TITLE: usize = 80;
 
+/// Most samples per pixel that the preferences can ask for.
+const MOST_SAMPLES: u32 = 1024;
 /// Interval between updates of the progress of jobs.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
@@ -41,6 +45,8 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 pub struct Editor {
     pub(super) state: EditorState,
     shell: Shell,
+    appearance: Appearance,
+    pub(super) preferences_window: PreferencesWindow,
     pub(super) command_palette: CommandPalette,
     pub(super) add_palette: AddPalette,
     pub(super) dialogs: Dialogs,
@@ -78,6 +84,8 @@ impl Editor {
         let mut editor = Self {
             state: EditorState::default(),
             shell: Shell::new(panels::all()),
+            appearance: Appearance::default(),
+            preferences_window: PreferencesWindow::default(),
             command_palette: CommandPalette::default(),
             add_palette: AddPalette::default(),
             dialogs: Dialogs::default(),
@@ -118,6 +126,14 @@ impl Editor {
     /// Sets the preferences, which persist between runs.
     pub fn set_preferences(&mut self, preferences: Preferences) {
         self.state.preferences = preferences;
+        if let Some(samples) = self.state.preferences.values().samples {
+            self.state.view.samples = samples.clamp(1, MOST_SAMPLES);
+        }
+        if let Some(problem) = self.state.preferences.take_problem() {
+            self.report(Message::warning(problem));
+        }
+        self.shell.arrange(self.state.preferences.values().layout.as_ref());
+        self.state.panels = self.shell.entries();
     }
 
     /// Sets the examples of the File menu.
@@ -135,14 +151,14 @@ impl Editor {
     pub fn show(&mut self, ui: &mut Ui, picture: &Picture) {
         let ctx = ui.ctx().clone();
         self.state.picture.clone_from(picture);
-        self.state.keymap().install(&ctx);
+        self.appearance.apply(&ctx, &mut self.state);
         let for_jobs = ctx.clone();
         self.state.derived.jobs().set_wake(move || for_jobs.request_repaint());
         self.poll_documents(&ctx);
         self.poll_recovery();
         self.poll_dialogs(&ctx);
         self.guard_closing(&ctx);
-        self.open_dropped(&ctx);
+        self.take_dropped_files(&ctx);
         if self.state.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
             self.state.session.cancel();
         }
@@ -151,10 +167,12 @@ impl Editor {
         if let Some(later) = self.state.playback.advance(&mut self.state.session, now) {
             ctx.request_repaint_after(later);
         }
+        let before = self.state.session.document.revision();
         for index in 0..self.shell.len() {
             self.shell.show(index, &mut self.state, ui);
             self.answer_requests(&ctx);
         }
+        self.follow_panels(&ctx, before);
         if let Some(reason) = numbers::take_refusal(&ctx) {
             self.report(Message::warning(reason));
         }
@@ -181,6 +199,7 @@ impl Editor {
     }
 
     fn show_in_front(&mut self, ctx: &Context) {
+        self.show_preferences(ctx);
         self.show_dialogs(ctx);
         self.show_conflict(ctx);
         self.show_recovery(ctx);
@@ -194,12 +213,30 @@ impl Editor {
             self.run(command, ctx);
             self.state.view.add_at = None;
         }
+        if let Some(command) = drag_in::follow(&mut self.state, ctx) {
+            self.run(command, ctx);
+            self.state.view.add_at = None;
+        }
         below_list::show(&mut self.state, ctx);
+        history_list::show(&mut self.state, ctx);
         let corner = self.state.view.rect;
-        let messages = &mut self.state.session.messages;
-        messages.show_toasts(ctx, corner);
-        if messages.show_log {
-            messages.show_log(ctx);
+        self.state.session.messages.show_toasts(ctx, corner);
+    }
+
+    /// Keeps a layout that the artist has changed. Shows the panels once more that were shown before a later one has
+    /// changed the document.
+    fn follow_panels(&mut self, ctx: &Context, revision: u64) {
+        if self.state.session.document.revision() != revision {
+            ctx.request_repaint();
+        }
+        if ctx.input(|i| i.pointer.any_down()) {
+            return;
+        }
+        if let Some(layout) = self.shell.take_changed_layout() {
+            self.state.panels = self.shell.entries();
+            if self.state.preferences.values().layout.as_ref() != Some(&layout) {
+                self.state.preferences.change(|values| values.layout = Some(layout));
+            }
         }
     }
 
@@ -211,6 +248,11 @@ impl Editor {
                 Request::Intend(intent) => self.intend(intent, ctx),
                 Request::TogglePanel(id) => {
                     self.shell.toggle(id);
+                    self.state.panels = self.shell.entries();
+                }
+                Request::ResetLayout => {
+                    self.shell.arrange(None);
+                    self.state.preferences.change(|values| values.layout = None);
                     self.state.panels = self.shell.entries();
                 }
             }
@@ -294,6 +336,7 @@ impl Editor {
     /// Whether a dialog is open.
     pub fn has_dialog(&self) -> bool {
         self.dialogs.is_open()
+            || self.preferences_window.is_open()
             || self.command_palette.is_open()
             || self.add_palette.is_open()
             || self.state.view.below.is_some()
@@ -338,13 +381,6 @@ impl Editor {
         if self.wants_view && !self.state.derived.is_preparing() {
             self.wants_view = false;
             self.state.show_as_saved();
-        }
-    }
-
-    fn open_dropped(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped.filter(|_| !self.has_dialog()) {
-            self.intend(Intent::Open(path), ctx);
         }
     }
 

@@ -79,7 +79,7 @@ impl Safekeeping {
         let frame = egui::Frame::window(&ctx.global_style()).inner_margin(18.0);
         let response = Modal::new(Id::unique("lost work")).frame(frame).show(ctx, |ui| {
             ui.set_width(620.0);
-            ui.label(RichText::new("Recover unsaved work?").heading().color(egui::Color32::WHITE));
+            ui.label(RichText::new("Recover unsaved work?").heading().color(theme::STRONG));
             ui.add_space(2.0);
             let text = match may_open {
                 true => "Isolith has ended before this was saved.",
@@ -124,8 +124,8 @@ impl Safekeeping {
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let size = vec2(92.0, 28.0);
-                let text = RichText::new("Recover").color(egui::Color32::BLACK);
-                let button = ui.add_enabled(may_open, Button::new(text).fill(theme::ACCENT).min_size(size));
+                let text = RichText::new("Recover").color(theme::ON_ACCENT);
+                let button = ui.add_enabled(may_open, Button::new(text).fill(*theme::ACCENT).min_size(size));
                 ui.ctx().accesskit_node_builder(button.id, |node| node.set_label(format!("Recover {name}")));
                 if button.clicked() {
                     choice = Some(RecoveryChoice::Recover(index));
@@ -142,7 +142,7 @@ impl Safekeeping {
                 }
                 ui.with_layout(egui::Layout::top_down(egui::Align::Min), |ui| {
                     ui.add_space(16.0);
-                    ui.add(egui::Label::new(RichText::new(&name).color(egui::Color32::WHITE)).truncate());
+                    ui.add(egui::Label::new(RichText::new(&name).color(theme::STRONG)).truncate());
                     let when = format!("{}, {}", age(lost.changed(), SystemTime::now()), date(lost.changed()));
                     ui.add(egui::Label::new(RichText::new(when).color(theme::WEAK)).truncate());
                     let path = lost.path().map_or("never saved".into(), |path| path.display().to_string());

@@ -27,8 +27,7 @@ pub fn show(state: &mut EditorState, ui: &mut Ui) {
     let corner = state.view.rect.right_top() + vec2(-MARGIN, MARGIN);
     let room = Rect::from_min_max(corner - vec2(300.0, 0.0), corner + vec2(0.0, HEIGHT - MARGIN));
     let mut bar = ui.new_child(UiBuilder::new().max_rect(room).layout(Layout::right_to_left(Align::Min)));
-    let frame =
-        Frame::new().fill(Color32::from_rgba_unmultiplied(20, 22, 26, 225)).corner_radius(7.0).inner_margin(2.0);
+    let frame = Frame::new().fill(theme::FLOATING.gamma_multiply(0.88)).corner_radius(7.0).inner_margin(2.0);
     let chosen = frame.show(&mut bar, |ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let mut chosen = menu(state, ui);
@@ -69,11 +68,11 @@ fn button(ui: &mut Ui, shading: Shading, is_on: bool) -> Response {
     let info = Command::ShowShading(shading).info();
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::RadioButton, true, is_on, shading.label()));
     let fill = match (is_on, response.hovered()) {
-        (true, _) => theme::SELECTED,
-        (false, true) => theme::FIELD,
+        (true, _) => *theme::SELECTED,
+        (false, true) => *theme::FIELD,
         (false, false) => Color32::TRANSPARENT,
     };
-    let outline = if is_on { theme::ACCENT } else { Color32::TRANSPARENT };
+    let outline = if is_on { *theme::ACCENT } else { Color32::TRANSPARENT };
     ui.painter().rect(rect, f32::from(theme::RADIUS), fill, (1.0, outline), egui::StrokeKind::Inside);
     paint_ball(ui, rect.center(), |normal| ball_color(shading, normal));
     response.on_hover_text(format!("{}  (Z for the next one)\n{}", shading.label(), info.help))

@@ -1,11 +1,14 @@
 //! The bar at the bottom: mouse actions, progress, counts.
 
-use egui::{Align, Button, Layout, ProgressBar, RichText, Ui};
+use egui::{Align, Button, Context, Id, Layout, ProgressBar, RichText, Ui};
 
+use super::commands::command::Command;
 use super::commands::entries::hovered_help;
+use super::keymap::{KeyBindings, shown};
 use super::messages::Severity;
 use super::panel::{Panel, PanelPlace};
 use super::state::EditorState;
+use super::transforms::kinds::{Tool, TransformKind};
 use super::view_state::{Picture, PointerActivity};
 use super::{instancing, theme};
 use isolith_jobs::Task;
@@ -64,7 +67,35 @@ fn drawing(state: &mut EditorState, ui: &mut Ui) {
     ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Stop drawing"));
     state.view.stops_drawing |= button.clicked();
     if let Some(progress) = progress {
-        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(*theme::ACCENT));
+        if let Some(left) = time_left(ui, "picture", progress) {
+            ui.label(RichText::new(left).color(theme::WEAK));
+        }
+    }
+}
+
+/// How long a piece of work still takes, judged by its progress since it was first seen here; `None` while that says
+/// little.
+fn time_left(ui: &Ui, name: &str, progress: f32) -> Option<String> {
+    const ENOUGH: (f64, f64) = (2.0, 0.02);
+    let id = Id::unique("time left").with(name);
+    let now = ui.input(|i| i.time);
+    let (since, from) = ui.data_mut(|d| {
+        let (since, from, _) = d
+            .get_temp::<(f64, f32, f32)>(id)
+            .filter(|(_, _, last)| *last <= progress)
+            .unwrap_or((now, progress, progress));
+        d.insert_temp(id, (since, from, progress));
+        (since, from)
+    });
+    let (elapsed, done) = (now - since, f64::from(progress - from));
+    (elapsed >= ENOUGH.0 && done >= ENOUGH.1).then(|| left_text(elapsed * f64::from(1.0 - progress) / done))
+}
+
+fn left_text(seconds: f64) -> String {
+    match seconds {
+        s if s < 60.0 => format!("about {} s left", s.ceil().max(1.0)),
+        s => format!("about {} min left", (s / 60.0).ceil()),
     }
 }
 
@@ -108,19 +139,22 @@ fn left(state: &mut EditorState, ui: &mut Ui) {
         return;
     }
     let help = ui.ctx().data_mut(|d| d.remove_temp::<String>(hovered_help()));
-    let hint = help.unwrap_or_else(|| hint_of(state));
+    let hint = help.unwrap_or_else(|| hint_of(state, ui.ctx()));
     ui.add(egui::Label::new(RichText::new(hint).color(theme::WEAK)).truncate());
 }
 
 /// The current mouse actions, in one line.
-fn hint_of(state: &EditorState) -> String {
+fn hint_of(state: &EditorState, ctx: &Context) -> String {
     match state.view.pointer {
         PointerActivity::Orbiting => "Orbiting · Shift with the middle button pans".into(),
         PointerActivity::Panning => "Panning".into(),
         PointerActivity::Zooming => "Zooming · up is nearer".into(),
-        PointerActivity::Moving => "Ctrl: snap · Shift: precise · Esc: cancel".into(),
+        PointerActivity::Flying => {
+            "W A S D: move · Q E: down, up · Drag: look around · Wheel: speed · Shift: fast".into()
+        }
+        PointerActivity::Moving => "Ctrl: snap · F: onto a surface · Shift: precise · Esc: cancel".into(),
         PointerActivity::Transforming => {
-            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · Shift: precise · \
+            "X, Y, Z: axis, again: local · Shift X: plane · Type a number · Ctrl: snap · F: onto a surface · Shift: precise · \
              Click or Enter: done · Esc: cancel"
                 .into()
         }
@@ -128,18 +162,32 @@ fn hint_of(state: &EditorState) -> String {
             "Drag: move the point · Ctrl click: delete it · Drag or click +: add a point".into()
         }
         PointerActivity::OverHandle(false) => "Drag: change the value".into(),
+        PointerActivity::Lassoing => "Draw a line around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Boxing => "Drag a box around what you want to select · Shift: add · Esc: cancel".into(),
         PointerActivity::Shaping => "Ctrl: snap · Shift: precise · Alt: both sides · Esc: cancel".into(),
         _ if state.session.is_changing() => "Drag sideways to change · Shift: precise · Click: type a number".into(),
-        PointerActivity::Hovering => {
-            "Click: select, again: below · Double click: into the group · Shift A: add · G R S: move, rotate, scale · \
-             Drag: orbit · Shift drag: pan · Ctrl drag: box"
-                .into()
-        }
+        PointerActivity::Hovering => format!(
+            "Click: select, again: below · Double click: into the group · {}Drag: orbit · Shift drag: pan · \
+             Ctrl drag: box · Right button with W A S D: fly",
+            keys_text(ctx)
+        ),
         PointerActivity::Away => {
             "Hover a field for help · Drag rows in the outliner to reorder · F3: find a command".into()
         }
     }
+}
+
+/// The keys that add and transform, as they are now.
+fn keys_text(ctx: &Context) -> String {
+    let bindings = KeyBindings::of(ctx);
+    let key = |command: Command| command.info().keys_in(&bindings).first().map(|key| shown(ctx, key));
+    let all = |commands: [Command; 3]| commands.map(key).into_iter().collect::<Option<Vec<_>>>();
+    let kinds = [TransformKind::Move, TransformKind::Rotate, TransformKind::Scale];
+    let at_once = all(kinds.map(Command::Transform));
+    let tools = all(kinds.map(|kind| Command::UseTool(Tool::Transform(kind))));
+    let transforms = at_once.or(tools).map(|keys| format!("{}: move, rotate, scale · ", keys.join(" ")));
+    let add = key(Command::AddAtPointer).map(|key| format!("{key}: add · "));
+    add.unwrap_or_default() + &transforms.unwrap_or_default()
 }
 
 /// A running task: name, progress, and a cancel button.
@@ -152,12 +200,14 @@ fn job(ui: &mut Ui, task: &Task, count: usize) {
         }
     }
     if let Some(progress) = task.progress() {
-        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(theme::ACCENT));
+        ui.add(ProgressBar::new(progress).desired_width(110.0).desired_height(6.0).fill(*theme::ACCENT));
     }
+    let left = task.progress().and_then(|progress| time_left(ui, task.name(), progress));
     let label = |text: String| egui::Label::new(RichText::new(text).color(theme::WEAK));
     ui.add(label(format!("{}…", task.name())).truncate());
     let more = if count > 1 { format!("{} more", count - 1) } else { String::new() };
-    let rest = [task.stage(), &more].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ");
+    let left = left.unwrap_or_default();
+    let rest = [task.stage(), &left, &more].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(", ");
     if !rest.is_empty() {
         ui.add(label(rest).truncate());
     }
@@ -172,4 +222,22 @@ fn warning(state: &EditorState) -> Option<(NodeId, String)> {
     let first = warnings.first()?;
     let more = if warnings.len() > 1 { format!(" (+{})", warnings.len() - 1) } else { String::new() };
     Some((first.node, format!("{}: {}{more}", first.name, first.reason)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_said_when_enough_is_known() {
+        let ctx = Context::default();
+        let mut said = Vec::new();
+        for (second, progress) in [(0.0, 0.1), (1.0, 0.2), (3.0, 0.4), (6.0, 0.4), (7.0, 0.05)] {
+            let input = egui::RawInput { time: Some(second), ..Default::default() };
+            let _ = ctx.run_ui(input, |ui| said.push(time_left(ui, "work", progress)));
+        }
+        let said: Vec<_> = said.iter().map(Option::as_deref).collect();
+        assert_eq!(said, [None, None, Some("about 6 s left"), Some("about 12 s left"), None]);
+        assert_eq!(left_text(200.0), "about 4 min left");
+    }
 }

@@ -1,54 +1,14 @@
-//! The style of the editor: one palette, one accent, one set of spacings.
+//! The style of the editor: one palette for each theme, one accent, one set of spacings.
 
 use egui::style::{Selection, WidgetVisuals};
 use egui::{Color32, Context, CornerRadius, FontId, Margin, Shadow, Stroke, TextStyle, Visuals, vec2};
 
-/// The accent color: selection, focus, the primary button.
-pub const ACCENT: Color32 = Color32::from_rgb(110, 168, 254);
-/// Background of selected rows.
-pub const SELECTED: Color32 = Color32::from_rgb(42, 66, 104);
-/// Background of panels.
-pub const PANEL: Color32 = Color32::from_rgb(27, 29, 34);
-/// Background of cards in panels.
-pub const CARD: Color32 = Color32::from_rgb(34, 37, 43);
-/// Background of the bars at the top and the bottom.
-pub const BAR: Color32 = Color32::from_rgb(22, 24, 28);
-/// Background of fields for text and numbers.
-pub const FIELD: Color32 = Color32::from_rgb(46, 50, 58);
-/// Thin lines between areas.
-pub const LINE: Color32 = Color32::from_rgb(14, 15, 18);
-/// Normal text.
-pub const TEXT: Color32 = Color32::from_rgb(212, 216, 223);
-/// Labels and hints.
-pub const WEAK: Color32 = Color32::from_rgb(146, 152, 164);
-/// Controls at rest, barely visible.
-pub const FAINT: Color32 = Color32::from_rgb(86, 92, 103);
-/// Switches of rows without the pointer.
-pub const RESTING: Color32 = Color32::from_rgb(64, 68, 78);
-/// Parameters that change with time.
-pub const ANIMATED: Color32 = Color32::from_rgb(126, 200, 136);
-/// Keys at the moment that is shown, and selected keys.
-pub const KEYED: Color32 = Color32::from_rgb(244, 200, 96);
-/// Errors.
-pub const ERROR: Color32 = Color32::from_rgb(240, 112, 104);
-/// Warnings.
-pub const WARNING: Color32 = Color32::from_rgb(232, 178, 92);
-/// Success.
-pub const SUCCESS: Color32 = Color32::from_rgb(126, 200, 136);
-/// Groups.
-pub const GROUP: Color32 = Color32::from_rgb(226, 184, 110);
-/// Objects.
-pub const OBJECT: Color32 = Color32::from_rgb(126, 182, 224);
-/// Handles on a shape.
+pub use super::palette::*;
+
+/// Marks over the picture, in every theme.
+pub const ON_PICTURE: Color32 = Color32::from_rgb(212, 216, 223);
+/// Handles on a shape, over the picture.
 pub const HANDLE: Color32 = Color32::from_rgb(255, 190, 92);
-/// Subtracted nodes.
-pub const NEGATIVE: Color32 = Color32::from_rgb(232, 128, 118);
-/// Lights.
-pub const LIGHT: Color32 = Color32::from_rgb(244, 214, 120);
-/// Cameras.
-pub const CAMERA: Color32 = Color32::from_rgb(168, 150, 232);
-/// Meshes.
-pub const MESH: Color32 = Color32::from_rgb(126, 200, 160);
 /// The X, Y and Z axes.
 pub const AXES: [Color32; 3] =
     [Color32::from_rgb(226, 94, 94), Color32::from_rgb(124, 190, 84), Color32::from_rgb(86, 142, 236)];
@@ -65,9 +25,11 @@ pub const RADIUS: u8 = 5;
 /// Installs fonts and style. Call once, before the first frame.
 pub fn install(ctx: &Context) {
     egui_material_icons::initialize(ctx);
-    ctx.set_theme(egui::Theme::Dark);
+    for theme in ColorTheme::ALL {
+        ctx.style_mut_of(theme.of_egui(), |style| style.visuals = visuals(theme));
+    }
+    apply(ctx, ColorTheme::current());
     ctx.all_styles_mut(|style| {
-        style.visuals = visuals();
         style.animation_time = 0.1;
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.4;
@@ -101,6 +63,21 @@ pub fn install(ctx: &Context) {
     });
 }
 
+/// Switches to a theme.
+pub fn apply(ctx: &Context, theme: ColorTheme) {
+    theme.make_current();
+    ctx.set_theme(theme.of_egui());
+}
+
+impl ColorTheme {
+    fn of_egui(self) -> egui::Theme {
+        match self {
+            Self::Dark => egui::Theme::Dark,
+            Self::Light => egui::Theme::Light,
+        }
+    }
+}
+
 fn widget(fill: Color32, border: Color32, text: Color32) -> WidgetVisuals {
     WidgetVisuals {
         bg_fill: fill,
@@ -112,28 +89,33 @@ fn widget(fill: Color32, border: Color32, text: Color32) -> WidgetVisuals {
     }
 }
 
-fn visuals() -> Visuals {
-    let mut v = Visuals::dark();
+fn visuals(theme: ColorTheme) -> Visuals {
+    let of = |color: ThemeColor| color.of(theme);
+    let (mut v, shade) = match theme {
+        ColorTheme::Dark => (Visuals::dark(), 1.0),
+        ColorTheme::Light => (Visuals::light(), 0.4),
+    };
     let none = Color32::TRANSPARENT;
-    v.widgets.noninteractive = widget(PANEL, Color32::from_rgb(48, 52, 60), TEXT);
-    v.widgets.inactive = widget(FIELD, none, TEXT);
-    v.widgets.hovered = widget(Color32::from_rgb(58, 63, 73), none, Color32::WHITE);
-    v.widgets.active = widget(Color32::from_rgb(66, 72, 84), none, Color32::WHITE);
-    v.widgets.open = widget(Color32::from_rgb(58, 63, 73), none, Color32::WHITE);
-    v.selection = Selection { bg_fill: SELECTED, stroke: Stroke::new(1.0, ACCENT) };
-    v.hyperlink_color = ACCENT;
-    v.faint_bg_color = Color32::from_rgb(31, 33, 39);
-    v.extreme_bg_color = Color32::from_rgb(18, 20, 24);
-    v.weak_text_color = Some(WEAK);
-    v.warn_fg_color = WARNING;
-    v.error_fg_color = ERROR;
-    v.panel_fill = PANEL;
-    v.window_fill = Color32::from_rgb(36, 39, 46);
-    v.window_stroke = Stroke::new(1.0, Color32::from_rgb(58, 62, 72));
+    v.widgets.noninteractive = widget(of(PANEL), of(BORDER), of(TEXT));
+    v.widgets.inactive = widget(of(FIELD), none, of(TEXT));
+    v.widgets.hovered = widget(of(FIELD_HOVERED), none, of(STRONG));
+    v.widgets.active = widget(of(FIELD_PRESSED), none, of(STRONG));
+    v.widgets.open = widget(of(FIELD_HOVERED), none, of(STRONG));
+    v.selection = Selection { bg_fill: of(SELECTED), stroke: Stroke::new(1.0, of(ACCENT)) };
+    v.hyperlink_color = of(ACCENT);
+    v.faint_bg_color = of(STRIPE);
+    v.extreme_bg_color = of(DEEP);
+    v.weak_text_color = Some(of(WEAK));
+    v.warn_fg_color = of(WARNING);
+    v.error_fg_color = of(ERROR);
+    v.panel_fill = of(PANEL);
+    v.window_fill = of(WINDOW);
+    v.window_stroke = Stroke::new(1.0, of(BORDER));
     v.window_corner_radius = CornerRadius::same(8);
     v.menu_corner_radius = CornerRadius::same(7);
-    v.window_shadow = Shadow { offset: [0, 8], blur: 28, spread: 0, color: Color32::from_black_alpha(120) };
-    v.popup_shadow = Shadow { offset: [0, 4], blur: 16, spread: 0, color: Color32::from_black_alpha(110) };
+    let black = |alpha: f32| Color32::from_black_alpha((alpha * shade) as u8);
+    v.window_shadow = Shadow { offset: [0, 8], blur: 28, spread: 0, color: black(120.0) };
+    v.popup_shadow = Shadow { offset: [0, 4], blur: 16, spread: 0, color: black(110.0) };
     v.indent_has_left_vline = false;
     v.slider_trailing_fill = true;
     v

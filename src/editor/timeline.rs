@@ -174,7 +174,7 @@ fn ruler(state: &mut EditorState, ui: &mut Ui, scale: &TimeScale, rect: Rect) {
         }
         painter.vline(x, lane.bottom() - 6.0..=lane.bottom(), (1.0, theme::FAINT));
         let text = pos2(x + 3.0, lane.center().y - 2.0);
-        painter.text(text, Align2::LEFT_CENTER, format!("{frame}"), FontId::proportional(11.0), theme::WEAK);
+        painter.text(text, Align2::LEFT_CENTER, format!("{frame}"), FontId::proportional(11.0), *theme::WEAK);
     }
     state.playback.is_scrubbing = response.dragged();
     if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {

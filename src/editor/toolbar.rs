@@ -1,6 +1,6 @@
 //! The bar at the top: menus and the most common buttons.
 
-use egui::{Button, Color32, MenuBar, Response, RichText, Ui, vec2};
+use egui::{Button, MenuBar, Response, RichText, Ui, vec2};
 use egui_material_icons::icons::ICON_ADD;
 
 use super::add_palette::favorites;
@@ -10,7 +10,7 @@ use super::commands::info::{Icon, Menu};
 use super::intent::Intent;
 use super::panel::{Panel, PanelPlace};
 use super::state::{EditorState, PanelEntry, Request};
-use super::{icons, theme, widgets};
+use super::{drag_in, icons, theme, widgets};
 use isolith_scene::Operator;
 
 /// The panel of the toolbar.
@@ -57,7 +57,9 @@ fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
         buttons(state, ui, theme::TEXT, &[Command::Undo, Command::Redo], &mut chosen);
         divider(ui);
         for command in favorites(state) {
-            if favorite_button(ui, command).clicked() {
+            let button = favorite_button(ui, command);
+            drag_in::begin(state, &button, command);
+            if button.clicked() {
                 chosen = Some(command);
             }
         }
@@ -86,7 +88,13 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
-        for (name, menu) in [("Transform", Menu::Tool), ("Orientation", Menu::Orientation), ("Keymap", Menu::Keymap)] {
+        let menus = [
+            ("Transform", Menu::Tool),
+            ("Orientation", Menu::Orientation),
+            ("Pivot", Menu::Pivot),
+            ("Keymap", Menu::Keymap),
+        ];
+        for (name, menu) in menus {
             let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
             *chosen = inner.flatten().or(*chosen);
         }
@@ -97,8 +105,14 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::Edit {
         ui.separator();
-        let presets = ui.menu_button("Instancer presets", |ui| menu_entries(ui, state, Menu::Presets));
-        *chosen = presets.inner.flatten().or(*chosen);
+        for (name, menu) in [
+            ("Paste only", Menu::PastePart),
+            ("Align and distribute", Menu::Arrange),
+            ("Instancer presets", Menu::Presets),
+        ] {
+            let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
+            *chosen = inner.flatten().or(*chosen);
+        }
     }
     if menu == Menu::View {
         ui.separator();
@@ -112,6 +126,10 @@ fn panels(state: &mut EditorState, ui: &mut Ui) {
         if ui.add(Button::new(title).selected(is_open)).clicked() {
             state.requests.push(Request::TogglePanel(id));
         }
+    }
+    ui.separator();
+    if ui.button("Reset layout").on_hover_text(Command::ResetLayout.info().tooltip(ui.ctx())).clicked() {
+        state.requests.push(Request::ResetLayout);
     }
 }
 
@@ -128,7 +146,13 @@ fn square(ui: &mut Ui, enabled: bool, button: Button<'_>, name: &str) -> Respons
     response
 }
 
-fn buttons(state: &EditorState, ui: &mut Ui, color: Color32, commands: &[Command], chosen: &mut Option<Command>) {
+fn buttons(
+    state: &EditorState,
+    ui: &mut Ui,
+    color: theme::ThemeColor,
+    commands: &[Command],
+    chosen: &mut Option<Command>,
+) {
     for &command in commands {
         let info = command.info();
         let text = match info.icon {
@@ -155,21 +179,22 @@ fn with_step(tooltip: String, step: Option<&str>) -> String {
 /// A button that adds a favorite.
 fn favorite_button(ui: &mut Ui, command: Command) -> Response {
     let info = command.info();
-    let response = square(ui, true, Button::new(""), &format!("Add {}", info.label.to_lowercase()));
+    let button = Button::new("").sense(egui::Sense::click_and_drag());
+    let response = square(ui, true, button, &format!("Add {}", info.label.to_lowercase()));
     let rect = icons::centered(response.rect, 17.0);
     let hovered = response.hovered();
     match info.icon {
         Some(Icon::Shape(kind)) => {
-            let color = if hovered { Color32::WHITE } else { theme::OBJECT };
+            let color = if hovered { *theme::STRONG } else { *theme::OBJECT };
             icons::paint_shape(ui.painter(), rect, kind, color);
         }
         Some(Icon::Material(icon)) => {
-            let color = if hovered { Color32::WHITE } else { theme::LIGHT };
+            let color = if hovered { *theme::STRONG } else { *theme::LIGHT };
             icons::paint_icon(ui.painter(), rect, icon, color);
         }
         None => {}
     }
-    response.on_hover_text(format!("Add: {}\n{}", info.label, info.help))
+    response.on_hover_text(format!("Add: {}\n{}\nDrag it into the viewport to choose the place", info.label, info.help))
 }
 
 /// Maximum number of characters of a file's name in a menu.

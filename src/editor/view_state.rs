@@ -3,8 +3,10 @@
 use egui::{Event, Pos2, Rect, TextureId, vec2};
 
 use super::choice_walk::{BelowList, Walk};
+use super::commands::command::Command;
 use super::navigation::Navigation;
-use super::transforms::kinds::{Orientation, Tool, TransformKind};
+use super::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
+use super::transforms::starts::LastMotion;
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_geometry::Camera;
@@ -38,8 +40,10 @@ pub struct ViewSettings {
     pub size_px: [u32; 2],
     /// The artist drags the camera or a value: speed is more important than quality.
     pub navigating: bool,
-    /// Whether to show the ground grid.
+    /// Whether to show the grid.
     pub show_grid: bool,
+    /// The grid.
+    pub grid: GridView,
     /// Whether to outline the selection.
     pub show_outline: bool,
     /// The shading of the lit picture.
@@ -48,6 +52,17 @@ pub struct ViewSettings {
     pub view_mode: ViewMode,
     /// Samples per pixel that accumulate while nothing changes.
     pub samples: u32,
+}
+
+/// The grid of a view.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridView {
+    /// The axis across it: 1 for the ground.
+    pub axis: usize,
+    /// Side of a fine cell, in meters; ten of them make a coarse one.
+    pub cell: f64,
+    /// Whether it fades with distance.
+    pub fades: bool,
 }
 
 /// Samples per pixel of a new view.
@@ -67,6 +82,8 @@ pub enum PointerActivity {
     Panning,
     /// Moves the camera forward and backward.
     Zooming,
+    /// Flies through the scene.
+    Flying,
     /// Drags the gizmo.
     Moving,
     /// Transforms the selection, with all keys for it.
@@ -77,6 +94,8 @@ pub enum PointerActivity {
     Shaping,
     /// Drags a box around what is to be selected.
     Boxing,
+    /// Draws a line around what is to be selected.
+    Lassoing,
 }
 
 /// The view of the document.
@@ -97,10 +116,16 @@ pub struct ViewState {
     pub tool: Tool,
     /// Whose axes it follows.
     pub orientation: Orientation,
+    /// The point around which it turns and scales.
+    pub pivot: PivotPoint,
+    /// The last transform, to be repeated.
+    pub last_motion: Option<LastMotion>,
     /// The transform that follows the pointer and takes all keys.
     pub transforming: Option<TransformKind>,
     /// Where in the picture the next node is added; `None` for the view's target.
     pub add_at: Option<Pos2>,
+    /// What is dragged from a palette into the picture.
+    pub dragging_in: Option<Command>,
     /// The group in which clicks select; `None` for the whole scene.
     pub entered: Option<NodeId>,
     /// The clicks at one place so far.
@@ -111,6 +136,8 @@ pub struct ViewState {
     pub isolated: Vec<NodeId>,
     /// The next drag selects by a box.
     pub wants_box: bool,
+    /// The next drag selects by a lasso.
+    pub wants_lasso: bool,
     /// Where the context menu was opened.
     pub menu_at: Option<Pos2>,
     /// The keys and texts of this frame that belong to it.
@@ -138,13 +165,17 @@ impl Default for ViewState {
             show_outline: true,
             tool: Tool::Transform(TransformKind::Move),
             orientation: Orientation::World,
+            pivot: PivotPoint::Median,
+            last_motion: None,
             transforming: None,
             add_at: None,
+            dragging_in: None,
             entered: None,
             walk: None,
             below: None,
             isolated: Vec::new(),
             wants_box: false,
+            wants_lasso: false,
             menu_at: None,
             modal_events: Vec::new(),
             rect: Rect::from_min_size(Pos2::ZERO, vec2(640.0, 480.0)),
@@ -161,6 +192,24 @@ impl ViewState {
     pub fn aspect(&self) -> f64 {
         let [width, height] = self.size_px.map(f64::from);
         width / height
+    }
+
+    /// The grid, with cells of a power of ten of this unit, in meters: on the ground, or across an orthographic view
+    /// along an axis.
+    pub fn grid(&self, unit: f64) -> GridView {
+        let navigation = &self.navigation;
+        let is_flat = navigation.orthographic;
+        let size = match is_flat {
+            true => 2.0 * navigation.distance * (0.5 * navigation.fov_y).tan(),
+            false => navigation.eye().y.abs().max(1e-3),
+        };
+        let cell = unit * 10.0_f64.powf((size / unit).log10().floor()) * 0.1;
+        GridView { axis: navigation.axis().unwrap_or(1), cell, fades: !is_flat }
+    }
+
+    /// Whether a grid is in the picture.
+    pub fn shows_grid(&self) -> bool {
+        self.show_grid && self.view_mode == ViewMode::Shaded
     }
 
     /// The shading that the picture has; `None` while a view for debugging hides it.

@@ -4,9 +4,12 @@ use egui::{Color32, Key, Pos2, Rect, Response, Sense, Ui, pos2};
 use glam::{DVec2, DVec3};
 
 use super::commands::entries::viewport_entries;
+use super::fly::{self, FlySpeed};
+use super::ghosts::Ghosts;
 use super::handles::handle_paint;
 use super::handles::value_drag::Pace;
 use super::handles::value_handle::{HandleSet, HandleTarget};
+use super::hover::Hover;
 use super::overlay::{self, Compass};
 use super::panel::{Panel, PanelPlace};
 use super::projection::Projection;
@@ -14,10 +17,11 @@ use super::state::{EditorState, Request};
 use super::transforms::transform_bar;
 use super::transforms::transform_drag::Following;
 use super::view_state::PointerActivity;
-use super::viewport_click::{click, prepare_menu, select_in_box, take_dropped_material};
+use super::viewport_click::{click, prepare_menu, select_in_box, select_in_lasso, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
-use super::{lattice_overlay, legend, materials, shading_bar, steps, theme};
+use super::viewport_surface::SurfaceUnderPointer;
+use super::{grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -25,8 +29,14 @@ use isolith_field::debug_view::ViewMode;
 pub struct Viewport {
     dragging: Option<Dragging>,
     modal: ModalTransform,
+    surface: SurfaceUnderPointer,
+    ghosts: Ghosts,
+    hover: Hover,
     /// End of the zoom by the wheel, in seconds of the program's clock.
     zooming_until: f64,
+    fly_speed: FlySpeed,
+    /// A flight ends in this frame: the right button opens no menu.
+    has_flown: bool,
 }
 
 impl Panel for Viewport {
@@ -77,10 +87,13 @@ impl Viewport {
             Some(Dragging::Orbit) => PointerActivity::Orbiting,
             Some(Dragging::Pan) => PointerActivity::Panning,
             Some(Dragging::Zoom) => PointerActivity::Zooming,
+            Some(Dragging::Fly) => PointerActivity::Flying,
             Some(Dragging::Transform(_)) => PointerActivity::Moving,
             Some(Dragging::Shape(_)) => PointerActivity::Shaping,
             Some(Dragging::Box(_)) => PointerActivity::Boxing,
+            Some(Dragging::Lasso(_)) => PointerActivity::Lassoing,
             None if state.view.wants_box => PointerActivity::Boxing,
+            None if state.view.wants_lasso => PointerActivity::Lassoing,
             None if response.hovered() => over_handle().unwrap_or(PointerActivity::Hovering),
             None => PointerActivity::Away,
         }
@@ -92,14 +105,29 @@ impl Viewport {
         if response.drag_started() && !self.modal.takes_pointer() {
             let projection = Projection::new(&state.view, pixels_per_point);
             self.dragging = start_drag(state, ui, response, &projection);
+            self.surface = SurfaceUnderPointer::default();
         }
-        if !response.dragged() {
-            if let Some(Dragging::Box([from, to])) = self.dragging {
-                let projection = Projection::new(&state.view, pixels_per_point);
-                let adding = ui.input(|i| i.modifiers.shift);
-                select_in_box(state, &projection, Rect::from_two_pos(from, to), adding);
+        if fly::begins(ui, response)
+            && matches!(self.dragging, None | Some(Dragging::Orbit))
+            && !self.modal.takes_pointer()
+        {
+            self.dragging = Some(Dragging::Fly);
+        }
+        let is_flying = matches!(self.dragging, Some(Dragging::Fly));
+        self.has_flown = is_flying && !fly::goes_on(ui);
+        if !response.dragged() && (!is_flying || self.has_flown) {
+            let projection = Projection::new(&state.view, pixels_per_point);
+            let adding = ui.input(|i| i.modifiers.shift);
+            match self.dragging.take() {
+                Some(Dragging::Box([from, to])) => {
+                    select_in_box(state, &projection, Rect::from_two_pos(from, to), adding);
+                }
+                Some(Dragging::Lasso(line)) => select_in_lasso(state, &projection, &line, adding),
+                Some(Dragging::Transform(drag)) => {
+                    state.view.last_motion = drag.last_motion().or(state.view.last_motion);
+                }
+                _ => {}
             }
-            self.dragging = None;
         }
         self.follow_drag(state, ui, response);
         self.zoom_by_wheel(state, ui, response);
@@ -115,7 +143,7 @@ impl Viewport {
     }
 
     fn context_menu(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
-        if self.modal.takes_pointer() {
+        if self.modal.takes_pointer() || self.has_flown {
             return;
         }
         if let Some(pointer) = response.interact_pointer_pos().filter(|_| response.secondary_clicked()) {
@@ -149,9 +177,17 @@ impl Viewport {
             Some(Dragging::Orbit) => view.orbit(delta, height),
             Some(Dragging::Pan) => view.pan(delta, height),
             Some(Dragging::Zoom) => view.zoom((delta.y / height * 4.0).exp(), center, center * 2.0),
+            Some(Dragging::Fly) => fly::follow(view, &mut self.fly_speed, ui, delta, height),
             Some(Dragging::Box([_, to])) => {
                 *to = response.interact_pointer_pos().unwrap_or(*to);
                 state.view.wants_box = false;
+                if ui.input(|i| i.key_pressed(Key::Escape)) {
+                    self.dragging = None;
+                }
+            }
+            Some(Dragging::Lasso(line)) => {
+                line.extend(response.interact_pointer_pos().filter(|at| line.last() != Some(at)));
+                state.view.wants_lasso = false;
                 if ui.input(|i| i.key_pressed(Key::Escape)) {
                     self.dragging = None;
                 }
@@ -175,7 +211,12 @@ impl Viewport {
         let ray = projection.ray(pointer);
         match &mut self.dragging {
             Some(Dragging::Transform(drag)) => {
-                drag.follow(projection, view.rotation, pointer, Following { precise: modifiers.shift, snap });
+                if ui.input(|i| i.key_pressed(Key::F)) {
+                    drag.surface = drag.surface.next();
+                }
+                let surface = self.surface.find(state, projection, pointer, drag);
+                let following = Following { precise: modifiers.shift, snap, surface };
+                drag.follow(projection, state.view.navigation.rotation, pointer, following);
                 drag.apply(&mut state.session, response.id);
             }
             Some(Dragging::Shape(drag)) => {
@@ -195,6 +236,9 @@ impl Viewport {
 
     fn zoom_by_wheel(&mut self, state: &mut EditorState, ui: &Ui, response: &Response) {
         let Some(pointer) = response.hover_pos().filter(|_| response.hovered()) else { return };
+        if matches!(self.dragging, Some(Dragging::Fly)) {
+            return;
+        }
         let (scroll, pinch, now) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta(), i.time));
         if scroll == 0.0 && pinch == 1.0 {
             return;
@@ -251,7 +295,7 @@ impl Viewport {
         handle_paint::announce(ui, &set);
     }
 
-    fn paint(&self, state: &EditorState, ui: &Ui, response: &Response) {
+    fn paint(&mut self, state: &EditorState, ui: &Ui, response: &Response) {
         let rect = state.view.rect;
         let painter = ui.painter_at(rect);
         match state.picture.texture {
@@ -262,13 +306,20 @@ impl Viewport {
             None => background(state, &painter, rect),
         }
         let projection = Projection::new(&state.view, ui.ctx().pixels_per_point());
+        if state.view.shows_grid() {
+            grid_labels::paint(state, ui, &projection);
+        }
         if state.view.show_outline {
             overlay::selection_boxes(state, &painter, &projection);
+            self.ghosts.paint(state, &painter, &projection);
             lattice_overlay::paint(state, &painter, &projection);
         }
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
         let pointer = response.hover_pos().filter(|_| response.hovered() || response.dragged());
+        let is_free = matches!(state.view.pointer, PointerActivity::Hovering) && state.view.show_outline;
+        self.hover.look(state, &projection, pointer.filter(|_| is_free));
+        self.hover.paint(state, &painter, &projection);
         self.paint_tools(state, ui, &projection, pointer);
         if state.view.view_mode != ViewMode::Shaded {
             let depth_range = state.depth_range();
@@ -281,6 +332,9 @@ impl Viewport {
         if let Some(Dragging::Box([from, to])) = self.dragging {
             let area = Rect::from_two_pos(from, to);
             painter.rect(area, 0.0, theme::ACCENT.gamma_multiply(0.12), (1.0, theme::ACCENT), egui::StrokeKind::Inside);
+        }
+        if let Some(Dragging::Lasso(line)) = &self.dragging {
+            overlay::lasso(&painter, line);
         }
         let compass = Compass::new(rect, state.view.navigation.rotation);
         compass.paint(&painter, pointer.and_then(|p| compass.side_at(p)));
@@ -297,5 +351,5 @@ fn background(state: &EditorState, painter: &egui::Painter, rect: Rect) {
     painter.rect_filled(rect, 0.0, super::inspector_material::display_color(horizon));
     let text = "Preparing the viewport…";
     let font = egui::FontId::proportional(14.0);
-    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::WEAK);
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, theme::ON_PICTURE);
 }

@@ -34,10 +34,10 @@ pub fn row<R>(ui: &mut Ui, label: &str, help: &str, add: impl FnOnce(&mut Ui) ->
 
 /// A card with a title.
 pub fn card<R>(ui: &mut Ui, title: &str, add: impl FnOnce(&mut Ui) -> R) -> Option<R> {
-    let frame = egui::Frame::new().fill(theme::CARD).corner_radius(7.0).inner_margin(egui::Margin::symmetric(10, 8));
+    let frame = egui::Frame::new().fill(*theme::CARD).corner_radius(7.0).inner_margin(egui::Margin::symmetric(10, 8));
     let content = |ui: &mut Ui| {
         ui.set_width(ui.available_width());
-        let header = egui::CollapsingHeader::new(RichText::new(title).strong().color(Color32::WHITE));
+        let header = egui::CollapsingHeader::new(RichText::new(title).strong().color(theme::STRONG));
         header.default_open(true).show_unindented(ui, |ui| {
             ui.add_space(2.0);
             ui.push_id(title, add).inner
@@ -95,7 +95,12 @@ pub fn choice<T: Copy + PartialEq>(
 }
 
 /// A frameless button with an icon.
-pub fn icon_button(ui: &mut Ui, icon: egui_material_icons::MaterialIcon, name: &str, color: Color32) -> Response {
+pub fn icon_button(
+    ui: &mut Ui,
+    icon: egui_material_icons::MaterialIcon,
+    name: &str,
+    color: impl Into<Color32>,
+) -> Response {
     let text = icon.rich_text().size(theme::ICON_SIZE).color(color);
     let response = ui.add(egui::Button::new(text).frame(false).min_size(vec2(20.0, 20.0)));
     ui.ctx().accesskit_node_builder(response.id, |node| node.set_label(name.to_owned()));

@@ -41,7 +41,7 @@ pub use gpu::{brdf_probe, copy_probe, driver, mesh_ray_probe, probe, scene_probe
 pub use passes::debug_view::DebugView;
 pub use passes::mesh::Instance;
 pub use passes::overlay::Overlay;
-pub use passes::overlay_settings::OverlaySettings;
+pub use passes::overlay_settings::{GridPlane, OverlaySettings};
 pub use pipelines::cache::PipelineCache;
 pub use pipelines::evaluators::{EvaluatorUse, evaluators_of};
 pub use pipelines::strategy::EvalStrategy;

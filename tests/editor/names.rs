@@ -93,7 +93,8 @@ fn long_names_are_elided_in_the_title_and_in_questions() {
     let title = harness.state().title();
     assert!(title.chars().count() < 100 && title.starts_with("Begin f") && title.contains("f end.json"), "{title}");
     harness.get_by_label("Add sphere").click();
-    harness.run();
+    // The outliner scrolls to it.
+    harness.run_steps(12);
     press(&mut harness, Modifiers::COMMAND, Key::N);
     let question = harness.get_by_label_contains("Save the changes to").rect();
     assert!(question.width() < 420.0 && question.height() < 60.0, "{question}");

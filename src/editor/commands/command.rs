@@ -1,8 +1,9 @@
 //! The names of the commands, without their conditions and effects.
 
+use crate::arrangement::{BoundsEdge, CopiedPart, OriginPlace};
 use crate::keymap::Keymap;
 use crate::navigation::Side;
-use crate::transforms::kinds::{Orientation, Tool, TransformKind};
+use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 use isolith_field::Shading;
 use isolith_field::debug_view::ViewMode;
 use isolith_scene::{InstancerPreset, Operator, ShapeKind};
@@ -32,6 +33,24 @@ pub enum Command {
     Undo,
     /// Redo the last undone change.
     Redo,
+    /// Toggle the list of undo steps.
+    ShowHistory,
+    /// Copy the selection to the clipboard.
+    Copy,
+    /// Copy the selection to the clipboard and delete it.
+    Cut,
+    /// Add what the clipboard holds.
+    Paste,
+    /// Give the selection a part of the copied node.
+    PastePart(CopiedPart),
+    /// Align the selection with the active node, along an axis.
+    Align(usize, BoundsEdge),
+    /// Make the gaps between the selected nodes equal, along an axis.
+    Distribute(usize),
+    /// Move the origin of the selected groups.
+    MoveOrigin(OriginPlace),
+    /// Duplicate the selection along the last move.
+    DuplicateAlong,
     /// Rename the active node in the outliner.
     Rename,
     /// Duplicate the selection.
@@ -66,6 +85,14 @@ pub enum Command {
     SelectChildren,
     /// Select what is of the same kind.
     SelectSimilar,
+    /// Make fields of the selected models.
+    MeshToField,
+    /// Make triangles of the selected fields of models.
+    FieldToMesh,
+    /// Select what has the same material.
+    SelectSameMaterial,
+    /// Select by a line that the next drag draws.
+    SelectByLasso,
     /// Select by a box that the next drag draws.
     SelectByBox,
     /// Show the selection alone, or everything again.
@@ -114,10 +141,14 @@ pub enum Command {
     LookThroughCamera,
     /// Look along a world axis.
     LookFrom(Side),
-    /// Toggle the ground grid.
+    /// Switch between a perspective and an orthographic view.
+    ToggleOrthographic,
+    /// Toggle the grid.
     ToggleGrid,
     /// Toggle the outline of the selection.
     ToggleOutline,
+    /// Open the preferences.
+    Preferences,
     /// Open the page of help about what is under the pointer.
     ShowHelp,
     /// List the keys.
@@ -134,12 +165,16 @@ pub enum Command {
     ExamineScene,
     /// Toggle the log.
     ShowMessages,
+    /// Put all panels back into their usual places.
+    ResetLayout,
     /// Move, rotate or scale the selection with the pointer, until a click or Enter.
     Transform(TransformKind),
     /// Switch to this tool.
     UseTool(Tool),
     /// Switch to these axes.
     UseOrientation(Orientation),
+    /// Switch to this pivot.
+    UsePivot(PivotPoint),
     /// Switch to this keymap.
     UseKeymap(Keymap),
     /// Switch to this shading.

@@ -4,7 +4,7 @@ use egui::{Button, Response, RichText, Ui};
 
 use super::command::Command;
 use super::info::Menu;
-use crate::keymap::{Keymap, shown};
+use crate::keymap::{KeyBindings, shown};
 use crate::state::EditorState;
 use crate::theme;
 
@@ -100,8 +100,8 @@ pub fn viewport_entries(ui: &mut Ui, state: &EditorState) -> Option<Command> {
 fn entry(ui: &mut Ui, command: Command, enabled: bool, on: Option<bool>) -> Response {
     let info = command.info();
     let mut button = Button::new((RichText::new(ICON_ROOM), info.label.as_str())).min_size(egui::vec2(190.0, 0.0));
-    if let Some(key) = info.keys(Keymap::of(ui.ctx())).first() {
-        button = button.shortcut_text(RichText::new(shown(ui.ctx(), key)).color(theme::FAINT));
+    if let Some(key) = info.keys_in(&KeyBindings::of(ui.ctx())).first() {
+        button = button.shortcut_text(RichText::new(shown(ui.ctx(), key)).color(theme::WEAK));
     }
     let response = ui.add_enabled(enabled, button);
     ui.ctx().accesskit_node_builder(response.id, |node| {

@@ -7,7 +7,7 @@ use egui_material_icons::icons::{
 };
 
 use super::command::Command;
-use crate::keymap::{Keymap, shown};
+use crate::keymap::{KeyBindings, Keymap, shown};
 use crate::state::EditorState;
 use crate::{icons, theme};
 use isolith_scene::ShapeKind;
@@ -21,6 +21,10 @@ pub enum Menu {
     Edit,
     /// Ready-made settings of instancers; a submenu of Edit.
     Presets,
+    /// Parts of a copied node; a submenu of Edit.
+    PastePart,
+    /// Aligning and distributing; a submenu of Edit.
+    Arrange,
     /// New nodes.
     Add,
     /// The camera and the picture.
@@ -35,6 +39,8 @@ pub enum Menu {
     Tool,
     /// Axes of the tools; a submenu of View.
     Orientation,
+    /// Pivots of the tools; a submenu of View.
+    Pivot,
     /// Keymaps; a submenu of View.
     Keymap,
     /// What explains the program.
@@ -119,9 +125,14 @@ impl CommandInfo {
         self
     }
 
-    /// Its shortcuts in a keymap; menus show the first.
+    /// Its shortcuts in a keymap that nobody has changed.
     pub fn keys(&self, keymap: Keymap) -> &[KeyboardShortcut] {
         if self.keymap.is_none_or(|only| only == keymap) { &self.keys } else { &[] }
+    }
+
+    /// Its shortcuts as the user has them.
+    pub fn keys_in<'a>(&'a self, bindings: &'a KeyBindings) -> &'a [KeyboardShortcut] {
+        bindings.keys(&self.label, self.keys(bindings.keymap()))
     }
 
     pub(super) fn when(mut self, is_enabled: Condition) -> Self {
@@ -141,20 +152,17 @@ impl CommandInfo {
 
     /// Name, shortcuts and help.
     pub fn tooltip(&self, ctx: &Context) -> String {
-        let keys: Vec<_> = self.keys(Keymap::of(ctx)).iter().map(|k| shown(ctx, k)).collect();
+        let keys: Vec<_> = self.keys_in(&KeyBindings::of(ctx)).iter().map(|k| shown(ctx, k)).collect();
         let keys = if keys.is_empty() { String::new() } else { format!("  ({})", keys.join(", ")) };
         format!("{}{keys}\n{}", self.label, self.help)
     }
 
     /// A check box, or a radio button for one of several choices.
     fn mark(&self, on: bool) -> MaterialIcon {
+        use Menu::{Debug, Keymap, Orientation, Pivot, Samples, Shading, Tool};
         match (self.menu, on) {
-            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, true) => {
-                ICON_RADIO_BUTTON_CHECKED
-            }
-            (Menu::Shading | Menu::Debug | Menu::Samples | Menu::Tool | Menu::Orientation | Menu::Keymap, false) => {
-                ICON_RADIO_BUTTON_UNCHECKED
-            }
+            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, true) => ICON_RADIO_BUTTON_CHECKED,
+            (Shading | Debug | Samples | Tool | Orientation | Pivot | Keymap, false) => ICON_RADIO_BUTTON_UNCHECKED,
             (_, true) => ICON_CHECK_BOX,
             (_, false) => ICON_CHECK_BOX_OUTLINE_BLANK,
         }

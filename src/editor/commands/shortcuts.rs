@@ -5,8 +5,9 @@ use egui::{Context, Event, Key, KeyboardShortcut, Modifiers, Popup};
 use super::command::Command;
 use super::info::Menu;
 use crate::add_palette::AddPalette;
+use crate::clipboard;
 use crate::command_palette::CommandPalette;
-use crate::keymap::Keymap;
+use crate::keymap::KeyBindings;
 use crate::root::Editor;
 
 impl Editor {
@@ -17,7 +18,7 @@ impl Editor {
         if self.dialogs.is_open() {
             return;
         }
-        let keymap = self.state.keymap();
+        let keymap = &KeyBindings::of(ctx);
         let is_of_document = |command: Command| command.info().menu == Menu::File;
         if let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, is_of_document)) {
             ctx.memory_mut(|memory| memory.stop_text_input());
@@ -39,15 +40,12 @@ impl Editor {
         if self.has_dialog() || self.typing || ctx.text_edit_focused() || dragging || Popup::is_any_open(ctx) {
             return;
         }
-        let log = &mut self.state.session.messages.show_log;
-        if *log && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
-            *log = false;
-        }
         // Escape first cancels the current action.
         let jobs = self.state.derived.jobs();
         if jobs.escapable().is_some() && ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::Escape)) {
             jobs.cancel_foremost();
         }
+        clipboard::take_events(&mut self.state, ctx);
         while let Some(command) = ctx.input_mut(|i| take_shortcut(i, keymap, |_| true)) {
             self.run(command, ctx);
         }
@@ -55,7 +53,11 @@ impl Editor {
 }
 
 /// Consumes the first key press that belongs to one of these commands.
-fn take_shortcut(input: &mut egui::InputState, keymap: Keymap, is_wanted: impl Fn(Command) -> bool) -> Option<Command> {
+fn take_shortcut(
+    input: &mut egui::InputState,
+    keymap: &KeyBindings,
+    is_wanted: impl Fn(Command) -> bool,
+) -> Option<Command> {
     let mut found = None;
     input.events.retain(|event| {
         let egui::Event::Key { key, pressed: true, repeat: false, modifiers, .. } = event else { return true };
@@ -64,7 +66,7 @@ fn take_shortcut(input: &mut egui::InputState, keymap: Keymap, is_wanted: impl F
         }
         // Compare modifiers exactly: Ctrl Z is not Shift Ctrl Z.
         let fits = |k: &KeyboardShortcut| k.logical_key == *key && modifiers.matches_exact(k.modifiers);
-        found = Command::all().find(|command| is_wanted(*command) && command.info().keys(keymap).iter().any(fits));
+        found = Command::all().find(|command| is_wanted(*command) && command.info().keys_in(keymap).iter().any(fits));
         found.is_none()
     });
     found

@@ -1,13 +1,14 @@
-//! Commands that transform the selection, and the choice of tools, axes and keys.
+//! Commands that transform the selection, and the choice of tools, axes and keys; the preferences.
 
 use egui::{Key, Modifiers};
+use egui_material_icons::icons::ICON_SETTINGS;
 
 use super::command::Command;
 use super::info::{CommandInfo, Icon, Menu};
 use crate::icons::tool_icon;
 use crate::keymap::Keymap;
 use crate::state::EditorState;
-use crate::transforms::kinds::{Orientation, Tool, TransformKind};
+use crate::transforms::kinds::{Orientation, PivotPoint, Tool, TransformKind};
 
 const NONE: Modifiers = Modifiers::NONE;
 
@@ -48,10 +49,21 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         CommandInfo::new(Menu::Orientation, Command::UseOrientation(orientation), None, label, orientation.help())
             .switch(|state, command| command == Command::UseOrientation(state.view.orientation))
     }));
+    all.extend(PivotPoint::ALL.into_iter().map(|pivot| {
+        let label = format!("Pivot: {}", pivot.label().to_lowercase());
+        CommandInfo::new(Menu::Pivot, Command::UsePivot(pivot), None, label, pivot.help())
+            .switch(|state, command| command == Command::UsePivot(state.view.pivot))
+    }));
     all.extend(Keymap::ALL.into_iter().map(|keymap| {
         let label = format!("Keymap: {}", keymap.label());
         CommandInfo::new(Menu::Keymap, Command::UseKeymap(keymap), None, label, keymap.help())
             .switch(|state, command| command == Command::UseKeymap(state.keymap()))
     }));
+    let preferences = "Theme, scale, units and keys, kept for the next start";
+    all.push(
+        CommandInfo::new(Menu::Edit, Command::Preferences, Icon::from(ICON_SETTINGS), "Preferences…", preferences)
+            .key(Modifiers::COMMAND, Key::Comma)
+            .group(),
+    );
     all
 }

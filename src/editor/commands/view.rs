@@ -3,8 +3,8 @@
 use egui::{Key, Modifiers};
 use egui_material_icons::MaterialIcon;
 use egui_material_icons::icons::{
-    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST, ICON_PHOTO_CAMERA,
-    ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT,
+    ICON_CENTER_FOCUS_STRONG, ICON_CONTRAST, ICON_DASHBOARD, ICON_FIT_SCREEN, ICON_GRID_ON, ICON_LIST,
+    ICON_PHOTO_CAMERA, ICON_PLAY_ARROW, ICON_SEARCH, ICON_SELECT, ICON_VIEW_IN_AR,
 };
 
 use super::command::Command;
@@ -41,14 +41,22 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         ("Bottom view", Side::Bottom, Modifiers::COMMAND, Key::Num7),
     ];
     for (index, (label, side, modifiers, key)) in sides.into_iter().enumerate() {
-        let help = "Looks along an axis of the world";
+        let help = "Looks along an axis of the world, in parallel until you orbit";
         let info = CommandInfo::new(Menu::View, Command::LookFrom(side), None, label, help).key(modifiers, key);
         all.push(if index == 0 { info.group() } else { info });
     }
     all.extend([
-        row(Command::ToggleGrid, ICON_GRID_ON, "Grid", "Shows or hides the ground grid")
-            .switch(|state, _| state.view.show_grid)
-            .group(),
+        row(
+            Command::ToggleOrthographic,
+            ICON_VIEW_IN_AR,
+            "Orthographic",
+            "Parallel lines stay parallel, or meet far away",
+        )
+        .key(NONE, Key::Num5)
+        .switch(|state, _| state.view.navigation.orthographic)
+        .group(),
+        row(Command::ToggleGrid, ICON_GRID_ON, "Grid", "Shows or hides the grid")
+            .switch(|state, _| state.view.show_grid),
         row(Command::ToggleOutline, ICON_SELECT, "Selection outline", "Shows or hides what marks the selection")
             .switch(|state, _| state.view.show_outline),
         row(Command::Play, ICON_PLAY_ARROW, "Play", "Plays the timeline, or pauses").key(NONE, Key::Space).group(),
@@ -57,6 +65,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
             .key(Modifiers::COMMAND, Key::P)
             .group(),
         row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
+        row(Command::ResetLayout, ICON_DASHBOARD, "Reset layout", "Puts all panels back into their usual places"),
     ]);
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());

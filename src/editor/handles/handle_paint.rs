@@ -31,7 +31,7 @@ fn dot(painter: &Painter, handle: &ValueHandle, lit: bool) {
     let color = match handle.target {
         _ if lit => Color32::WHITE,
         HandleTarget::Side(direction, _) => theme::AXES[(0..3).find(|axis| direction[*axis] != 0.0).unwrap_or(0)],
-        HandleTarget::Row(_) | HandleTarget::Place => theme::TEXT,
+        HandleTarget::Row(_) | HandleTarget::Place => theme::ON_PICTURE,
         HandleTarget::Number | HandleTarget::NewRow(_) => theme::HANDLE,
     };
     let size = if lit { 6.0 } else { 4.5 };
@@ -67,7 +67,7 @@ pub fn text_of(handle: &ValueHandle) -> String {
 
 /// Paints a text beside a position, within the picture.
 pub fn tag(painter: &Painter, at: Pos2, text: String) {
-    let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), theme::TEXT);
+    let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), *theme::TEXT);
     let size = galley.size() + vec2(14.0, 8.0);
     let inside = painter.clip_rect().shrink(4.0);
     let mut corner = at + vec2(16.0, -size.y - 8.0);
@@ -82,7 +82,7 @@ pub fn tag(painter: &Painter, at: Pos2, text: String) {
         egui::StrokeKind::Inside,
     );
     let place = Align2::CENTER_CENTER.align_size_within_rect(galley.size(), rect);
-    painter.galley(place.min, galley, theme::TEXT);
+    painter.galley(place.min, galley, *theme::TEXT);
 }
 
 /// Names the handles for readers of the screen.

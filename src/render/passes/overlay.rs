@@ -7,7 +7,7 @@ use glam::{DVec3, UVec2};
 use wgpu::{BindGroup, BindGroupLayout, ShaderStages};
 
 use super::frame_pass::{Building, FramePass};
-use super::overlay_settings::OverlaySettings;
+use super::overlay_settings::{GridPlane, OverlaySettings};
 use crate::frame::plan::FramePlan;
 use crate::recipe::Pass;
 use crate::renderer::recorder::Recorder;
@@ -22,7 +22,7 @@ use isolith_wgsl::{ShaderError, assemble_plain};
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Overlay {
-    /// Position of the eye; x and z are modulo one coarse cell.
+    /// Position of the eye, turned so that the grid lies across y; x and z are modulo one coarse cell.
     pub eye: [f32; 3],
     /// Side of a fine cell, in meters.
     pub cell: f32,
@@ -34,7 +34,18 @@ pub struct Overlay {
     pub leaf_count: u32,
     /// Size of the target in pixels: the width, plus the height times 65 536.
     pub size: u32,
+    /// The axis across the grid.
+    pub axis: u32,
+    /// Distance over which the grid loses half of its strength, in meters.
+    pub reach: f32,
+    /// Share of the depth by which the grid must be nearer than a surface.
+    pub bias: f32,
+    /// Alignment.
+    pub padding: f32,
 }
+
+/// Fine cells over which the grid loses half of its strength.
+const REACH_CELLS: f32 = 60.0;
 
 /// Largest distance of the outline from a selected pixel, in pixels: the ring in the shader.
 const REACH: u32 = 2;
@@ -156,7 +167,9 @@ impl OverlayPass {
     ) {
         self.draws_grid = settings.grid;
         // The cell size follows the eye's height in powers of ten.
-        let cell = 10.0_f64.powf(eye.y.abs().max(1e-3).log10().floor()) * 0.1;
+        let GridPlane { axis, cell, fades } = settings.plane;
+        let eye = turned(eye, axis);
+        let cell = cell.unwrap_or_else(|| 10.0_f64.powf(eye.y.abs().max(1e-3).log10().floor()) * 0.1);
         let period = cell * 100.0;
         let reduced = DVec3::new(eye.x.rem_euclid(period), eye.y, eye.z.rem_euclid(period));
         let [width, height] = settings.enlarged(size).unwrap_or(size);
@@ -167,6 +180,11 @@ impl OverlayPass {
             axis_z: (reduced.x - eye.x) as f32,
             leaf_count: flat.nodes.len() as u32,
             size: width | height << 16,
+            axis: axis as u32,
+            reach: if fades { cell as f32 * REACH_CELLS } else { f32::MAX },
+            // From very far, a share of the depth is large beside the scene.
+            bias: if fades { 1e-4 } else { 1e-6 },
+            padding: 0.0,
         };
         let changed = self.uniform.set(device, queue, bytemuck::bytes_of(&overlay));
         let bits = selected_bits(flat, &settings.outline);
@@ -176,6 +194,15 @@ impl OverlayPass {
             let resources = [self.uniform.binding(), self.selected.binding()];
             self.own_group = Some(bind(device, "overlay", &self.own, &resources));
         }
+    }
+}
+
+/// The vector with the axis across the grid in the place of y, as the shader turns it.
+fn turned(v: DVec3, axis: usize) -> DVec3 {
+    match axis {
+        0 => DVec3::new(v.y, v.x, v.z),
+        2 => DVec3::new(v.x, v.z, v.y),
+        _ => v,
     }
 }
 

@@ -2,11 +2,30 @@
 
 use isolith_scene::NodeId;
 
+/// The plane of the grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridPlane {
+    /// The axis across it: 1 for the ground.
+    pub axis: usize,
+    /// Side of a fine cell, in meters; ten of them make a coarse one. `None` chooses it by the height of the eye.
+    pub cell: Option<f64>,
+    /// Whether it fades with distance. One that does not is for views from very far.
+    pub fades: bool,
+}
+
+impl Default for GridPlane {
+    fn default() -> Self {
+        Self { axis: 1, cell: None, fades: true }
+    }
+}
+
 /// Marks to draw over the picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OverlaySettings {
-    /// A grid on the ground.
+    /// A grid.
     pub grid: bool,
+    /// Where the grid is.
+    pub plane: GridPlane,
     /// Nodes to outline.
     pub outline: Vec<NodeId>,
     /// Display size of a coarse picture. The pass enlarges the picture to this size first, so that lines are as thin as
