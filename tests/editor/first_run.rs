@@ -123,7 +123,7 @@ fn pictures_of_examples_are_those_of_the_golden_tests() {
         let Ok(golden) = image::open(goldens.join(name).with_extension("png")) else { continue };
         // Small enough that edges and the blocks of JPEG do not count.
         let (width, height) = (32, 32);
-        let reduced = |picture| image::imageops::thumbnail(&picture, width, height);
+        let reduced = |picture: image::RgbImage| image::imageops::thumbnail(&picture, width, height);
         let (shown, golden) = (reduced(shown), reduced(golden.into_rgb8()));
         let sum: u64 = shown.iter().zip(golden.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
         let mean = sum as f64 / f64::from(width * height * 3);
