@@ -158,8 +158,9 @@ fn examples() -> Vec<Example> {
         };
         Document::open_by(&file, task).map_err(|error| error.to_string())
     };
-    gallery::all()
-        .into_iter()
+    let mut all = gallery::all();
+    all.sort_by_key(|(name, _)| gallery::rank(name));
+    all.into_iter()
         .map(|(name, scene)| Example {
             name: name.replace('-', " "),
             is_test: gallery::is_test_scene(name),

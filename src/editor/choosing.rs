@@ -53,7 +53,7 @@ impl Editor {
         }
         let dialog = self.system_dialog(&purpose);
         let (sender, answer) = channel();
-        let (ctx, saving) = (ctx.clone(), matches!(purpose, Purpose::Save(_) | Purpose::ExportKeys));
+        let (ctx, saving) = (ctx.clone(), saves(&purpose));
         let spawned = std::thread::Builder::new().name("file dialog".into()).spawn(move || {
             let answer = match portal::has_dialogs() {
                 false => SystemAnswer::NoDialog,
@@ -75,6 +75,7 @@ impl Editor {
         dialog = match purpose {
             Purpose::Mesh | Purpose::Relink(_) => dialog.add_filter("glTF", &["gltf", "glb"]),
             Purpose::Attach(wanted) => dialog.add_filter("Files that can be used", wanted.instead_of.endings()),
+            Purpose::RenderTo => dialog.add_filter("Pictures", &["png", "exr"]),
             Purpose::ExportKeys | Purpose::ImportKeys => dialog.add_filter("Keymap", &["json"]),
             Purpose::Open | Purpose::Save(_) => dialog.add_filter("Isolith scene", &ENDINGS),
         };
@@ -84,6 +85,8 @@ impl Editor {
         }
         if matches!(purpose, Purpose::Save(_)) {
             dialog = dialog.set_file_name(suggested_name(path));
+        } else if matches!(purpose, Purpose::RenderTo) {
+            dialog = dialog.set_file_name(suggested_name(Some(Path::new(&self.rendering.output))));
         }
         dialog
     }
@@ -91,6 +94,7 @@ impl Editor {
     fn ask_in_window(&mut self, purpose: Purpose) {
         let path = self.state.session.document.path();
         let text = match (&purpose, path) {
+            (Purpose::RenderTo, _) => self.rendering.output.clone(),
             (Purpose::Save(_), Some(path)) => path.display().to_string(),
             (Purpose::Save(_), None) => std::path::absolute(suggested_name(None))
                 .map_or_else(|_| suggested_name(None), |p| p.display().to_string()),
@@ -155,6 +159,7 @@ impl Editor {
                 }
             }
             Purpose::Mesh => self.add_mesh(path),
+            Purpose::RenderTo => self.rendering.choose_path(path),
             Purpose::Relink(old) => self.relink(&old, path),
             Purpose::Attach(wanted) => self.state.files.read(self.state.derived.jobs(), wanted, path),
             Purpose::ExportKeys => self.export_keys(&with_ending(path)),
@@ -206,6 +211,11 @@ impl Editor {
         let parts: Vec<_> = relative.iter().map(|p| p.to_string_lossy()).collect();
         Some(parts.join("/"))
     }
+}
+
+/// Whether a file is written, so that it need not exist.
+fn saves(purpose: &Purpose) -> bool {
+    matches!(purpose, Purpose::Save(_) | Purpose::RenderTo | Purpose::ExportKeys)
 }
 
 fn suggested_name(path: Option<&Path>) -> String {

@@ -113,7 +113,7 @@ fn path_field(ui: &mut Ui, field: &mut PathField) -> Option<bool> {
     }
     ui.add_space(10.0);
     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-        let saves = matches!(field.purpose, Purpose::Save(_) | Purpose::ExportKeys);
+        let saves = matches!(field.purpose, Purpose::Save(_) | Purpose::RenderTo | Purpose::ExportKeys);
         let ok = if saves { "Save" } else { "Open" };
         if accented(ui, ok) {
             done = Some(true);

@@ -35,6 +35,8 @@ pub enum Purpose {
     Relink(String),
     /// Store a file in the scene.
     Attach(WantedFile),
+    /// Render pictures into files of this name.
+    RenderTo,
     /// Write the changed keys to a file.
     ExportKeys,
     /// Read changed keys from a file.
@@ -48,6 +50,7 @@ impl Purpose {
             Self::Open => "Open a scene",
             Self::Save(_) => "Save the scene",
             Self::Mesh => "Add a mesh",
+            Self::RenderTo => "Render into a file",
             Self::ExportKeys => "Export the keymap",
             Self::ImportKeys => "Import a keymap",
             Self::Relink(_) => "Find the model",
@@ -71,6 +74,10 @@ impl Purpose {
         }
         match self {
             Self::Save(_) | Self::ExportKeys => {}
+            Self::RenderTo => {
+                let folder = folder_of(path).filter(|folder| !folder.is_dir())?;
+                return Some(format!("There is no folder {}.", folder.display()));
+            }
             // Its reader reports problems in more detail.
             Self::Attach(_) => return None,
             Self::Open | Self::Mesh | Self::Relink(_) | Self::ImportKeys => {

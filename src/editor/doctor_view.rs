@@ -119,7 +119,7 @@ impl Doctor {
             if self.findings.is_some() && findings.is_empty() {
                 ui.add_space(0.3 * room);
                 ui.vertical_centered(|ui| {
-                    ui.label(ICON_CHECK_CIRCLE.rich_text().size(34.0).color(theme::SUCCESS));
+                    ui.label(ICON_CHECK_CIRCLE.rich_text().size(34.0).color(*theme::SUCCESS));
                     ui.label("Nothing to complain about.");
                 });
             }
@@ -202,8 +202,8 @@ impl Doctor {
                 };
                 ui.label(RichText::new(text).weak());
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    let text = RichText::new("Scan").color(Color32::BLACK);
-                    let button = ui.add(Button::new(text).fill(theme::ACCENT).min_size(vec2(84.0, 24.0)));
+                    let text = RichText::new("Scan").color(theme::ON_ACCENT);
+                    let button = ui.add(Button::new(text).fill(*theme::ACCENT).min_size(vec2(84.0, 24.0)));
                     ui.ctx().accesskit_node_builder(button.id, |node| node.set_label("Scan the scene"));
                     if button.clicked() {
                         wish = Some(Wish::Scan);

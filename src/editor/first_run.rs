@@ -3,7 +3,6 @@
 use egui::{Context, Pos2};
 
 use super::help::HelpTab;
-use super::intent::Intent;
 use super::root::Editor;
 use super::state::Example;
 use super::welcome::{ThumbnailOf, WelcomeChoice};
@@ -40,10 +39,6 @@ impl Editor {
 
     /// Shows what helps, in front of the panels.
     pub(super) fn show_first_run(&mut self, ctx: &Context) {
-        let dropped = ctx.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
-        if let Some(path) = dropped.filter(|_| self.welcome.is_open) {
-            self.intend(Intent::Open(path), ctx);
-        }
         // A question about lost work comes first.
         if !self.is_offering() {
             let choice = self.welcome.show(&mut self.state, ctx);

@@ -7,8 +7,9 @@ use egui::{
     Align, Button, ComboBox, Context, DragValue, Grid, Id, Label, Layout, ProgressBar, RichText, TextEdit, Ui, Window,
     vec2,
 };
-use egui_material_icons::icons::{ICON_CONTENT_COPY, ICON_SWAP_HORIZ};
+use egui_material_icons::icons::{ICON_CONTENT_COPY, ICON_FOLDER_OPEN, ICON_SWAP_HORIZ};
 
+use super::dialogs::Purpose;
 use super::rendering::{FILES_LISTED, RenderFormat, RenderOutcome, Rendering, Running, report_text};
 use super::root::Editor;
 use super::state::EditorState;
@@ -93,12 +94,7 @@ impl Rendering {
             self.frames_row(ui);
             ui.end_row();
             label(ui, "File", "Where the picture goes; #### becomes the number of the frame");
-            let field = TextEdit::singleline(&mut self.output).desired_width(225.0).hint_text("/path/to/picture.png");
-            let response = named(ui.add(field), "Render file");
-            if response.changed() {
-                self.follow_ending();
-            }
-            response.on_hover_text(&self.output);
+            self.file_row(ui);
             ui.end_row();
         });
     }
@@ -184,6 +180,20 @@ impl Rendering {
                     named(ui.add_sized(vec2(64.0, theme::ROW_HEIGHT), drag), name).on_hover_text(name);
                 }
             });
+        });
+    }
+
+    fn file_row(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let field = TextEdit::singleline(&mut self.output).desired_width(196.0).hint_text("/path/to/picture.png");
+            let response = named(ui.add(field), "Render file");
+            if response.changed() {
+                self.follow_ending();
+            }
+            response.on_hover_text(&self.output);
+            let button = Button::new(ICON_FOLDER_OPEN.rich_text().size(theme::ICON_SIZE)).frame(false);
+            self.wants_path |=
+                named(ui.add(button), "Choose the file to render").on_hover_text("Choose the file").clicked();
         });
     }
 
@@ -311,6 +321,9 @@ impl Editor {
         if let Some(message) = self.rendering.poll(ctx) {
             self.report(message);
         }
+        if std::mem::take(&mut self.rendering.wants_path) {
+            self.choose(Purpose::RenderTo, ctx);
+        }
         let agreed = self.rendering.show(&self.state, self.studio.as_ref(), ctx);
         if let (Some(may_replace), Some(studio)) = (agreed, &self.studio) {
             self.state.session.finish();
@@ -360,7 +373,7 @@ fn colored(ui: &mut Ui, text: &str, color: egui::Color32) {
 }
 
 fn accented(ui: &mut Ui, text: &str) -> bool {
-    let button = Button::new(RichText::new(text).color(egui::Color32::BLACK)).fill(theme::ACCENT);
+    let button = Button::new(RichText::new(text).color(theme::ON_ACCENT)).fill(*theme::ACCENT);
     ui.add(button.min_size(vec2(110.0, 28.0))).clicked()
 }
 

@@ -127,6 +127,8 @@ pub struct Rendering {
     pub preview: Option<ShownPreview>,
     /// The job.
     pub running: Option<Running>,
+    /// The artist wants to choose the path in a dialog.
+    pub wants_path: bool,
     /// The scene that the path was suggested for.
     suggested_for: Option<Option<PathBuf>>,
 }
@@ -168,6 +170,16 @@ impl Rendering {
         self.format = format;
         if !self.output.is_empty() {
             self.output = PathBuf::from(&self.output).with_extension(format.ending()).display().to_string();
+        }
+    }
+
+    /// Takes a path that was chosen in a dialog; without an ending it gets that of the format.
+    pub fn choose_path(&mut self, path: &Path) {
+        let path = if path.extension().is_none() { path.with_extension(self.format.ending()) } else { path.into() };
+        self.output = path.display().to_string();
+        self.follow_ending();
+        if self.has_frames {
+            self.set_frames(true);
         }
     }
 
@@ -333,6 +345,13 @@ mod tests {
         assert_eq!(rendering.format, RenderFormat::Png);
         rendering.open(&document);
         assert_eq!(rendering.output, "pawn.PNG", "what was typed stays");
+        rendering.choose_path(Path::new("b/king"));
+        assert_eq!(rendering.output, "b/king.png");
+        rendering.has_frames = true;
+        rendering.choose_path(Path::new("b/king.exr"));
+        assert_eq!((&*rendering.output, rendering.format), ("b/king.####.exr", RenderFormat::Exr));
+        rendering.set_frames(false);
+        rendering.output = "pawn.PNG".into();
     }
 
     #[test]

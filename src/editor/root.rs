@@ -157,6 +157,8 @@ impl Editor {
         self.poll_recovery();
         self.poll_dialogs(&ctx);
         self.guard_closing(&ctx);
+        // What is dropped onto the welcome is meant for what it hides.
+        self.welcome.is_open &= ctx.input(|i| i.raw.dropped_files.is_empty());
         self.take_dropped_files(&ctx);
         if self.state.session.is_changing() && ctx.input(|i| i.key_pressed(Key::Escape)) {
             self.state.session.cancel();

@@ -50,6 +50,15 @@ pub const RANDOM_SEED: u64 = 2;
 const TEST_SCENES: [&str; 6] =
     ["blend-kernels", "deep-tree", "ellipsoid-and-plane", "random-37", "random-145", "random-577"];
 
+/// Shipped scenes that look as an artist would make them; the others each show a feature.
+const SHOWCASES: [&str; 9] =
+    [SHOWCASE, "pawn", "mesh-and-fields", "terrain", "ocean", "city", "asteroids", "chessboard", "fractals"];
+
+/// The place of a shipped scene in a list for artists: showcases come first, in an order of their own.
+pub fn rank(name: &str) -> usize {
+    SHOWCASES.iter().position(|showcase| *showcase == name).unwrap_or(SHOWCASES.len())
+}
+
 /// Whether the shipped scene of this name only tests the program.
 pub fn is_test_scene(name: &str) -> bool {
     TEST_SCENES.contains(&name)
@@ -100,5 +109,7 @@ mod tests {
             assert!(names.contains(&name), "{name}");
         }
         assert!(!is_test_scene(SHOWCASE));
+        assert!(SHOWCASES.iter().all(|name| names.contains(name) && !is_test_scene(name)));
+        assert!(rank(SHOWCASE) < rank("city") && rank("city") < rank("shapes"));
     }
 }

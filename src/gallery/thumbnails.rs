@@ -1,4 +1,5 @@
-//! Small pictures of the example scenes and templates: those of the golden tests, made smaller.
+//! Small pictures of the example scenes and templates. Those of the examples are the pictures of the golden tests, made
+//! smaller; a test of the editor compares them, and says how to make one again.
 
 /// A scene and its picture, a JPEG.
 macro_rules! pictures {
@@ -10,6 +11,7 @@ macro_rules! pictures {
 pictures![
     "asteroids",
     "boolean-operations",
+    "character",
     "chessboard",
     "city",
     "drawn",

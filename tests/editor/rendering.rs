@@ -256,3 +256,15 @@ fn without_a_file_or_a_renderer_the_dialog_says_so() {
     harness.get_by_label("There is no renderer.");
     assert!(harness.get_by_label("Render picture").accesskit_node().is_disabled());
 }
+
+#[test]
+fn the_file_can_be_chosen_in_a_dialog() {
+    let (mut harness, folder) = open_with(Arc::new(FullDisk));
+    press_button(&mut harness, "Choose the file to render");
+    press(&mut harness, Modifiers::COMMAND, Key::A);
+    harness.event(egui::Event::Text(folder.path().join("king.exr").display().to_string()));
+    harness.run();
+    press(&mut harness, Modifiers::NONE, Key::Enter);
+    let copied = copied(&mut harness);
+    assert!(copied.contains("king.exr"), "{copied}");
+}

@@ -1,17 +1,20 @@
 //! Samples the field of each component: finite, with a gradient of length 1 at most, and never larger than the
 //! distance to the surface. Where it is not, the innermost entry that breaks the promise is named.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::finding::{Finding, FindingKind};
 use crate::eval::{content_point, entry_field, entry_gradient, field, gradient, surface};
 use crate::{Component, FlatScene};
 use isolith_geometry::Aabb;
+use isolith_jobs::{Canceled, Task};
 
 /// Points in the bounds of a component.
 const SAMPLES: usize = 96;
 /// Side of the box that is looked at where a component has no bounds, in meters.
 const UNBOUNDED: f64 = 20.0;
+/// Most operands of a component that are looked at closer.
+const MAX_REGIONS: usize = 64;
 /// Newton steps from a point to the surface.
 const NEWTON: usize = 12;
 /// A point counts as on the surface at this value, relative to the size of the bounds.
@@ -46,8 +49,12 @@ impl FieldSample {
 
 /// Samples a field with its gradient in a box; `seeds` are further points to look at.
 pub fn worst_sample(field: &dyn Fn(DVec3) -> (f64, DVec3), bounds: &Aabb, seeds: &[DVec3]) -> FieldSample {
+    sampled(field, bounds, seeds, SAMPLES)
+}
+
+fn sampled(field: &dyn Fn(DVec3) -> (f64, DVec3), bounds: &Aabb, seeds: &[DVec3], samples: usize) -> FieldSample {
     let points: Vec<DVec3> =
-        (0..SAMPLES).map(|i| bounds.min + spread_point(i) * 2.0 * bounds.half()).chain(seeds.iter().copied()).collect();
+        (0..samples).map(|i| bounds.min + spread_point(i) * 2.0 * bounds.half()).chain(seeds.iter().copied()).collect();
     let size = bounds.half().length();
     let mut worst = FieldSample::default();
     let mut told = |p: DVec3| {
@@ -104,14 +111,52 @@ fn spread_point(index: usize) -> DVec3 {
     DVec3::new(0.5 + n / G, 0.5 + n / (G * G), 0.5 + n / (G * G * G)).map(f64::fract)
 }
 
-/// Looks at a component.
-pub fn look(flat: &FlatScene, component: &Component, findings: &mut Vec<Finding>) {
-    let bounds = looked_at(component);
-    let worst = worst_sample(&|p| gradient(flat, component, p), &bounds, &[]);
-    if !worst.is_sound() {
-        findings.extend(named(flat, component, &worst, &bounds));
+/// Looks at a component: at all of it, and closer at each of its outermost operands, which may be small and far apart.
+///
+/// # Errors
+/// The task was canceled.
+pub fn look(flat: &FlatScene, component: &Component, task: &Task, findings: &mut Vec<Finding>) -> Result<(), Canceled> {
+    let whole = (looked_at(component), SAMPLES);
+    let parts = regions(flat, component).into_iter().map(|region| (region, SAMPLES / 3));
+    for (bounds, samples) in std::iter::once(whole).chain(parts) {
+        task.check()?;
+        let worst = sampled(&|p| gradient(flat, component, p), &bounds, &[], samples);
+        if !worst.is_sound() {
+            findings.extend(named(flat, component, &worst, &bounds));
+        }
+        findings.extend(small_steps(flat, component, &bounds, samples / 2));
     }
-    findings.extend(small_steps(flat, component, &bounds));
+    Ok(())
+}
+
+/// Boxes around the outermost operands, relative to the component's origin; none if there is only one.
+fn regions(flat: &FlatScene, component: &Component) -> Vec<Aabb> {
+    let end = (component.first + component.count) as usize;
+    let (mut at, mut found) = (component.first as usize, Vec::new());
+    while at < end && found.len() < MAX_REGIONS {
+        let node = &flat.nodes[at];
+        if node.is_run() {
+            at += 1;
+            continue;
+        }
+        let rows = &flat.params[node.params as usize..];
+        let point = |row: usize| DVec3::from([0, 1, 2].map(|i| f64::from(rows[row][i])));
+        // Leaves have no bounds: their center is as far from the surface as their field says. Groups without bounds
+        // have no slope.
+        let region = match (node.is_leaf(), component.placing(flat, at)) {
+            (true, Some(placing)) => {
+                let to_local = DMat3::from_cols_array_2d(&placing.map(|[x, y, z, _]| [x, y, z])).transpose();
+                let center = to_local.inverse() * -DVec3::from(placing.map(|[.., shift]| shift));
+                let reach = entry_field(flat, component, at, center).abs();
+                Some(Aabb::from_center_half(center, DVec3::splat(3.0 * reach)))
+            }
+            _ if rows[0][1] > 0.0 => Some(Aabb::from_center_half(point(1), 1.2 * point(2))),
+            _ => None,
+        };
+        found.extend(region.filter(|region| region.is_finite() && region.half().min_element() > 0.0));
+        at += node.extent as usize;
+    }
+    if found.len() > 1 { found } else { Vec::new() }
 }
 
 /// The bounds of a component, relative to its origin, with some room around.
@@ -181,11 +226,11 @@ fn innermost(
 }
 
 /// What makes rays take small steps near the surface, if anything does.
-fn small_steps(flat: &FlatScene, component: &Component, bounds: &Aabb) -> Option<Finding> {
+fn small_steps(flat: &FlatScene, component: &Component, bounds: &Aabb, samples: usize) -> Option<Finding> {
     let size = bounds.half().length();
     // Points at a known distance from the surface, with the share of it that the field promises.
     let mut shares: Vec<(f64, DVec3)> = Vec::new();
-    for index in 0..SAMPLES / 2 {
+    for index in 0..samples {
         let mut p = bounds.min + spread_point(index) * 2.0 * bounds.half();
         for _ in 0..2 * NEWTON {
             let (value, slope) = gradient(flat, component, p);

@@ -34,7 +34,7 @@ pub fn examine(scene: &Scene, flat: &FlatScene, checks: &Checks, task: &Task) ->
         task.check()?;
         task.set_stage("fields");
         task.set_progress(0.5 * fields_end * index as f32 / flat.components.len() as f32);
-        contract::look(flat, component, &mut findings);
+        contract::look(flat, component, task, &mut findings)?;
     }
     task.set_stage("proofs");
     let told = |share: f32| task.set_progress(fields_end * (0.5 + 0.5 * share));

@@ -40,10 +40,11 @@ fn hidden_first(scene: &Scene, node: &Node) -> Option<Finding> {
     let mut operands = scene.children(Some(node.id)).filter(is_operand);
     let first = operands.next().filter(|first| !first.visible && group.operator.needs_first())?;
     let shown = operands.filter(|child| child.visible).count();
+    let waiting = if shown == 1 { "one operand waits".to_owned() } else { format!("{shown} operands wait") };
     (shown > 0).then(|| Finding {
         node: first.id,
         kind: FindingKind::HiddenFirst,
-        detail: format!("{} operands of {} wait for it", shown, node.name),
+        detail: format!("{waiting} for it in {}", node.name),
         place: None,
         repair: Some(Repair::Show(first.id)),
     })

@@ -146,3 +146,23 @@ fn loose_parts_and_thin_walls_are_found_where_they_are() {
     let thinner = found(&scene, &Checks { wall: Some(0.003), loose_parts: false });
     assert_eq!(thinner, [], "thicker than that");
 }
+
+#[test]
+fn small_parts_that_are_drawn_together_are_looked_at_one_by_one() {
+    let mut scene = Scene::new();
+    let mut ids = Vec::new();
+    for place in 0..12 {
+        let mut node = ball("Ball", 0.5).at(DVec3::new(5.0 * f64::from(place), 0.0, 0.0));
+        if place == 7 {
+            node = node.modified(Modifier::Waves { amplitude: 0.1, length: 0.05, phase: 0.0 });
+        }
+        ids.push(scene.insert(None, usize::MAX, node).unwrap());
+    }
+    let findings = found(&scene, &Checks::default());
+    assert!(kinds(&findings).contains(&(FindingKind::SmallSteps, ids[7])), "{findings:?}");
+    let mut flat = flatten(&scene, 0.0).unwrap();
+    let leaf = flat.ids.iter().position(|id| *id == ids[3]).unwrap();
+    flat.params[flat.nodes[leaf].params as usize][1] *= 1.5;
+    let findings = examine(&scene, &flat, &Checks::default(), &Task::new("looking")).unwrap();
+    assert!(kinds(&findings).contains(&(FindingKind::Steep, ids[3])), "{findings:?}");
+}
