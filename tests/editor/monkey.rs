@@ -188,6 +188,11 @@ fn round(seed: u64, scene: Scene, events: usize) -> Scene {
     let first = bytes(&harness);
     let mut monkey = Monkey { random: Random::new(seed), copied: None, done: Vec::new() };
     for index in 0..events {
+        if index % 8 == 0 {
+            // Out of whatever has been opened.
+            harness.key_press(Key::Escape);
+            harness.step();
+        }
         monkey.act(&mut harness);
         let scene = harness.state().document().scene();
         let told = || format!("seed {seed}, event {index}: {:?}", &monkey.done[monkey.done.len().saturating_sub(6)..]);

@@ -67,6 +67,13 @@ pub(super) fn commands() -> Vec<CommandInfo> {
         row(Command::ShowMessages, ICON_LIST, "Log", "All messages so far"),
         row(Command::ResetLayout, ICON_DASHBOARD, "Reset layout", "Puts all panels back into their usual places"),
     ]);
+    all.extend(pictures());
+    all
+}
+
+/// Shadings, views for debugging and numbers of samples.
+fn pictures() -> Vec<CommandInfo> {
+    let mut all = Vec::new();
     all.extend(Shading::ALL.into_iter().map(|shading| {
         let label = format!("Shading: {}", shading.label());
         CommandInfo::new(Menu::Shading, Command::ShowShading(shading), None, label, shading.help())
@@ -75,7 +82,7 @@ pub(super) fn commands() -> Vec<CommandInfo> {
     let cycle = "Solid, Material Preview and Rendered in turn";
     all.push(
         CommandInfo::new(Menu::Shading, Command::CycleShading, Icon::from(ICON_CONTRAST), "Next shading", cycle)
-            .key(NONE, Key::Z),
+            .key(Modifiers::NONE, Key::Z),
     );
     all.extend(ViewMode::ALL.into_iter().filter(|view_mode| *view_mode != ViewMode::Shaded).map(|view_mode| {
         let label = format!("Debug: {}", view_mode.name());
