@@ -35,6 +35,14 @@ impl Panel for Toolbar {
     }
 }
 
+/// Submenus of View.
+const SUBMENUS: [(&str, Menu); 4] = [
+    ("Bookmarks", Menu::Bookmarks),
+    ("Transform", Menu::Tool),
+    ("Orientation", Menu::Orientation),
+    ("Keymap", Menu::Keymap),
+];
+
 /// Shows the bar; returns the chosen command.
 fn show(state: &mut EditorState, ui: &mut Ui) -> Option<Command> {
     let mut chosen = None;
@@ -84,7 +92,7 @@ fn menu_content(state: &mut EditorState, ui: &mut Ui, menu: Menu, chosen: &mut O
     }
     if menu == Menu::View {
         ui.menu_button("Panels", |ui| panels(state, ui));
-        for (name, menu) in [("Transform", Menu::Tool), ("Orientation", Menu::Orientation), ("Keymap", Menu::Keymap)] {
+        for (name, menu) in SUBMENUS {
             let inner = ui.menu_button(name, |ui| menu_entries(ui, state, menu)).inner;
             *chosen = inner.flatten().or(*chosen);
         }

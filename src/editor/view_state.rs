@@ -2,6 +2,7 @@
 
 use egui::{Event, Pos2, Rect, TextureId, vec2};
 
+use super::camera_view::{BOOKMARKS, Through};
 use super::choice_walk::{BelowList, Walk};
 use super::navigation::Navigation;
 use super::transforms::kinds::{Orientation, Tool, TransformKind};
@@ -98,6 +99,14 @@ pub enum PointerActivity {
 pub struct ViewState {
     /// The camera.
     pub navigation: Navigation,
+    /// The camera that one looks through.
+    pub through: Option<Through>,
+    /// Whether that camera moves with the view.
+    pub locks_camera: bool,
+    /// Whether its frame shows where action and titles are safe.
+    pub show_safe_areas: bool,
+    /// Views to come back to.
+    pub bookmarks: [Option<Navigation>; BOOKMARKS],
     /// The shading of the lit picture.
     pub shading: Shading,
     /// The view mode.
@@ -146,6 +155,10 @@ impl Default for ViewState {
     fn default() -> Self {
         Self {
             navigation: Navigation::default(),
+            through: None,
+            locks_camera: false,
+            show_safe_areas: false,
+            bookmarks: [None; BOOKMARKS],
             shading: Shading::default(),
             view_mode: ViewMode::Shaded,
             samples: SAMPLES,

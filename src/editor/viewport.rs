@@ -18,7 +18,7 @@ use super::view_state::PointerActivity;
 use super::viewport_click::{click, prepare_menu, select_in_box, take_dropped_material};
 use super::viewport_drag::{Dragging, gizmo_of, handle_at, start_drag};
 use super::viewport_modal::{ModalTransform, paint_limits};
-use super::{grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
+use super::{camera_view, grid_labels, lattice_overlay, legend, materials, shading_bar, steps, theme};
 use isolith_field::debug_view::ViewMode;
 
 /// The panel of the viewport.
@@ -122,6 +122,7 @@ impl Viewport {
         }
         take_dropped_material(state, ui, response);
         self.context_menu(state, ui, response);
+        camera_view::follow(state, response.id);
         let now = ui.input(|i| i.time);
         state.view.is_navigating = self.dragging.is_some() || self.modal.is_active() || now < self.zooming_until;
         state.view.pointer = self.activity(state, ui, response);
@@ -286,6 +287,7 @@ impl Viewport {
             overlay::selection_boxes(state, &painter, &projection);
             lattice_overlay::paint(state, &painter, &projection);
         }
+        camera_view::paint(state, &painter);
         let markers = overlay::markers(state, &projection);
         overlay::paint_markers(state, &painter, &projection, &markers);
         let pointer = response.hover_pos().filter(|_| response.hovered() || response.dragged());

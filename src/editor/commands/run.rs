@@ -11,7 +11,7 @@ use crate::intent::Intent;
 use crate::log_panel::LOG;
 use crate::root::Editor;
 use crate::state::{EditorState, Request};
-use crate::{dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
+use crate::{camera_view, dope_sheet, insertion, instancer_edits, keying, material_edits, relations, seeds, selection};
 use isolith_document::Edit;
 use isolith_scene::{CameraNode, Group, Light, LightKind, Node, NodeKind, Operator};
 
@@ -100,6 +100,10 @@ fn run_on_state(state: &mut EditorState, command: Command) {
         Command::FrameSelected => state.frame_selected(),
         Command::FrameAll => state.frame_all(),
         Command::LookThroughCamera => state.look_through_camera(),
+        Command::LockCamera => state.view.locks_camera ^= true,
+        Command::ToggleSafeAreas => state.view.show_safe_areas ^= true,
+        Command::SetBookmark(index) => camera_view::set_bookmark(state, index),
+        Command::ShowBookmark(index) => camera_view::show_bookmark(state, index),
         Command::LookFrom(side) => state.view.navigation.look_along(side),
         Command::ToggleOrthographic => state.view.navigation.toggle_orthographic(),
         Command::ToggleGrid => state.view.show_grid ^= true,
